@@ -1,0 +1,1 @@
+"""Emitted equations of motion, one module per model; `ptp-symbolic regenerate` writes them."""

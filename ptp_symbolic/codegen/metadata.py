@@ -1,0 +1,147 @@
+"""The head of an emitted module: what it is, names, units, bounds, effects and equations."""
+
+import textwrap
+from collections.abc import Iterable
+
+import sympy as sp
+
+from ptp_symbolic import kinematics
+
+from ptp_symbolic.derivation.equations import Equations
+from ptp_symbolic.parameters import Parameter
+
+
+def metadata_text(equations: Equations, digest: str) -> str:
+    """Return docstring, imports and constants of the module of `equations`."""
+    parameters = equations.parameters
+    sections = [
+        _docstring(equations),
+        "import math\n\nimport numpy as np\nfrom numba import njit",
+        "\n".join(
+            [
+                f'MODEL_HASH = "{digest}"',
+                f'NAME = "{equations.name}"',
+                f'TITLE = "{equations.title}"',
+                _tuple("AXES", map(repr_text, equations.axes)),
+                _tuple("STATE_NAMES", (f'"{s}"' for s in equations.state_symbols)),
+                _tuple("STATE_UNITS", map(repr_text, _state_units(equations))),
+                _tuple("STATE_INITIAL", map(repr, _state_initial(equations))),
+                _tuple("INPUT_NAMES", (f'"{i.name}"' for i in equations.inputs)),
+                _tuple("INPUT_UNITS", (f'"{i.unit}"' for i in equations.inputs)),
+                _tuple("OUTPUT_NAMES", (f'"{name}"' for name, _, _ in equations.outputs)),
+                _tuple("OUTPUT_UNITS", (f'"{unit}"' for _, unit, _ in equations.outputs)),
+                _tuple("MODE_NAMES", (f'"{m}"' for m in equations.mode_symbols)),
+                _tuple("FRICTION_RATES", map(str, _friction_rates(equations))),
+                "# Per contact: state index of the angle at the gear output and at the joint.",
+                _tuple("CONTACT_ANGLES", _contact_states(equations)),
+                "# Parameters: name, unit, default, lower and upper bound, value at which the effect",
+                "# vanishes (None: any), values from which a search starts, period, meaning.",
+                _tuple("PARAMETERS", map(_parameter, parameters)),
+                "# Effects: id, axis, parameters, title, reference, separating experiment.",
+                _tuple("EFFECTS", _effects(equations)),
+            ]
+        ),
+    ]
+    return "\n\n".join(sections)
+
+
+def repr_text(value: str) -> str:
+    """Return `value` as a double-quoted literal."""
+    return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
+def _docstring(equations: Equations) -> str:
+    lines = [f'"""{equations.title}: equations of motion, emitted; do not edit.', ""]
+    lines.append("M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:")
+    lines.append("")
+    n = len(equations.coordinates)
+    for i in range(n):
+        for j in range(i, n):
+            entry = equations.mass_matrix[i, j]
+            if entry != 0:
+                lines += _wrapped(f"M[{i}, {j}]", entry)
+    for i, rate in enumerate(equations.rates):
+        lines += _wrapped(f"forcing[{rate}]", equations.forcing[i])
+    for friction in equations.frictions:
+        lines += _wrapped(f"sliding friction[{friction.rate}]", friction.level)
+    for state in equations.extra_states:
+        lines += _wrapped(f"{state.name}'", state.derivative)
+    lines += ["", "Effects:"]
+    for placed in equations.effects:
+        where = f" ({placed.axis})" if placed.axis else ""
+        lines.append(f"- {placed.effect.id}{where}: {placed.effect.reference}")
+    lines.append('"""')
+    return "\n".join(lines)
+
+
+def _wrapped(name: str, expression: sp.Expr) -> list[str]:
+    text = f"{name} = {sp.sstr(expression, order='lex')}"
+    return textwrap.wrap(text, 96, initial_indent="  ", subsequent_indent="      ")
+
+
+def _tuple(name: str, items: Iterable[str]) -> str:
+    items = list(items)
+    line = f"{name} = ({', '.join(items)}{',' if len(items) == 1 else ''})"
+    if len(line) <= 100:
+        return line
+    return f"{name} = (\n" + "".join(f"    {item},\n" for item in items) + ")"
+
+
+def _parameter(parameter: Parameter) -> str:
+    p = parameter
+    fields = [repr_text(p.name), repr_text(p.unit)]
+    fields += [repr(float(value)) for value in (p.default, p.lower, p.upper)]
+    fields += [_number(p.vanishes), _floats(p.starts), _number(p.period), repr_text(p.meaning)]
+    return f"({', '.join(fields)})"
+
+
+def _number(value: float | None) -> str:
+    return "None" if value is None else repr(float(value))
+
+
+def _floats(values: tuple[float, ...]) -> str:
+    items = ", ".join(repr(float(v)) for v in values)
+    return f"({items}{',' if len(values) == 1 else ''})"
+
+
+def _state_units(equations: Equations) -> list[str]:
+    units = {str(q): "rad" for q in equations.coordinates}
+    units.update({str(w): "rad/s" for w in equations.rates})
+    units.update({state.name: state.unit for state in equations.extra_states})
+    return [units[str(symbol)] for symbol in equations.state_symbols]
+
+
+def _state_initial(equations: Equations) -> list[float]:
+    initial = {state.name: float(state.initial) for state in equations.extra_states}
+    return [initial.get(str(symbol), 0.0) for symbol in equations.state_symbols]
+
+
+def _contact_states(equations: Equations) -> list[str]:
+    states = list(equations.state_symbols)
+    pairs = []
+    for contact in equations.contacts:
+        gear, joint = (
+            states.index(symbol)
+            for symbol in (kinematics.gear_angle(contact.axis), kinematics.angle(contact.axis))
+        )
+        pairs.append(f"({gear}, {joint})")
+    return pairs
+
+
+def _friction_rates(equations: Equations) -> list[int]:
+    states = list(equations.state_symbols)
+    return [states.index(friction.rate) for friction in equations.frictions]
+
+
+def _effects(equations: Equations) -> list[str]:
+    used = {p.name for p in equations.parameters}
+    rows = []
+    for placed in equations.effects:
+        names = [f'"{name}"' for name in placed.parameters if name in used]
+        inner = f"({', '.join(names)}{',' if len(names) == 1 else ''})"
+        effect = placed.effect
+        axis = "None" if placed.axis is None else f'"{placed.axis}"'
+        texts = (effect.title, effect.reference, effect.separating_experiment)
+        fields = [f'"{effect.id}"', axis, inner, *map(repr_text, texts)]
+        rows.append("(\n" + "".join(f"        {f},\n" for f in fields) + "    )")
+    return rows

@@ -1,0 +1,186 @@
+"""Write a model as a self-contained numba module."""
+
+import hashlib
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ptp_symbolic.codegen import dynamics
+from ptp_symbolic.codegen.metadata import metadata_text
+from ptp_symbolic.codegen.printer import print_expression
+from ptp_symbolic.codegen.sharing import Line, share
+from ptp_symbolic.codegen.templates import STATE_DERIVATIVE_HYBRID, STATE_DERIVATIVE_SMOOTH
+from ptp_symbolic.derivation.equations import Equations
+
+WIDTH = 100
+MODE_ARGUMENTS = "t, x, u, p, m"
+
+
+@dataclass(frozen=True)
+class Vectors:
+    """Names of the entries of the argument arrays of a kernel."""
+
+    x: tuple[str, ...]
+    u: tuple[str, ...]
+    p: tuple[str, ...]
+    m: tuple[str, ...]
+
+    def unpack(self, lines: Sequence[Line]) -> list[str]:
+        """Assignments that unpack what `lines` use, states first."""
+        used = {str(symbol) for _, expression in lines for symbol in expression.free_symbols}
+        return [
+            f"{name} = {array}[{index}]"
+            for array, names in (("x", self.x), ("u", self.u), ("p", self.p), ("m", self.m))
+            for index, name in enumerate(names)
+            if name in used
+        ]
+
+
+def module_text(equations: Equations) -> str:
+    """Return the source of the module that computes `equations`.
+
+    The text depends on the mathematics alone: the same bytes on every machine. It ends with the
+    SHA-256 of everything above, which the loader verifies.
+    """
+    solve = dynamics.solve_accelerations(equations)
+    vectors = Vectors(
+        tuple(map(str, equations.state_symbols)),
+        tuple(i.name for i in equations.inputs),
+        tuple(p.name for p in equations.parameters),
+        tuple(map(str, equations.mode_symbols)),
+    )
+    body = "\n\n\n".join(
+        [
+            _mode_derivative(equations, solve, vectors),
+            _jacobian(equations, solve, vectors),
+            _guards(equations, solve, vectors),
+            _guard_jacobian(equations, solve, vectors),
+            _outputs(equations, vectors),
+            _output_jacobian(equations, vectors),
+            _energy(equations, vectors),
+            STATE_DERIVATIVE_HYBRID if vectors.m else STATE_DERIVATIVE_SMOOTH,
+        ]
+    )
+    digest = hashlib.sha256(body.encode()).hexdigest()[:16]
+    text = f"{metadata_text(equations, digest)}\n\n{body}\n"
+    return text + f"# END sha256 {hashlib.sha256(text.encode()).hexdigest()}\n"
+
+
+def _kernel(
+    name: str, arguments: str, doc: str, vectors: Vectors, lines: Sequence[Line]
+) -> str:
+    rows = [f'"""{doc}"""', *vectors.unpack(lines)]
+    for target, expression in lines:
+        rows.append(_assignment(target, expression))
+    if not lines:
+        rows.append("return")
+    head = f'@njit(cache=True, error_model="numpy", nogil=True)\ndef {name}({arguments}):\n'
+    return head + textwrap.indent("\n".join(rows), "    ")
+
+
+def _assignment(target: str, expression: sp.Expr) -> str:
+    source = print_expression(expression)
+    if len(target) + len(source) + 7 <= WIDTH:
+        return f"{target} = {source}"
+    return "\n".join(_wrapped(target, expression))
+
+
+def _wrapped(target: str, expression: sp.Expr) -> list[str]:
+    """A long sum, one term per line; anything else in parentheses, broken at operators."""
+    if expression.is_Add:
+        terms = [print_expression(t) for t in expression.as_ordered_terms()]
+        first, *rest = terms
+        signed = [f"- {t[1:].strip()}" if t.startswith("-") else f"+ {t}" for t in rest]
+        return [f"{target} = (", f"    {first}", *(f"    {t}" for t in signed), ")"]
+    factors = [f"({print_expression(f)})" for f in expression.as_ordered_factors()]
+    return [f"{target} = (", f"    {factors[0]}", *(f"    * {f}" for f in factors[1:]), ")"]
+
+
+def _shared(definitions: Sequence[Line], outputs: Sequence[Line]) -> list[Line]:
+    return share(definitions, [(t, sp.sympify(e)) for t, e in outputs if e != 0])
+
+
+def _mode_derivative(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+    rates = dynamics.state_rates(equations, solve)
+    outputs = [(f"dx[{i}]", sp.sympify(rate)) for i, rate in enumerate(rates)]
+    lines = share(solve.definitions, outputs)
+    doc = "Write the time derivative of the state into dx in the modes m."
+    return _kernel("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
+
+
+def _columns(
+    equations: Equations,
+) -> list[tuple[str, tuple[sp.Symbol, ...]]]:
+    parameters = tuple(sp.Symbol(p.name, real=True) for p in equations.parameters)
+    inputs = tuple(sp.Symbol(i.name, real=True) for i in equations.inputs)
+    return [("x", equations.state_symbols), ("u", inputs), ("p", parameters)]
+
+
+def _jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+    outputs: list[Line] = []
+    extra = {sp.Symbol(s.name, real=True): s.derivative for s in equations.extra_states}
+    for letter, symbols in _columns(equations):
+        for j, variable in enumerate(symbols):
+            by = dynamics.acceleration_derivative(equations, solve, variable)
+            rows = dict(zip(equations.rates, by, strict=True))
+            rows.update({s: sp.diff(e, variable) for s, e in extra.items()})
+            rate_of = zip(equations.coordinates, equations.rates, strict=True)
+            rows.update({q: sp.Integer(int(w == variable)) for q, w in rate_of})
+            for i, state in enumerate(equations.state_symbols):
+                outputs.append((f"f{letter}[{i}, {j}]", rows[state]))
+    doc = "Write the non-zero derivatives of mode_derivative by state, input and parameter."
+    lines = _shared(solve.definitions, outputs)
+    return _kernel("jacobian", f"{MODE_ARGUMENTS}, fx, fu, fp", doc, vectors, lines)
+
+
+def _guards(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+    outputs = [
+        (f"g[{i}]", sp.sympify(e))
+        for i, e in enumerate(dynamics.guard_expressions(equations, solve))
+    ]
+    doc = "Write holding and breakaway torques, gap separations and contact torques into g."
+    lines = share(solve.definitions, outputs) if outputs else []
+    return _kernel("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
+
+
+def _guard_jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+    outputs: list[Line] = []
+    expressions = dynamics.guard_expressions(equations, solve)
+    for letter, symbols in _columns(equations):
+        if letter == "u":
+            continue
+        for j, variable in enumerate(symbols):
+            by = dynamics.acceleration_derivative(equations, solve, variable)
+            for i, expression in enumerate(expressions):
+                value = dynamics.derivative_of(equations, solve, expression, variable, by)
+                outputs.append((f"g{letter}[{i}, {j}]", value))
+    doc = "Write the non-zero derivatives of guards by state and parameter."
+    lines = _shared(solve.definitions, outputs)
+    return _kernel("guard_jacobian", f"{MODE_ARGUMENTS}, gx, gp", doc, vectors, lines)
+
+
+def _outputs(equations: Equations, vectors: Vectors) -> str:
+    lines = share((), [(f"y[{i}]", e) for i, (_, _, e) in enumerate(equations.outputs)])
+    return _kernel("outputs", "t, x, u, p, y", "Write the measured signals into y.", vectors, lines)
+
+
+def _output_jacobian(equations: Equations, vectors: Vectors) -> str:
+    outputs = [
+        (f"y{letter}[{i}, {j}]", sp.diff(expression, variable))
+        for letter, symbols in _columns(equations)
+        if letter != "u"
+        for j, variable in enumerate(symbols)
+        for i, (_, _, expression) in enumerate(equations.outputs)
+    ]
+    doc = "Write the non-zero derivatives of outputs by state and parameter."
+    lines = _shared((), outputs)
+    return _kernel("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
+
+
+def _energy(equations: Equations, vectors: Vectors) -> str:
+    ledger = equations.ledger
+    outputs = [("e[0]", ledger.stored), ("e[1]", ledger.power_in), ("e[2]", ledger.dissipated)]
+    doc = "Write stored energy in J, power in and dissipated power in W into e."
+    return _kernel("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, share((), outputs))

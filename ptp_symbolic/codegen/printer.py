@@ -1,0 +1,49 @@
+"""Print expressions as Python that numba compiles: exact constants, powers as products."""
+
+import sympy as sp
+from sympy.printing.pycode import PythonCodePrinter
+
+
+class KernelPrinter(PythonCodePrinter):
+    """Printer for kernels: `math` functions, floats with all digits that matter."""
+
+    def __init__(self) -> None:
+        super().__init__({"fully_qualified_modules": True, "precision": 17})
+
+    def _print_Rational(self, expr: sp.Rational) -> str:
+        return repr(float(expr))
+
+    def _print_Integer(self, expr: sp.Integer) -> str:
+        return f"{int(expr)}.0"
+
+    def _print_Float(self, expr: sp.Float) -> str:
+        return repr(float(expr))
+
+    def _print_NumberSymbol(self, expr: sp.NumberSymbol) -> str:
+        return repr(float(expr))
+
+    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
+        base, exponent = expr.as_base_exp()
+        if exponent == sp.Rational(1, 2):
+            return f"math.sqrt({self._print(base)})"
+        if exponent.is_Integer and 0 < abs(int(exponent)) <= 4:
+            factor = self.parenthesize(base, sp.printing.precedence.PRECEDENCE["Atom"])
+            product = " * ".join([factor] * abs(int(exponent)))
+            return f"({product})" if exponent > 0 else f"1.0 / ({product})"
+        return super()._print_Pow(expr, rational=rational)
+
+    def _print_Mul(self, expr: sp.Mul) -> str:
+        """Products with one division; exponentials stay above the line, where they cannot overflow."""
+        below = [f for f in expr.args if f.is_Pow and f.exp.is_Integer and f.exp.is_negative]
+        if not below:
+            return super()._print_Mul(expr)
+        above = sp.Mul(*[f for f in expr.args if f not in below], evaluate=False)
+        level = sp.printing.precedence.PRECEDENCE
+        top = self.parenthesize(above, level["Mul"])
+        bottom = self.parenthesize(sp.Mul(*[1 / f for f in below]), level["Atom"])
+        return f"{top} / {bottom}"
+
+
+def print_expression(expression: sp.Expr) -> str:
+    """Return Python source of `expression`."""
+    return KernelPrinter().doprint(expression)

@@ -1,0 +1,42 @@
+"""The parts of an emitted module that are the same for every model."""
+
+STATE_DERIVATIVE_SMOOTH = '''@njit(cache=True, error_model="numpy", nogil=True)
+def initial_modes(t, x, u, p, m):
+    """Leave m alone: this model has no modes."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def state_derivative(t, x, u, p, dx):
+    """Write the time derivative of the state into dx."""
+    mode_derivative(t, x, u, p, x, dx)'''
+
+STATE_DERIVATIVE_HYBRID = '''@njit(cache=True, error_model="numpy", nogil=True)
+def initial_modes(t, x, u, p, m):
+    """Find the modes of a state: contact from the separation, sticking from the holding torque."""
+    frictions = len(FRICTION_RATES)
+    contacts = (len(m) - frictions) // 2
+    g = np.empty(3 * frictions + 4 * contacts)
+    m[:] = 0.0
+    guards(t, x, u, p, m, g)
+    for k in range(contacts):
+        at = 3 * frictions + 4 * k
+        side = 1.0 if g[at] > 0.0 else -1.0
+        if side * g[at] > g[at + 1]:
+            torque = g[at + 2] if side > 0.0 else g[at + 3]
+            m[frictions + 2 * k] = side
+            m[frictions + 2 * k + 1] = 1.0 if side * torque > 0.0 else 0.0
+    for k in range(frictions):
+        m[k] = np.sign(x[FRICTION_RATES[k]])
+    guards(t, x, u, p, m, g)
+    for k in range(frictions):
+        if m[k] == 0.0:
+            m[k] = float(g[3 * k] > g[3 * k + 1]) - float(-g[3 * k] > g[3 * k + 2])
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def state_derivative(t, x, u, p, dx):
+    """Write the time derivative of the state into dx, in the modes that the state implies."""
+    m = np.empty(len(MODE_NAMES))
+    initial_modes(t, x, u, p, m)
+    mode_derivative(t, x, u, p, m, dx)'''

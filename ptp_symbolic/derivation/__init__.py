@@ -1,0 +1,1 @@
+"""From a declared platform to its equations of motion."""

@@ -1,0 +1,89 @@
+"""The equations of a machine, ready for simplification, emission and documents."""
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ptp_symbolic.derivation.bodies import RigidConfiguration, RigidEquations
+from ptp_symbolic.effects.effect import Effect, Friction, Input, State
+from ptp_symbolic.parameters import Parameter
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A dead zone of `half_gap` in a shaft; beyond it a spring and damper that cannot pull.
+
+    `separation` is the angle across the gap in rad. The mode symbols ``side_<axis>`` (-1, 0, 1)
+    and ``active_<axis>`` (0, 1) tell which face is touched and whether it transmits torque.
+    """
+
+    axis: str
+    separation: sp.Expr
+    half_gap: sp.Expr
+    torque: sp.Expr
+    side: sp.Symbol
+    active: sp.Symbol
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """Energy in J and powers in W: d(stored)/dt = power_in - dissipated, in every mode."""
+
+    stored: sp.Expr
+    power_in: sp.Expr
+    dissipated: sp.Expr
+
+
+@dataclass(frozen=True)
+class PlacedEffect:
+    """An effect at its place, with the names of its parameters there."""
+
+    effect: Effect
+    axis: str | None
+    parameters: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Equations:
+    """M(q) q'' = forcing, sliding friction apart, and the states of drives and effects.
+
+    Set-valued friction and contact enter through mode symbols, so that the equations are smooth
+    in every mode. `forcing` holds everything but the friction torques.
+    """
+
+    name: str
+    title: str
+    axes: tuple[str, ...]
+    coordinates: tuple[sp.Symbol, ...]
+    rates: tuple[sp.Symbol, ...]
+    mass_matrix: sp.ImmutableMatrix
+    forcing: sp.ImmutableMatrix
+    extra_states: tuple[State, ...]
+    inputs: tuple[Input, ...]
+    parameters: tuple[Parameter, ...]
+    frictions: tuple[Friction, ...]
+    contacts: tuple[Contact, ...]
+    outputs: tuple[tuple[str, str, sp.Expr], ...]
+    ledger: Ledger
+    effects: tuple[PlacedEffect, ...]
+    rigid: RigidConfiguration
+    rigid_equations: RigidEquations
+
+    @property
+    def state_symbols(self) -> tuple[sp.Symbol, ...]:
+        """States in the order of the emitted module: joint angles, joint rates, drives, effects."""
+        joints = len(self.axes)
+        gears = [
+            symbol
+            for pair in zip(self.coordinates[joints:], self.rates[joints:], strict=True)
+            for symbol in pair
+        ]
+        extra = [sp.Symbol(state.name, real=True) for state in self.extra_states]
+        return (*self.coordinates[:joints], *self.rates[:joints], *gears, *extra)
+
+    @property
+    def mode_symbols(self) -> tuple[sp.Symbol, ...]:
+        """Direction of every friction, then side and activity of every contact."""
+        slides = [sp.Symbol(f"slide_{friction.axis}", real=True) for friction in self.frictions]
+        contacts = [symbol for c in self.contacts for symbol in (c.side, c.active)]
+        return (*slides, *contacts)

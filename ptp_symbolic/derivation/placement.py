@@ -1,0 +1,99 @@
+"""Place the declared effects of a platform and check its parameters against them."""
+
+from dataclasses import replace
+
+from ptp_symbolic.effects import EFFECTS
+from ptp_symbolic.effects.effect import Effect, Place
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.parameters import Parameter
+from ptp_symbolic.platform import ParameterDeclaration, Platform
+from ptp_symbolic.platform.units import compatible
+
+
+def find_effect(identifier: str) -> Effect:
+    """Return the effect `identifier`; raises InputError with the list of choices."""
+    for effect in EFFECTS:
+        if effect.id == identifier:
+            return effect
+    choices = ", ".join(effect.id for effect in EFFECTS)
+    raise InputError(f"Unknown effect '{identifier}'. Choose one of: {choices}.")
+
+
+def place_effects(platform: Platform) -> list[tuple[Effect, Place]]:
+    """Return every declared effect with its place, after checking names, units and bounds."""
+    found = [(find_effect(d.effect), d) for d in platform.effects]
+    shafts = frozenset(d.axis for e, d in found if e.splits_axis and d.axis is not None)
+    placed = []
+    for effect, declaration in found:
+        if effect.on_axis and declaration.axis is None:
+            raise InputError(
+                f"Effect '{effect.id}' sits on an axis; add axis = \"{platform.axes[0]}\"."
+            )
+        axis = declaration.axis if effect.on_axis else None
+        placed.append((effect, Place(platform.axes, axis, declaration.site, shafts)))
+    _check_needs(placed)
+    _check_parameters(platform, placed)
+    return placed
+
+
+def declared_parameters(placed: list[tuple[Effect, Place]]) -> dict[str, Parameter]:
+    """Return the parameters of the placed effects by name."""
+    return {p.name: p for effect, place in placed for p in effect.parameters(place)}
+
+
+def resolved_parameters(platform: Platform) -> dict[str, Parameter]:
+    """Return the parameters of `platform` by name, defaults and bounds as it declares them."""
+    own = declared_parameters(place_effects(platform))
+    declarations = {d.name: d for d in platform.parameters}
+    return {name: _declared(parameter, declarations) for name, parameter in own.items()}
+
+
+def _declared(
+    parameter: Parameter, declarations: dict[str, ParameterDeclaration]
+) -> Parameter:
+    declaration = declarations.get(parameter.name)
+    if declaration is None:
+        return parameter
+    source = declarations.get(declaration.same_as or "", declaration)
+    lower = parameter.lower if declaration.lower is None else declaration.lower
+    upper = parameter.upper if declaration.upper is None else declaration.upper
+    return replace(parameter, default=source.value, lower=lower, upper=upper)
+
+
+def available_quantities(placed: list[tuple[Effect, Place]]) -> set[str]:
+    """Names of the quantities that the placed effects define."""
+    return {name for effect, place in placed for name in effect.contribute(place).quantities}
+
+
+def _check_needs(placed: list[tuple[Effect, Place]]) -> None:
+    available = available_quantities(placed)
+    for effect, place in placed:
+        for need in effect.needs:
+            name = need.format(axis=place.axis)
+            if name not in available:
+                raise InputError(
+                    f"Effect '{effect.id}' acts on '{name}', which no declared effect defines;"
+                    " declare the effect that brings it."
+                )
+
+
+def _check_parameters(platform: Platform, placed: list[tuple[Effect, Place]]) -> None:
+    own = declared_parameters(placed)
+    for declaration in platform.parameters:
+        parameter = own.get(declaration.name)
+        if parameter is None:
+            raise InputError(
+                f"Parameter '{declaration.name}' belongs to no declared effect."
+                f" Known here: {', '.join(own)}."
+            )
+        if declaration.unit is not None and not compatible(declaration.unit, parameter.unit):
+            raise InputError(
+                f"Parameter '{declaration.name}' has unit '{declaration.unit}';"
+                f" give it in '{parameter.unit}'."
+            )
+        value = declaration.value
+        if declaration.same_as is None and not parameter.lower <= value <= parameter.upper:
+            raise InputError(
+                f"Parameter '{declaration.name}' = {value:g} {parameter.unit} lies outside its"
+                f" bounds [{parameter.lower:g}, {parameter.upper:g}]; change the value."
+            )

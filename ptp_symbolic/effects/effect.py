@@ -1,0 +1,188 @@
+"""What an effect is: parameters, the values at which it vanishes, and what it adds.
+
+An effect is plain data plus one function, `contribute`, that turns the place where the effect
+sits into symbolic additions. Effects never name each other: they meet in *quantities*, named
+placeholders such as ``winding_resistance_pan`` that one effect defines and others change.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from ptp_symbolic import kinematics
+from ptp_symbolic.derivation.bodies import Body
+from ptp_symbolic.parameters import Parameter
+
+
+@dataclass(frozen=True)
+class Change:
+    """What an effect does to a quantity: multiply by `factor`, then add `addition`."""
+
+    factor: sp.Expr = sp.Integer(1)
+    addition: sp.Expr = sp.Integer(0)
+
+
+@dataclass(frozen=True)
+class State:
+    """A state of an effect: name, unit, meaning, time derivative, value at the start.
+
+    With `reset_on_sticking` the state returns to its start when friction on `axis` starts to
+    stick or to slide (a dwell time, for example).
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    derivative: sp.Expr
+    initial: float = 0.0
+
+
+@dataclass(frozen=True)
+class Input:
+    """An input of the machine: name, unit, meaning."""
+
+    name: str
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Set-valued dry friction that acts on one rate.
+
+    `level` > 0 is the friction torque in N m while sliding, `breakaway` the torque that holds at
+    rest; both may depend on the direction symbol ``slide_<axis>`` (-1, 0 or 1).
+    """
+
+    axis: str
+    rate: sp.Symbol
+    level: sp.Expr
+    breakaway: sp.Expr
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """A spring and damper between the gear output and the joint of `axis`."""
+
+    axis: str
+    stiffness: sp.Expr
+    damping: sp.Expr
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A motor on `axis`: inertia in kg m^2 and torque in N m, both seen at the gear output.
+
+    `inputs` replaces the torque input of the axis; `power_in`, `stored` and `dissipated` are the
+    electrical part of the energy ledger in W, J and W.
+    """
+
+    axis: str
+    inertia: sp.Expr
+    torque: sp.Expr
+    inputs: tuple[Input, ...]
+    power_in: sp.Expr
+    stored: sp.Expr
+    dissipated: sp.Expr
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """Everything that an effect may add to the machine."""
+
+    quantities: Mapping[str, sp.Expr] = field(default_factory=dict)
+    changes: Mapping[str, Change] = field(default_factory=dict)
+    bodies: tuple[Body, ...] = ()
+    potential: sp.Expr = sp.Integer(0)
+    torques: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    frictions: tuple[Friction, ...] = ()
+    shafts: tuple[Shaft, ...] = ()
+    drives: tuple[Drive, ...] = ()
+    states: tuple[State, ...] = ()
+    measured: Mapping[str, sp.Expr] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where an effect sits: the axes of the machine, its own axis and site, which axes have a shaft."""
+
+    axes: tuple[str, ...]
+    axis: str | None
+    site: str | None
+    shafts: frozenset[str]
+
+    def parameter(self, template: str) -> sp.Symbol:
+        """Symbol of the effect's parameter, e.g. ``k_shaft_{axis}``."""
+        return sp.Symbol(template.format(axis=self.axis), real=True)
+
+    def quantity(self, template: str) -> sp.Symbol:
+        """Placeholder of a named quantity that other effects may change."""
+        return quantity(template.format(axis=self.axis))
+
+    @property
+    def own_axis(self) -> str:
+        """The axis of an effect that always sits on one."""
+        if self.axis is None:
+            raise ValueError("This effect sits on an axis; name one.")
+        return self.axis
+
+    @property
+    def angle(self) -> sp.Symbol:
+        """Joint angle of the effect's axis in rad."""
+        return kinematics.angle(self.own_axis)
+
+    @property
+    def rate(self) -> sp.Symbol:
+        """Joint rate of the effect's axis in rad/s."""
+        return kinematics.rate(self.own_axis)
+
+    @property
+    def gear_rate(self) -> sp.Symbol:
+        """Rate at the gear output: a coordinate of its own behind a shaft, else the joint rate."""
+        if self.own_axis in self.shafts:
+            return kinematics.gear_rate(self.own_axis)
+        return self.rate
+
+    @property
+    def slide(self) -> sp.Symbol:
+        """Direction of sliding of the friction on the effect's axis: -1, 0 (at rest) or 1."""
+        return slide(self.own_axis)
+
+    @property
+    def payload_frame(self) -> str:
+        """Frame that carries a payload: the tilt body, or the pan body where there is no tilt."""
+        return "tilt" if "tilt" in self.axes else "pan"
+
+
+def quantity(name: str) -> sp.Symbol:
+    """Placeholder symbol of the quantity `name`."""
+    return sp.Symbol(f"quantity:{name}", real=True)
+
+
+def slide(axis: str) -> sp.Symbol:
+    """Direction symbol of the friction on `axis`."""
+    return sp.Symbol(f"slide_{axis}", real=True)
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A physical effect, complete in one file.
+
+    `on_axis` tells whether it sits on an axis or on the whole platform; `needs` names the
+    quantities without which it has nothing to act on. `dissipative` is a claim that tests verify:
+    its torques can only take energy out. `structural` effects have no parameter value at which
+    they vanish (a motor, a shaft, a body): they are declared, never searched for.
+    """
+
+    id: str
+    title: str
+    reference: str
+    parameters: Callable[[Place], tuple[Parameter, ...]]
+    contribute: Callable[[Place], Contribution]
+    on_axis: bool = True
+    dissipative: bool = False
+    structural: bool = False
+    splits_axis: bool = False
+    needs: tuple[str, ...] = ()
+    separating_experiment: str = ""

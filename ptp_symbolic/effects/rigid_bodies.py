@@ -1,0 +1,47 @@
+"""The pan body and the tilt body, balanced, with principal axes along the joint axes."""
+
+import sympy as sp
+
+from ptp_symbolic.derivation.bodies import Body
+from ptp_symbolic.effects.effect import Contribution, Effect, Place
+from ptp_symbolic.parameters import Parameter
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    pan = (Parameter("J_pan", "kg m^2", 5.3e-4, 0.0, 1e4, "inertia of the pan body about z"),)
+    tilt = (
+        Parameter("J_x_tilt", "kg m^2", 4.1e-4, 0.0, 1e4, "inertia of the tilt body about x"),
+        Parameter("J_y_tilt", "kg m^2", 6.5e-4, 0.0, 1e4, "inertia of the tilt body about y"),
+        Parameter("J_z_tilt", "kg m^2", 2.7e-4, 0.0, 1e4, "inertia of the tilt body about z"),
+    )
+    if place.axes == ("pan",):
+        return pan
+    if place.axes == ("tilt",):
+        return tilt[1:2]
+    return pan + tilt
+
+
+def _contribute(place: Place) -> Contribution:
+    symbol = place.parameter
+    at_axes = sp.ImmutableMatrix([0, 0, 0])
+    bodies = []
+    if "pan" in place.axes:
+        inertia = sp.ImmutableMatrix(sp.diag(0, 0, symbol("J_pan")))
+        bodies.append(Body("pan_body", "pan", sp.Integer(0), at_axes, inertia))
+    if "tilt" in place.axes:
+        full = "pan" in place.axes
+        x, z = (symbol("J_x_tilt"), symbol("J_z_tilt")) if full else (0, 0)
+        inertia = sp.ImmutableMatrix(sp.diag(x, symbol("J_y_tilt"), z))
+        bodies.append(Body("tilt_body", "tilt", sp.Integer(0), at_axes, inertia))
+    return Contribution(bodies=tuple(bodies))
+
+
+RIGID_BODIES = Effect(
+    id="rigid_bodies",
+    title="pan body and tilt body",
+    reference="thesis Eq. 3.8, Table 5.1",
+    parameters=_parameters,
+    contribute=_contribute,
+    on_axis=False,
+    structural=True,
+)

@@ -1,0 +1,64 @@
+"""Axes, frames and signs: the one place that knows them.
+
+Pan turns about the base z axis (up), tilt about the y axis of the pan body; the two axes cross in
+the origin of every frame. The boresight is the x axis of the tilt frame, so a positive tilt angle
+lowers it. On a platform with the tilt axis alone the pan frame is the base. Source: thesis
+section 3.1.1, Eq. 3.1.
+"""
+
+import sympy as sp
+
+AXES = ("pan", "tilt")
+
+
+def angle(axis: str) -> sp.Symbol:
+    """Joint angle theta_<axis> in rad."""
+    return sp.Symbol(f"theta_{axis}", real=True)
+
+
+def rate(axis: str) -> sp.Symbol:
+    """Joint rate omega_<axis> in rad/s."""
+    return sp.Symbol(f"omega_{axis}", real=True)
+
+
+def torque(axis: str) -> sp.Symbol:
+    """Torque tau_<axis> on the joint in N m, positive towards a growing angle."""
+    return sp.Symbol(f"tau_{axis}", real=True)
+
+
+def gear_angle(axis: str) -> sp.Symbol:
+    """Motor angle of `axis` seen at the gear output, in rad."""
+    return sp.Symbol(f"theta_gear_{axis}", real=True)
+
+
+def gear_rate(axis: str) -> sp.Symbol:
+    """Motor rate of `axis` seen at the gear output, in rad/s."""
+    return sp.Symbol(f"omega_gear_{axis}", real=True)
+
+
+def joint_direction(axis: str) -> sp.ImmutableMatrix:
+    """Unit vector [3] of the joint axis, the same in the frames before and behind the joint."""
+    return sp.ImmutableMatrix({"pan": [0, 0, 1], "tilt": [0, 1, 0]}[axis])
+
+
+def joint_rotation(axis: str) -> sp.ImmutableMatrix:
+    """Rotation [3, 3] that turns vectors behind the joint of `axis` into the frame before it."""
+    cos, sin = sp.cos(angle(axis)), sp.sin(angle(axis))
+    rows = {
+        "pan": [[cos, -sin, 0], [sin, cos, 0], [0, 0, 1]],
+        "tilt": [[cos, 0, sin], [0, 1, 0], [-sin, 0, cos]],
+    }
+    return sp.ImmutableMatrix(rows[axis])
+
+
+def joints_up_to(axes: tuple[str, ...], frame: str) -> tuple[str, ...]:
+    """Those of `axes` that lie between the base and `frame` ('pan' or 'tilt'), base first."""
+    return tuple(axis for axis in axes if AXES.index(axis) <= AXES.index(frame))
+
+
+def rotation_to_base(axes: tuple[str, ...], frame: str) -> sp.ImmutableMatrix:
+    """Rotation [3, 3] that turns vectors of `frame` ('pan' or 'tilt') into the base frame."""
+    rotation = sp.ImmutableMatrix(sp.eye(3))
+    for axis in joints_up_to(axes, frame):
+        rotation = rotation * joint_rotation(axis)
+    return rotation

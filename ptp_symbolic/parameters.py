@@ -1,0 +1,30 @@
+"""Parameters of effects: name, unit, default, bounds, and where the effect vanishes."""
+
+from dataclasses import dataclass, replace
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One physical parameter of an effect.
+
+    `name` may hold the field ``{axis}``, filled in by `at_axis`. `vanishes` is the value that
+    switches the effect off; None means that the value does not matter once the others are there
+    (the rest angle of a spring without stiffness). `starts` are the values from which a search
+    begins when the parameter is not declared. A parameter with a `period` wraps around.
+    """
+
+    name: str
+    unit: str
+    default: float
+    lower: float
+    upper: float
+    meaning: str
+    vanishes: float | None = None
+    starts: tuple[float, ...] = ()
+    period: float | None = None
+
+    def at_axis(self, axis: str | None) -> "Parameter":
+        """Return the parameter with its name and meaning filled in for `axis`."""
+        return replace(
+            self, name=self.name.format(axis=axis), meaning=self.meaning.format(axis=axis)
+        )

@@ -1,0 +1,20 @@
+"""The declared machine as plain data: read from TOML, checked, written back."""
+
+from ptp_symbolic.platform.declaration import (
+    EffectDeclaration,
+    ParameterDeclaration,
+    Platform,
+    SignalDeclaration,
+)
+from ptp_symbolic.platform.reader import preset_names, read_platform
+from ptp_symbolic.platform.writer import platform_text
+
+__all__ = [
+    "EffectDeclaration",
+    "ParameterDeclaration",
+    "Platform",
+    "SignalDeclaration",
+    "platform_text",
+    "preset_names",
+    "read_platform",
+]

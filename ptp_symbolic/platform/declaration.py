@@ -1,0 +1,64 @@
+"""The declared machine as plain data: what a platform TOML says, checked and in SI units."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ParameterDeclaration:
+    """One parameter that the platform sets: known, free (to be fitted) or tied to another one.
+
+    `value` is the known value, the start value of a free parameter, or the value of the parameter
+    it is tied to. Numbers are in `unit`, an SI unit; `unit` None means the effect's own unit and
+    bounds None the effect's own bounds. `lower` and `upper` are given together.
+    """
+
+    name: str
+    unit: str | None
+    value: float
+    free: bool = False
+    lower: float | None = None
+    upper: float | None = None
+    same_as: str | None = None
+
+
+@dataclass(frozen=True)
+class EffectDeclaration:
+    """One effect of the platform: its id, the axis it acts on, and where on the drive train.
+
+    `axis` is None for an effect of the whole platform. `site` is "gear" (at the gear output),
+    "joint" (at the load) or None (the effect's own place).
+    """
+
+    effect: str
+    axis: str | None
+    site: str | None
+
+
+@dataclass(frozen=True)
+class SignalDeclaration:
+    """One signal of the logs and the quantity of the model that it measures or sets.
+
+    `signal` is the model's name (u_pan, theta_pan), `column` the CSV column without its unit,
+    `unit` the SI unit of the model, `role` "input" or "output". `noise` is the rms noise in `unit`,
+    `counts_per_revolution` the resolution of an encoder.
+    """
+
+    signal: str
+    column: str
+    unit: str
+    role: str
+    counts_per_revolution: int | None = None
+    noise: float | None = None
+
+
+@dataclass(frozen=True)
+class Platform:
+    """A declared machine. `axes` are ordered pan, tilt; `gravity` is in m/s^2."""
+
+    name: str
+    title: str
+    axes: tuple[str, ...]
+    gravity: float
+    effects: tuple[EffectDeclaration, ...]
+    parameters: tuple[ParameterDeclaration, ...]
+    signals: tuple[SignalDeclaration, ...]

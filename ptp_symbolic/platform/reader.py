@@ -1,0 +1,276 @@
+"""Read a platform TOML into plain data, or refuse it in one line that names file and key."""
+
+import dataclasses
+import math
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.platform import fields
+from ptp_symbolic.platform.declaration import (
+    EffectDeclaration,
+    ParameterDeclaration,
+    Platform,
+    SignalDeclaration,
+)
+from ptp_symbolic.platform.text_file import read_text_bytes
+from ptp_symbolic.platform.units import to_si
+
+AXES = ("pan", "tilt")
+SITES = ("gear", "joint")
+ROLES = ("input", "output")
+STANDARD_GRAVITY = 9.81
+
+_MAX_BYTES = 1_000_000
+# tomllib needs a time that grows with the square of the parts of a dotted key.
+_MAX_LINE = 500
+_PRESETS = Path(__file__).parent / "presets"
+
+
+def preset_names() -> tuple[str, ...]:
+    """Return the names of the packaged platforms, sorted."""
+    return tuple(sorted(path.stem for path in _PRESETS.glob("*.toml")))
+
+
+def read_platform(source: str | Path) -> Platform:
+    """Read the platform TOML at a path, or a packaged preset by its name.
+
+    Numbers are converted to SI and unit texts replaced by their SI equivalents. Whether the effects
+    and parameters exist is not known here. Raises InputError (one line) for a file that is missing,
+    unreadable, not TOML, or says something that is not allowed.
+    """
+    path = _locate(source)
+    where = str(path)
+    document = fields.table(_parse(path), where, ("platform", "effects", "parameters", "signals"))
+    head = fields.table(
+        fields.required(document, "platform", where),
+        f"{where}: platform",
+        ("name", "title", "axes", "gravity"),
+    )
+    name = fields.name(
+        fields.required(head, "name", f"{where}: platform"), f"{where}: platform.name"
+    )
+    axes = _axes(head, f"{where}: platform")
+    return Platform(
+        name=name,
+        title=fields.text(head.get("title", name), f"{where}: platform.title"),
+        axes=axes,
+        gravity=_gravity(head, f"{where}: platform.gravity"),
+        effects=_effects(fields.required(document, "effects", where), axes, where),
+        parameters=_parameters(document.get("parameters", {}), where),
+        signals=_signals(document.get("signals", {}), where),
+    )
+
+
+def _locate(source: str | Path) -> Path:
+    names = preset_names()
+    if isinstance(source, str) and source in names:
+        return _PRESETS / f"{source}.toml"
+    path = Path(source)
+    try:
+        missing = not path.exists()
+    except (OSError, ValueError):
+        missing = True
+    if missing:
+        presets = ", ".join(names)
+        if path.suffix == "" and len(path.parts) == 1:
+            raise InputError(
+                f"{fields.shown(str(source))} is no preset and no file; presets are {presets}; "
+                "or give the path of a platform TOML."
+            )
+        raise InputError(
+            f"{fields.shown(str(source))}: no such file; give the path of a platform TOML or one "
+            f"of the presets {presets}."
+        )
+    return path
+
+
+def _parse(path: Path) -> dict[str, Any]:
+    content = read_text_bytes(path, _MAX_BYTES, "a platform TOML").decode()
+    for count, line in enumerate(content.split("\n"), start=1):
+        if len(line) > _MAX_LINE:
+            raise InputError(f"{path}:{count}: line has more than {_MAX_LINE} characters; wrap it.")
+    try:
+        return tomllib.loads(content)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(_syntax_message(path, content, str(error))) from error
+    except RecursionError as error:
+        raise InputError(f"{path}: brackets are nested too deep; write plain tables.") from error
+    except ValueError as error:
+        raise InputError(f"{path}: is not TOML: {error}.") from error
+
+
+def _syntax_message(path: Path, content: str, message: str) -> str:
+    place = re.search(r" \(at line (\d+), column (\d+)\)$", message)
+    if place:
+        line, column = place.groups()
+        message = message[: place.start()]
+    else:
+        lines = content.split("\n")
+        line, column = str(len(lines)), str(len(lines[-1]) + 1)
+    return f"{path}:{line}:{column}: is not TOML: {message}."
+
+
+def _axes(head: dict[str, Any], where: str) -> tuple[str, ...]:
+    given = fields.required(head, "axes", where)
+    if not isinstance(given, list) or not given:
+        raise InputError(f"{where}.axes: {fields.shown(given)}: write a list of {', '.join(AXES)}.")
+    for axis in given:
+        fields.choice(axis, AXES, f"{where}.axes")
+    if len(set(given)) != len(given):
+        raise InputError(f"{where}.axes: {fields.shown(given)} names an axis twice.")
+    return tuple(axis for axis in AXES if axis in given)
+
+
+def _gravity(head: dict[str, Any], where: str) -> float:
+    gravity = fields.number(head.get("gravity", STANDARD_GRAVITY), where)
+    if gravity < 0:
+        raise InputError(f"{where}: {gravity!r} m/s^2 is negative; give its magnitude (downwards).")
+    return gravity
+
+
+def _effects(given: object, axes: tuple[str, ...], file: str) -> tuple[EffectDeclaration, ...]:
+    if not isinstance(given, list) or not given:
+        raise InputError(f"{file}: effects: write at least one [[effects]] table.")
+    found: dict[tuple[str, str | None], EffectDeclaration] = {}
+    for position, entry in enumerate(given, start=1):
+        where = f"{file}: effects[{position}]"
+        entry = fields.table(entry, where, ("effect", "axis", "site"))
+        effect = fields.name(fields.required(entry, "effect", where), f"{where}.effect")
+        where = f"{where} {effect}"
+        axis = fields.choice(entry["axis"], axes, f"{where}.axis") if "axis" in entry else None
+        site = fields.choice(entry["site"], SITES, f"{where}.site") if "site" in entry else None
+        if (effect, axis) in found:
+            on_axis = f" on axis {axis}" if axis else ""
+            raise InputError(f"{where}: is declared twice{on_axis}; remove one of the two.")
+        found[effect, axis] = EffectDeclaration(effect, axis, site)
+    return tuple(found.values())
+
+
+def _parameters(given: object, file: str) -> tuple[ParameterDeclaration, ...]:
+    entries = {
+        name: fields.table(
+            entry,
+            f"{file}: parameters.{fields.name(name, f'{file}: parameters')}",
+            ("value", "start", "same_as", "unit", "bounds"),
+        )
+        for name, entry in fields.table(given, f"{file}: parameters").items()
+    }
+    for name, entry in entries.items():
+        kinds = [key for key in ("value", "start", "same_as") if key in entry]
+        if len(kinds) != 1:
+            raise InputError(
+                f"{file}: parameters.{name}: has {' and '.join(kinds) or 'no value'}; give exactly "
+                "one of value (known), start (free) and same_as (tied)."
+            )
+    independent = {
+        name: _independent(name, entry, f"{file}: parameters.{name}")
+        for name, entry in entries.items()
+        if "same_as" not in entry
+    }
+    return tuple(
+        independent[name]
+        if name in independent
+        else _tied(name, entry, independent, f"{file}: parameters.{name}")
+        for name, entry in entries.items()
+    )
+
+
+def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDeclaration:
+    key = "start" if "start" in entry else "value"
+    factor, unit = _unit(entry, where) if "unit" in entry else (1.0, None)
+    value = _scaled(entry[key], factor, f"{where}.{key}")
+    lower = upper = None
+    if "bounds" in entry:
+        bounds = entry["bounds"]
+        if not isinstance(bounds, list) or len(bounds) != 2:
+            raise InputError(
+                f"{where}.bounds: {fields.shown(bounds)}: write two numbers, [lower, upper]."
+            )
+        lower, upper = (_scaled(bound, factor, f"{where}.bounds") for bound in bounds)
+        unit_text = f" {entry['unit']}" if "unit" in entry else ""
+        if lower >= upper:
+            raise InputError(
+                f"{where}.bounds: {fields.shown(bounds)}{unit_text}: "
+                "the lower bound comes first and is less than the upper."
+            )
+        if not lower <= value <= upper:
+            raise InputError(
+                f"{where}.{key}: {fields.shown(entry[key])}{unit_text} lies outside its bounds "
+                f"{fields.shown(bounds)}; change one of them."
+            )
+    return ParameterDeclaration(name, unit, value, key == "start", lower, upper)
+
+
+def _tied(
+    name: str, entry: dict[str, Any], independent: dict[str, ParameterDeclaration], where: str
+) -> ParameterDeclaration:
+    if len(entry) > 1:
+        others = ", ".join(sorted(set(entry) - {"same_as"}))
+        raise InputError(f"{where}: a tied parameter has same_as alone; remove {others}.")
+    target = entry["same_as"]
+    if not isinstance(target, str) or target not in independent:
+        choices = ", ".join(independent) or "none declared"
+        raise InputError(
+            f"{where}.same_as: {fields.shown(target)} is not a parameter with a value or start of "
+            f"its own; choices: {choices}."
+        )
+    return dataclasses.replace(
+        independent[target], name=name, free=False, lower=None, upper=None, same_as=target
+    )
+
+
+def _signals(given: object, file: str) -> tuple[SignalDeclaration, ...]:
+    found: dict[str, SignalDeclaration] = {}
+    for name, entry in fields.table(given, f"{file}: signals").items():
+        where = f"{file}: signals.{fields.name(name, f'{file}: signals')}"
+        signal = _signal(name, entry, where)
+        if signal.column in found:
+            raise InputError(
+                f"{where}.column: {fields.shown(signal.column)} is also the column of "
+                f"{found[signal.column].signal}; give each signal its own."
+            )
+        found[signal.column] = signal
+    return tuple(found.values())
+
+
+def _signal(name: str, given: object, where: str) -> SignalDeclaration:
+    allowed = ("role", "column", "unit", "counts_per_revolution", "noise")
+    entry = fields.table(given, where, allowed)
+    role = fields.choice(fields.required(entry, "role", where), ROLES, f"{where}.role")
+    column = fields.text(fields.required(entry, "column", where), f"{where}.column")
+    if column != column.strip() or column == "time" or any(mark in column for mark in '[],"'):
+        raise InputError(
+            f"{where}.column: {fields.shown(column)}: give the CSV column without its [unit], "
+            "without quotes and commas; 'time' is the time base."
+        )
+    fields.required(entry, "unit", where)
+    factor, unit = _unit(entry, where)
+    counts = entry.get("counts_per_revolution")
+    if counts is not None and (type(counts) is not int or not 1 <= counts <= 2**40):
+        raise InputError(
+            f"{where}.counts_per_revolution: {fields.shown(counts)} is not a whole number above 0."
+        )
+    if counts is not None and unit != "rad":
+        raise InputError(f"{where}.counts_per_revolution: only for an angle, not for [{unit}].")
+    noise = _scaled(entry["noise"], factor, f"{where}.noise") if "noise" in entry else None
+    if noise is not None and noise < 0:
+        raise InputError(f"{where}.noise: {entry['noise']} {entry['unit']} rms is negative.")
+    return SignalDeclaration(name, column, unit, role, counts, noise)
+
+
+def _unit(entry: dict[str, Any], where: str) -> tuple[float, str]:
+    text = fields.text(entry["unit"], f"{where}.unit")
+    try:
+        return to_si(text)
+    except InputError as error:
+        raise InputError(f"{where}.unit: {error}") from error
+
+
+def _scaled(value: object, factor: float, where: str) -> float:
+    result = fields.number(value, where) * factor
+    if not math.isfinite(result):
+        raise InputError(f"{where}: {fields.shown(value)} is too large in SI units.")
+    return result

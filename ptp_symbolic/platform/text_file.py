@@ -1,0 +1,48 @@
+"""Read a text file of limited size, or refuse it in one line."""
+
+from pathlib import Path
+
+from ptp_symbolic.errors import InputError
+
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+
+
+def read_text_bytes(path: Path, limit: int, kind: str) -> bytes:
+    """Return the content of a UTF-8 text file of at most `limit` bytes, checked, not decoded.
+
+    A byte order mark is dropped and every kind of line end becomes a line feed. `kind` says in a
+    refusal what was expected, such as "a platform TOML". Raises InputError if the file is missing,
+    not a plain file, too large, or not text.
+    """
+    try:
+        if path.is_dir():
+            raise InputError(f"{path}: is a folder; give {kind}.")
+        if not path.is_file():
+            raise InputError(f"{path}: no such file; give the path of {kind}.")
+        with path.open("rb") as file:
+            content = file.read(limit + 1)
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{path}: cannot be read ({reason}); give {kind}.") from error
+    if len(content) > limit:
+        raise InputError(f"{path}: is larger than {limit // 10**6} MB, the most for {kind}.")
+    _check_text(path, content, kind)
+    content = content.removeprefix(_BYTE_ORDER_MARK)
+    if b"\r" in content:
+        content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    return content
+
+
+def _check_text(path: Path, content: bytes, kind: str) -> None:
+    zero = content.find(b"\0")
+    position, reason = zero, "byte 0x00"
+    if zero < 0 and not content.isascii():
+        try:
+            content.decode()
+        except UnicodeDecodeError as error:
+            position, reason = error.start, f"byte 0x{content[error.start]:02x}, not UTF-8"
+    if position >= 0:
+        line = content.count(b"\n", 0, position) + 1
+        raise InputError(f"{path}:{line}: is not text ({reason}); give {kind} saved as UTF-8.")

@@ -1,0 +1,1 @@
+"""Reports that people read: the diagnosis page and the derivation document."""

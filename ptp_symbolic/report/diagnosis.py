@@ -1,0 +1,205 @@
+"""The diagnosis as one HTML page that works without a network, and its curves as CSV."""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import numpy as np
+from markupsafe import Markup
+
+from ptp_symbolic.report import figures, quantities, tables
+from ptp_symbolic.report.tables import usable
+
+Curves = Mapping[str, Mapping[str, Any]]
+
+SHOWN_RUNS = 2
+POINTS_IN_ALL = 120_000  # of all lines together: about 1.7 MB of SVG
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a verdict says in plain words; `heading` takes the names of the added effects."""
+
+    tone: str
+    label: str
+    heading: str
+    lead: str
+
+
+VERDICTS = {
+    "nothing_missing": Verdict(
+        "good",
+        "nothing missing",
+        "Nothing is missing from the declared model",
+        "It reproduces the logs down to the noise, and no candidate effect does better on the"
+        " validation runs.",
+    ),
+    "explained": Verdict(
+        "found",
+        "explained",
+        "Missing effect found: {effects}",
+        "With it the model reproduces the validation runs, which were never fitted.",
+    ),
+    "explained_up_to_group": Verdict(
+        "found",
+        "explained, with look-alikes",
+        "Missing effect found, or one that looks like it: {effects}",
+        "With it the model reproduces the validation runs, but these logs cannot tell it from"
+        " the look-alikes named below.",
+    ),
+    "partly_explained": Verdict(
+        "partly",
+        "partly explained",
+        "Part of the error explained by: {effects}",
+        "The error falls clearly, but not to the noise floor: something else is missing too.",
+    ),
+    "unexplained": Verdict(
+        "open",
+        "unexplained",
+        "Something is missing, and no known effect explains it",
+        "The residual is well above the noise, yet none of the candidates accounts for it."
+        " The hints below say what it depends on.",
+    ),
+}
+
+# the presentation elements that SymPy's printer writes, without attributes that could run or load
+_MATHML_TAG = re.compile(
+    r"</?(?:math|mrow|mi|mn|mo|mfrac|msup|msub|msubsup|msqrt|mroot|mtable|mtr|mtd|mtext|mstyle"
+    r"|mover|munder|munderover|mspace)"
+    r'(?: (?:display|mathvariant|stretchy|xmlns|columnalign|width|accent)="[^"<>]*")* ?/?>'
+)
+
+
+def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
+    """The page for one diagnosis (the content of diagnosis.json) and its curves.
+
+    curves: {run: {"set": "train" or "validate", "time": [n] s, "signals": {signal: {"unit",
+    "measured", "before", "after" (or None): [n], "counts": size of one count or None}},
+    "angle": {axis: [n] rad}, "rate": {axis: [n] rad/s}}}. Loads nothing from elsewhere.
+    """
+    verdict = VERDICTS[diagnosis["verdict"]]
+    effects = [str(a.get("title") or a["effect"]) for a in diagnosis.get("added") or []]
+    key, unit = tables.error_measure(diagnosis)
+    shown, folded = _motion(diagnosis, curves, key)
+    page = _environment().get_template("diagnosis.html.j2")
+    return page.render(
+        diagnosis=diagnosis,
+        verdict=verdict,
+        heading=verdict.heading.format(effects=" and ".join(effects)),
+        colours=figures.COLOURS,
+        key=key,
+        unit=unit,
+        error_groups=tables.error_groups(diagnosis, key),
+        parameter_rows=tables.parameter_rows(diagnosis),
+        ranking=tables.ranking(diagnosis, key),
+        shown=shown,
+        folded=folded,
+        residual_maps=_residual_maps(diagnosis, curves),
+        equations=_equations(diagnosis),
+    )
+
+
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates", encoding="utf-8"),
+        autoescape=True,
+        undefined=jinja2.ChainableUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(
+        number=quantities.number,
+        unit=quantities.unit,
+        estimate=quantities.estimate,
+        interval=quantities.interval,
+        in_degrees=quantities.in_degrees,
+    )
+    return environment
+
+
+def _motion(
+    diagnosis: Mapping[str, Any], curves: Curves, key: str
+) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """Figures of the runs: the two worst validation runs, and all the others."""
+    lines = sum(6 * len(curve["signals"]) for curve in curves.values())
+    points = min(max(POINTS_IN_ALL // max(lines, 1), 100), 900)
+    entries = []
+    for run, curve in curves.items():
+        errors = {s: tables.error_of(diagnosis, curve["set"], s, run) for s in tables.STAGES}
+        svg = figures.motion_figure(curve, errors["noise_floor"].get("rmse_counts"), points)
+        before, after = (errors[stage].get(key) for stage in ("before", "after"))
+        entries.append(
+            {"run": run, "set": curve["set"], "svg": Markup(svg), "before": before, "after": after}
+        )
+    entries.sort(key=lambda e: (e["set"] != "validate", e["run"]))
+    entries.sort(key=lambda e: -e["before"] if usable(e["before"]) else 0.0)
+    validation = [e for e in entries if e["set"] == "validate"]
+    shown = (validation or entries)[:SHOWN_RUNS]
+    rest = sorted(entries, key=lambda e: (e["set"] != "validate", e["run"]))
+    return shown, [entry for entry in rest if entry not in shown]
+
+
+def _residual_maps(diagnosis: Mapping[str, Any], curves: Curves) -> list[dict[str, Any]]:
+    """One figure per measured signal, validation runs pooled (all runs when there are none)."""
+    pooled = {run: c for run, c in curves.items() if c["set"] == "validate"} or dict(curves)
+    found = []
+    for signal in dict.fromkeys(name for curve in pooled.values() for name in curve["signals"]):
+        runs = [curve for curve in pooled.values() if signal in curve["signals"]]
+        axes = [a for a in runs[0].get("angle") or {} if all(a in r["rate"] for r in runs)]
+        if not axes:
+            continue
+        axis = next((axis for axis in axes if signal.endswith(f"_{axis}")), axes[0])
+        floor = tables.error_of(diagnosis, runs[0]["set"], "noise_floor").get("rmse_counts")
+        svg = figures.residual_map_figure(signal, axis, pooled, floor)
+        found.append(
+            {"signal": signal, "svg": Markup(svg), "runs": len(runs), "set": runs[0]["set"]}
+        )
+    return found
+
+
+def _equations(diagnosis: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Equations of the added effects; MathML is left out unless it is formula markup alone."""
+    found = []
+    for equation in diagnosis.get("equations") or []:
+        mathml = str(equation.get("mathml") or "").strip()
+        if mathml and "<" not in _MATHML_TAG.sub("", mathml):
+            inner = re.sub(r"^<math[^>]*>|</math>$", "", mathml)
+            markup = Markup('<math display="block">{}</math>').format(Markup(inner))
+            found.append({**equation, "mathml": markup})
+        else:
+            found.append({**equation, "mathml": None})
+    return found
+
+
+def write_curves_csv(curves: Curves) -> dict[str, str]:
+    """Every plotted curve as CSV text by file name: one file per run, a header `name [unit]`."""
+    texts: dict[str, str] = {}
+    for run, curve in curves.items():
+        columns = list(_columns(curve))
+        rows = np.column_stack([values for _, values in columns]).tolist()
+        lines = [",".join(header for header, _ in columns)]
+        lines += [",".join(map(repr, row)) for row in rows]
+        stem = re.sub(r"[^A-Za-z0-9._-]+", "_", f"{curve['set']}-{run}")
+        while f"{stem}.csv" in texts:
+            stem += "_"
+        texts[f"{stem}.csv"] = "\n".join(lines) + "\n"
+    return texts
+
+
+def _columns(curve: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    yield "time [s]", curve["time"]
+    for axis, angle in (curve.get("angle") or {}).items():
+        yield f"angle_{axis} [rad]", angle
+    for axis, rate in (curve.get("rate") or {}).items():
+        yield f"rate_{axis} [rad/s]", rate
+    for name, signal in curve["signals"].items():
+        for stage in ("measured", "before", "after"):
+            if signal.get(stage) is not None:
+                yield f"{name}_{stage} [{signal.get('unit') or ''}]", signal[stage]
+        for stage in ("before", "after"):
+            values = figures.residual(signal, stage)
+            if values is not None:
+                yield f"{name}_residual_{stage} [{figures.residual_unit(signal)}]", values

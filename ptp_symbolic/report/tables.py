@@ -1,0 +1,135 @@
+"""The tables of the diagnosis page: rows in the order of reading, bars placed on their axis."""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeGuard
+
+Record = Mapping[str, Any]
+
+STAGES = ("before", "after", "noise_floor")
+
+
+@dataclass(frozen=True)
+class LogAxis:
+    """A logarithmic axis from 10**low to 10**high."""
+
+    low: float
+    high: float
+
+    def place(self, value: Any) -> float | None:
+        """Where a value lies, in percent of the length; None when it lies nowhere."""
+        if not usable(value) or value <= 0.0:
+            return None
+        share = (math.log10(value) - self.low) / (self.high - self.low)
+        return round(100.0 * min(max(share, 0.0), 1.0), 2)
+
+
+@dataclass(frozen=True)
+class ErrorRow:
+    """The error of one run, or of all (`run` None), before and after, against the floor."""
+
+    run: str | None
+    before: Record
+    after: Record
+    noise_floor: Record
+    ratio: float | None
+    place: Mapping[str, float | None]
+
+
+@dataclass(frozen=True)
+class ErrorGroup:
+    """The rows of the validation or the training runs, the total first."""
+
+    set: str
+    rows: tuple[ErrorRow, ...]
+
+    @property
+    def runs(self) -> int:
+        """How many runs there are."""
+        return len(self.rows) - 1
+
+
+def usable(value: Any) -> TypeGuard[float]:
+    """Whether it is a finite number."""
+    return isinstance(value, int | float) and math.isfinite(value)
+
+
+def log_axis(values: Iterable[Any]) -> LogAxis:
+    """An axis that holds all values above zero and is never shorter than a decade."""
+    logs = [math.log10(v) for v in values if usable(v) and v > 0.0] or [0.0]
+    low, high = min(logs), max(logs)
+    margin = max(0.06 * (high - low), (1.0 - (high - low)) / 2.0)
+    return LogAxis(low - margin, high + margin)
+
+
+def error_of(diagnosis: Record, set_name: str, stage: str, run: str | None = None) -> Record:
+    """The errors of one run, or in total; empty when unknown. A run without a floor has theirs."""
+    part: Record = ((diagnosis.get("error") or {}).get(set_name) or {}).get(stage) or {}
+    total: Record = part.get("total") or {}
+    if run is None:
+        return total
+    return (part.get("by_run") or {}).get(run) or (total if stage == "noise_floor" else {})
+
+
+def error_measure(diagnosis: Record) -> tuple[str, str]:
+    """Key and unit of the error that is shown: encoder counts where the log has them, else rad."""
+    totals = [error_of(diagnosis, name, "before") for name in ("validate", "train")]
+    if any(usable(total.get("rmse_counts")) for total in totals):
+        return "rmse_counts", "counts"
+    return "rmse", "rad"
+
+
+def error_groups(diagnosis: Record, key: str) -> list[ErrorGroup]:
+    """The before/after table, the validation runs first; sets without any error are left out."""
+    groups = []
+    for name in ("validate", "train"):
+        parts = (diagnosis.get("error") or {}).get(name) or {}
+        runs = sorted({r for s in STAGES for r in (parts.get(s) or {}).get("by_run") or {}})
+        if parts:
+            errors = [
+                {s: error_of(diagnosis, name, s, run) for s in STAGES} for run in (None, *runs)
+            ]
+            groups.append((name, list(zip((None, *runs), errors, strict=True))))
+    axis = log_axis(part.get(key) for _, rows in groups for _, e in rows for part in e.values())
+    return [
+        ErrorGroup(name, tuple(_error_row(run, errors, key, axis) for run, errors in rows))
+        for name, rows in groups
+    ]
+
+
+def _error_row(run: str | None, errors: Mapping[str, Record], key: str, axis: LogAxis) -> ErrorRow:
+    last, floor = (errors["after"] or errors["before"]).get(key), errors["noise_floor"].get(key)
+    ratio = last / floor if usable(last) and usable(floor) and floor else None
+    places = {stage: axis.place(errors[stage].get(key)) for stage in STAGES}
+    return ErrorRow(run, errors["before"], errors["after"], errors["noise_floor"], ratio, places)
+
+
+def parameter_rows(diagnosis: Record) -> list[dict[str, Any]]:
+    """Every fitted parameter before and after, with its change in percent of the value before."""
+    fit = diagnosis.get("fit") or {}
+    before, after = (((fit.get(s) or {}).get("parameters") or {}) for s in ("before", "after"))
+    rows = []
+    for name in dict.fromkeys([*before, *after]):
+        old, new = before.get(name), after.get(name)
+        change = None
+        if old and new and old.get("value") and usable(new.get("value")):
+            change = 100.0 * (new["value"] - old["value"]) / abs(old["value"])
+        rows.append(
+            {"name": name, "before": old, "after": new, "last": new or old or {}, "change": change}
+        )
+    return rows
+
+
+def ranking(diagnosis: Record, key: str) -> dict[str, Any]:
+    """Candidates in the order of their validation error, and the marks they are judged against."""
+    marks = {s: error_of(diagnosis, "validate", s).get(key) for s in ("before", "noise_floor")}
+    rows = [dict(candidate) for candidate in diagnosis.get("ranking") or []]
+    errors = [row.get("validate_error_after") for row in rows]
+    # a refit that ran away must not squeeze all others into a corner
+    ceiling = 4.0 * max([mark for mark in marks.values() if usable(mark)], default=math.inf)
+    axis = log_axis([*marks.values(), *[e for e in errors if usable(e) and e < ceiling]])
+    for row, error in zip(rows, errors, strict=True):
+        row["place"] = axis.place(error)
+    rows.sort(key=lambda row: row["validate_error_after"] if row["place"] is not None else math.inf)
+    return {"rows": rows, "place": {stage: axis.place(mark) for stage, mark in marks.items()}}

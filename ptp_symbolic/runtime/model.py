@@ -1,0 +1,143 @@
+"""An emitted model at run time: names, units, defaults and compiled functions."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class EffectInstance:
+    """An effect of a model: id, axis, its parameters, and texts for documents."""
+
+    id: str
+    axis: str | None
+    parameters: tuple[str, ...]
+    title: str
+    reference: str
+    separating_experiment: str
+
+    @property
+    def key(self) -> str:
+        """Id and axis in one word, e.g. ``cable_spring@pan``."""
+        return self.id if self.axis is None else f"{self.id}@{self.axis}"
+
+
+@dataclass(frozen=True)
+class ModelParameter:
+    """A parameter of a model; see `ptp_symbolic.parameters.Parameter` for the fields."""
+
+    name: str
+    unit: str
+    default: float
+    lower: float
+    upper: float
+    vanishes: float | None
+    starts: tuple[float, ...]
+    period: float | None
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Model:
+    """The equations of one machine, compiled on first use.
+
+    `state_derivative(t, x, u, p, dx)` writes dx/dt in place; `rhs(t, x, u, p)` returns it. Arrays
+    are float64 in the order of `state_names` [n], `input_names` [nu] and `parameter_names` [np],
+    in the SI units of `units`. In models with friction or backlash the modes follow from the
+    state: resting friction holds as long as it can.
+    """
+
+    module: ModuleType
+
+    @cached_property
+    def name(self) -> str:
+        """Name of the model."""
+        return str(self.module.NAME)
+
+    @cached_property
+    def title(self) -> str:
+        """One line that says what the model is."""
+        return str(self.module.TITLE)
+
+    @cached_property
+    def state_names(self) -> tuple[str, ...]:
+        """Names of the states."""
+        return tuple(self.module.STATE_NAMES)
+
+    @cached_property
+    def input_names(self) -> tuple[str, ...]:
+        """Names of the inputs."""
+        return tuple(self.module.INPUT_NAMES)
+
+    @cached_property
+    def output_names(self) -> tuple[str, ...]:
+        """Names of the signals that can be measured."""
+        return tuple(self.module.OUTPUT_NAMES)
+
+    @cached_property
+    def parameters(self) -> tuple[ModelParameter, ...]:
+        """The parameters with unit, default, bounds and where they vanish."""
+        return tuple(ModelParameter(*row) for row in self.module.PARAMETERS)
+
+    @cached_property
+    def parameter_names(self) -> tuple[str, ...]:
+        """Names of the parameters."""
+        return tuple(p.name for p in self.parameters)
+
+    @cached_property
+    def defaults(self) -> dict[str, float]:
+        """Default of every parameter, SI."""
+        return {p.name: p.default for p in self.parameters}
+
+    @cached_property
+    def mode_names(self) -> tuple[str, ...]:
+        """Names of the modes: directions of friction, sides and activity of contacts."""
+        return tuple(self.module.MODE_NAMES)
+
+    @cached_property
+    def effects(self) -> tuple[EffectInstance, ...]:
+        """The effects in the equations."""
+        return tuple(EffectInstance(*row) for row in self.module.EFFECTS)
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """Unit of every state, input, output and parameter."""
+        m = self.module
+        names = (*m.STATE_NAMES, *m.INPUT_NAMES, *m.OUTPUT_NAMES, *self.parameter_names)
+        units = (*m.STATE_UNITS, *m.INPUT_UNITS, *m.OUTPUT_UNITS, *(p.unit for p in self.parameters))
+        return dict(zip(names, units, strict=True))
+
+    @cached_property
+    def friction_rates(self) -> NDArray[np.int64]:
+        """State index of the rate on which every friction acts."""
+        return np.array(self.module.FRICTION_RATES, dtype=np.int64)
+
+    @cached_property
+    def state_derivative(self) -> Callable[..., None]:
+        """The jitted in-place function f(t, x, u, p, dx)."""
+        return self.module.state_derivative  # type: ignore[no-any-return]
+
+    def rhs(self, t: float, x: FloatArray, u: FloatArray, p: FloatArray) -> FloatArray:
+        """Return dx/dt [n] at time t in s, state x [n], input u [nu], parameters p [np]."""
+        dx = np.empty(len(self.state_names))
+        self.state_derivative(
+            float(t), *(np.ascontiguousarray(a, dtype=np.float64) for a in (x, u, p)), dx
+        )
+        return dx
+
+    def parameter_vector(self, values: dict[str, float] | None = None) -> FloatArray:
+        """Return the parameters [np]: defaults, replaced by `values`.
+
+        Raises KeyError for a name that the model does not have.
+        """
+        values = values or {}
+        unknown = sorted(values.keys() - self.defaults.keys())
+        if unknown:
+            raise KeyError(f"No parameter {unknown[0]!r}; known: {', '.join(self.parameter_names)}")
+        return np.array([values.get(n, d) for n, d in self.defaults.items()], dtype=np.float64)

@@ -1,0 +1,1 @@
+"""Shorter equations in named, counted and checked steps; base parameters."""

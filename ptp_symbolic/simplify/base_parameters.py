@@ -1,0 +1,150 @@
+"""Base parameters: the fewest combinations of physical parameters that the motion depends on."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from ptp_symbolic.derivation.bodies import RigidEquations
+from ptp_symbolic.simplify.nesting import AngleTerms, Combination, unused_name, write_forcing, write_sum
+from ptp_symbolic.simplify.operations import Line
+from ptp_symbolic.simplify.regressors import (
+    Coefficient,
+    Exponents,
+    Regression,
+    StateFunction,
+    place_of,
+    regress,
+)
+
+
+@dataclass(frozen=True)
+class BaseForm:
+    """Equations of motion M q'' = f in base parameters.
+
+    `base_parameters` are pairs of symbol and combination of physical parameters; one that is a
+    physical parameter by itself keeps its name and stands for itself. `shared_terms` are functions
+    of state and base parameters that `mass_matrix` [n, n] in kg m^2 and `forcing` [n] in N m use,
+    in order of use.
+    """
+
+    base_parameters: tuple[Line, ...]
+    shared_terms: tuple[Line, ...]
+    mass_matrix: sp.ImmutableMatrix
+    forcing: sp.ImmutableMatrix
+
+    def expanded(self) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+        """Mass matrix and forcing in base parameters with the shared terms put in."""
+        return self._replace_all(self.shared_terms)
+
+    def physical(self) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+        """Mass matrix and forcing in the physical parameters, to compare with the derivation."""
+        return self._replace_all((*self.base_parameters, *self.shared_terms))
+
+    def _replace_all(
+        self, lines: Sequence[Line]
+    ) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+        mass_matrix, forcing = self.mass_matrix, self.forcing
+        for symbol, expression in reversed(lines):
+            mass_matrix = mass_matrix.xreplace({symbol: expression})
+            forcing = forcing.xreplace({symbol: expression})
+        return mass_matrix, forcing
+
+
+def base_form(
+    rigid: RigidEquations,
+    mass_matrix: sp.MatrixBase | None = None,
+    forcing: sp.MatrixBase | None = None,
+) -> BaseForm:
+    """Regroup rigid equations in the fewest base parameters, written with few operations.
+
+    `mass_matrix` [m, m] and `forcing` [m] are those of the whole machine, whose first n rows are
+    the rigid joints; left out, they are those of `rigid`. What the machine adds to the mass matrix
+    of the joints joins the base parameters; torques that it adds pass through unchanged. The number
+    of base parameters is the rank of the coefficients over the physical monomials, hence minimal.
+    Source: Gautier and Khalil, Direct calculation of minimum set of inertial parameters of serial
+    robots, IEEE Trans. Robotics and Automation 6, 1990, section II.
+    """
+    n = len(rigid.coordinates)
+    mass = sp.Matrix(rigid.mass_matrix if mass_matrix is None else mass_matrix)
+    force = sp.Matrix(rigid.forcing if forcing is None else forcing)
+    cells = [(i, j) for i in range(n) for j in range(i, n)]
+    regression = regress(
+        [*(mass[i, j] for i, j in cells), *rigid.forcing], rigid.coordinates, rigid.rates
+    )
+    taken = {str(s) for entry in (*mass, *force) for s in entry.free_symbols}
+    basis = _Basis(regression, taken)
+    places = [place_of(coordinate) for coordinate in rigid.coordinates]
+    titles = [f"inertia_{places[i]}" if i == j else "coupling" for i, j in cells]
+    titles += ["gravity"] * n
+    rows = [
+        {
+            function: basis.combine(coefficient, _name(title, function, rigid))
+            for function, coefficient in row.items()
+        }
+        for title, row in zip(titles, regression.rows, strict=True)
+    ]
+    angles = AngleTerms(rigid.coordinates)
+    for (i, j), row in zip(cells, rows, strict=False):
+        mass[i, j] = mass[j, i] = write_sum(row, angles)
+    written, rate_terms = write_forcing(rows[len(cells) :], rigid, angles, taken)
+    for i in range(n):
+        force[i] = written[i] + (force[i] - rigid.forcing[i])
+    return BaseForm(
+        tuple(basis.parameters),
+        (*angles.lines.items(), *rate_terms),
+        sp.ImmutableMatrix(mass),
+        sp.ImmutableMatrix(force),
+    )
+
+
+def _name(title: str, function: StateFunction, rigid: RigidEquations) -> str:
+    words = function.name(rigid.coordinates)
+    return f"{title}_{words}" if words else title
+
+
+@dataclass
+class _Basis:
+    """Base parameters found so far, and the echelon form that expresses a coefficient in them."""
+
+    regression: Regression
+    taken: set[str]
+    parameters: list[Line] = field(default_factory=list)
+    _echelon: list[tuple[Exponents, Coefficient, Combination]] = field(default_factory=list)
+
+    def combine(self, coefficient: Coefficient, name: str) -> Combination:
+        """Write `coefficient` as rational multiples of base parameters, a new one if need be."""
+        rest: Coefficient = dict(coefficient)
+        combination: Combination = {}
+        for pivot, vector, meaning in self._echelon:
+            if pivot in rest:
+                factor = rest[pivot] / vector[pivot]
+                rest = _plus(rest, vector, -factor)
+                combination = _plus(combination, meaning, factor)
+        if not rest:
+            return combination
+        symbol, scale = self._new_parameter(coefficient, name)
+        self._echelon.append((min(rest), rest, _plus({symbol: scale}, combination, -1)))
+        return {symbol: scale}
+
+    def _new_parameter(self, coefficient: Coefficient, name: str) -> tuple[sp.Expr, sp.Rational]:
+        """Symbol and scale of a base parameter that makes up the whole of `coefficient`."""
+        expression = self.regression.parameter_expression(coefficient)
+        if expression.is_Rational:
+            return sp.Integer(1), expression
+        scale, alone = expression.as_coeff_Mul()
+        if alone.is_Symbol:
+            self.parameters.append((alone, alone))
+            return alone, scale
+        mostly_negative = sum(sp.sign(value) for value in coefficient.values()) < 0
+        scale = sp.Integer(-1 if mostly_negative else 1)
+        symbol = sp.Symbol(unused_name(name, self.taken), real=True)
+        self.taken.add(str(symbol))
+        self.parameters.append((symbol, sp.expand(scale * expression)))
+        return symbol, scale
+
+
+def _plus(left: dict, right: dict, factor: sp.Rational | int) -> dict:
+    """left + factor right, without the entries that cancel."""
+    total = {key: left.get(key, 0) + factor * right.get(key, 0) for key in {**left, **right}}
+    return {key: value for key, value in total.items() if value != 0}

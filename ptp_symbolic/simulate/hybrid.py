@@ -1,0 +1,383 @@
+"""The compiled runner: adaptive Runge-Kutta steps, located events, tangents through both.
+
+One runner serves every model: the emitted functions come in as typed function pointers. Steps end
+at every stop (sample of a held input, break of a profile). A mode that ends inside a step is found
+on the step's interpolant, then by repeating the step itself until the landing point lies just past
+the event. Tangents are the exact derivative of the accepted steps; at an event they jump (Aizerman
+and Gantmacher, 1958).
+"""
+
+import numpy as np
+from numba import njit, types
+
+from ptp_symbolic.simulate import signatures
+from ptp_symbolic.simulate.inputs import evaluate_inputs
+from ptp_symbolic.simulate.modes import (
+    largest_violation,
+    settle,
+    violation,
+    violation_gradient,
+)
+from ptp_symbolic.simulate.tableau import A, C, ERROR, STAGES, interpolation_weights
+
+DONE, DIVERGED, CHATTERING, TOO_MANY_STEPS = 0, 1, 2, 3
+TIME_RESOLUTION = 1e-12
+SMALLEST = 1e-60
+MAX_INSTANT_EVENTS = 100
+
+_V, _M, _I = types.float64[::1], types.float64[:, ::1], types.int64[::1]
+TABLE = types.Tuple((_V, _M, _I, _M, _I, _M, _I))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _stages(derivative, t, h, x, u, p, m, table, cursor, held, k, stage):
+    """Fill stage states [7, n] and slopes k [7, n]; k[0] and stage[0] = x are given."""
+    n = len(x)
+    for i in range(1, STAGES):
+        for a in range(n):
+            total = 0.0
+            for j in range(i):
+                total += A[i, j] * k[j, a]
+            stage[i, a] = x[a] + h * total
+        if not held:
+            side = -1 if C[i] == 1.0 else 1
+            evaluate_inputs(t + C[i] * h, side, *table, cursor, u)
+        derivative(t + C[i] * h, stage[i], u, p, m, k[i])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _error_norm(h, x, k, stage, rtol, atol):
+    worst = 0.0
+    for a in range(len(x)):
+        e = 0.0
+        for i in range(STAGES):
+            e += ERROR[i] * k[i, a]
+        scale = atol[a] + rtol * max(abs(x[a]), abs(stage[STAGES - 1, a]))
+        worst = max(worst, abs(h * e) / scale)
+    return worst
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _interpolate(s, h, x, k, weights, out):
+    interpolation_weights(s, weights)
+    for a in range(len(x)):
+        total = 0.0
+        for i in range(STAGES):
+            total += weights[i] * k[i, a]
+        out[a] = x[a] + h * total
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _push_tangents(jacobian, t, h, x, u, p, m, table, cursor, held, stage, columns, s, work):
+    """Carry the tangents s [n, ns] over an accepted step; the first columns are parameters."""
+    fx, fu, fp, slopes, at = work
+    n, ns = s.shape
+    for i in range(STAGES - 1):
+        for a in range(n):
+            for c in range(ns):
+                at[a, c] = s[a, c]
+            for j in range(i):
+                factor = h * A[i, j]
+                for c in range(ns):
+                    at[a, c] += factor * slopes[j, a, c]
+        if not held:
+            evaluate_inputs(t + C[i] * h, -1 if C[i] == 1.0 else 1, *table, cursor, u)
+        jacobian(t + C[i] * h, stage[i], u, p, m, fx, fu, fp)
+        for a in range(n):
+            for c in range(ns):
+                slopes[i, a, c] = 0.0
+            for c in range(len(columns)):
+                slopes[i, a, c] = fp[a, columns[c]]
+            for b in range(n):
+                factor = fx[a, b]
+                if factor != 0.0:
+                    for c in range(ns):
+                        slopes[i, a, c] += factor * at[b, c]
+    for a in range(n):
+        for i in range(STAGES - 1):
+            factor = h * A[STAGES - 1, i]
+            for c in range(ns):
+                s[a, c] += factor * slopes[i, a, c]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _jump_tangents(before, after, by_time, by_x, by_p, columns, s):
+    """Add (f- - f+) dt/dp to the tangents, dt/dp from the guard that ended the mode."""
+    n, ns = s.shape
+    slope = by_time
+    for a in range(n):
+        slope += by_x[a] * before[a]
+    if abs(slope) < 1e-300:
+        return
+    for c in range(ns):
+        shift = by_p[columns[c]] if c < len(columns) else 0.0
+        for a in range(n):
+            shift += by_x[a] * s[a, c]
+        shift /= -slope
+        for a in range(n):
+            s[a, c] += (before[a] - after[a]) * shift
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _flush(values):
+    flat = values.reshape(-1)
+    for i in range(flat.size):
+        if abs(flat[i]) < SMALLEST:
+            flat[i] = 0.0
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _record(t, m_before, m, frictions, elements, events, count):
+    """Note every element whose mode changed; the count goes on past the capacity of `events`."""
+    for element in range(elements):
+        where = element if element < frictions else 2 * element - frictions
+        changed = m[where] != m_before[where]
+        mode = m[where]
+        if element >= frictions:
+            changed = changed or m[where + 1] != m_before[where + 1]
+            mode = m[where] * (2.0 - m[where + 1])
+        if changed:
+            if count < events.shape[0]:
+                events[count, 0] = t
+                events[count, 1] = element
+                events[count, 2] = mode
+            count += 1
+    return count
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _worst_element(x, m, g, friction_rates, elements):
+    worst, found = -1e300, 0
+    for element in range(elements):
+        value = violation(element, x, m, g, friction_rates)
+        if value > worst:
+            worst, found = value, element
+    return found
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _violation_at(guards, t, x, u, p, m, table, cursor, held, g, friction_rates):
+    if not held:
+        evaluate_inputs(t, -1, *table, cursor, u)
+    guards(t, x, u, p, m, g)
+    return largest_violation(x, m, g, friction_rates)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _first_violation(
+    guards, t, h, x, k, u, p, m, table, cursor, held, g, friction_rates, weights, trial, x_end
+):  # fmt: skip
+    """Fraction of the step, 1/2 or 1, at which a mode is found to have ended; 0 if none has."""
+    _interpolate(0.5, h, x, k, weights, trial)
+    if _violation_at(guards, t + h / 2, trial, u, p, m, table, cursor, held, g, friction_rates) > 0:
+        return 0.5
+    if _violation_at(guards, t + h, x_end, u, p, m, table, cursor, held, g, friction_rates) > 0:
+        return 1.0
+    return 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _locate(
+    derivative, guards, t, high, h, x, k, stage, u, p, m, table, cursor, held, g, friction_rates,
+    weights, trial,
+):  # fmt: skip
+    """Length of the step that lands just past the first event; stages are left at that step."""
+    low = 0.0
+    while high - low > 1e-9 * h and high - low > TIME_RESOLUTION:
+        middle = 0.5 * (low + high)
+        _interpolate(middle / h, h, x, k, weights, trial)
+        if _violation_at(
+            guards, t + middle, trial, u, p, m, table, cursor, held, g, friction_rates
+        ) > 0.0:
+            high = middle
+        else:
+            low = middle
+    length = high
+    for _ in range(60):
+        _stages(derivative, t, length, x, u, p, m, table, cursor, held, k, stage)
+        trial[:] = stage[STAGES - 1]
+        value = _violation_at(
+            guards, t + length, trial, u, p, m, table, cursor, held, g, friction_rates
+        )
+        if value > 0.0:
+            break
+        length = min(h, length + max(TIME_RESOLUTION, 4.0 * (length - high) + 1e-9 * h))
+    return length
+
+
+@njit(
+    types.Tuple((types.int64, types.float64, types.int64, types.int64))(
+        signatures.MODE_DERIVATIVE,
+        signatures.JACOBIAN,
+        signatures.GUARDS,
+        signatures.GUARD_JACOBIAN,
+        signatures.ENERGY,
+        _V,  # x, changed in place
+        _V,  # modes, changed in place
+        _V,  # parameters
+        _I,  # state index of the rate of every friction
+        TABLE,
+        types.int64,  # number of inputs
+        types.boolean,  # inputs are held between stops
+        _V,  # stops, the first is the start
+        _V,  # output times, increasing
+        _M,  # out: states [times, n]
+        _I,  # parameter columns of the tangents
+        _M,  # tangents [n, ns], changed in place; ns = 0: none
+        types.float64[:, :, ::1],  # out: tangents [times, n, ns]; output times must be stops
+        types.float64[:, ::1],  # out: work [times, 3]: stored, supplied, dissipated; or no rows
+        types.float64,  # rtol
+        _V,  # atol
+        types.float64,  # largest step
+        types.float64[:, ::1],  # out: events [capacity, 3]: time, element, mode entered
+    ),
+    cache=True,
+    nogil=True,
+    error_model="numpy",
+)
+def integrate(
+    derivative, jacobian, guards, guard_jacobian, energy, x, m, p, friction_rates, table,
+    input_count, held, stops, output_times, out_x, columns, s, out_s, out_energy, rtol, atol,
+    largest_step, events,
+):  # fmt: skip
+    """Integrate from the first to the last stop; returns (status, time reached, events, steps)."""
+    n, ns, np_ = len(x), s.shape[1], len(p)
+    frictions = len(friction_rates)
+    elements = frictions + (len(m) - frictions) // 2
+    guard_count = 3 * frictions + 4 * (elements - frictions)
+    k, stage = np.zeros((STAGES, n)), np.zeros((STAGES, n))
+    weights, x_end, trial = np.zeros(STAGES), np.zeros(n), np.zeros(n)
+    u, u_later = np.zeros(input_count), np.zeros(input_count)
+    g, g_later = np.zeros(guard_count), np.zeros(guard_count)
+    gx, gp = np.zeros((guard_count, n)), np.zeros((guard_count, np_))
+    by_x, by_p, before, after = np.zeros(n), np.zeros(np_), np.zeros(n), np.zeros(n)
+    fx, fu, fp = np.zeros((n, n)), np.zeros((n, input_count)), np.zeros((n, np_))
+    work = (fx, fu, fp, np.zeros((STAGES, n, ns)), np.zeros((n, ns)))
+    cursor = np.zeros(input_count, dtype=np.int64)
+    m_before, powers, totals = np.zeros(len(m)), np.zeros(3), np.zeros(3)
+    with_energy = out_energy.shape[0] > 0
+    t, h = stops[0], largest_step
+    output, event_count, steps, instant = 0, 0, 0, 0
+    while output < len(output_times) and output_times[output] <= t:
+        out_x[output] = x
+        out_s[output] = s
+        if with_energy:
+            evaluate_inputs(t, 1, *table, cursor, u)
+            energy(t, x, u, p, m, powers)
+            out_energy[output, 0] = powers[0]
+        output += 1
+    for stop_index in range(1, len(stops)):
+        stop = stops[stop_index]
+        evaluate_inputs(t, 1, *table, cursor, u)
+        if elements > 0:
+            guards(t, x, u, p, m, g)
+            if largest_violation(x, m, g, friction_rates) > 0.0:
+                m_before[:] = m
+                if not settle(guards, t, x, u, p, m, g, friction_rates):
+                    return CHATTERING, t, event_count, steps
+                event_count = _record(t, m_before, m, frictions, elements, events, event_count)
+        derivative(t, x, u, p, m, k[0])
+        while stop - t > TIME_RESOLUTION:
+            remaining = stop - t
+            h = min(h, largest_step)
+            trial_h = remaining if h >= remaining else remaining / np.ceil(remaining / h)
+            steps += 1
+            stage[0] = x
+            _stages(derivative, t, trial_h, x, u, p, m, table, cursor, held, k, stage)
+            error = _error_norm(trial_h, x, k, stage, rtol, atol)
+            if not np.isfinite(error):
+                error = 1e10
+            if error > 1.0:
+                h = trial_h * max(0.2, 0.9 * error**-0.2)
+                if h < 1e-11:
+                    return DIVERGED, t, event_count, steps
+                continue
+            grow = 5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2)
+            if grow > 1.0 or h <= trial_h:
+                h = trial_h * grow
+            step_h = trial_h
+            ended = False
+            if elements > 0:
+                x_end[:] = stage[STAGES - 1]
+                high = _first_violation(
+                    guards, t, step_h, x, k, u, p, m, table, cursor, held, g, friction_rates,
+                    weights, trial, x_end,
+                )  # fmt: skip
+                if high > 0.0:
+                    ended = True
+                    step_h = _locate(
+                        derivative, guards, t, high * step_h, step_h, x, k, stage, u, p, m, table,
+                        cursor, held, g, friction_rates, weights, trial,
+                    )  # fmt: skip
+            t_new = stop if (not ended and trial_h == remaining) else t + step_h
+            while output < len(output_times) and output_times[output] < t_new - TIME_RESOLUTION:
+                s_fraction = (output_times[output] - t) / step_h
+                _interpolate(s_fraction, step_h, x, k, weights, out_x[output])
+                if with_energy:
+                    evaluate_inputs(output_times[output], 1, *table, cursor, u)
+                    energy(output_times[output], out_x[output], u, p, m, powers)
+                    out_energy[output] = totals
+                    out_energy[output, 0] = powers[0]
+                output += 1
+            if ns > 0:
+                _push_tangents(
+                    jacobian, t, step_h, x, u, p, m, table, cursor, held, stage, columns, s, work
+                )
+            if with_energy:
+                for i in range(STAGES - 1):
+                    if not held:
+                        evaluate_inputs(t + C[i] * step_h, 1 if C[i] < 1.0 else -1, *table, cursor, u)
+                    energy(t + C[i] * step_h, stage[i], u, p, m, powers)
+                    totals[1] += step_h * A[STAGES - 1, i] * powers[1]
+                    totals[2] += step_h * A[STAGES - 1, i] * powers[2]
+            x[:] = stage[STAGES - 1]
+            t = t_new
+            if not ended:
+                k[0] = k[STAGES - 1]
+                instant = 0
+                continue
+            instant = instant + 1 if step_h < 1e-10 else 0
+            if instant > MAX_INSTANT_EVENTS:
+                return CHATTERING, t, event_count, steps
+            evaluate_inputs(t, 1, *table, cursor, u)
+            m_before[:] = m
+            before[:] = k[STAGES - 1]
+            by_time = 0.0
+            if ns > 0:
+                guards(t, x, u, p, m, g)
+                element = _worst_element(x, m, g, friction_rates, elements)
+                guard_jacobian(t, x, u, p, m, gx, gp)
+                violation_gradient(element, m, g, gx, gp, friction_rates, x, by_x, by_p)
+                if not held:
+                    ahead = 1e-7
+                    evaluate_inputs(t + ahead, 1, *table, cursor, u_later)
+                    guards(t, x, u_later, p, m, g_later)
+                    by_time = (
+                        violation(element, x, m, g_later, friction_rates)
+                        - violation(element, x, m, g, friction_rates)
+                    ) / ahead
+            if not settle(guards, t, x, u, p, m, g, friction_rates):
+                return CHATTERING, t, event_count, steps
+            event_count = _record(t, m_before, m, frictions, elements, events, event_count)
+            derivative(t, x, u, p, m, k[0])
+            if ns > 0:
+                after[:] = k[0]
+                _jump_tangents(before, after, by_time, by_x, by_p, columns, s)
+                for f in range(frictions):
+                    if m[f] == 0.0:
+                        s[friction_rates[f]] = 0.0
+        t = stop
+        _flush(x)
+        if ns > 0:
+            _flush(s)
+        while output < len(output_times) and output_times[output] <= t + TIME_RESOLUTION:
+            out_x[output] = x
+            out_s[output] = s
+            if with_energy:
+                energy(t, x, u, p, m, powers)
+                out_energy[output] = totals
+                out_energy[output, 0] = powers[0]
+            output += 1
+        for a in range(n):
+            if not abs(x[a]) < 1e12:
+                return DIVERGED, t, event_count, steps
+    return DONE, t, event_count, steps

@@ -1,0 +1,289 @@
+"""Input signals: profiles and log columns, packed so that a compiled integrator can evaluate them.
+
+A signal is piecewise cubic, plus sines, plus linear-frequency sine sweeps. At a jump it has two
+values: `side` +1 asks for the one after it (signals are right-continuous), -1 for the one before,
+which is what an integration step that ends at the jump must see.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+from numba import njit
+from numpy.typing import ArrayLike, NDArray
+
+from ptp_symbolic.errors import InputError
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+def _no_rows(columns: int) -> FloatArray:
+    return np.empty((0, columns))
+
+
+@dataclass(frozen=True, eq=False)
+class InputSignal:
+    """One input as a function of time, in the unit of the input it drives.
+
+    breaks [m+1] in s, increasing: where the signal or a slope may jump; coefficients [m, 4]: cubic
+    in (t - breaks[k]), constant before the first and after the last break; sines [r, 3]: amplitude,
+    frequency in Hz, phase in rad; sweep [q, 5]: amplitude, first and last frequency in Hz, start
+    and end in s, zero outside. Raises InputError on wrong shapes, NaN, infinity or unsorted times.
+    """
+
+    breaks: FloatArray
+    coefficients: FloatArray
+    sines: FloatArray = field(default_factory=lambda: _no_rows(3))
+    sweep: FloatArray = field(default_factory=lambda: _no_rows(5))
+
+    def __post_init__(self) -> None:
+        columns = {"breaks": 1, "coefficients": 4, "sines": 3, "sweep": 5}
+        for name, width in columns.items():
+            array = np.array(getattr(self, name), dtype=np.float64)
+            if array.size and not np.isfinite(array).all():
+                raise InputError(f"Input signal: {name} holds NaN or infinity; give finite values.")
+            if name != "breaks" and (array.ndim != 2 or array.shape[1] != width):
+                raise InputError(f"Input signal: {name} has shape {array.shape}, not [n, {width}].")
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+        pieces = len(self.coefficients)
+        if pieces < 1 or self.breaks.shape != (pieces + 1,):
+            raise InputError(
+                f"Input signal: {pieces} pieces with breaks of shape {self.breaks.shape};"
+                " give at least one piece and one break more than pieces."
+            )
+        _refuse_unsorted(self.breaks, "break times")
+        if np.any(self.sweep[:, 3] >= self.sweep[:, 4]):
+            raise InputError("Input signal: a sine sweep ends before it starts; give t0 < t1.")
+
+
+def _refuse_unsorted(times: FloatArray, what: str) -> None:
+    wrong = np.flatnonzero(np.diff(times) <= 0)
+    if wrong.size:
+        before, after = times[wrong[0]], times[wrong[0] + 1]
+        raise InputError(
+            f"Input signal: {what} go from {before:g} s to {after:g} s;"
+            " give strictly increasing times."
+        )
+
+
+def _signal(rows: Sequence[Sequence[float]]) -> InputSignal:
+    """Join rows (start time, c0, c1, c2, c3; short rows end in zeros); the last is constant."""
+    kept = [row for row, after in pairwise(rows) if after[0] != row[0]]
+    kept.append(rows[-1])
+    times = [row[0] for row in kept]
+    coefficients = [[*row[1:], *[0.0] * (5 - len(row))] for row in kept]
+    return InputSignal(np.array([*times, times[-1] + 1.0]), np.array(coefficients))
+
+
+def constant(value: float) -> InputSignal:
+    """The same value for ever."""
+    return _signal([(0.0, value)])
+
+
+def step(before: float, after: float, at: float) -> InputSignal:
+    """A jump from `before` to `after` at time `at` in s; at that instant the value is `after`."""
+    return _signal([(at - 1.0, before), (at, after)])
+
+
+def ramp(start: float, end: float, t0: float, t1: float, then: float | None = None) -> InputSignal:
+    """A straight line from `start` at t0 to `end` at t1 (s), afterwards `then` (None: `end`)."""
+    _refuse_unsorted(np.array([t0, t1]), "start and end of the ramp")
+    slope = (end - start) / (t1 - t0)
+    return _signal([(t0, start, slope), (t1, end if then is None else then)])
+
+
+def trapezoid(
+    level: float, rise: float, hold: float, fall: float, start: float = 0.0
+) -> InputSignal:
+    """From zero up to `level` in `rise` s, there for `hold` s, down to zero in `fall` s.
+
+    A duration of zero makes that edge a jump. Raises InputError on a negative duration.
+    """
+    for name, duration in (("rise", rise), ("hold", hold), ("fall", fall)):
+        if not duration >= 0.0:
+            raise InputError(f"Trapezoid: {name} lasts {duration:g} s; give zero or more seconds.")
+    top, bottom = start + rise, start + rise + hold
+    rows: list[tuple[float, ...]] = [
+        (start - 1.0, 0.0),
+        (start, 0.0, level / rise if rise else 0.0),
+        (top, level),
+        (bottom, level, -level / fall if fall else 0.0),
+        (bottom + fall, 0.0),
+    ]
+    return _signal(rows)
+
+
+def cubic_transition(start: float, end: float, t0: float, t1: float) -> InputSignal:
+    """A cubic from `start` at t0 to `end` at t1 (s) with zero slope at both ends.
+
+    The motion profile of the thesis (Tables 5.2 and 5.4).
+    """
+    _refuse_unsorted(np.array([t0, t1]), "start and end of the cubic transition")
+    length, change = t1 - t0, end - start
+    square = 3.0 * change / length / length
+    rising = (t0, start, 0.0, square, -square / length / 1.5)
+    return _signal([rising, (t1, end)])
+
+
+def sine_sweep(amplitude: float, first: float, last: float, t0: float, t1: float) -> InputSignal:
+    """A sine whose frequency runs linearly from `first` to `last` Hz over [t0, t1] s, else zero."""
+    if first < 0.0 or last < 0.0:
+        raise InputError(
+            f"Sine sweep: {first:g} Hz to {last:g} Hz; give frequencies of zero or more."
+        )
+    return InputSignal(
+        np.array([0.0, 1.0]), np.zeros((1, 4)), sweep=np.array([[amplitude, first, last, t0, t1]])
+    )
+
+
+def multisine(
+    amplitudes: Sequence[float], frequencies: Sequence[float], phases: Sequence[float] | None = None
+) -> InputSignal:
+    """A sum of sines: amplitudes, frequencies in Hz, phases in rad (None: all zero), one each."""
+    angles = [0.0] * len(frequencies) if phases is None else phases
+    if not len(amplitudes) == len(frequencies) == len(angles) > 0:
+        raise InputError(
+            f"Multisine: {len(amplitudes)} amplitudes, {len(frequencies)} frequencies and"
+            f" {len(angles)} phases; give as many of each, at least one."
+        )
+    rows = np.array([amplitudes, frequencies, angles], dtype=np.float64).T
+    return InputSignal(np.array([0.0, 1.0]), np.zeros((1, 4)), sines=rows)
+
+
+def table(times: ArrayLike, values: ArrayLike, interpolation: str = "hold") -> InputSignal:
+    """Samples `values` [n] at `times` [n] in s, constant outside.
+
+    interpolation: "hold" keeps each value until the next sample (columns of a log), "linear" joins
+    them, "cubic" is the twice differentiable spline (not-a-knot). Raises InputError otherwise.
+    """
+    at, value = np.asarray(times, dtype=np.float64), np.asarray(values, dtype=np.float64)
+    least = 1 if interpolation == "hold" else 2
+    if at.ndim != 1 or at.shape != value.shape or len(at) < least:
+        raise InputError(
+            f"Table: times of shape {at.shape} and values of shape {value.shape};"
+            f" give as many of each, at least {least}."
+        )
+    _refuse_unsorted(at, "times of the table")
+    coefficients = np.zeros((len(at), 4))
+    coefficients[:, 0] = value
+    if interpolation == "linear":
+        coefficients[:-1, 1] = np.diff(value) / np.diff(at)
+    elif interpolation == "cubic":
+        from scipy.interpolate import CubicSpline
+
+        if np.isfinite(at).all() and np.isfinite(value).all():
+            coefficients[:-1, 1:] = CubicSpline(at, value).c[2::-1].T
+    elif interpolation != "hold":
+        raise InputError(f"Table: interpolation {interpolation!r}; choose hold, linear or cubic.")
+    end = at[-1] + (at[-1] - at[-2] if len(at) > 1 else 1.0)
+    return InputSignal(np.append(at, end), coefficients)
+
+
+@dataclass(frozen=True, eq=False)
+class InputTable:
+    """Several signals in flat arrays, for compiled code.
+
+    Signal j owns coefficients[offsets[j]:offsets[j+1]], breaks from offsets[j] + j on (one more),
+    sines[sine_offsets[j]:sine_offsets[j+1]] and the sweeps likewise. `stops` in s: the sorted
+    times at which any signal or one of its slopes really jumps; an integrator ends a step there.
+    """
+
+    breaks: FloatArray
+    coefficients: FloatArray
+    offsets: IntArray
+    sines: FloatArray
+    sine_offsets: IntArray
+    sweeps: FloatArray
+    sweep_offsets: IntArray
+    stops: FloatArray
+
+    @property
+    def arrays(
+        self,
+    ) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, IntArray, FloatArray, IntArray]:
+        """The arrays that evaluate_inputs takes after `side`, in its order."""
+        return (
+            self.breaks, self.coefficients, self.offsets, self.sines, self.sine_offsets,
+            self.sweeps, self.sweep_offsets,
+        )  # fmt: skip
+
+    def new_cursor(self) -> IntArray:
+        """Where each signal was found last, [nu]; one per integration, evaluate_inputs moves it."""
+        return np.zeros(len(self.offsets) - 1, dtype=np.int64)
+
+
+def stack(signals: Sequence[InputSignal]) -> InputTable:
+    """Pack signals, in the order of the model's inputs, into flat arrays."""
+    lists = [(s.coefficients, s.sines, s.sweep) for s in signals]
+    coefficients, sines, sweeps = (
+        np.concatenate([_no_rows(width), *[parts[i] for parts in lists]])
+        for i, width in enumerate((4, 3, 5))
+    )
+    offsets, sine_offsets, sweep_offsets = (
+        np.cumsum([0, *[len(parts[i]) for parts in lists]], dtype=np.int64) for i in range(3)
+    )
+    breaks = np.concatenate([np.empty(0), *[s.breaks for s in signals]])
+    stops = np.unique(np.concatenate([np.empty(0), *[_jumps(s) for s in signals]]))
+    return InputTable(
+        breaks, coefficients, offsets, sines, sine_offsets, sweeps, sweep_offsets, stops
+    )
+
+
+def _jumps(signal: InputSignal) -> FloatArray:
+    """Times at which the value or a derivative of the signal differs before and after."""
+    c0, c1, c2, c3 = signal.coefficients.T
+    s = np.diff(signal.breaks)
+    values, slopes = c0 + s * (c1 + s * (c2 + s * c3)), c1 + s * (2 * c2 + 3 * s * c3)
+    ends = np.array([values, slopes, c2 + 3 * s * c3, c3]).T
+    outside = np.zeros((1, 4))
+    left = np.concatenate([outside, ends])
+    right = np.concatenate([signal.coefficients, outside])
+    left[0, 0], right[-1, 0] = c0[0], ends[-1, 0]
+    return np.append(signal.breaks[np.any(left != right, axis=1)], signal.sweep[:, 3:])
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def evaluate_inputs(
+    t: float,
+    side: int,
+    breaks: FloatArray,
+    coefficients: FloatArray,
+    offsets: IntArray,
+    sines: FloatArray,
+    sine_offsets: IntArray,
+    sweeps: FloatArray,
+    sweep_offsets: IntArray,
+    cursor: IntArray,
+    u: FloatArray,
+) -> None:
+    """Fill u [nu] with every signal at time t in s; side +1: value after a jump at t, -1: before.
+
+    The arrays are those of an InputTable. cursor [nu], read and written, holds the piece found
+    last, so that a walk through thousands of samples costs one comparison per call.
+    """
+    for j in range(u.shape[0]):
+        pieces = offsets[j + 1] - offsets[j]
+        at = offsets[j] + j
+        k = cursor[j]
+        while k < pieces and (breaks[at + k + 1] < t or (side > 0 and breaks[at + k + 1] == t)):
+            k += 1
+        while k >= 0 and (breaks[at + k] > t or (side < 0 and breaks[at + k] == t)):
+            k -= 1
+        cursor[j] = k
+        piece = min(max(k, 0), pieces - 1)
+        c = coefficients[offsets[j] + piece]
+        s = min(max(t, breaks[at]), breaks[at + pieces]) - breaks[at + piece]
+        value = c[0] + s * (c[1] + s * (c[2] + s * c[3]))
+        for i in range(sine_offsets[j], sine_offsets[j + 1]):
+            value += sines[i, 0] * math.sin(2.0 * math.pi * sines[i, 1] * t + sines[i, 2])
+        for i in range(sweep_offsets[j], sweep_offsets[j + 1]):
+            t0, t1 = sweeps[i, 3], sweeps[i, 4]
+            if t0 <= t < t1 or (side < 0 and t == t1):
+                rate = 0.5 * (sweeps[i, 2] - sweeps[i, 1]) / (t1 - t0)
+                turns = (sweeps[i, 1] + rate * (t - t0)) * (t - t0)
+                value += sweeps[i, 0] * math.sin(2.0 * math.pi * turns)
+        u[j] = value

@@ -1,0 +1,24 @@
+"""Set up `.venv` and run the tests: `python3 scripts/test.py [--long] [pytest arguments]`.
+
+`--long` runs the tests that take minutes, and only those. Needs Python 3.11+ and nothing else.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+from environment import CHECKOUT, PYTHON, prepare_environment
+
+
+def main(arguments: list[str]) -> int:
+    """Run pytest with the arguments and return its exit code."""
+    marks = ["-m", "long"] if "--long" in arguments else []
+    passed_on = [argument for argument in arguments if argument != "--long"]
+    prepare_environment(extras=("dev", "test"))
+    command = [str(PYTHON), "-m", "pytest", *marks, *passed_on]
+    return subprocess.run(command, cwd=CHECKOUT).returncode
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))

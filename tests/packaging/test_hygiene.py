@@ -1,0 +1,84 @@
+"""The tree carries no path of one machine, no silenced check without a reason, no giant file."""
+
+import re
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+MACHINE_PATH = re.compile(r"(^|[^A-Za-z0-9_.])/(work|farm|root)/", re.MULTILINE)
+HOME_PATH = re.compile(r"(^|[^A-Za-z0-9_.])/(home|Users)/[a-z]", re.MULTILINE)
+BARE_TYPE_IGNORE = re.compile(r"#\s*type:\s*ignore(?!\[[a-z])")
+BARE_NOQA = re.compile(r"#\s*noqa(?!: [A-Z])")
+LONGEST_FILE = 300
+LONGEST_EFFECT = 70
+
+
+def tree(checkout: Path) -> list[Path]:
+    """Files that are tracked or would be: everything that git does not ignore."""
+    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
+    try:
+        listed = subprocess.run(command, cwd=checkout, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError) as failure:
+        pytest.skip(f"the list of tracked files needs a git checkout: {failure}")
+    files = [checkout / name for name in listed.stdout.split("\0") if name]
+    return [file for file in files if file.is_file()]
+
+
+def texts(checkout: Path, *suffixes: str) -> Iterator[tuple[str, str]]:
+    """Relative name and content of every text file of the tree, or of those with a suffix."""
+    for file in tree(checkout):
+        if suffixes and file.suffix not in suffixes:
+            continue
+        try:
+            text = file.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            continue
+        yield file.relative_to(checkout).as_posix(), text
+
+
+@pytest.mark.parametrize("pattern", [MACHINE_PATH, HOME_PATH], ids=["machine", "home"])
+def test_no_path_of_one_machine(pattern: re.Pattern[str], checkout: Path) -> None:
+    assert [name for name, text in texts(checkout) if pattern.search(text)] == []
+
+
+@pytest.mark.parametrize("pattern", [BARE_TYPE_IGNORE, BARE_NOQA], ids=["type-ignore", "noqa"])
+def test_no_check_is_silenced_without_naming_it(pattern: re.Pattern[str], checkout: Path) -> None:
+    assert [name for name, text in texts(checkout, ".py") if pattern.search(text)] == []
+
+
+def test_generated_modules_silence_no_check_at_all(checkout: Path) -> None:
+    silenced = re.compile(r"#\s*(noqa|type:\s*ignore|fmt:|ruff:)")
+    modules = [(name, text) for name, text in texts(checkout, ".py") if name[:10] == "generated/"]
+    assert modules
+    assert [name for name, text in modules if silenced.search(text)] == []
+
+
+def test_no_file_is_longer_than_a_person_reads_at_once(checkout: Path) -> None:
+    lengths = {name: text.count("\n") for name, text in texts(checkout, ".py")}
+    written = {name: n for name, n in lengths.items() if not name.startswith("generated/")}
+    effects = Path("ptp_symbolic/effects")
+    assert {name: n for name, n in written.items() if n > LONGEST_FILE} == {}
+    assert {
+        name: n
+        for name, n in written.items()
+        if n > LONGEST_EFFECT and Path(name).parent == effects and not name.endswith("effect.py")
+    } == {}
+
+
+@pytest.mark.parametrize(
+    ("pattern", "text", "caught"),
+    [
+        (MACHINE_PATH, "open('" + "/".join(["", "work", "main"]) + "')", True),
+        (MACHINE_PATH, "homework/notes, ./work/notes", False),
+        (BARE_TYPE_IGNORE, "x = f()  # type:" + " ignore", True),
+        (BARE_TYPE_IGNORE, "x = f()  # type:" + " ignore[arg-type]", False),
+        (BARE_NOQA, "x = 1  # no" + "qa", True),
+        (BARE_NOQA, "x = 1  # no" + "qa: E501", False),
+    ],
+)
+def test_the_patterns_find_what_they_are_for(
+    pattern: re.Pattern[str], text: str, caught: bool
+) -> None:
+    assert bool(pattern.search(text)) is caught

@@ -1,0 +1,42 @@
+"""What importing the package costs and needs, seen from a fresh interpreter."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+NUMERIC_WING = ("runtime", "data", "simulate", "sensitivity", "identify", "diagnose")
+SYMBOLIC_WING = ("parameters", "kinematics", "effects", "derivation", "simplify", "codegen")
+
+
+def run_python(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run a fresh interpreter in `folder`, where nothing of the checkout is in sight."""
+    command = [sys.executable, *arguments]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True)
+
+
+def test_import_raises_no_warning(tmp_path: Path) -> None:
+    ran = run_python(tmp_path, "-W", "error", "-c", "import ptp_symbolic")
+    assert (ran.returncode, ran.stderr) == (0, "")
+
+
+def test_import_leaves_sympy_alone(tmp_path: Path) -> None:
+    ran = run_python(
+        tmp_path, "-c", "import ptp_symbolic, sys; print(sorted({'sympy'} & set(sys.modules)))"
+    )
+    assert ran.stdout == "[]\n", ran.stderr
+
+
+@pytest.mark.parametrize("room", NUMERIC_WING)
+def test_numeric_wing_works_where_sympy_is_missing(room: str, tmp_path: Path) -> None:
+    program = f"import sys; sys.modules['sympy'] = None; import ptp_symbolic.{room}"
+    ran = run_python(tmp_path, "-c", program)
+    assert ran.returncode == 0, ran.stderr
+
+
+@pytest.mark.parametrize("room", SYMBOLIC_WING)
+def test_symbolic_wing_works_where_numba_is_missing(room: str, tmp_path: Path) -> None:
+    program = f"import sys; sys.modules['numba'] = None; import ptp_symbolic.{room}"
+    ran = run_python(tmp_path, "-c", program)
+    assert ran.returncode == 0, ran.stderr

@@ -1,0 +1,39 @@
+"""A platform file with damaged bytes is read or refused; it never ends in a traceback."""
+
+import math
+from pathlib import Path
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.platform import read_platform
+
+GOOD = (Path(__file__).parents[1] / "platforms" / "fieldlog_two_axis.toml").read_bytes()
+
+
+@settings(
+    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    st.lists(
+        st.tuples(st.integers(0, len(GOOD) - 1), st.binary(max_size=3), st.integers(0, 9)),
+        min_size=1,
+        max_size=4,
+    )
+)
+def test_a_damaged_file_is_read_or_refused_in_one_line(
+    tmp_path: Path, damage: list[tuple[int, bytes, int]]
+) -> None:
+    content = GOOD
+    for place, inserted, removed in damage:
+        content = content[:place] + inserted + content[place + removed :]
+    path = tmp_path / "damaged.toml"
+    path.write_bytes(content)
+    try:
+        platform = read_platform(path)
+    except InputError as refusal:
+        assert "\n" not in str(refusal)
+        assert str(refusal).startswith(str(path))
+    else:
+        assert all(math.isfinite(parameter.value) for parameter in platform.parameters)

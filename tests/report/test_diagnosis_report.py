@@ -1,0 +1,332 @@
+"""The diagnosis page: every part is there for every verdict, and a browser has nothing to say."""
+
+import math
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.report.diagnosis import VERDICTS, render_diagnosis, write_curves_csv
+from ptp_symbolic.report.quantities import estimate, in_degrees, interval, number, unit
+
+COUNT = 2.0 * math.pi / 7200.0
+FLOOR = 0.289
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+RUNS = {
+    "ramp": "train",
+    "sine": "train",
+    "trapezoid": "train",
+    "sweep": "validate",
+    "step": "validate",
+}
+
+
+def synthetic_curves(
+    samples: int = 1200, after: bool = True, current: bool = True
+) -> dict[str, Any]:
+    """Runs of a pan axis whose declared model misses a torque that depends on the angle."""
+    generator = np.random.default_rng(7)
+    curves: dict[str, Any] = {}
+    for index, (run, set_name) in enumerate(RUNS.items()):
+        time = np.arange(samples) * 0.005
+        frequency = 2.0 * math.pi * (0.25 + 0.1 * index)
+        angle = 1.5 * np.sin(frequency * time) * (1.0 - np.exp(-time))
+        rate = np.gradient(angle, time)
+        drift = 40.0 * COUNT * np.sin(angle - 0.8) * np.minimum(time, 2.0)
+        measured = np.round((angle + 1e-5 * generator.normal(size=samples)) / COUNT) * COUNT
+        signals = {
+            "theta_pan": {
+                "unit": "rad", "measured": measured, "before": angle - drift,
+                "after": angle if after else None, "counts": COUNT,
+            }
+        }  # fmt: skip
+        if current:
+            amperes = 0.4 * np.cos(frequency * time)
+            signals["i_pan"] = {
+                "unit": "A", "measured": amperes + 0.004 * generator.normal(size=samples),
+                "before": amperes * 1.05, "after": amperes if after else None, "counts": None,
+            }  # fmt: skip
+        curves[run] = {
+            "set": set_name, "time": time, "signals": signals,
+            "angle": {"pan": angle}, "rate": {"pan": rate},
+        }  # fmt: skip
+    return curves
+
+
+def metrics(counts: float) -> dict[str, float]:
+    return {
+        "rmse_counts": counts,
+        "rmse": counts * COUNT,
+        "relative_l2": counts / 1000.0,
+        "fit_percent": 100.0 - counts / 10.0,
+    }
+
+
+def errors(counts: float, after: float | None) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name in ("train", "validate"):
+        runs = [run for run, set_name in RUNS.items() if set_name == name]
+        found[name] = {
+            stage: {
+                "total": metrics(value),
+                "by_run": {run: metrics(value * (1.0 + 0.2 * k)) for k, run in enumerate(runs)},
+            }
+            for stage, value in (("before", counts), ("after", after), ("noise_floor", FLOOR))
+            if value is not None
+        }
+    return found
+
+
+def quantity(value: float, half: float, unit: str, **more: Any) -> dict[str, Any]:
+    return {"value": value, "ci95": [value - half, value + half], "unit": unit, **more}
+
+
+ADDED = {
+    "effect": "base_tilt",
+    "title": "base that is not level",
+    "axis": None,
+    "parameters": {
+        "beta_base": quantity(0.08731, 0.00032, "rad"),
+        "alpha_base": quantity(0.8021, 0.0041, "rad"),
+    },
+    "confusable_with": [],
+    "separating_experiment": "Sweep the pan axis over a full turn.",
+}
+EQUATION = {
+    "title": "Gravity torque about the pan axis",
+    "effect": "base_tilt",
+    "latex": r"\tau = -m g c \sin\beta \sin(\theta_{pan} - \alpha)",
+    "text": "τ = −m g c sin β sin(θ_pan − α)",
+    "mathml": "<mrow><mi>τ</mi><mo>=</mo><mo>-</mo><mi>m</mi><mo>&InvisibleTimes;</mo><mi>g</mi>"
+    "<mi>c</mi><mi>sin</mi><mo>(</mo><mi>β</mi><mo>)</mo><mi>sin</mi><mrow><mo>(</mo><msub><mi>θ</mi>"
+    "<mi>pan</mi></msub><mo>-</mo><mi>α</mi><mo>)</mo></mrow></mrow>",
+}
+
+
+def ranking(winner: str | None, best: float) -> list[dict[str, Any]]:
+    tried = (
+        ("cable_spring", 1.89, 0.432), ("base_tilt", best, best), ("constant_torque", 22.4, 19.0),
+        ("direction_dependent_friction", 27.3, 21.9), ("payload_com_offset", 29.79, 24.1),
+        ("backlash", None, None), ("shaft_compliance", 29.8, 24.08), ("viscous_friction", 5e7, 9e6),
+    )  # fmt: skip
+    return [
+        {
+            "effect": effect,
+            "axis": None if effect == "base_tilt" else "pan",
+            "statistic": 812.3 - 90.0 * k,
+            "p_value": 10.0 ** -(30 - 4 * k),
+            "train_error_after": train,
+            "validate_error_after": validate,
+            "parameters": ADDED["parameters"] if effect == "base_tilt" else {"k": 0.3},
+            "accepted": effect == winner,
+            "why": "explains 99 % of the excess" if effect == winner else "ends above the winner",
+        }
+        for k, (effect, validate, train) in enumerate(tried)
+    ]
+
+
+def synthetic_diagnosis(verdict: str) -> dict[str, Any]:
+    added = [] if verdict in ("nothing_missing", "unexplained") else [ADDED]
+    before = 0.291 if verdict == "nothing_missing" else 29.8
+    after = {"partly_explained": 7.4}.get(verdict, 0.292) if added else None
+    if verdict == "explained_up_to_group":
+        added = [{**ADDED, "confusable_with": ["cable_spring", "constant_torque"]}]
+    parameters = {
+        "J_pan": quantity(0.0912, 0.0011, "kg m^2", start=0.1, at_bound=False, identified=True),
+        "F_s_pan": quantity(0.0, 0.02, "N m", start=0.675, at_bound=True, identified=True),
+        "d_shaft_pan": quantity(3.1, math.nan, "N m s/rad", start=1.0, at_bound=False, identified=False),
+    }  # fmt: skip
+    fit: dict[str, Any] = {"before": {"parameters": parameters}}
+    if added:
+        new = {"J_pan": quantity(0.0999, 0.0006, "kg m^2", start=0.1), **ADDED["parameters"]}
+        fit["after"] = {"parameters": {**parameters, **new}}
+    return {
+        "schema_version": 1,
+        "platform": {"name": "fieldlog_pan", "title": "Pan axis of the field logs, PWM drive"},
+        "verdict": verdict,
+        "summary": "On 2 validation runs the error was compared with the noise floor.",
+        "added": added,
+        "ranking": ranking("base_tilt" if added else None, after or before),
+        "error": errors(before, after),
+        "residual_tests": [
+            {"name": "whiteness", "signal": "theta_pan", "statistic": 1.2, "threshold": 2.6,
+             "passed": True, "meaning": "the residual does not repeat itself"},
+            {"name": "independence of the angle", "signal": "theta_pan", "statistic": 9.9,
+             "threshold": 2.6, "passed": False, "meaning": "the residual depends on the angle"},
+        ],
+        "fit": fit,
+        "not_visible": [{"effect": "backlash", "axis": "pan", "why": "the gap is never crossed"}],
+        "hints": ["The residual repeats once per turn."] if verdict == "unexplained" else [],
+        "equations": [EQUATION] if added else [],
+        "runtime_seconds": 41.7,
+    }  # fmt: skip
+
+
+def page(verdict: str, **curve_options: Any) -> str:
+    diagnosis = synthetic_diagnosis(verdict)
+    return render_diagnosis(
+        diagnosis, synthetic_curves(after=bool(diagnosis["added"]), **curve_options)
+    )
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_every_verdict_has_its_headline_errors_and_figures(verdict: str) -> None:
+    html = page(verdict)
+    diagnosis = synthetic_diagnosis(verdict)
+    assert f'data-verdict="{verdict}"' in html
+    for part in ("errors", "motion", "residuals", "ranking", "limits", "parameters", "tests"):
+        assert f'<section id="{part}">' in html
+    assert html.count("<svg") == len(RUNS) + 2  # one per run and one map per signal
+    headline = re.search(r"<h1>(.*?)</h1>", html)
+    assert headline is not None
+    assert ("base that is not level" in headline[1]) == bool(diagnosis["added"])
+    assert ('id="equations"' in html) == bool(diagnosis["added"])
+    assert ('id="hints"' in html) == (verdict == "unexplained")
+
+
+def test_the_numbers_of_the_diagnosis_are_on_the_page() -> None:
+    html = page("explained")
+    for text in ("29.8", "0.292", "0.289", "0.08731", "0.08699 to 0.08763", "5.002°", "base_tilt"):
+        assert text in html
+    assert "at its bound" in html
+    assert "not identified" in html
+    assert "<math" in html
+    assert r"\sin\beta" in html
+
+
+def test_look_alikes_come_with_the_experiment_that_separates_them() -> None:
+    html = page("explained_up_to_group")
+    limits = html[html.index('<section id="limits">') : html.index('<section id="parameters">')]
+    assert "constant_torque" in limits
+    assert "Sweep the pan axis over a full turn." in limits
+
+
+def test_candidates_are_ordered_by_validation_error_and_failures_come_last() -> None:
+    html = page("explained")
+    table = html[html.index('<section id="ranking">') : html.index('<section id="limits">')]
+    order = re.findall(r'<th scope="row"><code>(\w+)</code>', table)
+    assert order[:2] == ["base_tilt", "cable_spring"]
+    assert order[-1] == "backlash"
+
+
+def test_only_the_required_keys_are_needed() -> None:
+    for verdict in VERDICTS:
+        full = synthetic_diagnosis(verdict)
+        least = {key: full[key] for key in ("verdict", "error", "ranking", "added")}
+        html = render_diagnosis(least, {})
+        assert 'id="errors"' in html
+        assert 'id="motion"' not in html
+    assert 'id="verdict"' in render_diagnosis(
+        {"verdict": "unexplained", "error": {}, "ranking": [], "added": []}, {}
+    )
+
+
+def test_the_page_loads_nothing_and_two_renderings_are_the_same_bytes() -> None:
+    html = page("explained")
+    assert html == page("explained")
+    without_names = re.sub(r'xmlns(:\w+)?="[^"]*"', "", html)
+    assert "http" not in without_names
+    assert "<script" not in html
+    assert all(target.startswith("#") or target == "data:," for target in
+               re.findall(r'(?:href|src)="([^"]*)"', html))  # fmt: skip
+
+
+def test_text_from_files_is_escaped_and_mathml_that_is_more_than_a_formula_is_left_out() -> None:
+    diagnosis = synthetic_diagnosis("explained")
+    evil = "<img src=x onerror=alert(1)>"
+    diagnosis["platform"]["title"] = evil
+    diagnosis["summary"] = evil
+    diagnosis["hints"] = [evil]
+    diagnosis["equations"] = [{**EQUATION, "mathml": f"<mi>x</mi>{evil}", "latex": evil}]
+    curves = synthetic_curves(samples=50)
+    curves[evil] = curves.pop("step")
+    html = render_diagnosis(diagnosis, curves)
+    assert "<img" not in html
+    assert "<math" not in html
+    assert EQUATION["text"] in html
+
+
+def test_a_failed_simulation_leaves_a_gap_instead_of_an_error() -> None:
+    curves = synthetic_curves(samples=300)
+    curves["step"]["signals"]["theta_pan"]["before"][100:] = np.nan
+    curves["sweep"]["signals"]["theta_pan"]["before"][:] = np.nan
+    diagnosis = synthetic_diagnosis("explained")
+    diagnosis["error"]["validate"]["before"]["total"]["rmse_counts"] = math.nan
+    assert render_diagnosis(diagnosis, curves).count("<svg") == len(RUNS) + 2
+
+
+def test_long_logs_stay_below_three_megabytes() -> None:
+    curves = synthetic_curves(samples=4000)
+    many = {f"{run}-{k}": curve for run, curve in curves.items() for k in range(3)}
+    html = render_diagnosis(synthetic_diagnosis("explained"), many)
+    assert len(html.encode()) < 3_000_000
+
+
+def test_every_plotted_curve_is_written_as_csv() -> None:
+    curves = synthetic_curves(samples=40)
+    curves["../evil name"] = curves["step"]
+    texts = write_curves_csv(curves)
+    assert set(texts) >= {"train-ramp.csv", "validate-step.csv", "validate-.._evil_name.csv"}
+    lines = texts["validate-step.csv"].splitlines()
+    header = lines[0].split(",")
+    values = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
+    signal = curves["step"]["signals"]["theta_pan"]
+    assert header[:3] == ["time [s]", "angle_pan [rad]", "rate_pan [rad/s]"]
+    assert np.array_equal(values[:, header.index("theta_pan_before [rad]")], signal["before"])
+    np.testing.assert_allclose(
+        values[:, header.index("theta_pan_residual_after [counts]")] * COUNT,
+        signal["measured"] - signal["after"],
+        atol=1e-15,
+    )
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(29.8123, "29.8"), (0.28912, "0.289"), (1.2e-12, "1.20 × 10⁻¹²"), (-3.0, "−3.00"),
+     (123456.0, "123456"), (0.99999, "1.00"), (0.0, "0"), (None, "–"), (math.inf, "–")],
+)  # fmt: skip
+def test_numbers_have_three_digits(value: float | None, text: str) -> None:
+    assert number(value) == text
+
+
+def test_intervals_set_the_digits_of_their_value() -> None:
+    assert estimate(quantity(0.087266, 0.00032, "rad")) == "0.08727"
+    assert interval(quantity(0.087266, 0.00032, "rad")) == "0.08695 to 0.08759"
+    assert interval(quantity(13.42, 2.6, "N m")) == "10.8 to 16.0"
+    assert interval({"value": 1.0, "ci95": [None, 2.0]}) == "–"
+    assert in_degrees(quantity(math.radians(5.0), 0.001, "rad")) == "5.00°"
+    assert in_degrees(quantity(5.0, 0.1, "N m")) == ""
+    assert unit("N m/rad^3") == "N m/rad³"
+
+
+@pytest.fixture(scope="module")
+def browser() -> str:
+    for name in BROWSERS:
+        if path := shutil.which(name):
+            return path
+    pytest.skip(f"no browser on PATH (looked for {', '.join(BROWSERS)})")
+
+
+@pytest.mark.parametrize("verdict", ["explained", "nothing_missing"])
+def test_a_browser_shows_every_part_and_reports_no_error(
+    verdict: str, browser: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "report.html"
+    file.write_text(page(verdict), encoding="utf-8")
+    command = [
+        browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+        f"--user-data-dir={tmp_path / 'profile'}", "--enable-logging=stderr", "--v=0",
+        "--dump-dom", file.as_uri(),
+    ]  # fmt: skip
+    shown = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    assert "CONSOLE" not in shown.stderr, shown.stderr
+    assert "</footer>" in shown.stdout
+    for part in ("verdict", "errors", "motion", "residuals", "ranking", "limits", "parameters"):
+        assert f'id="{part}"' in shown.stdout
+    assert shown.stdout.count("<svg") == len(RUNS) + 2
+    # the parser moves nothing out of place: table cells stay in tables, figures in their section
+    assert shown.stdout.count("<tr") == page(verdict).count("<tr")
