@@ -30,8 +30,10 @@ def initial_modes(t, x, u, p, m):
         m[k] = np.sign(x[FRICTION_RATES[k]])
     guards(t, x, u, p, m, g)
     for k in range(frictions):
-        if m[k] == 0.0:
-            m[k] = float(g[3 * k] > g[3 * k + 1]) - float(-g[3 * k] > g[3 * k + 2])
+        if m[k] == 0.0 and g[3 * k] > g[3 * k + 1]:
+            m[k] = 1.0
+        elif m[k] == 0.0 and -g[3 * k] > g[3 * k + 2]:
+            m[k] = -1.0
 
 
 @njit(cache=True, error_model="numpy", nogil=True)

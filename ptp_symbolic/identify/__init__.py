@@ -1,1 +1,1 @@
-""""""
+"""Fit parameters to several runs at once, with intervals that allow for correlated residuals."""

@@ -6,7 +6,13 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from ptp_symbolic.derivation.bodies import RigidEquations
-from ptp_symbolic.simplify.nesting import AngleTerms, Combination, unused_name, write_forcing, write_sum
+from ptp_symbolic.simplify.nesting import (
+    AngleSums,
+    Combination,
+    plus,
+    unused_name,
+    write_forcing,
+)
 from ptp_symbolic.simplify.operations import Line
 from ptp_symbolic.simplify.regressors import (
     Coefficient,
@@ -84,15 +90,15 @@ def base_form(
         }
         for title, row in zip(titles, regression.rows, strict=True)
     ]
-    angles = AngleTerms(rigid.coordinates)
-    for (i, j), row in zip(cells, rows, strict=False):
-        mass[i, j] = mass[j, i] = write_sum(row, angles)
-    written, rate_terms = write_forcing(rows[len(cells) :], rigid, angles, taken)
+    sums = AngleSums(rigid.coordinates)
+    for (i, j), title, row in zip(cells, titles, rows, strict=False):
+        mass[i, j] = mass[j, i] = sums.write_inertia(title, row)
+    written = write_forcing(rows[len(cells) :], rigid.rates, sums, taken)
     for i in range(n):
         force[i] = written[i] + (force[i] - rigid.forcing[i])
     return BaseForm(
         tuple(basis.parameters),
-        (*angles.lines.items(), *rate_terms),
+        tuple(sums.lines),
         sp.ImmutableMatrix(mass),
         sp.ImmutableMatrix(force),
     )
@@ -119,12 +125,12 @@ class _Basis:
         for pivot, vector, meaning in self._echelon:
             if pivot in rest:
                 factor = rest[pivot] / vector[pivot]
-                rest = _plus(rest, vector, -factor)
-                combination = _plus(combination, meaning, factor)
+                rest = plus(rest, vector, -factor)
+                combination = plus(combination, meaning, factor)
         if not rest:
             return combination
         symbol, scale = self._new_parameter(coefficient, name)
-        self._echelon.append((min(rest), rest, _plus({symbol: scale}, combination, -1)))
+        self._echelon.append((min(rest), rest, plus({symbol: scale}, combination, -1)))
         return {symbol: scale}
 
     def _new_parameter(self, coefficient: Coefficient, name: str) -> tuple[sp.Expr, sp.Rational]:
@@ -142,9 +148,3 @@ class _Basis:
         self.taken.add(str(symbol))
         self.parameters.append((symbol, sp.expand(scale * expression)))
         return symbol, scale
-
-
-def _plus(left: dict, right: dict, factor: sp.Rational | int) -> dict:
-    """left + factor right, without the entries that cancel."""
-    total = {key: left.get(key, 0) + factor * right.get(key, 0) for key in {**left, **right}}
-    return {key: value for key, value in total.items() if value != 0}

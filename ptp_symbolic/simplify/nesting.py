@@ -1,11 +1,10 @@
-"""Write sums over state functions with few operations: factored, nested, shared between rows."""
+"""Write sums over state functions with few operations: nested, factored, shared between rows."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
 
-from ptp_symbolic.derivation.bodies import RigidEquations
 from ptp_symbolic.simplify.operations import Line
 from ptp_symbolic.simplify.regressors import Exponents, StateFunction, place_of
 
@@ -14,57 +13,109 @@ Row = dict[StateFunction, Combination]
 AngleRow = dict[tuple[Exponents, ...], Combination]
 
 
-class AngleTerms:
-    """Products of functions of the joint angles, with names for half the double-angle functions.
+@dataclass(frozen=True)
+class _Quadratic:
+    """An inertia a + sin(q) t with t = sine sin(q) + cosine cos(q), named `symbol`.
 
-    `lines` holds the names used so far, in order of their first use.
+    Its slope is 2 cos(q) t - cosine: the same t serves the inertia and the Coriolis torques.
+    """
+
+    place: int
+    symbol: sp.Symbol
+    sine: Combination
+    cosine: Combination
+
+
+class AngleSums:
+    """Writes sums over functions of the joint angles, and names what several of them use.
+
+    `lines` holds the names given so far with their meaning, in order of use.
     """
 
     def __init__(self, coordinates: Sequence[sp.Symbol]) -> None:
         self.coordinates = tuple(coordinates)
-        self.lines: dict[sp.Symbol, sp.Expr] = {}
+        self.lines: list[Line] = []
+        self._quadratics: list[_Quadratic] = []
 
-    def nested(self, row: AngleRow) -> sp.Expr:
-        """The sum of `row`, grouped by the functions of one angle after the other."""
-        terms = [
-            (angles, sp.Add(*(value * symbol for symbol, value in combination.items())))
-            for angles, combination in row.items()
-        ]
-        return self._nested(terms, 0)
+    def write_inertia(self, title: str, row: Row) -> sp.Expr:
+        """The entry `title` of the mass matrix, which holds no rates."""
+        terms = {function.angles: combination for function, combination in row.items()}
+        place = self._only_angle(terms)
+        if place is None or max(sum(angles[place]) for angles in terms) != 2:
+            return self.write(terms)
+        powers = {angles[place]: combination for angles, combination in terms.items()}
+        joint, angle = place_of(self.coordinates[place]), self.coordinates[place]
+        symbol = sp.Symbol(f"{title}_per_sin_{joint}", real=True)
+        cosine, sine = powers.pop((1, 1), {}), powers.pop((2, 0), {})
+        self._quadratics.append(_Quadratic(place, symbol, sine, cosine))
+        factor = _linear(sine) * sp.sin(angle) + _linear(cosine) * sp.cos(angle)
+        self.lines.append((symbol, factor))
+        rest = {angles: c for angles, c in terms.items() if angles[place] in powers}
+        return self.write(rest) + sp.sin(angle) * symbol
 
-    def _nested(self, terms: list[tuple[tuple[Exponents, ...], sp.Expr]], depth: int) -> sp.Expr:
+    def write(self, terms: AngleRow) -> sp.Expr:
+        """The sum of `terms`, by way of a named factor where that fits."""
+        place = self._only_angle(terms)
+        if place is None or any(sum(angles[place]) not in (0, 2) for angles in terms):
+            return self._nested(list(terms.items()), 0)
+        powers = {angles[place]: combination for angles, combination in terms.items()}
+        for quadratic in self._quadratics:
+            scale = _ratio(powers, quadratic) if quadratic.place == place else None
+            if scale is not None:
+                offset = powers.get((0, 0), {})
+                rest = plus(offset, quadratic.cosine, -scale)
+                turned = sp.cos(self.coordinates[place]) * quadratic.symbol
+                return scale * turned + _linear(rest)
+        return self._nested(list(terms.items()), 0)
+
+    def _only_angle(self, terms: AngleRow) -> int | None:
+        """The one angle on which `terms` depend; None if there is no such angle."""
+        places = {i for angles in terms for i, powers in enumerate(angles) if any(powers)}
+        return places.pop() if len(places) == 1 else None
+
+    def _nested(self, terms: list[tuple[tuple[Exponents, ...], Combination]], depth: int) -> sp.Expr:
+        """Horner's rule in the sine of one angle, then in the next angle."""
         if depth == len(self.coordinates):
-            return sp.Add(*(coefficient for _, coefficient in terms))
-        powers = list(dict.fromkeys(angles[depth] for angles, _ in terms))
-        return sp.Add(
-            *(
-                self._function(depth, power)
-                * self._nested([term for term in terms if term[0][depth] == power], depth + 1)
-                for power in powers
-            )
-        )
-
-    def _function(self, place: int, powers: Exponents) -> sp.Expr:
-        angle = self.coordinates[place]
-        joint = place_of(angle)
-        half_sin = sp.Symbol(f"half_sin_2{joint}", real=True)
-        half_cos = sp.Symbol(f"half_cos_2{joint}", real=True)
-        sine, cosine, both, double = powers
-        if both:
-            self.lines[half_sin] = sp.sin(angle) * sp.cos(angle)
-        if double:
-            self.lines[half_cos] = sp.Rational(1, 2) - sp.sin(angle) ** 2
-        return sp.sin(angle) ** sine * sp.cos(angle) ** cosine * half_sin**both * half_cos**double
+            return sp.Add(*(_linear(combination) for _, combination in terms))
+        angle = self.coordinates[depth]
+        total = sp.Integer(0)
+        for cosine in (0, 1):
+            here = [term for term in terms if term[0][depth] == (0, cosine)]
+            total += sp.cos(angle) ** cosine * self._nested(here, depth + 1)
+        higher = [
+            ((*a[:depth], (a[depth][0] - 1, a[depth][1]), *a[depth + 1 :]), combination)
+            for a, combination in terms
+            if a[depth][0] > 0
+        ]
+        return total + sp.sin(angle) * self._nested(higher, depth) if higher else total
 
 
-def write_sum(row: Row, angles: AngleTerms) -> sp.Expr:
-    """The sum of `row`, an entry of the mass matrix, which holds no rates."""
-    return angles.nested({function.angles: c for function, c in row.items()})
+def _linear(combination: Combination) -> sp.Expr:
+    return sp.Add(*(value * symbol for symbol, value in combination.items()))
+
+
+def _ratio(powers: dict[Exponents, Combination], quadratic: _Quadratic) -> sp.Rational | None:
+    """x where `powers` is x cos(q) t but for a constant; None where there is no such x."""
+    both, square = powers.get((1, 1), {}), powers.get((2, 0), {})
+    sample = next(iter(quadratic.sine), None)
+    if sample is not None:
+        scale = both.get(sample, sp.Integer(0)) / quadratic.sine[sample]
+    else:
+        sample = next(iter(quadratic.cosine))
+        scale = -square.get(sample, sp.Integer(0)) / quadratic.cosine[sample]
+    fits = not plus(both, quadratic.sine, -scale) and not plus(square, quadratic.cosine, scale)
+    return scale if fits and scale else None
+
+
+def plus(left: dict, right: dict, factor: sp.Rational | int) -> dict:
+    """Left + factor right, without the entries that cancel."""
+    total = {key: left.get(key, 0) + factor * right.get(key, 0) for key in {**left, **right}}
+    return {key: value for key, value in total.items() if value != 0}
 
 
 @dataclass(frozen=True)
 class _RateTerm:
-    """`scale` times powers of the rates times a sum over functions of the angles."""
+    """In row `row`: `scale` times powers of the rates times a sum over functions of the angles."""
 
     row: int
     scale: sp.Rational
@@ -78,35 +129,35 @@ class _RateTerm:
 
 
 def write_forcing(
-    rows: Sequence[Row], rigid: RigidEquations, angles: AngleTerms, taken: Iterable[str]
-) -> tuple[list[sp.Expr], list[Line]]:
-    """Return the forcing [n] and the terms that its rows share.
+    rows: Sequence[Row], rates: Sequence[sp.Symbol], sums: AngleSums, taken: Iterable[str]
+) -> list[sp.Expr]:
+    """Return the forcing [n]; what its rows share is named in `sums`.
 
     A sum that appears with rates in several places (the slope of an inertia in the Coriolis and in
     the centrifugal torque) is shared together with the rates that its places have in common.
     """
     terms = [term for i, row in enumerate(rows) for term in _rate_terms(i, row)]
-    places: dict[frozenset, list[_RateTerm]] = {}
+    groups: dict[frozenset, list[_RateTerm]] = {}
     for term in terms:
-        places.setdefault(term.key, []).append(term)
+        groups.setdefault(term.key, []).append(term)
     factors: dict[frozenset, tuple[sp.Expr, Exponents]] = {}
-    shared: list[Line] = []
-    still = (0,) * len(rigid.rates)
-    for key, group in places.items():
-        total = angles.nested(group[0].sum)
-        factors[key] = (total, still)
+    names = set(taken)
+    for key, group in groups.items():
+        total = sums.write(group[0].sum)
         common = _common([term.powers for term in group])
-        if len(group) > 1:
-            name = unused_name("coriolis", {*taken, *(str(symbol) for symbol, _ in shared)})
-            symbol = sp.Symbol(name, real=True)
-            shared.append((symbol, _product(rigid.rates, common) * total))
-            factors[key] = (symbol, common)
+        if len(group) == 1:
+            factors[key] = (total, (0,) * len(rates))
+            continue
+        symbol = sp.Symbol(unused_name("coriolis", names), real=True)
+        names.add(str(symbol))
+        sums.lines.append((symbol, _product(rates, common) * total))
+        factors[key] = (symbol, common)
     written = []
     for i, row in enumerate(rows):
         gravity = {f.angles: c for f, c in row.items() if not any(f.rates)}
         own = [(term, *factors[term.key]) for term in terms if term.row == i]
-        written.append(_factored(own, rigid.rates) + angles.nested(gravity))
-    return written, shared
+        written.append(_factored(own, rates) + sums.write(gravity))
+    return written
 
 
 def _rate_terms(index: int, row: Row) -> list[_RateTerm]:
@@ -115,9 +166,9 @@ def _rate_terms(index: int, row: Row) -> list[_RateTerm]:
         if any(function.rates):
             groups.setdefault(function.rates, {})[function.angles] = combination
     terms = []
-    for powers, angle_row in groups.items():
-        scale = _content([value for c in angle_row.values() for value in c.values()])
-        primitive = {a: {s: v / scale for s, v in c.items()} for a, c in angle_row.items()}
+    for powers, sums in groups.items():
+        scale = _content([value for c in sums.values() for value in c.values()])
+        primitive = {a: {s: v / scale for s, v in c.items()} for a, c in sums.items()}
         terms.append(_RateTerm(index, scale, powers, primitive))
     return terms
 

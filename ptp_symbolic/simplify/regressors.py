@@ -1,15 +1,13 @@
 """Write equations of motion as sums of state functions times coefficients of parameters.
 
-The state functions are products of powers of the rates and, per angle, of its sine, its cosine,
-``half_sin_2<place>`` = sin cos and ``half_cos_2<place>`` = 1/2 - sin^2, where at most one of the
-first three appears, once. Such products are linearly independent functions of the state: the even
-ones are powers of cos(2q), alone or times sin(2q); the odd ones change sign under a half turn.
+The state functions are products of powers of the rates and of the sines of the angles, times the
+cosine of each angle at most once. Such products are linearly independent functions of the state:
+they are the monomials of the trigonometric normal form.
 """
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import comb
 
 import sympy as sp
 
@@ -17,7 +15,6 @@ from ptp_symbolic.derivation.trigonometry import TrigonometricRing
 
 Exponents = tuple[int, ...]
 Coefficient = dict[Exponents, sp.Rational]
-PER_ANGLE = ("sin", "cos", "sin_2", "cos_2")
 
 
 def place_of(coordinate: sp.Symbol) -> str:
@@ -27,22 +24,20 @@ def place_of(coordinate: sp.Symbol) -> str:
 
 @dataclass(frozen=True)
 class StateFunction:
-    """A product of rates and functions of angles, given by exponents.
+    """A product of rates, sines and cosines, given by exponents.
 
-    `rates` [n] belong to the rates, `angles` [n][4] to the functions of each angle in the order of
-    PER_ANGLE.
+    `rates` [n] belong to the rates, `angles` [n][2] to sine and cosine of each angle.
     """
 
     rates: Exponents
     angles: tuple[Exponents, ...]
 
     def name(self, coordinates: Sequence[sp.Symbol]) -> str:
-        """Words for the functions of angles, such as ``sin_pan_cos_2tilt``; empty for one."""
+        """Words for the functions of angles, such as ``sin_pan_cos_tilt``; empty for one."""
         words = []
-        for coordinate, powers in zip(coordinates, self.angles, strict=True):
-            for word, power in zip(PER_ANGLE, powers, strict=True):
-                joint = "" if word.endswith("2") else "_"
-                words += [f"{word}{joint}{place_of(coordinate)}"] * power
+        for coordinate, (sine, cosine) in zip(coordinates, self.angles, strict=True):
+            words += ["sin"] * (sine > 0) + ["sq" if sine == 2 else str(sine)] * (sine > 1)
+            words += ["cos"] * cosine + [place_of(coordinate)] * (sine + cosine > 0)
         return "_".join(words)
 
 
@@ -78,51 +73,32 @@ def regress(
     expressions = list(expressions)
     ring = TrigonometricRing(expressions)
     places = {generator: index for index, generator in enumerate(ring.generators)}
-    circular = [(places.get(sp.sin(q)), places.get(sp.cos(q))) for q in coordinates]
-    moving = [places.get(rate) for rate in rates]
-    state = {i for i in (*moving, *(i for pair in circular for i in pair)) if i is not None}
-    fixed = [i for i in range(len(ring.generators)) if i not in state]
-    parameters = tuple(ring.generators[i] for i in fixed)
+    angle_at = [(places.get(sp.sin(q)), places.get(sp.cos(q))) for q in coordinates]
+    rate_at = [places.get(rate) for rate in rates]
+    state = {*rate_at, *(index for pair in angle_at for index in pair)}
+    fixed = [index for index in range(len(ring.generators)) if index not in state]
+    parameters = tuple(ring.generators[index] for index in fixed)
     if any(set(coordinates) & parameter.free_symbols for parameter in parameters):
         raise ValueError("An angle appears outside of its own sine and cosine.")
     rows = []
     for expression in expressions:
-        row: dict[StateFunction, Coefficient] = defaultdict(lambda: defaultdict(lambda: sp.Integer(0)))
+        row: dict[StateFunction, Coefficient] = defaultdict(dict)
         for monomial, value in ring.reduced(expression).items():
-            powers = tuple(0 if i is None else monomial[i] for i in moving)
-            of_parameters = tuple(monomial[i] for i in fixed)
-            for factor, angles in _double_angles(monomial, circular):
-                row[StateFunction(powers, angles)][of_parameters] += factor * value
-        rows.append(_without_zeros(row))
+            function = StateFunction(
+                _pick(monomial, rate_at), tuple(_pick(monomial, pair) for pair in angle_at)
+            )
+            row[function][_pick(monomial, fixed)] = value
+        rows.append(dict(sorted(row.items(), key=_order)))
     return Regression(parameters, tuple(rows))
 
 
-def _double_angles(
-    monomial: Exponents, circular: Sequence[tuple[int | None, int | None]]
-) -> list[tuple[sp.Rational, tuple[Exponents, ...]]]:
-    """Write sin^a cos^b of every angle (b at most 1) with sine and cosine of the double angle."""
-    products: list[tuple[sp.Rational, tuple[Exponents, ...]]] = [(sp.Integer(1), ())]
-    for sin_at, cos_at in circular:
-        squares, sine = divmod(0 if sin_at is None else monomial[sin_at], 2)
-        cosine = 0 if cos_at is None else monomial[cos_at]
-        both = sine * cosine
-        single = (sine - both, cosine - both, both)
-        expanded = [
-            (comb(squares, k) * sp.Rational((-1) ** k, 2 ** (squares - k)), (*single, k))
-            for k in range(squares + 1)
-        ]
-        products = [(p * q, (*left, right)) for p, left in products for q, right in expanded]
-    return products
+def _pick(monomial: Exponents, places: Iterable[int | None]) -> Exponents:
+    return tuple(0 if place is None else monomial[place] for place in places)
 
 
-def _without_zeros(
-    row: dict[StateFunction, Coefficient],
-) -> dict[StateFunction, Coefficient]:
-    kept = {f: {m: v for m, v in c.items() if v != 0} for f, c in row.items()}
-    return {f: c for f, c in sorted(kept.items(), key=lambda item: _order(item[0])) if c}
-
-
-def _order(function: StateFunction) -> tuple:
-    """Constants first, then double angles, cosines and sines; gravity before rates."""
-    powers = tuple(power for angle in function.angles for power in reversed(angle))
-    return (sum(function.rates), sum(powers), tuple(-p for p in function.rates + powers))
+def _order(item: tuple[StateFunction, Coefficient]) -> tuple[int, int, Exponents]:
+    """Constants first, then by degree; the sine of the first angle before the others."""
+    function, _ = item
+    angles = tuple(-power for angle in function.angles for power in angle)
+    rates = tuple(-power for power in function.rates)
+    return (sum(function.rates), -sum(angles), (*rates, *angles))

@@ -1,0 +1,138 @@
+"""Residuals of a run and their derivatives by parameters and by the unknown start."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from ptp_symbolic.identify.run import Run
+from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.simulate import hybrid
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Error tolerance of the simulations that a fit runs: relative, and absolute by kind of state.
+
+    An angle in rad counts fully, a rate in rad/s a hundredth, anything else a thousandth: an error
+    of a rate or a current reaches the angle only through an integration.
+    """
+
+    relative: float = 1e-5
+    angle: float = 1e-7
+
+    def absolute(self, model: Model) -> FloatArray:
+        """Absolute tolerance of every state [n]."""
+        factors = [
+            1.0 if name.startswith("theta") else 100.0 if name.startswith("omega") else 1000.0
+            for name in model.state_names
+        ]
+        return self.angle * np.array(factors)
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """Weighted residuals [k * ny] (measured - simulated) and their Jacobians; None when it failed."""
+
+    residual: FloatArray
+    by_parameter: FloatArray
+    by_start: FloatArray
+    outputs: FloatArray
+    states: FloatArray
+    failed: str | None = None
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _compare(outputs, output_jacobian, time, x, s, u, p, measured, columns, picked, weight, y, r, j):
+    """Fill outputs y [k, ny], residuals r and their derivatives j; u is the held input."""
+    k, n = x.shape
+    ns = s.shape[2]
+    total = len(y[0])
+    buffer = np.zeros(total)
+    yx, yp = np.zeros((total, n)), np.zeros((total, len(p)))
+    ny = len(picked)
+    for i in range(k):
+        outputs(time[i], x[i], u[i], p, buffer)
+        y[i] = buffer
+        if ns > 0:
+            output_jacobian(time[i], x[i], u[i], p, yx, yp)
+        for o in range(ny):
+            row = i * ny + o
+            r[row] = weight[o] * (measured[i, o] - buffer[picked[o]])
+            for c in range(ns):
+                total_derivative = yp[picked[o], columns[c]] if c < len(columns) else 0.0
+                for a in range(n):
+                    total_derivative += yx[picked[o], a] * s[i, a, c]
+                j[row, c] = -weight[o] * total_derivative
+
+
+def start_state(
+    model: Model, run: Run, p: FloatArray, z: FloatArray, columns: NDArray[np.int64]
+) -> tuple[FloatArray, FloatArray]:
+    """State [n] at the start of `run` for start unknowns z, and its tangents [n, np + nz]."""
+    x = run.start.copy()
+    s = np.zeros((len(x), len(columns) + len(z)))
+    u = run.held_inputs[0]
+    for index, (unknown, value) in enumerate(zip(run.unknowns, z, strict=True)):
+        scale = 1.0
+        if unknown.contact is not None:
+            scale, by_p = _half_gap(model, unknown.contact, x, u, p)
+            s[:, : len(columns)] += np.outer(unknown.tangent * value, by_p[columns])
+        x += unknown.tangent * value * scale
+        s[:, len(columns) + index] = unknown.tangent * scale
+    return x, s
+
+
+def _half_gap(
+    model: Model, contact: int, x: FloatArray, u: FloatArray, p: FloatArray
+) -> tuple[float, FloatArray]:
+    frictions = len(model.friction_rates)
+    count = 3 * frictions + 4 * len(model.module.CONTACT_ANGLES)
+    m, g = np.zeros(len(model.mode_names)), np.zeros(count)
+    gx, gp = np.zeros((count, len(x))), np.zeros((count, len(p)))
+    model.module.guards(0.0, x, u, p, m, g)
+    model.module.guard_jacobian(0.0, x, u, p, m, gx, gp)
+    at = 3 * frictions + 4 * contact + 1
+    return float(g[at]), gp[at]
+
+
+def evaluate(
+    model: Model,
+    run: Run,
+    p: FloatArray,
+    z: FloatArray,
+    columns: NDArray[np.int64],
+    tangents: bool,
+    tolerance: Tolerance,
+) -> Evaluation:
+    """Simulate `run` and compare. A simulation that fails says so and scores as failed."""
+    module = model.module
+    columns = columns if tangents else columns[:0]
+    x, s = start_state(model, run, p, z, columns)
+    if not tangents:
+        s = s[:, :0].copy()
+    steps, n, ns = len(run.time), len(x), s.shape[1]
+    m = np.zeros(len(model.mode_names))
+    module.initial_modes(run.time[0], x, run.held_inputs[0], p, m)
+    out_x, out_s = np.zeros((steps, n)), np.zeros((steps, n, ns))
+    status, reached, _, _ = hybrid.integrate(
+        module.mode_derivative, module.jacobian, module.guards, module.guard_jacobian,
+        module.energy, x, m, p, model.friction_rates, run.inputs.arrays, len(model.input_names),
+        True, run.time, run.time, out_x, columns, s, out_s, np.zeros((0, 3)), tolerance.relative,
+        tolerance.absolute(model), 1.0, np.zeros((0, 3)),
+    )  # fmt: skip
+    y = np.zeros((steps, len(model.output_names)))
+    r, j = np.zeros(run.size), np.zeros((run.size, ns))
+    failed = None if status == hybrid.DONE else f"{run.name}: stopped at {reached:.4f} s"
+    if failed is None:
+        _compare(
+            module.outputs, module.output_jacobian, run.time, out_x, out_s, run.held_inputs, p,
+            run.measured, columns, run.outputs, run.weight, y, r, j,
+        )  # fmt: skip
+        if not np.all(np.isfinite(r)):
+            failed = f"{run.name}: not finite"
+    split = len(columns)
+    return Evaluation(r, j[:, :split], j[:, split:], y, out_x, failed)

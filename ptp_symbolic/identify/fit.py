@@ -1,0 +1,173 @@
+"""Fit the free parameters of a model to several runs at once."""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.identify.coordinates import (
+    FreeParameter,
+    limits,
+    slopes,
+    to_search,
+    to_values,
+)
+from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
+from ptp_symbolic.identify.least_squares import Optimum, Problem, minimise
+from ptp_symbolic.identify.run import Run
+from ptp_symbolic.runtime.model import Model
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A fit: parameter `values` (all of the model), start unknowns `z`, evaluations per run."""
+
+    model: Model
+    runs: tuple[Run, ...]
+    free: tuple[FreeParameter, ...]
+    values: Mapping[str, float]
+    z: tuple[FloatArray, ...]
+    cost: float
+    evaluations: tuple[Evaluation, ...]
+    failed: str | None = None
+
+    def rms_counts(self) -> float:
+        """Root mean square of the residual of all encoder signals, in counts."""
+        squares = np.concatenate([run_counts(r, e) for r, e in self.pairs()])
+        return float(np.sqrt(np.mean(squares**2)))
+
+    def pairs(self) -> list[tuple[Run, Evaluation]]:
+        """Runs with their evaluations."""
+        return list(zip(self.runs, self.evaluations, strict=True))
+
+
+def run_counts(run: Run, evaluation: Evaluation) -> FloatArray:
+    """Residuals of the encoder signals of one run in counts; analog signals in units of sigma."""
+    residual = evaluation.residual.reshape(run.measured.shape)
+    in_counts = residual / run.weight / run.counts
+    encoders = np.isfinite(run.counts)
+    return (in_counts[:, encoders] if encoders.any() else residual).ravel()
+
+
+def fit_parameters(
+    model: Model,
+    runs: Sequence[Run],
+    free: Sequence[FreeParameter],
+    fixed: Mapping[str, float],
+    z: Sequence[FloatArray] | None = None,
+    tolerance: Tolerance | None = None,
+    executor: Executor | None = None,
+    iterations: int = 30,
+    give_up: Callable[[float, int], bool] | None = None,
+) -> Fit:
+    """Fit `free` from their starts; all other parameters stay at `fixed`.
+
+    With no free parameter only the start unknowns of every run are fitted, which is how runs that
+    were never fitted are judged.
+    """
+    tolerance = tolerance or Tolerance()
+    start_z = list(z) if z is not None else [np.zeros(len(run.unknowns)) for run in runs]
+    if not free:
+        return _fit_starts(model, runs, fixed, start_z, tolerance, executor, iterations)
+    problem = _problem(model, runs, free, fixed, tolerance, executor)
+    phi = to_search(free, {f.name: f.start for f in free})
+    best = minimise(problem, phi, start_z, iterations, give_up=give_up)
+    values = {**fixed, **all_values(free, best.phi)}
+    return Fit(
+        model, tuple(runs), tuple(free), values, tuple(best.z), best.cost,
+        tuple(best.evaluations), best.failed,
+    )  # fmt: skip
+
+
+def all_values(free: Sequence[FreeParameter], phi: FloatArray) -> dict[str, float]:
+    """Values of the free parameters and of those tied to them."""
+    own = to_values(free, phi)
+    return own | {name: own[f.name] for f in free for name in f.tied}
+
+
+def _problem(
+    model: Model,
+    runs: Sequence[Run],
+    free: Sequence[FreeParameter],
+    fixed: Mapping[str, float],
+    tolerance: Tolerance,
+    executor: Executor | None,
+) -> Problem:
+    names = list(model.parameter_names)
+    columns = np.array(
+        [names.index(name) for f in free for name in (f.name, *f.tied)], dtype=np.int64
+    )
+    owner = np.array([i for i, f in enumerate(free) for _ in (f.name, *f.tied)], dtype=np.int64)
+    base = model.parameter_vector(dict(fixed))
+
+    def evaluate_all(
+        phi: FloatArray, z: Sequence[FloatArray], tangents: bool
+    ) -> list[Evaluation]:
+        p = base.copy()
+        for name, value in all_values(free, phi).items():
+            p[names.index(name)] = value
+        by_phi = np.zeros((len(columns), len(free)))
+        by_phi[np.arange(len(columns)), owner] = slopes(free, phi)[owner] if len(free) else 0.0
+
+        def one(pair: tuple[Run, FloatArray]) -> Evaluation:
+            e = evaluate(model, pair[0], p, pair[1], columns, tangents, tolerance)
+            if not tangents:
+                return e
+            return Evaluation(
+                e.residual, e.by_parameter @ by_phi, e.by_start, e.outputs, e.states, e.failed
+            )
+
+        pairs = list(zip(runs, z, strict=True))
+        return list(executor.map(one, pairs)) if executor else [one(pair) for pair in pairs]
+
+    lower, upper = limits(free)
+    return Problem(
+        evaluate_all,
+        lower,
+        upper,
+        [np.array([u.lower for u in run.unknowns]) for run in runs],
+        [np.array([u.upper for u in run.unknowns]) for run in runs],
+        [np.array([u.sigma for u in run.unknowns]) for run in runs],
+    )
+
+
+def _fit_starts(
+    model: Model,
+    runs: Sequence[Run],
+    fixed: Mapping[str, float],
+    z: Sequence[FloatArray],
+    tolerance: Tolerance,
+    executor: Executor | None,
+    iterations: int,
+) -> Fit:
+    """Runs that share no free parameter are independent: fit the start of each by itself.
+
+    The place in a gap is hard to find from its middle, so both faces are tried too.
+    """
+    nothing = np.zeros(0)
+
+    def one(pair: tuple[Run, FloatArray]) -> Optimum:
+        run, start = pair
+        problem = _problem(model, [run], (), fixed, tolerance, None)
+        found = minimise(problem, nothing, [start], iterations)
+        for index, unknown in enumerate(run.unknowns):
+            if unknown.contact is None:
+                continue
+            for face in (-0.9, 0.9):
+                begin = start.copy()
+                begin[index] = face
+                other = minimise(problem, nothing, [begin], iterations)
+                found = other if other.cost < found.cost else found
+        return found
+
+    pairs = list(zip(runs, z, strict=True))
+    best = list(executor.map(one, pairs)) if executor else [one(pair) for pair in pairs]
+    return Fit(
+        model, tuple(runs), (), dict(fixed), tuple(b.z[0] for b in best),
+        float(sum(b.cost for b in best)), tuple(b.evaluations[0] for b in best),
+        next((b.failed for b in best if b.failed), None),
+    )  # fmt: skip

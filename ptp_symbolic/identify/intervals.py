@@ -1,0 +1,99 @@
+"""Confidence intervals that allow for residuals correlated in time.
+
+The residuals of a simulation error fit are never white: the covariance is a sandwich whose middle
+sums the score over blocks of time (Liang and Zeger, 1986), the unknown starts projected out.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from ptp_symbolic.identify.coordinates import slopes, to_search, wrapped
+from ptp_symbolic.identify.fit import Fit
+
+FloatArray = NDArray[np.float64]
+
+BLOCK_SECONDS = 1.0
+UNIDENTIFIED = 1.0
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A fitted value with its 95 % interval; SI. `identified` is False where the interval is wider
+    than the value itself, or the data do not see the parameter at all."""
+
+    name: str
+    value: float
+    lower: float
+    upper: float
+    at_bound: bool
+    identified: bool
+
+
+def estimates(fit: Fit) -> tuple[Estimate, ...]:
+    """Values of the free parameters of `fit` with 95 % intervals."""
+    if not fit.free:
+        return ()
+    covariance, degrees = sandwich(fit)
+    phi = to_search(fit.free, fit.values)
+    by_phi = slopes(fit.free, phi)
+    reach = float(stats.t.ppf(0.975, max(degrees, 1)))
+    result = []
+    for index, free in enumerate(fit.free):
+        spread = reach * float(np.sqrt(max(covariance[index, index], 0.0)))
+        value = wrapped(free, fit.values[free.name])
+        if free.logarithmic and spread < 30.0:
+            low, high = value * np.exp(-spread), value * np.exp(spread)
+        else:
+            low, high = value - spread * abs(by_phi[index]), value + spread * abs(by_phi[index])
+        near = 1e-4 * max(abs(free.start), abs(value))
+        at_bound = value - free.lower <= near or free.upper - value <= near
+        width = spread if free.logarithmic else spread * abs(by_phi[index]) / max(abs(value), 1e-300)
+        seen = bool(np.isfinite(spread) and width < UNIDENTIFIED)
+        result.append(
+            Estimate(
+                free.name,
+                value,
+                float(max(low, free.lower)) if free.period is None else float(low),
+                float(min(high, free.upper)) if free.period is None else float(high),
+                bool(at_bound),
+                seen,
+            )
+        )
+    return tuple(result)
+
+
+def sandwich(fit: Fit) -> tuple[FloatArray, int]:
+    """Covariance [nf, nf] of the search coordinates, and the degrees of freedom of its blocks."""
+    nf = len(fit.free)
+    bread, middle, blocks = np.zeros((nf, nf)), np.zeros((nf, nf)), 0
+    for run, e in fit.pairs():
+        projected = project_out(e.by_parameter, e.by_start)
+        bread += projected.T @ projected
+        ny = run.measured.shape[1]
+        edges = np.arange(run.time[0], run.time[-1] + BLOCK_SECONDS, BLOCK_SECONDS)
+        of_row = np.repeat(np.searchsorted(edges, run.time, side="right"), ny)
+        for block in np.unique(of_row):
+            rows = of_row == block
+            score = projected[rows].T @ e.residual[rows]
+            middle += np.outer(score, score)
+            blocks += 1
+    inverse = np.linalg.pinv(bread, rcond=1e-13, hermitian=True)
+    correction = blocks / max(blocks - nf, 1)
+    white = inverse * max(1.0, fit.cost / max(sum(r.size for r in fit.runs), 1))
+    robust = correction * inverse @ middle @ inverse
+    larger = np.maximum(np.diag(robust), np.diag(white))
+    scale = np.sqrt(larger / np.maximum(np.diag(robust), 1e-300))
+    return robust * np.outer(scale, scale), blocks - nf
+
+
+def project_out(jacobian: FloatArray, nuisance: FloatArray) -> FloatArray:
+    """The part of `jacobian` [k, nf] orthogonal to the columns of `nuisance` [k, nz]."""
+    if nuisance.shape[1] == 0:
+        return jacobian
+    basis, triangle = np.linalg.qr(nuisance)
+    kept = np.abs(np.diag(triangle)) > 1e-10 * max(np.max(np.abs(triangle)), 1e-300)
+    basis = basis[:, kept]
+    return jacobian - basis @ (basis.T @ jacobian)

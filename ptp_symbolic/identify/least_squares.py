@@ -1,0 +1,134 @@
+"""Levenberg-Marquardt over several runs, the unknown starts eliminated run by run.
+
+Shared parameters phi meet all runs, the start unknowns z of a run meet only that run: the normal
+equations are bordered block diagonal and solved by a Schur complement (Golub and Pereyra, 1973,
+call the elimination variable projection).
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.identify.evaluate import Evaluation
+
+FloatArray = NDArray[np.float64]
+Evaluate = Callable[[FloatArray, Sequence[FloatArray], bool], list[Evaluation]]
+
+LARGEST_STEP = 1.0
+FIRST_DAMPING = 1e-3
+LARGEST_DAMPING = 1e8
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What to minimise: `evaluate(phi, z, tangents)`, bounds of phi, bounds and prior of z."""
+
+    evaluate: Evaluate
+    lower: FloatArray
+    upper: FloatArray
+    start_lower: Sequence[FloatArray]
+    start_upper: Sequence[FloatArray]
+    start_sigma: Sequence[FloatArray]
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """Where the search ended; `cost` is the sum of squared weighted residuals and priors."""
+
+    phi: FloatArray
+    z: list[FloatArray]
+    cost: float
+    evaluations: list[Evaluation] = field(repr=False, default_factory=list)
+    iterations: int = 0
+    failed: str | None = None
+
+
+def cost_of(problem: Problem, evaluations: Sequence[Evaluation], z: Sequence[FloatArray]) -> float:
+    """Sum of squares; infinite as soon as one simulation failed."""
+    if any(e.failed for e in evaluations):
+        return np.inf
+    fit = sum(float(e.residual @ e.residual) for e in evaluations)
+    return fit + sum(
+        float(np.sum((a / s) ** 2)) for a, s in zip(z, problem.start_sigma, strict=True)
+    )
+
+
+def minimise(
+    problem: Problem,
+    phi: FloatArray,
+    z: Sequence[FloatArray],
+    iterations: int = 30,
+    tolerance: float = 1e-5,
+    give_up: Callable[[float, int], bool] | None = None,
+) -> Optimum:
+    """Minimise from (phi, z); stops when the relative gain of two steps is below `tolerance`.
+
+    `give_up(cost, iteration)` may end a search that is not worth its time.
+    """
+    phi, z = np.clip(phi, problem.lower, problem.upper), [a.copy() for a in z]
+    now = problem.evaluate(phi, z, True)
+    cost = cost_of(problem, now, z)
+    if not np.isfinite(cost):
+        why = next((e.failed for e in now if e.failed), "not finite")
+        return Optimum(phi, z, np.inf, now, 0, why)
+    damping, quiet = FIRST_DAMPING, 0
+    for iteration in range(1, iterations + 1):
+        step, gain_possible = None, False
+        while damping < LARGEST_DAMPING:
+            step, steps_z = _step(problem, now, phi, z, damping)
+            trial = np.clip(phi + step, problem.lower, problem.upper)
+            trial_z = [
+                np.clip(a + b, low, high)
+                for a, b, low, high in zip(
+                    z, steps_z, problem.start_lower, problem.start_upper, strict=True
+                )
+            ]
+            after = problem.evaluate(trial, trial_z, True)
+            new_cost = cost_of(problem, after, trial_z)
+            if new_cost < cost:
+                gain_possible = True
+                break
+            damping *= 10.0
+        if not gain_possible:
+            return Optimum(phi, z, cost, now, iteration)
+        gain = (cost - new_cost) / cost
+        phi, z, now, cost = trial, trial_z, after, new_cost
+        damping = max(damping / 10.0, 1e-12)
+        quiet = quiet + 1 if gain < tolerance else 0
+        if quiet >= 2 or (give_up is not None and give_up(cost, iteration)):
+            return Optimum(phi, z, cost, now, iteration)
+    return Optimum(phi, z, cost, now, iterations)
+
+
+def _step(
+    problem: Problem,
+    evaluations: Sequence[Evaluation],
+    phi: FloatArray,
+    z: Sequence[FloatArray],
+    damping: float,
+) -> tuple[FloatArray, list[FloatArray]]:
+    nf = len(phi)
+    schur, right = np.zeros((nf, nf)), np.zeros(nf)
+    diagonal = np.zeros(nf)
+    blocks = []
+    for e, a, sigma in zip(evaluations, z, problem.start_sigma, strict=True):
+        j, k, r = e.by_parameter, e.by_start, e.residual
+        jj, jk, kk = j.T @ j, j.T @ k, k.T @ k
+        kk = kk + np.diag(1.0 / sigma**2)
+        kk = kk + damping * np.diag(np.diag(kk))
+        gr, gz = -(j.T @ r), -(k.T @ r) - a / sigma**2
+        inverse = np.linalg.inv(kk) if len(a) else kk
+        schur += jj - jk @ inverse @ jk.T
+        right += gr - jk @ inverse @ gz
+        diagonal += np.diag(jj)
+        blocks.append((jk, inverse, gz))
+    held = ((phi <= problem.lower) & (right < 0)) | ((phi >= problem.upper) & (right > 0))
+    free = ~held & (diagonal > 0)
+    step = np.zeros(nf)
+    if free.any():
+        matrix = schur[np.ix_(free, free)] + np.diag(damping * diagonal[free] + 1e-300)
+        step[free] = np.linalg.lstsq(matrix, right[free], rcond=1e-14)[0]
+        step *= min(1.0, LARGEST_STEP / max(np.max(np.abs(step)), 1e-300))
+    return step, [inverse @ (gz - jk.T @ step) for jk, inverse, gz in blocks]

@@ -1,0 +1,185 @@
+"""A run prepared for fitting: inputs as tables, measured signals with weights, unknown starts."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.data import Log
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.platform import Platform, SignalDeclaration
+from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.simulate.inputs import InputTable, stack, table
+
+FloatArray = NDArray[np.float64]
+
+REST_SAMPLES = 20
+SLOPE_SAMPLES = 7
+
+
+@dataclass(frozen=True)
+class StartUnknown:
+    """One unknown of the state at the start of a run.
+
+    `tangent` [n] is the derivative of the start by the unknown; a `contact` index says that the
+    unknown is the place in that gap, from -1 (lower face) to 1 (upper face). `sigma` is its prior.
+    """
+
+    name: str
+    tangent: FloatArray
+    lower: float
+    upper: float
+    sigma: float
+    contact: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One run or window: time [k] in s, inputs, measured [k, ny] and `weight` [ny] (1/sigma).
+
+    `outputs` gives the model output of every measured column, `counts` the size of one encoder
+    count (nan for analog signals); `start` [n] is the guess of the state at the first sample.
+    """
+
+    name: str
+    time: FloatArray
+    inputs: InputTable
+    held_inputs: FloatArray
+    measured: FloatArray
+    outputs: NDArray[np.int64]
+    weight: FloatArray
+    counts: FloatArray
+    signals: tuple[str, ...]
+    start: FloatArray
+    unknowns: tuple[StartUnknown, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of residuals."""
+        return int(self.measured.size)
+
+
+def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple[Run, ...]:
+    """Match the columns of `logs` to `model` and guess the start of every run.
+
+    Raises InputError when the platform's signals do not fit the model.
+    """
+    given = [s for s in platform.signals if s.role == "input"]
+    outputs = [s for s in platform.signals if s.role == "output"]
+    for wanted, found, what in (
+        (model.input_names, {s.signal for s in given}, "input"),
+        ({s.signal for s in outputs}, set(model.output_names), "output"),
+    ):
+        missing = [name for name in wanted if name not in found]
+        if missing:
+            raise InputError(
+                f"No {what} signal '{missing[0]}' to pair with; "
+                f"the model has inputs {', '.join(model.input_names)} and outputs"
+                f" {', '.join(model.output_names)}; declare it under [signals.{missing[0]}]."
+            )
+    order = [[s.signal for s in given].index(name) for name in model.input_names]
+    return tuple(_prepare(model, outputs, log, log.inputs[:, order]) for log in logs)
+
+
+def _prepare(
+    model: Model, outputs: Sequence[SignalDeclaration], log: Log, inputs: FloatArray
+) -> Run:
+    counts = np.array(
+        [2 * np.pi / s.counts_per_revolution if s.counts_per_revolution else np.nan for s in outputs]
+    )
+    sigma = np.array([_sigma(s, q) for s, q in zip(outputs, counts, strict=True)])
+    run = Run(
+        name=log.name,
+        time=np.ascontiguousarray(log.time),
+        inputs=stack([table(log.time, column, "hold") for column in inputs.T]),
+        held_inputs=np.ascontiguousarray(inputs),
+        measured=np.ascontiguousarray(log.outputs),
+        outputs=np.array([model.output_names.index(s.signal) for s in outputs], dtype=np.int64),
+        weight=1.0 / sigma,
+        counts=counts,
+        signals=tuple(s.signal for s in outputs),
+        start=np.empty(0),
+        unknowns=(),
+    )
+    return _with_start(model, run)
+
+
+def _sigma(signal: SignalDeclaration, count: float) -> float:
+    rounding = 0.0 if np.isnan(count) else count / np.sqrt(12.0)
+    sigma = float(np.hypot(rounding, signal.noise or 0.0))
+    if sigma == 0.0:
+        raise InputError(
+            f"Signal '{signal.signal}' has neither counts_per_revolution nor noise;"
+            f" give its noise (rms) in {signal.unit}."
+        )
+    return sigma
+
+
+def _with_start(model: Model, run: Run) -> Run:
+    """Guess the start from the first samples: at rest, or moving with the slope of the angle."""
+    states = list(model.state_names)
+    start = np.array(model.module.STATE_INITIAL, dtype=np.float64)
+    unknowns: list[StartUnknown] = []
+    first = run.measured[: REST_SAMPLES + 1]
+    at_rest = True
+    for column, signal in enumerate(run.signals):
+        if signal not in states:
+            continue
+        axis = signal.removeprefix("theta_")
+        if axis == signal or f"omega_{axis}" not in states:
+            start[states.index(signal)] = run.measured[0, column]
+            continue
+        count = run.counts[column] if run.counts[column] > 0 else 1.0 / run.weight[column]
+        carried = [name for name in (signal, f"theta_gear_{axis}") if name in states]
+        start[[states.index(name) for name in carried]] = run.measured[0, column]
+        unknowns.append(_unknown(states, signal, carried, 1.5 * count, 0.35 * count))
+        if np.ptp(first[:, column]) <= 1.01 * count:
+            continue
+        at_rest = False
+        slope = np.polyfit(
+            run.time[:SLOPE_SAMPLES] - run.time[0], run.measured[:SLOPE_SAMPLES, column], 2
+        )[1]
+        rates = [name for name in (f"omega_{axis}", f"omega_gear_{axis}") if name in states]
+        start[[states.index(name) for name in rates]] = slope
+        unknowns.append(_unknown(states, rates[0], rates, 1e3, 1e3))
+    if at_rest:
+        resting = set(states) & {f"theta_{a}" for a in model.module.AXES}
+        for index, name in enumerate(states):
+            if name not in resting and not name.startswith("theta_"):
+                start[index] = model.module.STATE_INITIAL[index]
+    for contact, (gear, _) in enumerate(model.module.CONTACT_ANGLES):
+        tangent = np.zeros(len(states))
+        tangent[gear] = 1.0
+        unknowns.append(StartUnknown(f"gap_place_{contact}", tangent, -1.0, 1.0, 1.0, contact))
+    return replace(run, start=start, unknowns=tuple(unknowns))
+
+
+def _unknown(
+    states: list[str], name: str, carried: list[str], limit: float, sigma: float
+) -> StartUnknown:
+    tangent = np.zeros(len(states))
+    tangent[[states.index(c) for c in carried]] = 1.0
+    return StartUnknown(name, tangent, -limit, limit, sigma)
+
+
+def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
+    """Cut a run into windows of about `length` s, each with a start of its own."""
+    duration = run.time[-1] - run.time[0]
+    pieces = max(1, round(duration / length))
+    if pieces == 1:
+        return (run,)
+    edges = np.linspace(0, len(run.time) - 1, pieces + 1).astype(int)
+    windows = []
+    for number, (a, b) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+        part = slice(a, b + 1)
+        piece = replace(
+            run,
+            name=f"{run.name}#{number + 1}",
+            time=np.ascontiguousarray(run.time[part]),
+            inputs=stack([table(run.time[part], c, "hold") for c in run.held_inputs[part].T]),
+            held_inputs=np.ascontiguousarray(run.held_inputs[part]),
+            measured=np.ascontiguousarray(run.measured[part]),
+        )
+        windows.append(_with_start(model, piece))
+    return tuple(windows)

@@ -1,0 +1,112 @@
+"""The loop above both wings: emit the declared machine and its candidates, fit, diagnose, extend."""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from ptp_symbolic.atomic import write_text_if_changed
+from ptp_symbolic.codegen.module import module_text
+from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic.derivation.placement import available_quantities, place_effects
+from ptp_symbolic.effects import EFFECTS
+from ptp_symbolic.identify.coordinates import FreeParameter, free_parameter
+from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform
+from ptp_symbolic.runtime.loader import load_module
+from ptp_symbolic.runtime.model import Model
+
+
+def cache_folder() -> Path:
+    """Folder of modules emitted for platforms of the user (PTP_SYMBOLIC_CACHE, else the usual)."""
+    named = os.environ.get("PTP_SYMBOLIC_CACHE")
+    if named:
+        return Path(named)
+    base = os.environ.get("XDG_CACHE_HOME")
+    root = Path(base) if base else Path.home() / ".cache"
+    if not os.access(root if root.exists() else root.parent, os.W_OK):
+        root = Path(tempfile.gettempdir())
+    return root / "ptp_symbolic"
+
+
+def emit(platform: Platform) -> Model:
+    """Derive, emit and load the model of `platform`; modules are kept by their content."""
+    text = module_text(assemble(platform))
+    digest = hashlib.sha256(text.encode()).hexdigest()[:16]
+    name = f"ptp_model_{digest}"
+    folder = cache_folder()
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    path = folder / f"{name}.py"
+    write_text_if_changed(path, text)
+    return load_module(path, name)
+
+
+def candidate_effects(platform: Platform) -> tuple[EffectDeclaration, ...]:
+    """Effects that could be added to `platform`: searchable, not declared, with what they need."""
+    placed = place_effects(platform)
+    available = available_quantities(placed)
+    declared = {(effect.id, place.axis) for effect, place in placed}
+    found = []
+    for effect in EFFECTS:
+        for axis in platform.axes if effect.on_axis else (None,):
+            needs = {need.format(axis=axis) for need in effect.needs}
+            if effect.structural or (effect.id, axis) in declared or not needs <= available:
+                continue
+            found.append(EffectDeclaration(effect.id, axis, None))
+    return tuple(found)
+
+
+def with_candidates(platform: Platform) -> Platform:
+    """`platform` with every candidate effect added."""
+    return replace(platform, effects=(*platform.effects, *candidate_effects(platform)))
+
+
+def free_parameters(platform: Platform, model: Model) -> tuple[FreeParameter, ...]:
+    """The parameters that `platform` leaves to be fitted, as far as `model` has them."""
+    own = {p.name: p for p in model.parameters}
+    ties: dict[str, list[str]] = {}
+    for declaration in platform.parameters:
+        if declaration.same_as is not None and declaration.name in own:
+            ties.setdefault(declaration.same_as, []).append(declaration.name)
+    return tuple(
+        free_parameter(
+            d.name,
+            d.value,
+            own[d.name].lower if d.lower is None else d.lower,
+            own[d.name].upper if d.upper is None else d.upper,
+            own[d.name].period,
+            tuple(ties.get(d.name, ())),
+        )
+        for d in platform.parameters
+        if d.free and d.name in own
+    )
+
+
+def known_values(platform: Platform, model: Model) -> dict[str, float]:
+    """Values of the parameters that `platform` declares as known and `model` has."""
+    own = set(model.parameter_names)
+    return {
+        d.name: d.value
+        for d in platform.parameters
+        if not d.free and d.same_as is None and d.name in own
+    }
+
+
+def extended(
+    platform: Platform,
+    added: Sequence[EffectDeclaration],
+    values: Mapping[str, float],
+    fitted: Sequence[ParameterDeclaration],
+) -> Platform:
+    """`platform` with effects and fitted parameters added; `values` are the new starts."""
+    kept = []
+    replaced = {p.name for p in fitted}
+    for declaration in platform.parameters:
+        if declaration.name in replaced:
+            continue
+        value = values.get(declaration.name, declaration.value)
+        kept.append(replace(declaration, value=value))
+    return replace(
+        platform, effects=(*platform.effects, *added), parameters=(*kept, *fitted)
+    )
