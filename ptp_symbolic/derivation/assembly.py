@@ -1,7 +1,7 @@
 """Assemble a declared platform: place its effects, resolve quantities, derive the equations."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -9,9 +9,10 @@ from ptp_symbolic import kinematics
 from ptp_symbolic.derivation.bodies import RigidConfiguration
 from ptp_symbolic.derivation.equations import Contact, Equations, Ledger, PlacedEffect
 from ptp_symbolic.derivation.lagrange import lagrange
-from ptp_symbolic.derivation.placement import place_effects
+from ptp_symbolic.derivation.placement import place_effects, resolved_parameters
 from ptp_symbolic.effects.effect import Change, Contribution, Drive, Friction, Input, Place, Shaft
 from ptp_symbolic.effects.effect import quantity as quantity_symbol
+from ptp_symbolic.parameters import Parameter
 from ptp_symbolic.platform import Platform
 
 GRAVITY_QUANTITIES = ("gravity_tilt", "gravity_azimuth")
@@ -99,7 +100,7 @@ def assemble(platform: Platform) -> Equations:
         rigid=rigid,
         rigid_equations=rigid_equations,
     )
-    return _with_parameters(equations, placed)
+    return _with_parameters(equations, resolved_parameters(platform, placed))
 
 
 def _collect(platform: Platform, placed: Iterable[tuple]) -> _Parts:
@@ -260,10 +261,8 @@ def _ledger(
     return Ledger(*(parts.resolve(sp.sympify(e)) for e in (stored, power_in, dissipated)))
 
 
-def _with_parameters(equations: Equations, placed: list) -> Equations:
+def _with_parameters(equations: Equations, declared: dict[str, Parameter]) -> Equations:
     """Attach the parameters that the equations use, in the order of the effects."""
-    from dataclasses import replace
-
     used: set[sp.Symbol] = set(equations.mass_matrix.free_symbols | equations.forcing.free_symbols)
     for friction in equations.frictions:
         used |= friction.level.free_symbols | friction.breakaway.free_symbols
@@ -274,10 +273,5 @@ def _with_parameters(equations: Equations, placed: list) -> Equations:
     for _, _, expression in equations.outputs:
         used |= expression.free_symbols
     names = {str(symbol) for symbol in used}
-    parameters = [
-        parameter
-        for effect, place in placed
-        for parameter in effect.parameters(place)
-        if parameter.name in names
-    ]
-    return replace(equations, parameters=tuple(parameters))
+    parameters = tuple(p for name, p in declared.items() if name in names)
+    return replace(equations, parameters=parameters)

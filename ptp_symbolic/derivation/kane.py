@@ -65,7 +65,9 @@ def _frames(
     return frames
 
 
-def _rigid_body(body: Body, frame: ReferenceFrame, base: ReferenceFrame, origin: Point) -> RigidBody:
+def _rigid_body(
+    body: Body, frame: ReferenceFrame, base: ReferenceFrame, origin: Point
+) -> RigidBody:
     centre = origin.locatenew(f"{body.name}_centre", _vector(body.com, frame))
     centre.v2pt_theory(origin, base, frame)
     tensor = body.inertia

@@ -26,9 +26,7 @@ def lagrange(configuration: RigidConfiguration) -> RigidEquations:
     forcing = []
     for coordinate, rate in zip(coordinates, rates, strict=True):
         momentum = sp.diff(kinetic, rate)
-        transport = (
-            sp.diff(momentum, q) * w for q, w in zip(coordinates, rates, strict=True)
-        )
+        transport = (sp.diff(momentum, q) * w for q, w in zip(coordinates, rates, strict=True))
         force = sp.diff(kinetic, coordinate) - sp.diff(potential, coordinate) - sp.Add(*transport)
         forcing.append(sp.expand(force))
     return RigidEquations(

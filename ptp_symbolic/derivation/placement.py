@@ -41,10 +41,12 @@ def declared_parameters(placed: list[tuple[Effect, Place]]) -> dict[str, Paramet
     return {p.name: p for effect, place in placed for p in effect.parameters(place)}
 
 
-def resolved_parameters(platform: Platform) -> dict[str, Parameter]:
-    """Return the parameters of `platform` by name, defaults and bounds as it declares them."""
-    own = declared_parameters(place_effects(platform))
+def resolved_parameters(
+    platform: Platform, placed: list[tuple[Effect, Place]]
+) -> dict[str, Parameter]:
+    """Return the parameters of the placed effects, defaults and bounds as `platform` declares."""
     declarations = {d.name: d for d in platform.parameters}
+    own = declared_parameters(placed)
     return {name: _declared(parameter, declarations) for name, parameter in own.items()}
 
 

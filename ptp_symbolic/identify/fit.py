@@ -1,6 +1,6 @@
 """Fit the free parameters of a model to several runs at once."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
@@ -20,6 +20,15 @@ from ptp_symbolic.identify.run import Run
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How hard to search: iterations, relative gain at which to stop, simulation tolerance."""
+
+    iterations: int = 30
+    gain: float = 1e-5
+    tolerance: Tolerance = Tolerance()
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,23 +68,21 @@ def fit_parameters(
     free: Sequence[FreeParameter],
     fixed: Mapping[str, float],
     z: Sequence[FloatArray] | None = None,
-    tolerance: Tolerance | None = None,
+    effort: Effort | None = None,
     executor: Executor | None = None,
-    iterations: int = 30,
-    give_up: Callable[[float, int], bool] | None = None,
 ) -> Fit:
     """Fit `free` from their starts; all other parameters stay at `fixed`.
 
     With no free parameter only the start unknowns of every run are fitted, which is how runs that
     were never fitted are judged.
     """
-    tolerance = tolerance or Tolerance()
+    effort = effort or Effort()
     start_z = list(z) if z is not None else [np.zeros(len(run.unknowns)) for run in runs]
     if not free:
-        return _fit_starts(model, runs, fixed, start_z, tolerance, executor, iterations)
-    problem = _problem(model, runs, free, fixed, tolerance, executor)
+        return _fit_starts(model, runs, fixed, start_z, effort, executor)
+    problem = _problem(model, runs, free, fixed, effort.tolerance, executor)
     phi = to_search(free, {f.name: f.start for f in free})
-    best = minimise(problem, phi, start_z, iterations, give_up=give_up)
+    best = minimise(problem, phi, start_z, effort.iterations, effort.gain)
     values = {**fixed, **all_values(free, best.phi)}
     return Fit(
         model, tuple(runs), tuple(free), values, tuple(best.z), best.cost,
@@ -87,6 +94,11 @@ def all_values(free: Sequence[FreeParameter], phi: FloatArray) -> dict[str, floa
     """Values of the free parameters and of those tied to them."""
     own = to_values(free, phi)
     return own | {name: own[f.name] for f in free for name in f.tied}
+
+
+def all_values_at_start(free: Sequence[FreeParameter]) -> dict[str, float]:
+    """Start values of the free parameters and of those tied to them."""
+    return {name: f.start for f in free for name in (f.name, *f.tied)}
 
 
 def _problem(
@@ -140,9 +152,8 @@ def _fit_starts(
     runs: Sequence[Run],
     fixed: Mapping[str, float],
     z: Sequence[FloatArray],
-    tolerance: Tolerance,
+    effort: Effort,
     executor: Executor | None,
-    iterations: int,
 ) -> Fit:
     """Runs that share no free parameter are independent: fit the start of each by itself.
 
@@ -152,15 +163,15 @@ def _fit_starts(
 
     def one(pair: tuple[Run, FloatArray]) -> Optimum:
         run, start = pair
-        problem = _problem(model, [run], (), fixed, tolerance, None)
-        found = minimise(problem, nothing, [start], iterations)
+        problem = _problem(model, [run], (), fixed, effort.tolerance, None)
+        found = minimise(problem, nothing, [start], effort.iterations, effort.gain)
         for index, unknown in enumerate(run.unknowns):
             if unknown.contact is None:
                 continue
             for face in (-0.9, 0.9):
                 begin = start.copy()
                 begin[index] = face
-                other = minimise(problem, nothing, [begin], iterations)
+                other = minimise(problem, nothing, [begin], effort.iterations, effort.gain)
                 found = other if other.cost < found.cost else found
         return found
 

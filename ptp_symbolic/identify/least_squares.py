@@ -18,7 +18,7 @@ Evaluate = Callable[[FloatArray, Sequence[FloatArray], bool], list[Evaluation]]
 
 LARGEST_STEP = 1.0
 FIRST_DAMPING = 1e-3
-LARGEST_DAMPING = 1e8
+LARGEST_REJECTIONS = 5
 
 
 @dataclass(frozen=True)
@@ -60,13 +60,9 @@ def minimise(
     phi: FloatArray,
     z: Sequence[FloatArray],
     iterations: int = 30,
-    tolerance: float = 1e-5,
-    give_up: Callable[[float, int], bool] | None = None,
+    gain: float = 1e-5,
 ) -> Optimum:
-    """Minimise from (phi, z); stops when the relative gain of two steps is below `tolerance`.
-
-    `give_up(cost, iteration)` may end a search that is not worth its time.
-    """
+    """Minimise from (phi, z); stops when two steps in a row gain less than the share `gain`."""
     phi, z = np.clip(phi, problem.lower, problem.upper), [a.copy() for a in z]
     now = problem.evaluate(phi, z, True)
     cost = cost_of(problem, now, z)
@@ -75,8 +71,7 @@ def minimise(
         return Optimum(phi, z, np.inf, now, 0, why)
     damping, quiet = FIRST_DAMPING, 0
     for iteration in range(1, iterations + 1):
-        step, gain_possible = None, False
-        while damping < LARGEST_DAMPING:
+        for _ in range(LARGEST_REJECTIONS):
             step, steps_z = _step(problem, now, phi, z, damping)
             trial = np.clip(phi + step, problem.lower, problem.upper)
             trial_z = [
@@ -88,16 +83,15 @@ def minimise(
             after = problem.evaluate(trial, trial_z, True)
             new_cost = cost_of(problem, after, trial_z)
             if new_cost < cost:
-                gain_possible = True
                 break
             damping *= 10.0
-        if not gain_possible:
+        else:
             return Optimum(phi, z, cost, now, iteration)
-        gain = (cost - new_cost) / cost
+        gained = (cost - new_cost) / cost
         phi, z, now, cost = trial, trial_z, after, new_cost
         damping = max(damping / 10.0, 1e-12)
-        quiet = quiet + 1 if gain < tolerance else 0
-        if quiet >= 2 or (give_up is not None and give_up(cost, iteration)):
+        quiet = quiet + 1 if gained < gain else 0
+        if quiet >= 2:
             return Optimum(phi, z, cost, now, iteration)
     return Optimum(phi, z, cost, now, iterations)
 

@@ -9,6 +9,7 @@ from ptp_symbolic.derivation.bodies import RigidEquations
 from ptp_symbolic.simplify.nesting import (
     AngleSums,
     Combination,
+    Row,
     plus,
     unused_name,
     write_forcing,
@@ -47,9 +48,7 @@ class BaseForm:
         """Mass matrix and forcing in the physical parameters, to compare with the derivation."""
         return self._replace_all((*self.base_parameters, *self.shared_terms))
 
-    def _replace_all(
-        self, lines: Sequence[Line]
-    ) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+    def _replace_all(self, lines: Sequence[Line]) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
         mass_matrix, forcing = self.mass_matrix, self.forcing
         for symbol, expression in reversed(lines):
             mass_matrix = mass_matrix.xreplace({symbol: expression})
@@ -68,40 +67,52 @@ def base_form(
     the rigid joints; left out, they are those of `rigid`. What the machine adds to the mass matrix
     of the joints joins the base parameters; torques that it adds pass through unchanged. The number
     of base parameters is the rank of the coefficients over the physical monomials, hence minimal.
-    Source: Gautier and Khalil, Direct calculation of minimum set of inertial parameters of serial
-    robots, IEEE Trans. Robotics and Automation 6, 1990, section II.
+    Raises ValueError when the rigid part is no trigonometric polynomial. Source: Gautier and
+    Khalil, Direct calculation of minimum set of inertial parameters of serial robots, IEEE Trans.
+    Robotics and Automation 6, 1990, section II.
     """
     n = len(rigid.coordinates)
     mass = sp.Matrix(rigid.mass_matrix if mass_matrix is None else mass_matrix)
     force = sp.Matrix(rigid.forcing if forcing is None else forcing)
-    cells = [(i, j) for i in range(n) for j in range(i, n)]
-    regression = regress(
-        [*(mass[i, j] for i, j in cells), *rigid.forcing], rigid.coordinates, rigid.rates
-    )
     taken = {str(s) for entry in (*mass, *force) for s in entry.free_symbols}
-    basis = _Basis(regression, taken)
     places = [place_of(coordinate) for coordinate in rigid.coordinates]
-    titles = [f"inertia_{places[i]}" if i == j else "coupling" for i, j in cells]
-    titles += ["gravity"] * n
+    titles = {
+        (i, j): f"inertia_{places[i]}" if i == j else "coupling"
+        for i in range(n)
+        for j in range(i, n)
+    }
+    entries = [(title, mass[cell]) for cell, title in titles.items()]
+    entries += [("gravity", torque) for torque in rigid.forcing]
+    rows, base_parameters = _combined(rigid, entries, taken)
+    sums = AngleSums(rigid.coordinates)
+    for ((i, j), title), row in zip(titles.items(), rows, strict=False):
+        mass[i, j] = mass[j, i] = sums.write_inertia(title, row)
+    written = write_forcing(rows[len(titles) :], rigid.rates, sums, taken)
+    for i in range(n):
+        force[i] = written[i] + (force[i] - rigid.forcing[i])
+    return BaseForm(
+        base_parameters,
+        tuple(sums.lines),
+        sp.ImmutableMatrix(mass),
+        sp.ImmutableMatrix(force),
+    )
+
+
+def _combined(
+    rigid: RigidEquations, entries: Sequence[tuple[str, sp.Expr]], taken: set[str]
+) -> tuple[list[Row], tuple[Line, ...]]:
+    """Entries, given with titles, as rows in base parameters, and the base parameters."""
+    expressions = [entry for _, entry in entries]
+    regression = regress(expressions, rigid.coordinates, rigid.rates)
+    basis = _Basis(regression, taken)
     rows = [
         {
             function: basis.combine(coefficient, _name(title, function, rigid))
             for function, coefficient in row.items()
         }
-        for title, row in zip(titles, regression.rows, strict=True)
+        for (title, _), row in zip(entries, regression.rows, strict=True)
     ]
-    sums = AngleSums(rigid.coordinates)
-    for (i, j), title, row in zip(cells, titles, rows, strict=False):
-        mass[i, j] = mass[j, i] = sums.write_inertia(title, row)
-    written = write_forcing(rows[len(cells) :], rigid.rates, sums, taken)
-    for i in range(n):
-        force[i] = written[i] + (force[i] - rigid.forcing[i])
-    return BaseForm(
-        tuple(basis.parameters),
-        tuple(sums.lines),
-        sp.ImmutableMatrix(mass),
-        sp.ImmutableMatrix(force),
-    )
+    return rows, tuple(basis.parameters)
 
 
 def _name(title: str, function: StateFunction, rigid: RigidEquations) -> str:

@@ -73,7 +73,9 @@ class AngleSums:
         places = {i for angles in terms for i, powers in enumerate(angles) if any(powers)}
         return places.pop() if len(places) == 1 else None
 
-    def _nested(self, terms: list[tuple[tuple[Exponents, ...], Combination]], depth: int) -> sp.Expr:
+    def _nested(
+        self, terms: list[tuple[tuple[Exponents, ...], Combination]], depth: int
+    ) -> sp.Expr:
         """Horner's rule in the sine of one angle, then in the next angle."""
         if depth == len(self.coordinates):
             return sp.Add(*(_linear(combination) for _, combination in terms))
@@ -95,7 +97,7 @@ def _linear(combination: Combination) -> sp.Expr:
 
 
 def _ratio(powers: dict[Exponents, Combination], quadratic: _Quadratic) -> sp.Rational | None:
-    """x where `powers` is x cos(q) t but for a constant; None where there is no such x."""
+    """Return x where `powers` is x cos(q) t but for a constant; None where there is no such x."""
     both, square = powers.get((1, 1), {}), powers.get((2, 0), {})
     sample = next(iter(quadratic.sine), None)
     if sample is not None:
