@@ -29,8 +29,8 @@ def newton_euler(configuration: RigidConfiguration) -> RigidEquations:
     """Return M q'' = f + tau of `configuration` by Newton's and Euler's equations of each body.
 
     The joint torques are linear in the accelerations, whose factors are the mass matrix. Source:
-    Luh, Walker and Paul, On-Line Computational Scheme for Mechanical Manipulators, ASME J. Dyn.
-    Syst. Meas. Control 102, 1980, Eq. 5 to 25; sign of the gyroscopic torque as in erratum 5.
+    Craig, Introduction to Robotics, 3rd edition 2005, Eq. 6.45 to 6.53; the gyroscopic torque about
+    the tilt axis has the sign of erratum 5.
     """
     axes = configuration.axes
     coordinates = tuple(kinematics.angle(axis) for axis in axes)

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.identify.coordinates import FreeParameter
-from ptp_symbolic.identify.evaluate import Tolerance
+from ptp_symbolic.diagnose.scores import Score, score
+from ptp_symbolic.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.identify.fit import Effort, Fit, all_values_at_start, fit_parameters
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.runtime.model import Model
@@ -26,11 +27,13 @@ Progress = Callable[[str], None]
 COARSE, FINE = Tolerance(1e-4, 1e-6), Tolerance(1e-5, 1e-7)
 EFFECT_ONLY = Effort(6, 1e-2, COARSE)
 FIRST = Effort(5, 3e-3, COARSE)
+DECLARED = Effort(8, 1e-2, COARSE)
 NEXT = Effort(14, 1e-3, COARSE)
-LAST = Effort(20, 1e-5, FINE)
+LAST = Effort(20, 1e-4, FINE)
 HELD_OUT = Effort(10, 1e-4, FINE)
 DROP_FACTOR = 25.0
-POLISHED = 4
+KEPT_AFTER_FIRST, POLISHED, BEAM = 8, 4, 3
+VISIBLE_SHARE = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +67,7 @@ def fit_declared(task: Task) -> Trial:
     """Fit the declared model, from the table start and from a start a factor of 2 away."""
     task.progress("fitting the declared model")
     fits = [
-        fit_parameters(task.model, task.train, free, task.fixed, None, NEXT, task.executor)
+        fit_parameters(task.model, task.train, free, task.fixed, None, DECLARED, task.executor)
         for free in (task.free, tuple(_shifted(f) for f in task.free))
     ]
     best = min(fits, key=lambda fit: fit.cost)
@@ -88,17 +91,36 @@ def judge(task: Task, trial: Trial) -> Trial:
     return replace(trial, validate=held_out)
 
 
-def try_candidates(task: Task, base: Trial, candidates: Sequence[Candidate]) -> list[Trial]:
-    """Refit `base` with each candidate added; the best are polished and judged, best first."""
-    first = _first_round(task, base, candidates)
-    task.progress(f"refining {len(first)} candidates")
-    second = _continue(task, _worth_it(first), NEXT)
-    second.sort(key=lambda trial: trial.train.cost)
+def try_candidates(
+    task: Task, bases: Sequence[Trial], candidates: Sequence[Candidate]
+) -> list[Trial]:
+    """Refit every base with each candidate added; the best are polished and judged, best first."""
+    first = _first_round(task, bases, candidates)
+    second = _continue(task, _best(first, KEPT_AFTER_FIRST), NEXT)
     task.progress("polishing the best candidates")
-    polished = _continue(task, _worth_it(second[:POLISHED]), LAST)
+    polished = _continue(task, _best(second, POLISHED), LAST)
     judged = [judge(task, trial) for trial in polished]
-    dropped = [t for t in first if t.keys not in {j.keys for j in judged}]
-    return sorted(judged, key=held_out_cost) + sorted(dropped, key=lambda t: t.train.cost)
+    dropped = [t for t in (*second, *first) if t.keys not in {j.keys for j in judged}]
+    unique = {t.keys: t for t in reversed(dropped)}
+    return sorted(judged, key=held_out_cost) + sorted(unique.values(), key=lambda t: t.train.cost)
+
+
+def scores(task: Task, base: Trial, candidates: Sequence[Candidate]) -> dict[str, Score]:
+    """Score of every candidate at the optimum of `base`."""
+    names = list(task.model.parameter_names)
+    wanted = sorted({name for c in candidates for name in c.parameters})
+    columns = np.array([names.index(name) for name in wanted], dtype=np.int64)
+    p = task.model.parameter_vector(dict(base.train.values))
+
+    def derivatives(pair: tuple[Run, FloatArray]) -> FloatArray:
+        return evaluate(task.model, pair[0], p, pair[1], columns, True, COARSE).by_parameter
+
+    pairs = list(zip(base.train.runs, base.train.z, strict=True))
+    by_run = list(task.executor.map(derivatives, pairs))
+    return {
+        c.key: score(base.train, [d[:, [wanted.index(n) for n in c.parameters]] for d in by_run])
+        for c in candidates
+    }
 
 
 def held_out_cost(trial: Trial) -> float:
@@ -108,45 +130,46 @@ def held_out_cost(trial: Trial) -> float:
     return trial.validate.rms_counts() ** 2
 
 
-def _first_round(task: Task, base: Trial, candidates: Sequence[Candidate]) -> list[Trial]:
+def _first_round(
+    task: Task, bases: Sequence[Trial], candidates: Sequence[Candidate]
+) -> list[Trial]:
     """The best start of every candidate after a few coarse iterations.
 
     The parameters of the candidate move alone first, so that the declared ones are not bent to
     stand in for an effect that is still far from its place.
     """
-    origins = _origins(task, base)
     jobs = [
-        (candidate, start, values, z)
+        (base, candidate, start, values, z)
+        for base in bases
         for candidate in candidates
-        for values, z in origins
+        if candidate.key not in base.keys
+        for values, z in _origins(task, base)
         for start in candidate.starts
     ]
     task.progress(f"trying {len(candidates)} candidates from {len(jobs)} starts")
 
-    def alone(job: tuple[Candidate, tuple[FreeParameter, ...], dict, list]) -> Fit:
-        _, start, values, z = job
+    def alone(job: tuple) -> Fit:
+        _, _, start, values, z = job
         return fit_parameters(task.model, task.train, start, values, z, EFFECT_ONLY)
 
-    best: dict[str, tuple[Candidate, Fit]] = {}
-    for job, fit in zip(jobs, task.executor.map(alone, jobs), strict=True):
-        key = job[0].key
-        if key not in best or fit.cost < best[key][1].cost:
-            best[key] = (job[0], fit)
-    trials = [
-        Trial((*base.candidates, candidate), _all_free(task, base, fit))
-        for candidate, fit in best.values()
-    ]
-    return _continue(task, trials, FIRST)
+    best: dict[tuple[str, ...], Trial] = {}
+    for (base, candidate, *_), fit in zip(jobs, task.executor.map(alone, jobs), strict=True):
+        trial = Trial((*base.candidates, candidate), _all_free(base, fit))
+        if trial.keys not in best or fit.cost < best[trial.keys].train.cost:
+            best[trial.keys] = trial
+    return _continue(task, list(best.values()), FIRST)
 
 
 def _origins(task: Task, base: Trial) -> list[tuple[dict[str, float], list[FloatArray]]]:
-    """Where searches begin: the table start of the declared parameters, and their optimum."""
+    """Where searches begin: the optimum of `base`, for the first effect also the table start."""
+    optimum = (dict(base.train.values), list(base.train.z))
+    if base.candidates:
+        return [optimum]
     rest = [np.zeros(len(run.unknowns)) for run in task.train]
-    table = {**base.train.values, **all_values_at_start(task.free)}
-    return [(table, rest), (dict(base.train.values), list(base.train.z))]
+    return [({**base.train.values, **all_values_at_start(task.free)}, rest), optimum]
 
 
-def _all_free(task: Task, base: Trial, fit: Fit) -> Fit:
+def _all_free(base: Trial, fit: Fit) -> Fit:
     """`fit` with the parameters of `base` freed as well."""
     own = {f.name for f in fit.free}
     return replace(fit, free=(*(f for f in base.train.free if f.name not in own), *fit.free))
@@ -166,9 +189,10 @@ def _fixed(task: Task, free: Sequence[FreeParameter]) -> dict[str, float]:
     return {name: value for name, value in task.fixed.items() if name not in names}
 
 
-def _worth_it(trials: Sequence[Trial]) -> list[Trial]:
-    best = min(trial.train.cost for trial in trials)
-    return [trial for trial in trials if trial.train.cost <= DROP_FACTOR * best]
+def _best(trials: Sequence[Trial], count: int) -> list[Trial]:
+    """At most `count` trials, none far worse than the best."""
+    ordered = sorted(trials, key=lambda trial: trial.train.cost)
+    return [t for t in ordered[:count] if t.train.cost <= DROP_FACTOR * ordered[0].train.cost]
 
 
 def _continue(

@@ -69,7 +69,7 @@ def base_form(
     of base parameters is the rank of the coefficients over the physical monomials, hence minimal.
     Raises ValueError when the rigid part is no trigonometric polynomial. Source: Gautier and
     Khalil, Direct calculation of minimum set of inertial parameters of serial robots, IEEE Trans.
-    Robotics and Automation 6, 1990, section II.
+    Robotics and Automation 6, 1990, p. 368-373.
     """
     n = len(rigid.coordinates)
     mass = sp.Matrix(rigid.mass_matrix if mass_matrix is None else mass_matrix)
@@ -84,10 +84,10 @@ def base_form(
     entries = [(title, mass[cell]) for cell, title in titles.items()]
     entries += [("gravity", torque) for torque in rigid.forcing]
     rows, base_parameters = _combined(rigid, entries, taken)
-    sums = AngleSums(rigid.coordinates)
+    sums = AngleSums(rigid.coordinates, taken)
     for ((i, j), title), row in zip(titles.items(), rows, strict=False):
         mass[i, j] = mass[j, i] = sums.write_inertia(title, row)
-    written = write_forcing(rows[len(titles) :], rigid.rates, sums, taken)
+    written = write_forcing(rows[len(titles) :], rigid.rates, sums)
     for i in range(n):
         force[i] = written[i] + (force[i] - rigid.forcing[i])
     return BaseForm(

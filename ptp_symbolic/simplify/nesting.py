@@ -29,12 +29,13 @@ class _Quadratic:
 class AngleSums:
     """Writes sums over functions of the joint angles, and names what several of them use.
 
-    `lines` holds the names given so far with their meaning, in order of use.
+    `lines` holds the names given so far with their meaning, in order of use; none is in `taken`.
     """
 
-    def __init__(self, coordinates: Sequence[sp.Symbol]) -> None:
+    def __init__(self, coordinates: Sequence[sp.Symbol], taken: Iterable[str]) -> None:
         self.coordinates = tuple(coordinates)
         self.lines: list[Line] = []
+        self._taken = set(taken)
         self._quadratics: list[_Quadratic] = []
 
     def write_inertia(self, title: str, row: Row) -> sp.Expr:
@@ -45,13 +46,19 @@ class AngleSums:
             return self.write(terms)
         powers = {angles[place]: combination for angles, combination in terms.items()}
         joint, angle = place_of(self.coordinates[place]), self.coordinates[place]
-        symbol = sp.Symbol(f"{title}_per_sin_{joint}", real=True)
         cosine, sine = powers.pop((1, 1), {}), powers.pop((2, 0), {})
-        self._quadratics.append(_Quadratic(place, symbol, sine, cosine))
         factor = _linear(sine) * sp.sin(angle) + _linear(cosine) * sp.cos(angle)
-        self.lines.append((symbol, factor))
+        symbol = self.named(f"{title}_per_sin_{joint}", factor)
+        self._quadratics.append(_Quadratic(place, symbol, sine, cosine))
         rest = {angles: c for angles, c in terms.items() if angles[place] in powers}
         return self.write(rest) + sp.sin(angle) * symbol
+
+    def named(self, name: str, meaning: sp.Expr) -> sp.Symbol:
+        """Add a line that gives `meaning` the name `name`, or a like one, and return its symbol."""
+        symbol = sp.Symbol(unused_name(name, self._taken), real=True)
+        self._taken.add(str(symbol))
+        self.lines.append((symbol, meaning))
+        return symbol
 
     def write(self, terms: AngleRow) -> sp.Expr:
         """The sum of `terms`, by way of a named factor where that fits."""
@@ -131,7 +138,7 @@ class _RateTerm:
 
 
 def write_forcing(
-    rows: Sequence[Row], rates: Sequence[sp.Symbol], sums: AngleSums, taken: Iterable[str]
+    rows: Sequence[Row], rates: Sequence[sp.Symbol], sums: AngleSums
 ) -> list[sp.Expr]:
     """Return the forcing [n]; what its rows share is named in `sums`.
 
@@ -143,17 +150,13 @@ def write_forcing(
     for term in terms:
         groups.setdefault(term.key, []).append(term)
     factors: dict[frozenset, tuple[sp.Expr, Exponents]] = {}
-    names = set(taken)
     for key, group in groups.items():
         total = sums.write(group[0].sum)
         common = _common([term.powers for term in group])
         if len(group) == 1:
             factors[key] = (total, (0,) * len(rates))
             continue
-        symbol = sp.Symbol(unused_name("coriolis", names), real=True)
-        names.add(str(symbol))
-        sums.lines.append((symbol, _product(rates, common) * total))
-        factors[key] = (symbol, common)
+        factors[key] = (sums.named("coriolis", _product(rates, common) * total), common)
     written = []
     for i, row in enumerate(rows):
         gravity = {f.angles: c for f, c in row.items() if not any(f.rates)}

@@ -140,6 +140,11 @@ def test_names_that_are_taken_are_not_used_again() -> None:
     assert str(name) == "inertia_pan_2"
     assert symbol("inertia_pan") in value.free_symbols
     assert not others
+    rigid = lagrange(machines.payload_model())
+    names = [symbol("coriolis"), symbol("inertia_pan_per_sin_tilt")]
+    base = base_form(rigid, forcing=rigid.forcing + sp.ImmutableMatrix(names))
+    assert not {s for s, _ in base.shared_terms} & set(names)
+    assert_same(base, rigid.mass_matrix, rigid.forcing + sp.ImmutableMatrix(names))
 
 
 def test_the_rest_of_the_machine_passes_through() -> None:

@@ -1,0 +1,97 @@
+"""The verdict: nothing missing, explained, explained up to a group, partly explained, unexplained."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ptp_symbolic.diagnose.floor import floor_counts
+from ptp_symbolic.diagnose.scores import share_explained, share_improved
+from ptp_symbolic.diagnose.search import Trial, held_out_cost
+from ptp_symbolic.identify.intervals import estimates
+
+NOTHING_MISSING = "nothing_missing"
+EXPLAINED = "explained"
+UP_TO_GROUP = "explained_up_to_group"
+PARTLY = "partly_explained"
+UNEXPLAINED = "unexplained"
+
+AT_FLOOR, NEAR_FLOOR = 1.05, 1.15
+IMPROVED, EXPLAINED_SHARE, PARTLY_SHARE = 0.85, 0.90, 0.30
+TIE = 1.02
+CLEAR_GAIN = 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """What the logs say: the word, the accepted trial (None: none), rivals, floor in counts."""
+
+    word: str
+    accepted: Trial | None
+    rivals: tuple[Trial, ...]
+    floor: float
+    improved: float
+    explained: float
+
+
+def decide(base: Trial, trials: Sequence[Trial]) -> Verdict:
+    """Decide on held-out runs alone; `trials` are judged refits of `base`, in any order."""
+    judged = sorted((t for t in trials if np.isfinite(held_out_cost(t))), key=held_out_cost)
+    floor = min(floor_counts(t.train.pairs()) for t in (base, *judged))
+    before = float(np.sqrt(held_out_cost(base)))
+    if not judged:
+        word = NOTHING_MISSING if before <= AT_FLOOR * floor else UNEXPLAINED
+        return Verdict(word, None, (), floor, 0.0, 0.0)
+    winner, rivals = _simplest(judged)
+    assert base.validate is not None and winner.validate is not None
+    improved = share_improved(base.validate.pairs(), winner.validate.pairs(), floor)
+    explained = share_explained(base.validate.pairs(), winner.validate.pairs(), floor)
+    final = float(np.sqrt(held_out_cost(winner)))
+    clear = held_out_cost(winner) < CLEAR_GAIN * held_out_cost(base) and improved >= IMPROVED
+    seen = clear and _away_from_zero(winner)
+    if before <= AT_FLOOR * floor and not seen:
+        return Verdict(NOTHING_MISSING, None, (), floor, improved, explained)
+    if not seen or explained < PARTLY_SHARE or final > NEAR_FLOOR * floor:
+        full = seen and explained >= EXPLAINED_SHARE and final <= 2.0 * floor
+        if not full:
+            return Verdict(UNEXPLAINED, None, tuple(judged[:1]), floor, improved, explained)
+        return Verdict(PARTLY, winner, rivals, floor, improved, explained)
+    if explained >= EXPLAINED_SHARE or final <= AT_FLOOR * floor:
+        word = UP_TO_GROUP if rivals else EXPLAINED
+        return Verdict(word, winner, rivals, floor, improved, explained)
+    return Verdict(PARTLY, winner, rivals, floor, improved, explained)
+
+
+def is_settled(verdict: Verdict) -> bool:
+    """True when no further effect needs to be searched."""
+    if verdict.word == NOTHING_MISSING:
+        return True
+    if verdict.accepted is None:
+        return False
+    return float(np.sqrt(held_out_cost(verdict.accepted))) <= AT_FLOOR * verdict.floor
+
+
+def _simplest(judged: Sequence[Trial]) -> tuple[Trial, tuple[Trial, ...]]:
+    """The winner among ties, the fewest parameters first; rivals are ties just as simple."""
+    best = float(np.sqrt(held_out_cost(judged[0])))
+    ties = [t for t in judged if float(np.sqrt(held_out_cost(t))) <= TIE * best]
+    winner = min(ties, key=lambda t: (len(t.train.free), held_out_cost(t)))
+    size = len(winner.train.free)
+    rivals = [t for t in ties if t is not winner and len(t.train.free) == size]
+    return winner, tuple(r for r in rivals if not set(winner.keys) <= set(r.keys))
+
+
+def _away_from_zero(trial: Trial) -> bool:
+    """Every candidate of `trial` has a parameter whose interval leaves its vanishing value."""
+    found = {e.name: e for e in estimates(trial.train)}
+    vanishes = {p.name: p.vanishes for p in trial.train.model.parameters}
+    starts = {f.name: f.start for c in trial.candidates for f in c.starts[0]}
+    for candidate in trial.candidates:
+        off = []
+        for name in candidate.parameters:
+            zero = starts[name] if ":" in candidate.id else vanishes[name]
+            if zero is not None:
+                off.append(not found[name].lower <= zero <= found[name].upper)
+        if not any(off):
+            return False
+    return True
