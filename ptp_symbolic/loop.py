@@ -70,14 +70,14 @@ def free_parameters(platform: Platform, model: Model) -> tuple[FreeParameter, ..
         if declaration.same_as is not None and declaration.name in own:
             ties.setdefault(declaration.same_as, []).append(declaration.name)
     return tuple(
-        free_parameter(
+        replace(free_parameter(
             d.name,
             d.value,
             own[d.name].lower if d.lower is None else d.lower,
             own[d.name].upper if d.upper is None else d.upper,
             own[d.name].period,
             tuple(ties.get(d.name, ())),
-        )
+        ), table=d.value)
         for d in platform.parameters
         if d.free and d.name in own
     )

@@ -26,9 +26,9 @@ Progress = Callable[[str], None]
 
 COARSE, FINE = Tolerance(1e-4, 1e-6), Tolerance(1e-5, 1e-7)
 EFFECT_ONLY = Effort(6, 1e-2, COARSE)
-FIRST = Effort(5, 3e-3, COARSE)
-DECLARED = Effort(8, 1e-2, COARSE)
-NEXT = Effort(14, 1e-3, COARSE)
+FIRST = Effort(5, 3e-3, COARSE, 0.3)
+DECLARED = Effort(8, 1e-2, COARSE, 0.3)
+NEXT = Effort(14, 1e-3, COARSE, 0.5)
 LAST = Effort(20, 1e-4, FINE)
 HELD_OUT = Effort(10, 1e-4, FINE)
 DROP_FACTOR = 25.0

@@ -1,21 +1,21 @@
-"""Friction that differs by direction: half differences added for positive, taken for negative rate."""
+"""Friction that differs by direction: relative half differences, added for positive rate."""
 
 from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place
 from ptp_symbolic.parameters import Parameter
 
 CHANGED = {
-    "dF_c_{axis}": "coulomb_torque_{axis}",
-    "dF_s_{axis}": "static_torque_{axis}",
-    "dv_s_{axis}": "stribeck_speed_{axis}",
-    "dF_v_{axis}": "viscous_coefficient_{axis}",
+    "a_F_c_{axis}": "coulomb_torque_{axis}",
+    "a_F_s_{axis}": "static_torque_{axis}",
+    "a_v_s_{axis}": "stribeck_speed_{axis}",
+    "a_F_v_{axis}": "viscous_coefficient_{axis}",
 }
 PARAMETERS = tuple(
-    Parameter(name, unit, 0.0, -1e3, 1e3, f"half difference of {meaning}", 0.0, starts)
-    for name, unit, meaning, starts in (
-        ("dF_c_{axis}", "N m", "Coulomb friction", (-0.03, 0.03)),
-        ("dF_s_{axis}", "N m", "static friction", (0.0,)),
-        ("dv_s_{axis}", "rad/s", "Stribeck speed", (0.0,)),
-        ("dF_v_{axis}", "N m s/rad", "viscous friction", (0.0,)),
+    Parameter(name, "1", 0.0, -0.95, 0.95, f"relative half difference of {meaning}", 0.0, starts)
+    for name, meaning, starts in (
+        ("a_F_c_{axis}", "Coulomb friction", (-0.1, 0.1)),
+        ("a_F_s_{axis}", "static friction", (0.0,)),
+        ("a_v_s_{axis}", "Stribeck speed", (0.0,)),
+        ("a_F_v_{axis}", "viscous friction", (0.0,)),
     )
 )
 
@@ -27,7 +27,7 @@ def _parameters(place: Place) -> tuple[Parameter, ...]:
 def _contribute(place: Place) -> Contribution:
     return Contribution(
         changes={
-            changed.format(axis=place.axis): Change(addition=place.slide * place.parameter(name))
+            changed.format(axis=place.axis): Change(factor=1 + place.slide * place.parameter(name))
             for name, changed in CHANGED.items()
         }
     )

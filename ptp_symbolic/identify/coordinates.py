@@ -13,7 +13,11 @@ SMALLEST_SHARE = 1e-6
 
 @dataclass(frozen=True)
 class FreeParameter:
-    """A parameter to be fitted: start, bounds, period; `tied` follow its value."""
+    """A parameter to be fitted: start, bounds, period; `tied` follow its value.
+
+    `table` is the value that the platform declares to start from; None for a parameter of an
+    effect that is only searched for.
+    """
 
     name: str
     start: float
@@ -23,6 +27,7 @@ class FreeParameter:
     tied: tuple[str, ...] = ()
     logarithmic: bool = False
     scale: float = 1.0
+    table: float | None = None
 
 
 def free_parameter(

@@ -24,11 +24,16 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Effort:
-    """How hard to search: iterations, relative gain at which to stop, simulation tolerance."""
+    """How hard to search: iterations, relative gain at which to stop, simulation tolerance.
+
+    `prior_sigma` holds parameters with a table value (see `FreeParameter.table`) near it, as a
+    natural logarithm.
+    """
 
     iterations: int = 30
     gain: float = 1e-5
     tolerance: Tolerance = Tolerance()
+    prior_sigma: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +85,9 @@ def fit_parameters(
     start_z = list(z) if z is not None else [np.zeros(len(run.unknowns)) for run in runs]
     if not free:
         return _fit_starts(model, runs, fixed, start_z, effort, executor)
-    problem = _problem(model, runs, free, fixed, effort.tolerance, executor)
+    problem = _problem(
+        model, runs, free, fixed, effort.tolerance, executor, effort.prior_sigma
+    )
     phi = to_search(free, {f.name: f.start for f in free})
     best = minimise(problem, phi, start_z, effort.iterations, effort.gain)
     values = {**fixed, **all_values(free, best.phi)}
@@ -108,6 +115,7 @@ def _problem(
     fixed: Mapping[str, float],
     tolerance: Tolerance,
     executor: Executor | None,
+    prior_sigma: float | None = None,
 ) -> Problem:
     names = list(model.parameter_names)
     columns = np.array(
@@ -137,6 +145,7 @@ def _problem(
         return list(executor.map(one, pairs)) if executor else [one(pair) for pair in pairs]
 
     lower, upper = limits(free)
+    centre, precision = _prior(free, prior_sigma)
     return Problem(
         evaluate_all,
         lower,
@@ -144,7 +153,21 @@ def _problem(
         [np.array([u.lower for u in run.unknowns]) for run in runs],
         [np.array([u.upper for u in run.unknowns]) for run in runs],
         [np.array([u.sigma for u in run.unknowns]) for run in runs],
+        centre,
+        precision,
     )
+
+
+def _prior(
+    free: Sequence[FreeParameter], sigma: float | None
+) -> tuple[FloatArray, FloatArray]:
+    """Centre and precision of the prior in search coordinates; precision 0 where there is none."""
+    held = [sigma is not None and f.logarithmic and f.table is not None for f in free]
+    centre = [
+        np.log(f.table / f.start) if h and f.table else 0.0 for f, h in zip(free, held, strict=True)
+    ]
+    precision = [1.0 / sigma**2 if h and sigma else 0.0 for h in held]
+    return np.array(centre), np.array(precision)
 
 
 def _fit_starts(

@@ -31,6 +31,8 @@ class Problem:
     start_lower: Sequence[FloatArray]
     start_upper: Sequence[FloatArray]
     start_sigma: Sequence[FloatArray]
+    prior_centre: FloatArray
+    prior_precision: FloatArray
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,8 @@ def cost_of(problem: Problem, evaluations: Sequence[Evaluation], z: Sequence[Flo
     if any(e.failed for e in evaluations):
         return np.inf
     fit = sum(float(e.residual @ e.residual) for e in evaluations)
+    if not np.isfinite(fit) or not all(np.all(np.isfinite(e.by_parameter)) for e in evaluations):
+        return np.inf
     return fit + sum(
         float(np.sum((a / s) ** 2)) for a, s in zip(z, problem.start_sigma, strict=True)
     )
@@ -62,7 +66,11 @@ def minimise(
     iterations: int = 30,
     gain: float = 1e-5,
 ) -> Optimum:
-    """Minimise from (phi, z); stops when two steps in a row gain less than the share `gain`."""
+    """Minimise from (phi, z); stops when two steps in a row gain less than the share `gain`.
+
+    The prior of phi is weighed by the mean square residual: strong while the model is far off,
+    so that declared parameters do not bend to stand in for an effect, and weak at the noise floor.
+    """
     phi, z = np.clip(phi, problem.lower, problem.upper), [a.copy() for a in z]
     now = problem.evaluate(phi, z, True)
     cost = cost_of(problem, now, z)
@@ -71,8 +79,9 @@ def minimise(
         return Optimum(phi, z, np.inf, now, 0, why)
     damping, quiet = FIRST_DAMPING, 0
     for iteration in range(1, iterations + 1):
+        weight = problem.prior_precision * cost / sum(e.residual.size for e in now)
         for _ in range(LARGEST_REJECTIONS):
-            step, steps_z = _step(problem, now, phi, z, damping)
+            step, steps_z = _step(problem, now, phi, z, damping, weight)
             trial = np.clip(phi + step, problem.lower, problem.upper)
             trial_z = [
                 np.clip(a + b, low, high)
@@ -82,12 +91,12 @@ def minimise(
             ]
             after = problem.evaluate(trial, trial_z, True)
             new_cost = cost_of(problem, after, trial_z)
-            if new_cost < cost:
+            if new_cost - cost < _prior(problem, weight, phi) - _prior(problem, weight, trial):
                 break
             damping *= 10.0
         else:
             return Optimum(phi, z, cost, now, iteration)
-        gained = (cost - new_cost) / cost
+        gained = abs(cost - new_cost) / cost
         phi, z, now, cost = trial, trial_z, after, new_cost
         damping = max(damping / 10.0, 1e-12)
         quiet = quiet + 1 if gained < gain else 0
@@ -96,16 +105,21 @@ def minimise(
     return Optimum(phi, z, cost, now, iterations)
 
 
+def _prior(problem: Problem, weight: FloatArray, phi: FloatArray) -> float:
+    return float(np.sum(weight * (phi - problem.prior_centre) ** 2))
+
+
 def _step(
     problem: Problem,
     evaluations: Sequence[Evaluation],
     phi: FloatArray,
     z: Sequence[FloatArray],
     damping: float,
+    weight: FloatArray,
 ) -> tuple[FloatArray, list[FloatArray]]:
     nf = len(phi)
-    schur, right = np.zeros((nf, nf)), np.zeros(nf)
-    diagonal = np.zeros(nf)
+    schur, right = np.diag(weight), -weight * (phi - problem.prior_centre)
+    diagonal = weight.copy()
     blocks = []
     for e, a, sigma in zip(evaluations, z, problem.start_sigma, strict=True):
         j, k, r = e.by_parameter, e.by_start, e.residual

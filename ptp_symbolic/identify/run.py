@@ -14,7 +14,7 @@ from ptp_symbolic.simulate.inputs import InputTable, stack, table
 
 FloatArray = NDArray[np.float64]
 
-REST_SAMPLES = 20
+REST_SAMPLES = 3
 SLOPE_SAMPLES = 7
 
 
