@@ -26,6 +26,11 @@ class Candidate:
         return self.id if self.axis is None else f"{self.id}@{self.axis}"
 
     @property
+    def is_declared_value(self) -> bool:
+        """True where it frees a value that the platform declares as known."""
+        return self.id.startswith(DECLARED_VALUE)
+
+    @property
     def parameters(self) -> tuple[str, ...]:
         """Names of the parameters that it frees."""
         return tuple(f.name for f in self.starts[0])

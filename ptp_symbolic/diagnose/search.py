@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.identify.coordinates import FreeParameter
+from ptp_symbolic.diagnose.floor import floor_counts
 from ptp_symbolic.diagnose.scores import Score, score
 from ptp_symbolic.identify.evaluate import Tolerance, evaluate
-from ptp_symbolic.identify.fit import Effort, Fit, all_values_at_start, fit_parameters
+from ptp_symbolic.identify.fit import Effort, Fit, all_values_at_start, fit_parameters, run_counts
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.runtime.model import Model
 
@@ -30,9 +31,12 @@ FIRST = Effort(5, 3e-3, COARSE, 0.3)
 DECLARED = Effort(8, 1e-2, COARSE, 0.3)
 NEXT = Effort(14, 1e-3, COARSE, 0.5)
 LAST = Effort(20, 1e-4, FINE)
+SHIFTED = Effort(3, 1e-3, COARSE)
 HELD_OUT = Effort(10, 1e-4, FINE)
 DROP_FACTOR = 25.0
-KEPT_AFTER_FIRST, POLISHED, BEAM = 8, 4, 3
+KEPT_AFTER_FIRST, POLISHED, BEAM = 6, 4, 3
+UNEVEN, NEAR, FAR = 1.12, 3.0, 30.0
+SHIFTS = (0.9, 1.1, 0.6, 1.6)
 VISIBLE_SHARE = 0.03
 
 
@@ -74,7 +78,7 @@ def fit_declared(task: Task) -> Trial:
     last = fit_parameters(
         task.model, task.train, _restarted(best), task.fixed, best.z, LAST, task.executor
     )
-    return judge(task, Trial((), min(best, last, key=lambda fit: fit.cost)))
+    return judge(task, escape(task, Trial((), min(best, last, key=lambda fit: fit.cost))))
 
 
 def _shifted(free: FreeParameter) -> FreeParameter:
@@ -96,11 +100,13 @@ def try_candidates(
 ) -> list[Trial]:
     """Refit every base with each candidate added; the best are polished and judged, best first."""
     first = _first_round(task, bases, candidates)
-    second = _continue(task, _best(first, KEPT_AFTER_FIRST), NEXT)
+    second = _continue(task, _best(first, KEPT_AFTER_FIRST), FIRST)
+    third = _continue(task, _best(second, POLISHED), NEXT)
     task.progress("polishing the best candidates")
-    polished = _continue(task, _best(second, POLISHED), LAST)
+    polished = _continue(task, _best(third, POLISHED), LAST)
+    polished = [escape(task, t) if t is polished[0] else t for t in polished]
     judged = [judge(task, trial) for trial in polished]
-    dropped = [t for t in (*second, *first) if t.keys not in {j.keys for j in judged}]
+    dropped = [t for t in (*third, *second, *first) if t.keys not in {j.keys for j in judged}]
     unique = {t.keys: t for t in reversed(dropped)}
     return sorted(judged, key=held_out_cost) + sorted(unique.values(), key=lambda t: t.train.cost)
 
@@ -143,27 +149,28 @@ def _first_round(
         for base in bases
         for candidate in candidates
         if candidate.key not in base.keys
-        for values, z in _origins(task, base)
+        for values, z in _origins(task, base, candidate)
         for start in candidate.starts
     ]
     task.progress(f"trying {len(candidates)} candidates from {len(jobs)} starts")
 
-    def alone(job: tuple) -> Fit:
-        _, _, start, values, z = job
-        return fit_parameters(task.model, task.train, start, values, z, EFFECT_ONLY)
-
     best: dict[tuple[str, ...], Trial] = {}
-    for (base, candidate, *_), fit in zip(jobs, task.executor.map(alone, jobs), strict=True):
+    for base, candidate, start, values, z in jobs:
+        fit = fit_parameters(
+            task.model, task.train, start, values, z, EFFECT_ONLY, task.executor
+        )
         trial = Trial((*base.candidates, candidate), _all_free(base, fit))
         if trial.keys not in best or fit.cost < best[trial.keys].train.cost:
             best[trial.keys] = trial
-    return _continue(task, list(best.values()), FIRST)
+    return list(best.values())
 
 
-def _origins(task: Task, base: Trial) -> list[tuple[dict[str, float], list[FloatArray]]]:
-    """Where searches begin: the optimum of `base`, for the first effect also the table start."""
+def _origins(
+    task: Task, base: Trial, candidate: Candidate
+) -> list[tuple[dict[str, float], list[FloatArray]]]:
+    """Where searches begin: the optimum of `base`; for the first effect also the table start."""
     optimum = (dict(base.train.values), list(base.train.z))
-    if base.candidates:
+    if base.candidates or candidate.is_declared_value:
         return [optimum]
     rest = [np.zeros(len(run.unknowns)) for run in task.train]
     return [({**base.train.values, **all_values_at_start(task.free)}, rest), optimum]
@@ -198,12 +205,71 @@ def _best(trials: Sequence[Trial], count: int) -> list[Trial]:
 def _continue(
     task: Task, trials: Sequence[Trial], effort: Effort
 ) -> list[Trial]:
-    def run(trial: Trial) -> Trial:
+    continued = []
+    for trial in trials:
         free = _restarted(trial.train)
         fit = fit_parameters(
-            task.model, task.train, free, _fixed(task, free), trial.train.z, effort
+            task.model, task.train, free, _fixed(task, free), trial.train.z, effort, task.executor
         )
         kept = fit if fit.cost <= 1.02 * trial.train.cost else trial.train
-        return replace(trial, train=kept)
+        continued.append(replace(trial, train=kept))
+    return sorted(continued, key=lambda trial: trial.train.cost)
 
-    return list(task.executor.map(run, trials))
+
+def escape(task: Task, trial: Trial) -> Trial:
+    """Leave a local minimum near the floor: some run is worse than rounding alone explains.
+
+    Bounces in a gap make the cost piecewise smooth, with minima that differ by a few per cent in
+    one parameter; each parameter in turn is shifted and the fit continued from there.
+    """
+    best = _from_table(task, trial)
+    for shift in SHIFTS:
+        for index in range(len(trial.train.free)):
+            if not _is_uneven(best.train):
+                return best
+            free = list(_restarted(best.train))
+            start = float(np.clip(shift * free[index].start, free[index].lower, free[index].upper))
+            free[index] = replace(free[index], start=start)
+            z = best.train.z
+            fit = fit_parameters(
+                task.model, task.train, free, _fixed(task, free), z, SHIFTED, task.executor
+            )
+            if fit.cost < 0.998 * best.train.cost:
+                task.progress(f"escaped by {free[index].name}: {fit.rms_counts():.3f} counts rms")
+                best = _continue(task, [replace(best, train=fit)], LAST)[0]
+    return best
+
+
+def _from_table(task: Task, trial: Trial) -> Trial:
+    """Refit with the declared parameters back at their table start, the effect kept."""
+    if not trial.candidates or not _is_uneven(trial.train, FAR):
+        return trial
+    free = tuple(
+        f if f.table is None else replace(f, start=f.table) for f in _restarted(trial.train)
+    )
+    fixed, z = _fixed(task, free), trial.train.z
+    fit = fit_parameters(task.model, task.train, free, fixed, z, NEXT, task.executor)
+    if fit.cost >= 0.998 * trial.train.cost:
+        return trial
+    return _continue(task, [replace(trial, train=fit)], LAST)[0]
+
+
+def without_idle(task: Task, trial: Trial) -> list[Trial]:
+    """Refits of a trial of several candidates with each one taken out, from the optimum found."""
+    smaller = []
+    for idle in trial.candidates if len(trial.candidates) > 1 else ():
+        kept = tuple(c for c in trial.candidates if c is not idle)
+        free = tuple(f for f in _restarted(trial.train) if f.name not in idle.parameters)
+        fixed, z = _fixed(task, free), trial.train.z
+        fit = fit_parameters(task.model, task.train, free, fixed, z, LAST, task.executor)
+        smaller.append(judge(task, Trial(kept, fit)))
+    return smaller
+
+
+def _is_uneven(fit: Fit, near: float = NEAR) -> bool:
+    """Near the floor in total, but not in every run."""
+    floor = floor_counts(fit.pairs())
+    if fit.rms_counts() > near * floor:
+        return False
+    worst = max(float(np.sqrt(np.mean(run_counts(r, e) ** 2))) for r, e in fit.pairs())
+    return worst > UNEVEN * floor

@@ -89,7 +89,7 @@ def _away_from_zero(trial: Trial) -> bool:
     for candidate in trial.candidates:
         off = []
         for name in candidate.parameters:
-            zero = starts[name] if ":" in candidate.id else vanishes[name]
+            zero = starts[name] if candidate.is_declared_value else vanishes[name]
             if zero is not None:
                 off.append(not found[name].lower <= zero <= found[name].upper)
         if not any(off):

@@ -40,13 +40,13 @@ VERDICTS = {
     "explained": Verdict(
         "found",
         "explained",
-        "Missing effect found: {effects}",
+        "Missing effect{s} found: {effects}",
         "With it the model reproduces the validation runs, which were never fitted.",
     ),
     "explained_up_to_group": Verdict(
         "found",
         "explained, with look-alikes",
-        "Missing effect found, or one that looks like it: {effects}",
+        "Missing effect{s} found, up to look-alikes: {effects}",
         "With it the model reproduces the validation runs, but these logs cannot tell it from"
         " the look-alikes named below.",
     ),
@@ -60,8 +60,7 @@ VERDICTS = {
         "open",
         "unexplained",
         "Something is missing, and no known effect explains it",
-        "The residual is well above the noise, yet none of the candidates accounts for it."
-        " The hints below say what it depends on.",
+        "The residual is well above the noise, yet none of the candidates accounts for it.",
     ),
 }
 
@@ -88,7 +87,7 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
     return page.render(
         diagnosis=diagnosis,
         verdict=verdict,
-        heading=verdict.heading.format(effects=" and ".join(effects)),
+        heading=verdict.heading.format(effects=" and ".join(effects), s="s" * (len(effects) > 1)),
         colours=figures.COLOURS,
         key=key,
         unit=unit,

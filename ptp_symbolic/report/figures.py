@@ -34,6 +34,7 @@ STYLE: dict[Any, Any] = {
     "grid.color": "#eceff2",
     "grid.linewidth": 0.8,
     "axes.axisbelow": True,
+    "axes.xmargin": 0.01,
     "axes.titlesize": 8.5,
     "axes.titlelocation": "left",
     "axes.titlepad": 4.0,
@@ -45,7 +46,7 @@ STYLE: dict[Any, Any] = {
     "path.simplify": True,
     "path.simplify_threshold": 0.2,
 }
-DOTS, BINS = 700, 30
+DOTS = 700
 
 
 def residual(signal: Mapping[str, Any], stage: str) -> FloatArray | None:
@@ -77,20 +78,35 @@ def motion_figure(curve: Mapping[str, Any], floor: float | None, points: int = 8
         for kind in ("motion", "residual", "after")
         if kind != "after" or signal.get("after") is not None
     ]
-    heights = [{"motion": 1.7, "residual": 1.1, "after": 1.0}[kind] for _, _, kind in panels]
+    heights = [{"motion": 1.7, "residual": 0.95, "after": 0.85}[kind] for _, _, kind in panels]
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.0, 0.5 + 1.22 * sum(heights)), layout="constrained")
+        figure = Figure(figsize=(6.0, 0.75 + sum(heights) + 0.33 * (len(panels) - 1)))
         grid = figure.subplots(
             len(panels), 1, sharex=True, squeeze=False, gridspec_kw={"height_ratios": heights}
         )[:, 0]
+        _set_margins(figure, len(panels), 1)
         for axes, (name, signal, kind) in zip(grid, panels, strict=True):
             if kind == "motion":
                 _draw_motion(axes, name, signal, time, points)
             else:
                 _draw_residual(axes, signal, time, floor, points, zoomed=kind == "after")
         grid[-1].set_xlabel("time [s]")
-        figure.align_ylabels()
         return _svg(figure)
+
+
+def _set_margins(figure: Figure, rows: int, columns: int) -> None:
+    """Leave fixed room, in inches, for labels; a layout engine would draw every figure twice."""
+    width, height = figure.get_size_inches()
+    left, right, bottom, top = 0.62, 0.08, 0.44, 0.26
+    gap_across, gap_down = 0.2, 0.33
+    figure.subplots_adjust(
+        left=left / width,
+        right=1.0 - right / width,
+        bottom=bottom / height,
+        top=1.0 - top / height,
+        wspace=gap_across * columns / (width - left - right - gap_across * (columns - 1)),
+        hspace=gap_down * rows / (height - bottom - top - gap_down * (rows - 1)),
+    )
 
 
 def _draw_motion(
@@ -113,18 +129,16 @@ def _draw_residual(
     points: int,
     zoomed: bool,
 ) -> None:
-    limit = 0.0
-    _draw_floor(axes, floor if signal.get("counts") else None)
+    band = floor if signal.get("counts") else None
+    drawn = []
+    _draw_floor(axes, band)
     for stage, colour in (("before", BEFORE), ("after", AFTER)):
         values = residual(signal, stage)
         if values is None or (zoomed and stage == "before"):
             continue
         axes.plot(*_thinned(time, values, points), color=colour, linewidth=0.9)
-        limit = max(limit, float(np.max(np.abs(values), initial=0.0, where=np.isfinite(values))))
-    if floor and signal.get("counts"):
-        limit = max(limit, 2.5 * floor)
-    if limit:
-        axes.set_ylim(-1.1 * limit, 1.1 * limit)
+        drawn.append(values)
+    _set_limit(axes, np.concatenate(drawn), band)
     what = "the same, after alone" if zoomed else "measured − simulated"
     axes.set_title(f"{what} [{residual_unit(signal)}]")
 
@@ -135,60 +149,68 @@ def _draw_floor(axes: Axes, floor: float | None) -> None:
     axes.axhline(0.0, color="#c9cfd6", linewidth=0.8)
 
 
+def _set_limit(axes: Axes, values: FloatArray, floor: float | None) -> None:
+    """Show all values and the whole floor, zero in the middle."""
+    largest = float(np.max(np.abs(values), initial=0.0, where=np.isfinite(values)))
+    limit = 1.1 * max(largest, 2.3 * (floor or 0.0))
+    if limit:
+        axes.set_ylim(-limit, limit)
+
+
 def residual_map_figure(
     signal_name: str, axis: str, curves: Mapping[str, Mapping[str, Any]], floor: float | None
 ) -> str:
     """What one signal leaves over against angle, rate of `axis` and time, runs pooled, as SVG.
 
-    Dots are samples, the line is the median of each of 30 equal bins, the band the noise floor.
+    Dots are samples, the line their median in equal bins, the band the noise floor.
     """
     runs = [run for run in curves.values() if signal_name in run["signals"]]
     against = [
-        (f"angle of {axis} [deg]", [np.degrees(run["angle"][axis]) for run in runs]),
-        (f"rate of {axis} [deg/s]", [np.degrees(run["rate"][axis]) for run in runs]),
-        ("time [s]", [np.asarray(run["time"], float) for run in runs]),
+        (f"angle of {axis} [deg]", [np.degrees(run["angle"][axis]) for run in runs], 30),
+        (f"rate of {axis} [deg/s]", [np.degrees(run["rate"][axis]) for run in runs], 30),
+        ("time [s]", [np.asarray(run["time"], float) for run in runs], 8),
     ]
     signals = [run["signals"][signal_name] for run in runs]
     stages = [s for s in ("before", "after") if all(x.get(s) is not None for x in signals)]
     unit = residual_unit(signals[0])
+    band = floor if unit == "counts" else None
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(10.4, 0.5 + 1.9 * len(stages)), layout="constrained")
+        figure = Figure(figsize=(10.4, 0.5 + 1.9 * len(stages)))
         grid = figure.subplots(len(stages), 3, sharey="row", sharex="col", squeeze=False)
+        _set_margins(figure, len(stages), 3)
         for row, stage in zip(grid, stages, strict=True):
             left_over = [residual(signal, stage) for signal in signals]
             values = np.concatenate([part for part in left_over if part is not None])
-            for axes, (_, coordinates) in zip(row, against, strict=True):
-                _draw_floor(axes, floor if unit == "counts" else None)
-                _draw_cloud(axes, np.concatenate(coordinates), values, stage)
+            for axes, (_, coordinates, bins) in zip(row, against, strict=True):
+                _draw_floor(axes, band)
+                _draw_cloud(axes, np.concatenate(coordinates), values, stage, bins)
+            _set_limit(row[0], values, band)
             row[0].set_ylabel(f"{stage} [{unit}]")
-        for axes, (label, _) in zip(grid[-1], against, strict=True):
+        for axes, (label, _, _) in zip(grid[-1], against, strict=True):
             axes.set_xlabel(label)
         return _svg(figure)
 
 
-def _draw_cloud(axes: Axes, x: FloatArray, y: FloatArray, stage: str) -> None:
+def _draw_cloud(axes: Axes, x: FloatArray, y: FloatArray, stage: str, bins: int) -> None:
     """Draw about 700 samples as dots in one path, and the median of each bin."""
-    colour = BEFORE if stage == "before" else AFTER
     finite = np.isfinite(x) & np.isfinite(y)
     x, y = x[finite], y[finite]
     if not x.size:
         return
-    # a stride without a common factor with anything periodic in the log
-    chosen = np.unique(np.linspace(0.0, 1.0, DOTS) ** 1.0001 * (x.size - 1)).astype(int)
-    dots = np.repeat(np.column_stack([x[chosen], y[chosen]]), 2, axis=0)
-    codes = np.tile([Path.MOVETO, Path.LINETO], len(chosen))
-    patch = PathPatch(
-        Path(dots, codes), edgecolor=colour, alpha=0.45, linewidth=1.7, capstyle="round"
+    # strides that grow slowly have no factor in common with anything periodic in the log
+    chosen = np.unique((np.linspace(0.0, 1.0, DOTS) ** 1.01 * (x.size - 1)).astype(int))
+    dots = Path(
+        np.repeat(np.column_stack([x[chosen], y[chosen]]), 2, axis=0),
+        np.tile([Path.MOVETO, Path.LINETO], len(chosen)),
     )
-    axes.add_patch(patch)
-    edges = np.linspace(x.min(), x.max(), BINS + 1)
-    place = np.clip(np.digitize(x, edges) - 1, 0, BINS - 1)
-    full = [b for b in range(BINS) if np.count_nonzero(place == b) >= 8]
-    medians = [float(np.median(y[place == b])) for b in full]
-    axes.plot((edges[full] + edges[np.add(full, 1)]) / 2 if full else [], medians, color="#20262c")
-    limit = 1.08 * float(np.abs(y).max())
-    if limit:
-        axes.set_ylim(-limit, limit)
+    colour = BEFORE if stage == "before" else AFTER
+    look = {"edgecolor": colour, "alpha": 0.45, "linewidth": 1.7, "capstyle": "round"}
+    axes.add_patch(PathPatch(dots, **look))
+    edges = np.linspace(x.min(), x.max(), bins + 1)
+    place = np.clip(np.digitize(x, edges) - 1, 0, bins - 1)
+    full = np.flatnonzero(np.bincount(place, minlength=bins) >= 8)
+    medians = [float(np.median(y[place == each])) for each in full]
+    axes.plot((edges[full] + edges[full + 1]) / 2.0, medians, color="#20262c")
     axes.autoscale(axis="x")
 
 

@@ -8,9 +8,9 @@ NOTHING = "–"
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
-def number(value: float | None, digits: int = 3) -> str:
-    """A number with `digits` significant digits; a dash for None, NaN and infinity."""
-    if value is None or not math.isfinite(value):
+def number(value: Any, digits: int = 3) -> str:
+    """A number with `digits` significant digits; a dash for NaN, infinity and what is none."""
+    if not _usable(value):
         return NOTHING
     if value == 0.0:
         return "0"
@@ -31,18 +31,20 @@ def unit(text: str | None) -> str:
     return base + "".join(p[:1].translate(_RAISED) + p[1:] for p in powers)
 
 
+def _usable(value: Any) -> bool:
+    return isinstance(value, int | float) and math.isfinite(value)
+
+
 def _digits(quantity: Mapping[str, Any]) -> int:
     """As many digits as the interval deserves: two of its half width."""
-    value, bounds = quantity.get("value"), quantity.get("ci95")
-    if not value or not bounds or not all(_usable(b) for b in bounds) or bounds[0] == bounds[1]:
+    value, bounds = quantity.get("value"), quantity.get("ci95") or ()
+    if not _usable(value) or not value or not bounds or not all(map(_usable, bounds)):
         return 4
     half_width = abs(bounds[1] - bounds[0]) / 2.0
+    if not half_width:
+        return 4
     more = math.floor(math.log10(abs(value))) - math.floor(math.log10(half_width))
     return min(max(more + 2, 2), 7)
-
-
-def _usable(value: float | None) -> bool:
-    return value is not None and math.isfinite(value)
 
 
 def estimate(quantity: Mapping[str, Any] | None) -> str:
@@ -54,17 +56,17 @@ def estimate(quantity: Mapping[str, Any] | None) -> str:
 
 def interval(quantity: Mapping[str, Any] | None) -> str:
     """The 95 % interval of {value, ci95, unit} as `low to high`; a dash when there is none."""
-    bounds = (quantity or {}).get("ci95")
-    if not quantity or not bounds or not all(_usable(bound) for bound in bounds):
+    bounds = (quantity or {}).get("ci95") or ()
+    if not quantity or not bounds or not all(map(_usable, bounds)):
         return NOTHING
-    value = abs(quantity.get("value") or 0.0)
-    digits = _digits(quantity)
-    texts = []
-    for bound in bounds:
-        # the same number of decimals as the value, whatever the size of the bound
-        larger = math.log10(abs(bound) / value) if bound and value else 0.0
-        texts.append(number(bound, min(max(digits + math.floor(larger + 1e-9), 2), 8)))
+    # the last decimal of the value, whatever the size of the bound
+    size, digits = _exponent(quantity.get("value")), _digits(quantity)
+    texts = [number(b, max(digits + _exponent(b) - size, 2) if b else digits) for b in bounds]
     return f"{texts[0]} to {texts[1]}"
+
+
+def _exponent(value: Any) -> int:
+    return math.floor(math.log10(abs(value))) if _usable(value) and value else 0
 
 
 def in_degrees(quantity: Mapping[str, Any] | None) -> str:

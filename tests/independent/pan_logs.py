@@ -20,6 +20,7 @@ VOLTAGE_NOISE, CURRENT_NOISE = 8e-3, 4e-3  # V and A rms, on the logged columns 
 COLUMNS = "time [s],pan_voltage [V],pan_current [A],pan_angle [rad]"
 DECLARED_GAP = math.radians(1.49)
 PAYLOAD_WEIGHT_TORQUE = 4.992 * 9.81 * 0.1  # N m, mass, gravity and lever
+STAIRS = (0.0, 3.0, 6.0, 12.0, 0.0, -3.0, -6.0, -12.0)  # V
 TONES = (0.1, 0.23, 0.47, 0.81, 1.7, 3.1)  # Hz
 
 Settings = Mapping[str, float]
@@ -66,7 +67,6 @@ def profiles(rng: np.random.Generator, dc: bool = False) -> dict[str, Floats]:
     crawl = crawl_peak * np.where((t // 4.0) % 2 == 0, 1, -1) * np.minimum(t % 4.0, 1.0)
     t = times(6.0)
     step = np.where((t > 0.5) & (t < 5.0), 24.0, 0.0)
-    levels = (0.0, 3.0, 6.0, 12.0, 0.0, -3.0, -6.0, -12.0)
     ramp_crawl = knots(
         26.0, (0, 0), (11.995, 5.9975), (12, 0), (14, 0), (14.33, 6), (24.995, 6), (25, 0)
     )
@@ -77,7 +77,7 @@ def profiles(rng: np.random.Generator, dc: bool = False) -> dict[str, Floats]:
         "train/multisine_1": multisine(),
         "train/ramp_crawl": ramp_crawl,
         "train/ramp_slow": knots(11.0, (0, 0), (9.995, 23.988), (10, 0)),
-        "train/staircase": np.repeat(levels, round(2.5 / PERIOD)),
+        "train/staircase": np.repeat(STAIRS, round(2.5 / PERIOD)),
         "train/step_ccw": step,
         "train/step_cw": -step,
         "validate/crawl_cw": -crawl,

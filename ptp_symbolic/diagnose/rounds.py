@@ -1,0 +1,54 @@
+"""The rounds of a diagnosis: one missing effect, then two, from the best few of the first round."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.scores import Score
+from ptp_symbolic.diagnose.search import (
+    BEAM,
+    VISIBLE_SHARE,
+    Task,
+    Trial,
+    fit_declared,
+    held_out_cost,
+    scores,
+    try_candidates,
+    without_idle,
+)
+from ptp_symbolic.diagnose.verdict import Verdict, decide, is_settled
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """Everything that a diagnosis found: base fit, every trial, scores, what cannot be seen."""
+
+    base: Trial
+    trials: tuple[Trial, ...]
+    scores: dict[str, Score]
+    invisible: tuple[Candidate, ...]
+    verdict: Verdict
+
+
+def diagnose(task: Task, candidates: Sequence[Candidate]) -> Diagnosis:
+    """Find what the declared model lacks; at most two effects at once."""
+    base = fit_declared(task)
+    scored = scores(task, base, candidates)
+    visible = [c for c in candidates if scored[c.key].share_left >= VISIBLE_SHARE]
+    invisible = tuple(c for c in candidates if c not in visible)
+    trials = try_candidates(task, [base], visible)
+    verdict = decide(base, trials)
+    if not is_settled(verdict):
+        effects = [c for c in visible if not c.is_declared_value]
+        beam = [t for t in trials if np.isfinite(held_out_cost(t))][:BEAM]
+        trials += try_candidates(task, beam, effects)
+        pairs = [t for t in trials if len(t.candidates) > 1 and np.isfinite(held_out_cost(t))]
+        for pair in sorted(pairs, key=held_out_cost)[:1]:
+            trials += without_idle(task, pair)
+        verdict = decide(base, trials)
+    ordered = sorted(trials, key=lambda t: (held_out_cost(t), t.train.cost))
+    unique = {t.keys: t for t in reversed(ordered)}
+    kept = sorted(unique.values(), key=lambda t: (held_out_cost(t), t.train.cost))
+    return Diagnosis(base, tuple(kept), scored, invisible, verdict)
