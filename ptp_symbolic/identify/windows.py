@@ -1,0 +1,78 @@
+"""How long a run may be simulated freely: replay it with the noise of its inputs and look.
+
+A machine that forgets (a geared drive, damped by its back-EMF) is judged over whole runs. One that
+integrates its input noise (a torque-driven axis) would be judged by that noise; it is cut into
+windows with starts of their own.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.identify.evaluate import Tolerance, evaluate
+from ptp_symbolic.identify.run import Run, split_run
+from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.simulate.inputs import stack, table
+
+FloatArray = NDArray[np.float64]
+
+ALLOWED_COUNTS = 0.15
+LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)
+REPLAY_SEED = 20130801
+
+
+def input_noise(run: Run, declared: Sequence[float | None]) -> FloatArray:
+    """Noise (rms) of every input [nu]: as declared, else from its third differences (robustly)."""
+    third = np.diff(run.held_inputs, 3, axis=0)
+    seen = 1.4826 * np.median(np.abs(third), axis=0) / np.sqrt(20.0)
+    return np.array([s if d is None else d for s, d in zip(seen, declared, strict=True)])
+
+
+def window_length(
+    model: Model, runs: Sequence[Run], p: FloatArray, declared_noise: Sequence[float | None]
+) -> float | None:
+    """Longest window in s over which input noise stays below the rounding of the encoder.
+
+    None where whole runs do.
+    """
+    rng = np.random.default_rng(REPLAY_SEED)
+    grown = [_drift(model, run, p, input_noise(run, declared_noise), rng) for run in runs]
+    durations = [float(run.time[-1] - run.time[0]) for run in runs]
+    for length in (np.inf, *LENGTHS):
+        inside = [
+            np.mean(drift[time <= length] ** 2) for drift, time in grown if time.size
+        ]
+        if inside and np.sqrt(np.median(inside)) <= ALLOWED_COUNTS:
+            return None if length >= max(durations) else float(length)
+    return LENGTHS[-1]
+
+
+def _drift(
+    model: Model, run: Run, p: FloatArray, noise: FloatArray, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray]:
+    """Difference in counts [k] between a run and its noisy replay, with the time since its start."""
+    shaken = run.held_inputs + noise * rng.standard_normal(run.held_inputs.shape)
+    replay = replace(
+        run,
+        inputs=stack([table(run.time, column, "hold") for column in shaken.T]),
+        held_inputs=np.ascontiguousarray(shaken),
+    )
+    z, none = np.zeros(len(run.unknowns)), np.zeros(0, dtype=np.int64)
+    plain, other = (
+        evaluate(model, r, p, z, none, False, Tolerance()) for r in (run, replay)
+    )
+    if plain.failed or other.failed:
+        return np.zeros(0), np.zeros(0)
+    shape = run.measured.shape
+    counts = np.where(np.isfinite(run.counts), run.counts, np.inf)
+    difference = (plain.residual - other.residual).reshape(shape) / run.weight / counts
+    return np.sqrt(np.mean(difference**2, axis=1)), run.time - run.time[0]
+
+
+def cut(model: Model, runs: Sequence[Run], length: float | None) -> tuple[Run, ...]:
+    """Runs as they are, or cut into windows of about `length` s."""
+    if length is None:
+        return tuple(runs)
+    return tuple(piece for run in runs for piece in split_run(model, run, length))

@@ -1,0 +1,157 @@
+"""A made-up diagnosis and its curves, for every verdict, as the report receives them."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+COUNT = 2.0 * math.pi / 7200.0
+FLOOR = 0.289
+RUNS = {
+    "ramp": "train",
+    "sine": "train",
+    "trapezoid": "train",
+    "sweep": "validate",
+    "step": "validate",
+}
+
+
+def synthetic_curves(
+    samples: int = 1200, after: bool = True, current: bool = True, drift_counts: float = 40.0
+) -> dict[str, Any]:
+    """Runs of a pan axis whose declared model drifts off by an angle-dependent amount."""
+    generator = np.random.default_rng(7)
+    curves: dict[str, Any] = {}
+    for index, (run, set_name) in enumerate(RUNS.items()):
+        time = np.arange(samples) * 0.005
+        frequency = 2.0 * math.pi * (0.25 + 0.1 * index)
+        angle = 1.5 * np.sin(frequency * time) * (1.0 - np.exp(-time))
+        rate = np.gradient(angle, time)
+        drift = drift_counts * COUNT * np.sin(angle - 0.8) * np.minimum(time, 2.0)
+        measured = np.round((angle + 1e-5 * generator.normal(size=samples)) / COUNT) * COUNT
+        signals = {
+            "theta_pan": {
+                "unit": "rad", "measured": measured, "before": angle - drift,
+                "after": angle if after else None, "counts": COUNT,
+            }
+        }  # fmt: skip
+        if current:
+            amperes = 0.4 * np.cos(frequency * time)
+            signals["i_pan"] = {
+                "unit": "A", "measured": amperes + 0.004 * generator.normal(size=samples),
+                "before": amperes * 1.05, "after": amperes if after else None, "counts": None,
+            }  # fmt: skip
+        curves[run] = {
+            "set": set_name, "time": time, "signals": signals,
+            "angle": {"pan": angle}, "rate": {"pan": rate},
+        }  # fmt: skip
+    return curves
+
+
+def metrics(counts: float) -> dict[str, float]:
+    return {
+        "rmse_counts": counts,
+        "rmse": counts * COUNT,
+        "relative_l2": counts / 1000.0,
+        "fit_percent": 100.0 - counts / 10.0,
+    }
+
+
+def errors(counts: float, after: float | None) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name in ("train", "validate"):
+        runs = [run for run, set_name in RUNS.items() if set_name == name]
+        found[name] = {
+            stage: {
+                "total": metrics(value),
+                "by_run": {run: metrics(value * (1.0 + 0.2 * k)) for k, run in enumerate(runs)},
+            }
+            for stage, value in (("before", counts), ("after", after), ("noise_floor", FLOOR))
+            if value is not None
+        }
+    return found
+
+
+def quantity(value: float, half: float, unit: str, **more: Any) -> dict[str, Any]:
+    return {"value": value, "ci95": [value - half, value + half], "unit": unit, **more}
+
+
+ADDED: dict[str, Any] = {
+    "effect": "base_tilt",
+    "title": "base that is not level",
+    "axis": None,
+    "parameters": {
+        "beta_base": quantity(0.08731, 0.00032, "rad"),
+        "alpha_base": quantity(0.8021, 0.0041, "rad"),
+    },
+    "confusable_with": [],
+    "separating_experiment": "Sweep the pan axis over a full turn.",
+}
+EQUATION = {
+    "title": "Gravity torque about the pan axis",
+    "effect": "base_tilt",
+    "latex": r"\tau = -m g c \sin\beta \sin(\theta_{pan} - \alpha)",
+    "text": "τ = −m g c sin β sin(θ_pan − α)",
+    "mathml": "<mrow><mi>τ</mi><mo>=</mo><mo>-</mo><mi>m</mi><mo>&InvisibleTimes;</mo><mi>g</mi>"
+    "<mi>c</mi><mi>sin</mi><mo>(</mo><mi>β</mi><mo>)</mo><mi>sin</mi><mrow><mo>(</mo><msub><mi>θ</mi>"
+    "<mi>pan</mi></msub><mo>-</mo><mi>α</mi><mo>)</mo></mrow></mrow>",
+}
+
+
+def ranking(winner: str | None, best: float) -> list[dict[str, Any]]:
+    tried = (
+        ("cable_spring", 1.89, 0.432), ("base_tilt", best, best), ("constant_torque", 22.4, 19.0),
+        ("direction_dependent_friction", 27.3, 21.9), ("payload_com_offset", 29.79, 24.1),
+        ("backlash", None, None), ("shaft_compliance", 29.8, 24.08), ("viscous_friction", 5e7, 9e6),
+    )  # fmt: skip
+    return [
+        {
+            "effect": effect,
+            "axis": None if effect == "base_tilt" else "pan",
+            "statistic": 812.3 - 90.0 * k,
+            "p_value": 10.0 ** -(30 - 4 * k),
+            "train_error_after": train,
+            "validate_error_after": validate,
+            "parameters": ADDED["parameters"] if effect == "base_tilt" else {"k": 0.3},
+            "accepted": effect == winner,
+            "why": "explains 99 % of the excess" if effect == winner else "ends above the winner",
+        }
+        for k, (effect, validate, train) in enumerate(tried)
+    ]
+
+
+def synthetic_diagnosis(verdict: str) -> dict[str, Any]:
+    added = [] if verdict in ("nothing_missing", "unexplained") else [ADDED]
+    before = 0.291 if verdict == "nothing_missing" else 29.8
+    after = {"partly_explained": 7.4}.get(verdict, 0.292) if added else None
+    if verdict == "explained_up_to_group":
+        added = [{**ADDED, "confusable_with": ["cable_spring", "constant_torque"]}]
+    parameters = {
+        "J_pan": quantity(0.0912, 0.0011, "kg m^2", start=0.1, at_bound=False, identified=True),
+        "F_s_pan": quantity(0.0, 0.02, "N m", start=0.675, at_bound=True, identified=True),
+        "d_shaft_pan": quantity(3.1, math.nan, "N m s/rad", start=1.0, identified=False),
+    }  # fmt: skip
+    fit: dict[str, Any] = {"before": {"parameters": parameters}}
+    if added:
+        new = {"J_pan": quantity(0.0999, 0.0006, "kg m^2", start=0.1), **ADDED["parameters"]}
+        fit["after"] = {"parameters": {**parameters, **new}}
+    return {
+        "schema_version": 1,
+        "platform": {"name": "fieldlog_pan", "title": "Pan axis of the field logs, PWM drive"},
+        "verdict": verdict,
+        "summary": "On 2 validation runs the error was compared with the noise floor.",
+        "added": added,
+        "ranking": ranking("base_tilt" if added else None, after or before),
+        "error": errors(before, after),
+        "residual_tests": [
+            {"name": "whiteness", "signal": "theta_pan", "statistic": 1.2, "threshold": 2.6,
+             "passed": True, "meaning": "the residual does not repeat itself"},
+            {"name": "independence of the angle", "signal": "theta_pan", "statistic": 9.9,
+             "threshold": 2.6, "passed": False, "meaning": "the residual depends on the angle"},
+        ],
+        "fit": fit,
+        "not_visible": [{"effect": "backlash", "axis": "pan", "why": "the gap is never crossed"}],
+        "hints": ["The residual repeats once per turn."] if verdict == "unexplained" else [],
+        "equations": [EQUATION] if added else [],
+        "runtime_seconds": 41.7,
+    }  # fmt: skip
