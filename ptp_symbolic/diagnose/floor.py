@@ -12,12 +12,25 @@ FloatArray = NDArray[np.float64]
 
 ROUNDING_COUNTS = 1.0 / np.sqrt(12.0)
 KEPT_SHARE = 0.99
+MANY_WINDOWS, KEPT_WINDOWS = 20, 0.9
 
 
 def encoder_columns(run: Run) -> list[int]:
     """Measured columns that are encoder signals; all columns where there is no encoder."""
     found = [c for c in range(run.measured.shape[1]) if np.isfinite(run.counts[c])]
     return found or list(range(run.measured.shape[1]))
+
+
+def trimmed(pairs: Sequence[tuple[Run, Evaluation]]) -> list[tuple[Run, Evaluation]]:
+    """Of many windows those nine tenths that fit best; few whole runs all.
+
+    One window in twenty may settle in the wrong branch of sticking and sliding.
+    """
+    if len(pairs) < MANY_WINDOWS:
+        return list(pairs)
+    size = [float(np.mean(e.residual**2)) for _, e in pairs]
+    order = np.argsort(size, kind="stable")[: int(KEPT_WINDOWS * len(pairs))]
+    return [pairs[i] for i in sorted(order)]
 
 
 def residual_counts(run: Run, evaluation: Evaluation, column: int) -> FloatArray:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from ptp_symbolic.diagnose.floor import encoder_columns, residual_counts
+from ptp_symbolic.diagnose.floor import encoder_columns, residual_counts, trimmed
 from ptp_symbolic.identify.evaluate import Evaluation
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.intervals import BLOCK_SECONDS, project_out
@@ -58,8 +58,9 @@ def score(fit: Fit, extra: Sequence[FloatArray]) -> Score:
 
 
 def mean_square(pairs: Pairs) -> float:
-    """Mean square of all encoder residuals in counts^2."""
-    parts = [residual_counts(r, e, c) for r, e in pairs for c in encoder_columns(r)]
+    """Mean square of all encoder residuals in counts^2; of many windows without the worst."""
+    kept = trimmed(pairs)
+    parts = [residual_counts(r, e, c) for r, e in kept for c in encoder_columns(r)]
     return float(np.mean(np.concatenate(parts) ** 2))
 
 

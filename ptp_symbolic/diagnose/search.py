@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.diagnose.floor import floor_counts
-from ptp_symbolic.diagnose.scores import Score, score
+from ptp_symbolic.diagnose.scores import Score, mean_square, score
 from ptp_symbolic.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.identify.fit import Effort, Fit, all_values_at_start, fit_parameters, run_counts
 from ptp_symbolic.identify.run import Run
@@ -133,7 +133,7 @@ def held_out_cost(trial: Trial) -> float:
     """Mean square of the held-out residuals; infinite when not judged."""
     if trial.validate is None or trial.validate.failed:
         return np.inf
-    return trial.validate.rms_counts() ** 2
+    return mean_square(trial.validate.pairs())
 
 
 def _first_round(

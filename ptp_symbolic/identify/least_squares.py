@@ -19,6 +19,7 @@ Evaluate = Callable[[FloatArray, Sequence[FloatArray], bool], list[Evaluation]]
 LARGEST_STEP = 1.0
 FIRST_DAMPING = 1e-3
 LARGEST_REJECTIONS = 5
+MANY_RUNS, BEND, NEARBY = 20, 2.5, 8.0
 
 
 @dataclass(frozen=True)
@@ -47,15 +48,45 @@ class Optimum:
     failed: str | None = None
 
 
-def cost_of(problem: Problem, evaluations: Sequence[Evaluation], z: Sequence[FloatArray]) -> float:
+def robust_bend(evaluations: Sequence[Evaluation]) -> float:
+    """Root mean square above which a window counts only linearly.
+
+    Infinite for a few whole runs, and while most windows are still far off.
+    """
+    if len(evaluations) < MANY_RUNS or any(e.failed for e in evaluations):
+        return np.inf
+    rms = [float(np.sqrt(np.mean(e.residual**2))) for e in evaluations]
+    middle = float(np.median(rms))
+    return BEND * middle if middle < NEARBY else np.inf
+
+
+def _loss(e: Evaluation, bend: float) -> float:
+    """Huber's loss of a window: square up to the bend, linear beyond."""
+    square = float(e.residual @ e.residual)
+    rms = np.sqrt(square / e.residual.size)
+    return square if rms <= bend else e.residual.size * (2.0 * bend * rms - bend**2)
+
+
+def _share(e: Evaluation, bend: float) -> float:
+    """Weight of a window in the normal equations."""
+    return min(1.0, bend / max(float(np.sqrt(np.mean(e.residual**2))), 1e-300))
+
+
+def cost_of(
+    problem: Problem,
+    evaluations: Sequence[Evaluation],
+    z: Sequence[FloatArray],
+    bend: float = np.inf,
+    scale: float = 1.0,
+) -> float:
     """Sum of squares; infinite as soon as one simulation failed."""
     if any(e.failed for e in evaluations):
         return np.inf
-    fit = sum(float(e.residual @ e.residual) for e in evaluations)
+    fit = sum(_loss(e, bend) for e in evaluations)
     if not np.isfinite(fit) or not all(np.all(np.isfinite(e.by_parameter)) for e in evaluations):
         return np.inf
     return fit + sum(
-        float(np.sum((a / s) ** 2)) for a, s in zip(z, problem.start_sigma, strict=True)
+        scale * float(np.sum((a / s) ** 2)) for a, s in zip(z, problem.start_sigma, strict=True)
     )
 
 
@@ -68,8 +99,8 @@ def minimise(
 ) -> Optimum:
     """Minimise from (phi, z); stops when two steps in a row gain less than the share `gain`.
 
-    The prior of phi is weighed by the mean square residual: strong while the model is far off,
-    so that declared parameters do not bend to stand in for an effect, and weak at the noise floor.
+    Priors of phi and z are weighed by the mean square residual: strong while the model is far off,
+    so that declared parameters and starts do not bend to stand in for an effect, and weak at the noise floor.
     """
     phi, z = np.clip(phi, problem.lower, problem.upper), [a.copy() for a in z]
     now = problem.evaluate(phi, z, True)
@@ -79,9 +110,13 @@ def minimise(
         return Optimum(phi, z, np.inf, now, 0, why)
     damping, quiet = FIRST_DAMPING, 0
     for iteration in range(1, iterations + 1):
-        weight = problem.prior_precision * cost / sum(e.residual.size for e in now)
+        bend = robust_bend(now)
+        size = sum(e.residual.size for e in now)
+        mean_square = sum(_loss(e, bend) for e in now) / size
+        weight, scale = problem.prior_precision * mean_square, max(1.0, mean_square)
+        cost = cost_of(problem, now, z, bend, scale)
         for _ in range(LARGEST_REJECTIONS):
-            step, steps_z = _step(problem, now, phi, z, damping, weight)
+            step, steps_z = _step(problem, now, phi, z, damping, weight, bend, scale)
             trial = np.clip(phi + step, problem.lower, problem.upper)
             trial_z = [
                 np.clip(a + b, low, high)
@@ -90,7 +125,7 @@ def minimise(
                 )
             ]
             after = problem.evaluate(trial, trial_z, True)
-            new_cost = cost_of(problem, after, trial_z)
+            new_cost = cost_of(problem, after, trial_z, bend, scale)
             if new_cost - cost < _prior(problem, weight, phi) - _prior(problem, weight, trial):
                 break
             damping *= 10.0
@@ -116,17 +151,20 @@ def _step(
     z: Sequence[FloatArray],
     damping: float,
     weight: FloatArray,
+    bend: float,
+    scale: float,
 ) -> tuple[FloatArray, list[FloatArray]]:
     nf = len(phi)
     schur, right = np.diag(weight), -weight * (phi - problem.prior_centre)
     diagonal = weight.copy()
     blocks = []
     for e, a, sigma in zip(evaluations, z, problem.start_sigma, strict=True):
-        j, k, r = e.by_parameter, e.by_start, e.residual
+        share = np.sqrt(_share(e, bend))
+        j, k, r = share * e.by_parameter, share * e.by_start, share * e.residual
         jj, jk, kk = j.T @ j, j.T @ k, k.T @ k
-        kk = kk + np.diag(1.0 / sigma**2)
+        kk = kk + np.diag(scale / sigma**2)
         kk = kk + damping * np.diag(np.diag(kk))
-        gr, gz = -(j.T @ r), -(k.T @ r) - a / sigma**2
+        gr, gz = -(j.T @ r), -(k.T @ r) - scale * a / sigma**2
         inverse = np.linalg.inv(kk) if len(a) else kk
         schur += jj - jk @ inverse @ jk.T
         right += gr - jk @ inverse @ gz
