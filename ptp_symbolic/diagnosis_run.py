@@ -110,10 +110,11 @@ def _task(
     fixed = {**model.defaults, **off, **loop.known_values(platform, model)}
     runs = [prepare_runs(model, platform, tuple(logs)) for logs in (train, validate)]
     start = {**fixed, **{name: f.start for f in free for name in (f.name, *f.tied)}}
-    noise = [s.noise for s in platform.signals if s.role == "input"]
+    noises = {s.signal: s.noise for s in platform.signals}
+    noise = tuple(noises[name] for name in model.input_names)
     length = window_length(model, runs[0], model.parameter_vector(start), noise)
     cut_train, cut_validate = (cut(model, part, length) for part in runs)
-    return Task(model, cut_train, cut_validate, free, fixed, executor, progress)
+    return Task(model, cut_train, cut_validate, free, fixed, executor, progress, noise)
 
 
 def _write_up(platform: Platform, found: Diagnosis) -> Output:

@@ -39,7 +39,7 @@ def diagnose(task: Task, candidates: Sequence[Candidate]) -> Diagnosis:
     visible = [c for c in candidates if scored[c.key].share_left >= VISIBLE_SHARE]
     invisible = tuple(c for c in candidates if c not in visible)
     trials = try_candidates(task, [base], visible)
-    verdict = decide(base, trials)
+    verdict = decide(task, base, trials)
     if not is_settled(verdict):
         effects = [c for c in visible if not c.is_declared_value]
         beam = [t for t in trials if np.isfinite(held_out_cost(t))][:BEAM]
@@ -47,7 +47,7 @@ def diagnose(task: Task, candidates: Sequence[Candidate]) -> Diagnosis:
         pairs = [t for t in trials if len(t.candidates) > 1 and np.isfinite(held_out_cost(t))]
         for pair in sorted(pairs, key=held_out_cost)[:1]:
             trials += without_idle(task, pair)
-        verdict = decide(base, trials)
+        verdict = decide(task, base, trials)
     ordered = sorted(trials, key=lambda t: (held_out_cost(t), t.train.cost))
     unique = {t.keys: t for t in reversed(ordered)}
     kept = sorted(unique.values(), key=lambda t: (held_out_cost(t), t.train.cost))

@@ -51,6 +51,7 @@ class Task:
     fixed: Mapping[str, float]
     executor: Executor
     progress: Progress
+    input_noise: tuple[float | None, ...]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,9 @@ import numpy as np
 
 from ptp_symbolic.diagnose.floor import floor_counts
 from ptp_symbolic.diagnose.scores import share_explained, share_improved
-from ptp_symbolic.diagnose.search import Trial, held_out_cost
+from ptp_symbolic.diagnose.search import Task, Trial, held_out_cost
 from ptp_symbolic.identify.intervals import estimates
+from ptp_symbolic.identify.windows import propagated_noise
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"
@@ -16,10 +17,11 @@ UP_TO_GROUP = "explained_up_to_group"
 PARTLY = "partly_explained"
 UNEXPLAINED = "unexplained"
 
-AT_FLOOR, NEAR_FLOOR = 1.05, 1.15
+AT_FLOOR, NEAR_FLOOR, LEFT_TO_PARTLY = 1.05, 1.5, 2.0
 IMPROVED, EXPLAINED_SHARE, PARTLY_SHARE = 0.85, 0.90, 0.30
 TIE = 1.02
 CLEAR_GAIN = 0.9
+SECOND_LEAVES = 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,15 +36,15 @@ class Verdict:
     explained: float
 
 
-def decide(base: Trial, trials: Sequence[Trial]) -> Verdict:
+def decide(task: Task, base: Trial, trials: Sequence[Trial]) -> Verdict:
     """Decide on held-out runs alone; `trials` are judged refits of `base`, in any order."""
     judged = sorted((t for t in trials if np.isfinite(held_out_cost(t))), key=held_out_cost)
-    floor = min(floor_counts(t.train.pairs()) for t in (base, *judged))
+    floor = _noise_floor(task, (base, *judged))
     before = float(np.sqrt(held_out_cost(base)))
     if not judged:
         word = NOTHING_MISSING if before <= AT_FLOOR * floor else UNEXPLAINED
         return Verdict(word, None, (), floor, 0.0, 0.0)
-    winner, rivals = _simplest(judged)
+    winner, rivals = _choose(judged, floor)
     assert base.validate is not None and winner.validate is not None
     improved = share_improved(base.validate.pairs(), winner.validate.pairs(), floor)
     explained = share_explained(base.validate.pairs(), winner.validate.pairs(), floor)
@@ -51,15 +53,38 @@ def decide(base: Trial, trials: Sequence[Trial]) -> Verdict:
     seen = clear and _away_from_zero(winner)
     if before <= AT_FLOOR * floor and not seen:
         return Verdict(NOTHING_MISSING, None, (), floor, improved, explained)
-    if not seen or explained < PARTLY_SHARE or final > NEAR_FLOOR * floor:
-        full = seen and explained >= EXPLAINED_SHARE and final <= 2.0 * floor
-        if not full:
-            return Verdict(UNEXPLAINED, None, tuple(judged[:1]), floor, improved, explained)
-        return Verdict(PARTLY, winner, rivals, floor, improved, explained)
-    if explained >= EXPLAINED_SHARE or final <= AT_FLOOR * floor:
+    if not seen or explained < PARTLY_SHARE or final > LEFT_TO_PARTLY * floor:
+        return Verdict(UNEXPLAINED, None, tuple(judged[:1]), floor, improved, explained)
+    if final <= AT_FLOOR * floor or (explained >= EXPLAINED_SHARE and final <= NEAR_FLOOR * floor):
         word = UP_TO_GROUP if rivals else EXPLAINED
         return Verdict(word, winner, rivals, floor, improved, explained)
     return Verdict(PARTLY, winner, rivals, floor, improved, explained)
+
+
+def _choose(judged: Sequence[Trial], floor: float) -> tuple[Trial, tuple[Trial, ...]]:
+    """The best trial of one effect, unless one of two effects removes most of what that leaves."""
+    chosen: tuple[Trial, tuple[Trial, ...]] | None = None
+    for size in sorted({len(t.candidates) for t in judged}):
+        best, rivals = _simplest([t for t in judged if len(t.candidates) == size])
+        if chosen is None:
+            chosen = best, rivals
+            continue
+        left = max(held_out_cost(chosen[0]) - floor**2, 0.0)
+        if held_out_cost(best) - floor**2 <= SECOND_LEAVES * left and _away_from_zero(best):
+            if float(np.sqrt(held_out_cost(chosen[0]))) > AT_FLOOR * floor:
+                chosen = best, rivals
+    assert chosen is not None
+    return chosen
+
+
+def _noise_floor(task: Task, trials: Sequence[Trial]) -> float:
+    """Floor in counts: rounding and encoder noise, and input noise carried to the encoder."""
+    best = min(trials, key=held_out_cost)
+    p = task.model.parameter_vector(dict(best.train.values))
+    fit = best.validate or best.train
+    carried = propagated_noise(task.model, fit.runs, fit.z, p, task.input_noise)
+    measured = min(floor_counts(t.train.pairs()) for t in trials)
+    return float(np.hypot(measured, carried))
 
 
 def is_settled(verdict: Verdict) -> bool:

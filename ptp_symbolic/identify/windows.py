@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.identify.evaluate import Tolerance, evaluate
+from ptp_symbolic.identify.intervals import project_out
 from ptp_symbolic.identify.run import Run, split_run
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulate.inputs import stack, table
@@ -70,22 +71,63 @@ def _drift(
     model: Model, run: Run, p: FloatArray, noise: FloatArray, rng: np.random.Generator
 ) -> tuple[FloatArray, FloatArray]:
     """Difference in counts [k] between a run and its noisy replay, with the time since its start."""
+    z = np.zeros(len(run.unknowns))
+    found = _replay(model, run, p, z, noise, rng)
+    if found is None:
+        return np.zeros(0), np.zeros(0)
+    counts = in_counts(run, found[0])
+    return np.sqrt(np.mean(counts**2, axis=1)), run.time - run.time[0]
+
+
+def in_counts(run: Run, residual: FloatArray) -> FloatArray:
+    """Weighted residuals [k * ny] as counts [k, ne] of the encoder columns (all without one)."""
+    encoders = np.isfinite(run.counts)
+    table_of = residual.reshape(run.measured.shape)
+    return (table_of / run.weight / run.counts)[:, encoders] if encoders.any() else table_of
+
+
+def _replay(
+    model: Model,
+    run: Run,
+    p: FloatArray,
+    z: FloatArray,
+    noise: FloatArray,
+    rng: np.random.Generator,
+) -> tuple[FloatArray, FloatArray] | None:
+    """Change of the weighted residuals by input noise, and the Jacobian by the start of the run."""
     shaken = run.held_inputs + noise * rng.standard_normal(run.held_inputs.shape)
-    replay = replace(
+    noisy = replace(
         run,
         inputs=stack([table(run.time, column, "hold") for column in shaken.T]),
         held_inputs=np.ascontiguousarray(shaken),
     )
-    z, none = np.zeros(len(run.unknowns)), np.zeros(0, dtype=np.int64)
-    plain, other = (
-        evaluate(model, r, p, z, none, False, Tolerance()) for r in (run, replay)
-    )
+    none = np.zeros(0, dtype=np.int64)
+    plain, other = (evaluate(model, r, p, z, none, True, Tolerance()) for r in (run, noisy))
     if plain.failed or other.failed:
-        return np.zeros(0), np.zeros(0)
-    shape = run.measured.shape
-    counts = np.where(np.isfinite(run.counts), run.counts, np.inf)
-    difference = (plain.residual - other.residual).reshape(shape) / run.weight / counts
-    return np.sqrt(np.mean(difference**2, axis=1)), run.time - run.time[0]
+        return None
+    return other.residual - plain.residual, plain.by_start
+
+
+def propagated_noise(
+    model: Model,
+    runs: Sequence[Run],
+    z: Sequence[FloatArray],
+    p: FloatArray,
+    declared_noise: Sequence[float | None],
+) -> float:
+    """What input noise leaves in the residual of a perfect model, in counts rms.
+
+    Every run is replayed with noisy inputs; what its unknown start can take up is projected out.
+    The median over runs counts, so that a replay which sticks elsewhere does not.
+    """
+    rng = np.random.default_rng(REPLAY_SEED)
+    squares = []
+    for run, start in zip(runs, z, strict=True):
+        found = _replay(model, run, p, start, input_noise(run, declared_noise), rng)
+        if found is not None:
+            change = project_out(found[0][:, None], found[1])[:, 0]
+            squares.append(float(np.mean(in_counts(run, change) ** 2)))
+    return float(np.sqrt(np.median(squares))) if squares else 0.0
 
 
 def cut(model: Model, runs: Sequence[Run], length: float | None) -> tuple[Run, ...]:
