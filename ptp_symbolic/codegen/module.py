@@ -3,7 +3,7 @@
 import hashlib
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -13,8 +13,10 @@ from ptp_symbolic.codegen.printer import print_expression
 from ptp_symbolic.codegen.sharing import Line, share
 from ptp_symbolic.codegen.templates import STATE_DERIVATIVE_HYBRID, STATE_DERIVATIVE_SMOOTH
 from ptp_symbolic.derivation.equations import Equations
+from ptp_symbolic.simplify.base_parameters import base_form
 
 WIDTH = 100
+SEAL = "# END sha256 "
 MODE_ARGUMENTS = "t, x, u, p, m"
 
 
@@ -53,7 +55,7 @@ def module_text(equations: Equations) -> str:
     )
     body = "\n\n\n".join(
         [
-            _mode_derivative(equations, solve, vectors),
+            _mode_derivative(equations, vectors),
             _jacobian(equations, solve, vectors),
             _guards(equations, solve, vectors),
             _guard_jacobian(equations, solve, vectors),
@@ -64,8 +66,13 @@ def module_text(equations: Equations) -> str:
         ]
     )
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
-    text = f"{metadata_text(equations, digest)}\n\n{body}\n"
-    return text + f"# END sha256 {hashlib.sha256(text.encode()).hexdigest()}\n"
+    return sealed(f"{metadata_text(equations, digest)}\n\n\n{body}\n")
+
+
+def sealed(text: str) -> str:
+    """`text` with its SHA-256 as the last line, in place of an earlier one."""
+    text = text.partition(SEAL)[0]
+    return f"{text}{SEAL}{hashlib.sha256(text.encode()).hexdigest()}\n"
 
 
 def _kernel(
@@ -99,13 +106,19 @@ def _wrapped(target: str, expression: sp.Expr) -> list[str]:
 
 
 def _shared(definitions: Sequence[Line], outputs: Sequence[Line]) -> list[Line]:
-    return share(definitions, [(t, sp.sympify(e)) for t, e in outputs if e != 0])
+    return share(definitions, [(t, sp.sympify(e, strict=True)) for t, e in outputs if e != 0])
 
 
-def _mode_derivative(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
-    rates = dynamics.state_rates(equations, solve)
-    outputs = [(f"dx[{i}]", sp.sympify(rate)) for i, rate in enumerate(rates)]
-    lines = share(solve.definitions, outputs)
+def _mode_derivative(equations: Equations, vectors: Vectors) -> str:
+    """The state derivative in base parameters, which need the fewest operations."""
+    form = base_form(equations.rigid_equations, equations.mass_matrix, equations.forcing)
+    regrouped = dynamics.solve_accelerations(
+        replace(equations, mass_matrix=form.mass_matrix, forcing=form.forcing)
+    )
+    rates = dynamics.state_rates(equations, regrouped)
+    outputs = [(f"dx[{i}]", sp.sympify(rate, strict=True)) for i, rate in enumerate(rates)]
+    named = [(str(s), e) for s, e in (*form.base_parameters, *form.shared_terms) if s != e]
+    lines = share((*named, *regrouped.definitions), outputs)
     doc = "Write the time derivative of the state into dx in the modes m."
     return _kernel("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
 
@@ -137,7 +150,7 @@ def _jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> 
 
 def _guards(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
     outputs = [
-        (f"g[{i}]", sp.sympify(e))
+        (f"g[{i}]", sp.sympify(e, strict=True))
         for i, e in enumerate(dynamics.guard_expressions(equations, solve))
     ]
     doc = "Write holding and breakaway torques, gap separations and contact torques into g."

@@ -27,9 +27,11 @@ class KernelPrinter(PythonCodePrinter):
         if exponent == sp.Rational(1, 2):
             return f"math.sqrt({self._print(base)})"
         if exponent.is_Integer and 0 < abs(int(exponent)) <= 4:
-            factor = self.parenthesize(base, sp.printing.precedence.PRECEDENCE["Atom"])
+            factor = self.parenthesize(base, sp.printing.precedence.PRECEDENCE["Atom"], strict=True)
             product = " * ".join([factor] * abs(int(exponent)))
-            return f"({product})" if exponent > 0 else f"1.0 / ({product})"
+            if exponent > 0:
+                return product if exponent == 1 else f"({product})"
+            return f"1.0 / {product}" if exponent == -1 else f"1.0 / ({product})"
         return super()._print_Pow(expr, rational=rational)
 
     def _print_Mul(self, expr: sp.Mul) -> str:
@@ -37,11 +39,12 @@ class KernelPrinter(PythonCodePrinter):
         below = [f for f in expr.args if f.is_Pow and f.exp.is_Integer and f.exp.is_negative]
         if not below:
             return super()._print_Mul(expr)
-        above = sp.Mul(*[f for f in expr.args if f not in below], evaluate=False)
+        above = sp.Mul(*[f for f in expr.args if f not in below])
         level = sp.printing.precedence.PRECEDENCE
-        top = self.parenthesize(above, level["Mul"])
-        bottom = self.parenthesize(sp.Mul(*[1 / f for f in below]), level["Atom"])
-        return f"{top} / {bottom}"
+        top = self.parenthesize(above, level["Mul"], strict=True)
+        bottom = sp.Mul(*[1 / f for f in below])
+        under = self.parenthesize(bottom, level["Atom"], strict=True)
+        return f"{top} / {under}"
 
 
 def print_expression(expression: sp.Expr) -> str:

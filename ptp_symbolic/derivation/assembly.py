@@ -28,7 +28,7 @@ class _Parts:
 
     def resolve(self, expression: sp.Expr) -> sp.Expr:
         """Replace quantity placeholders, also inside other quantities."""
-        expression = sp.sympify(expression)
+        expression = sp.sympify(expression, strict=True)
         while True:
             present = expression.free_symbols & self.values.keys()
             if not present:
@@ -116,7 +116,7 @@ def _collect(platform: Platform, placed: Iterable[tuple]) -> _Parts:
     for contribution in contributions:
         for name, change in contribution.changes.items():
             values[name] = values[name] + change.addition
-    symbols = {quantity_symbol(name): sp.sympify(value) for name, value in values.items()}
+    symbols = {quantity_symbol(name): sp.sympify(value, strict=True) for name, value in values.items()}
     return _Parts(contributions, tuple(effect.dissipative for effect, _ in placed), symbols)
 
 
@@ -258,7 +258,7 @@ def _ledger(
         dissipated += direction * friction.level * friction.rate
     for shaft in shafts:
         stored, dissipated = stored + shaft.stored, dissipated + shaft.dissipated
-    return Ledger(*(parts.resolve(sp.sympify(e)) for e in (stored, power_in, dissipated)))
+    return Ledger(*(parts.resolve(sp.sympify(e, strict=True)) for e in (stored, power_in, dissipated)))
 
 
 def _with_parameters(equations: Equations, declared: dict[str, Parameter]) -> Equations:

@@ -1,0 +1,311 @@
+"""Balanced pan-tilt platform of the thesis: equations of motion, emitted; do not edit.
+
+M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
+
+  M[0, 0] = J_pan + J_x_tilt*sin(theta_tilt)**2 + J_z_tilt*cos(theta_tilt)**2
+  M[1, 1] = J_y_tilt
+  forcing[omega_pan] = -2*J_x_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
+      2*J_z_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) - b_pan*omega_pan +
+      tau_pan
+  forcing[omega_tilt] = J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
+      J_z_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) - b_tilt*omega_tilt + tau_tilt
+
+Effects:
+- rigid_bodies: thesis Eq. 3.8, Table 5.1
+- viscous_friction (pan): thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)
+- viscous_friction (tilt): thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+MODEL_HASH = "bbecc2784e690c04"
+NAME = "ideal"
+TITLE = "Balanced pan-tilt platform of the thesis"
+AXES = ("pan", "tilt")
+STATE_NAMES = ("theta_pan", "theta_tilt", "omega_pan", "omega_tilt")
+STATE_UNITS = ("rad", "rad", "rad/s", "rad/s")
+STATE_INITIAL = (0.0, 0.0, 0.0, 0.0)
+INPUT_NAMES = ("tau_pan", "tau_tilt")
+INPUT_UNITS = ("N m", "N m")
+OUTPUT_NAMES = ("theta_pan", "theta_tilt")
+OUTPUT_UNITS = ("rad", "rad")
+MODE_NAMES = ()
+FRICTION_RATES = ()
+# Per contact: state index of the angle at the gear output and at the joint.
+CONTACT_ANGLES = ()
+# Parameters: name, unit, default, lower and upper bound, value at which the effect
+# vanishes (None: any), values from which a search starts, period, meaning.
+PARAMETERS = (
+    ("J_pan", "kg m^2", 0.00053, 0.0, 10000.0, None, (), None, "inertia of the pan body about z"),
+    (
+        "J_x_tilt",
+        "kg m^2",
+        0.00041,
+        0.0,
+        10000.0,
+        None,
+        (),
+        None,
+        "inertia of the tilt body about x",
+    ),
+    (
+        "J_y_tilt",
+        "kg m^2",
+        0.00065,
+        0.0,
+        10000.0,
+        None,
+        (),
+        None,
+        "inertia of the tilt body about y",
+    ),
+    (
+        "J_z_tilt",
+        "kg m^2",
+        0.00027,
+        0.0,
+        10000.0,
+        None,
+        (),
+        None,
+        "inertia of the tilt body about z",
+    ),
+    (
+        "b_pan",
+        "N m s/rad",
+        0.1,
+        0.0,
+        10000.0,
+        0.0,
+        (0.1,),
+        None,
+        "viscous friction in the pan joint",
+    ),
+    (
+        "b_tilt",
+        "N m s/rad",
+        0.1,
+        0.0,
+        10000.0,
+        0.0,
+        (0.1,),
+        None,
+        "viscous friction in the tilt joint",
+    ),
+)
+# Effects: id, axis, parameters, title, reference, separating experiment.
+EFFECTS = (
+    (
+        "rigid_bodies",
+        None,
+        ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"),
+        "pan body and tilt body",
+        "thesis Eq. 3.8, Table 5.1",
+        "",
+    ),
+    (
+        "viscous_friction",
+        "pan",
+        ("b_pan",),
+        "viscous friction in the joint",
+        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+    ),
+    (
+        "viscous_friction",
+        "tilt",
+        ("b_tilt",),
+        "viscous friction in the joint",
+        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+    ),
+)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def mode_derivative(t, x, u, p, m, dx):
+    """Write the time derivative of the state into dx in the modes m."""
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    tau_pan = u[0]
+    tau_tilt = u[1]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    b_pan = p[4]
+    b_tilt = p[5]
+    dx[0] = omega_pan
+    dx[1] = omega_tilt
+    inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
+    sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
+    coriolis = inertia_pan_per_sin_tilt * omega_pan * math.cos(theta_tilt)
+    force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
+    inertia_pan = J_pan + J_z_tilt
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
+    inverse_mass_pan = 1.0 / mass_pan
+    accel_pan = force_pan * inverse_mass_pan
+    dx[2] = accel_pan
+    force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
+    mass_tilt = J_y_tilt
+    inverse_mass_tilt = 1.0 / mass_tilt
+    accel_tilt = force_tilt * inverse_mass_tilt
+    dx[3] = accel_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def jacobian(t, x, u, p, m, fx, fu, fp):
+    """Write the non-zero derivatives of mode_derivative by state, input and parameter."""
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    tau_pan = u[0]
+    tau_tilt = u[1]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    b_pan = p[4]
+    b_tilt = p[5]
+    sin_tilt = math.sin(theta_tilt)
+    cos_tilt = math.cos(theta_tilt)
+    cos_tilt_sin_tilt = cos_tilt * sin_tilt
+    part_of_force_pan = 2.0 * cos_tilt_sin_tilt
+    J_x_tilt_part_of_force_pan = J_x_tilt * part_of_force_pan
+    omega_pan_omega_tilt = omega_pan * omega_tilt
+    force_pan = (
+        -J_x_tilt_part_of_force_pan * omega_pan_omega_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        - b_pan * omega_pan
+        + tau_pan
+    )
+    sin_tilt_sq = sin_tilt * sin_tilt
+    J_x_tilt_sin_tilt_sq = J_x_tilt * sin_tilt_sq
+    cos_tilt_sq = cos_tilt * cos_tilt
+    J_z_tilt_cos_tilt_sq = J_z_tilt * cos_tilt_sq
+    mass_pan = J_pan + J_x_tilt_sin_tilt_sq + J_z_tilt_cos_tilt_sq
+    inverse_mass_pan = 1.0 / mass_pan
+    accel_pan = force_pan * inverse_mass_pan
+    part_of_fx_2_1 = 2.0 * omega_pan_omega_tilt
+    J_z_tilt_part_of_force_pan = J_z_tilt * part_of_force_pan
+    fx[2, 1] = (inverse_mass_pan) * (
+        -J_x_tilt * cos_tilt_sq * part_of_fx_2_1
+        + 2.0 * J_x_tilt * omega_pan * omega_tilt * sin_tilt_sq
+        + 2.0 * J_z_tilt * cos_tilt_sq * omega_pan * omega_tilt
+        - J_z_tilt * part_of_fx_2_1 * sin_tilt_sq
+        - accel_pan * (J_x_tilt_part_of_force_pan - J_z_tilt_part_of_force_pan)
+    )
+    mass_tilt = J_y_tilt
+    inverse_mass_tilt = 1.0 / mass_tilt
+    omega_pan_sq = omega_pan * omega_pan
+    fx[3, 1] = (inverse_mass_tilt) * (
+        J_x_tilt * cos_tilt_sq * omega_pan_sq
+        - J_x_tilt_sin_tilt_sq * omega_pan_sq
+        + J_z_tilt * omega_pan_sq * sin_tilt_sq
+        - J_z_tilt_cos_tilt_sq * omega_pan_sq
+    )
+    fx[0, 2] = 1.0
+    fx[2, 2] = (inverse_mass_pan) * (
+        -J_x_tilt_part_of_force_pan * omega_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_tilt * sin_tilt
+        - b_pan
+    )
+    part_of_fx_3_2 = J_x_tilt_part_of_force_pan * omega_pan - J_z_tilt_part_of_force_pan * omega_pan
+    fx[3, 2] = inverse_mass_tilt * part_of_fx_3_2
+    fx[1, 3] = 1.0
+    fx[2, 3] = -inverse_mass_pan * part_of_fx_3_2
+    fx[3, 3] = -b_tilt * inverse_mass_tilt
+    fu[2, 0] = inverse_mass_pan
+    fu[3, 1] = inverse_mass_tilt
+    fp[2, 0] = -accel_pan * inverse_mass_pan
+    part_of_fp_2_1 = omega_pan_omega_tilt * part_of_force_pan
+    fp[2, 1] = inverse_mass_pan * (-accel_pan * sin_tilt_sq - part_of_fp_2_1)
+    part_of_fp_3_1 = cos_tilt_sin_tilt * inverse_mass_tilt * omega_pan_sq
+    fp[3, 1] = part_of_fp_3_1
+    force_tilt = (
+        J_x_tilt * cos_tilt_sin_tilt * omega_pan_sq
+        - J_z_tilt * cos_tilt_sin_tilt * omega_pan_sq
+        - b_tilt * omega_tilt
+        + tau_tilt
+    )
+    accel_tilt = force_tilt * inverse_mass_tilt
+    fp[3, 2] = -accel_tilt * inverse_mass_tilt
+    fp[2, 3] = inverse_mass_pan * (-accel_pan * cos_tilt_sq + part_of_fp_2_1)
+    fp[3, 3] = -part_of_fp_3_1
+    fp[2, 4] = -inverse_mass_pan * omega_pan
+    fp[3, 5] = -inverse_mass_tilt * omega_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def guards(t, x, u, p, m, g):
+    """Write holding and breakaway torques, gap separations and contact torques into g."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def guard_jacobian(t, x, u, p, m, gx, gp):
+    """Write the non-zero derivatives of guards by state and parameter."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def outputs(t, x, u, p, y):
+    """Write the measured signals into y."""
+    theta_pan = x[0]
+    theta_tilt = x[1]
+    y[0] = theta_pan
+    y[1] = theta_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def output_jacobian(t, x, u, p, yx, yp):
+    """Write the non-zero derivatives of outputs by state and parameter."""
+    yx[0, 0] = 1.0
+    yx[1, 1] = 1.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def energy(t, x, u, p, m, e):
+    """Write stored energy in J, power in and dissipated power in W into e."""
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    tau_pan = u[0]
+    tau_tilt = u[1]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    b_pan = p[4]
+    b_tilt = p[5]
+    omega_pan_sq = omega_pan * omega_pan
+    part_of_e_0 = (0.5) * omega_pan_sq
+    omega_tilt_sq = omega_tilt * omega_tilt
+    e[0] = (
+        J_pan * part_of_e_0
+        + J_x_tilt * part_of_e_0 * ((math.sin(theta_tilt)) * (math.sin(theta_tilt)))
+        + (0.5) * J_y_tilt * omega_tilt_sq
+        + J_z_tilt * part_of_e_0 * ((math.cos(theta_tilt)) * (math.cos(theta_tilt)))
+    )
+    e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
+    e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def initial_modes(t, x, u, p, m):
+    """Leave m alone: this model has no modes."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def state_derivative(t, x, u, p, dx):
+    """Write the time derivative of the state into dx."""
+    mode_derivative(t, x, u, p, x, dx)
+
+
+# END sha256 85bd1e28f5356b0cc81a1670888d89115806a8daa22782250a9b8e9e788e35b4

@@ -1,0 +1,608 @@
+"""Pan drive of the thesis: equations of motion, emitted; do not edit.
+
+M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
+
+  M[0, 0] = J_pan
+  M[1, 1] = J_motor_pan*N_pan**2
+  forcing[omega_pan] = active_pan*(d_shaft_pan*(omega_gear_pan - omega_pan) +
+      k_shaft_pan*(-gap_pan*side_pan/2 + theta_gear_pan - theta_pan)) - b_pan*omega_pan
+  forcing[omega_gear_pan] = K_t_pan*N_pan*i_pan - active_pan*(d_shaft_pan*(omega_gear_pan -
+      omega_pan) + k_shaft_pan*(-gap_pan*side_pan/2 + theta_gear_pan - theta_pan))
+  sliding friction[omega_gear_pan] = F_c_pan*(a_F_c_pan*slide_pan + 1) +
+      F_v_pan*omega_gear_pan*slide_pan*(a_F_v_pan*slide_pan + 1) +
+      (-F_c_pan*(a_F_c_pan*slide_pan + 1) + F_s_pan*(a_F_s_pan*slide_pan +
+      1))*exp(-omega_gear_pan**2/(v_s_pan**2*(a_v_s_pan*slide_pan + 1)**2))
+  i_pan' = (-K_t_pan*N_pan*omega_gear_pan - R_pan*i_pan + u_pan)/L_pan
+
+Effects:
+- rigid_bodies: thesis Eq. 3.8, Table 5.1
+- viscous_friction (pan): thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)
+- dc_motor (pan): thesis Eq. 3.10, Eq. 3.11 with erratum 8
+- shaft_compliance (pan): thesis Eq. 2.15 with erratum 4, Table 5.7
+- backlash (pan): thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull
+- csvs_friction (pan): thesis Eq. 2.10, 2.11 with errata 2 and 3, Eq. 4.1, exponent 2
+- direction_dependent_friction (pan): thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+MODEL_HASH = "2f767f35930b279b"
+NAME = "pan_drive"
+TITLE = "Pan drive of the thesis"
+AXES = ("pan",)
+STATE_NAMES = ("theta_pan", "omega_pan", "theta_gear_pan", "omega_gear_pan", "i_pan")
+STATE_UNITS = ("rad", "rad/s", "rad", "rad/s", "A")
+STATE_INITIAL = (0.0, 0.0, 0.0, 0.0, 0.0)
+INPUT_NAMES = ("u_pan",)
+INPUT_UNITS = ("V",)
+OUTPUT_NAMES = ("theta_pan", "i_pan")
+OUTPUT_UNITS = ("rad", "A")
+MODE_NAMES = ("slide_pan", "side_pan", "active_pan")
+FRICTION_RATES = (3,)
+# Per contact: state index of the angle at the gear output and at the joint.
+CONTACT_ANGLES = ((2, 0),)
+# Parameters: name, unit, default, lower and upper bound, value at which the effect
+# vanishes (None: any), values from which a search starts, period, meaning.
+PARAMETERS = (
+    ("J_pan", "kg m^2", 0.05, 0.0, 10000.0, None, (), None, "inertia of the pan body about z"),
+    (
+        "b_pan",
+        "N m s/rad",
+        2.0,
+        0.0,
+        10000.0,
+        0.0,
+        (0.1,),
+        None,
+        "viscous friction in the pan joint",
+    ),
+    ("L_pan", "H", 0.0069, 1e-09, 1000.0, None, (), None, "winding inductance"),
+    ("R_pan", "ohm", 12.9, 1e-06, 1000000.0, None, (), None, "winding resistance"),
+    ("K_t_pan", "N m/A", 0.0724, 1e-09, 10000.0, None, (), None, "torque constant"),
+    ("J_motor_pan", "kg m^2", 1.1e-05, 0.0, 1000.0, None, (), None, "rotor inertia"),
+    ("N_pan", "1", 500.0, 0.001, 1000000.0, None, (), None, "gear ratio"),
+    ("k_shaft_pan", "N m/rad", 5000.0, 0.001, 1000000000.0, None, (), None, "shaft stiffness"),
+    ("d_shaft_pan", "N m s/rad", 1.0, 0.0, 1000000.0, None, (), None, "shaft damping"),
+    (
+        "gap_pan",
+        "rad",
+        0.02600540585471551,
+        0.0,
+        1.0,
+        0.0,
+        (0.005, 0.02),
+        None,
+        "whole gap between the two faces",
+    ),
+    ("F_c_pan", "N m", 0.2401, 0.0, 10000.0, 0.0, (0.05,), None, "Coulomb friction torque"),
+    (
+        "F_s_pan",
+        "N m",
+        0.675,
+        0.0,
+        10000.0,
+        0.0,
+        (0.05,),
+        None,
+        "static (breakaway) friction torque",
+    ),
+    ("v_s_pan", "rad/s", 0.016, 1e-06, 1000.0, None, (0.05,), None, "Stribeck speed"),
+    ("F_v_pan", "N m s/rad", 13.9424, 0.0, 10000.0, 0.0, (0.0,), None, "viscous part"),
+    (
+        "a_F_c_pan",
+        "1",
+        -0.05581007913369427,
+        -0.95,
+        0.95,
+        0.0,
+        (-0.1, 0.1),
+        None,
+        "relative half difference of Coulomb friction",
+    ),
+    (
+        "a_F_s_pan",
+        "1",
+        -0.17362962962962966,
+        -0.95,
+        0.95,
+        0.0,
+        (0.0,),
+        None,
+        "relative half difference of static friction",
+    ),
+    (
+        "a_v_s_pan",
+        "1",
+        -0.006249999999999962,
+        -0.95,
+        0.95,
+        0.0,
+        (0.0,),
+        None,
+        "relative half difference of Stribeck speed",
+    ),
+    (
+        "a_F_v_pan",
+        "1",
+        -0.025677071379389464,
+        -0.95,
+        0.95,
+        0.0,
+        (0.0,),
+        None,
+        "relative half difference of viscous friction",
+    ),
+)
+# Effects: id, axis, parameters, title, reference, separating experiment.
+EFFECTS = (
+    (
+        "rigid_bodies",
+        None,
+        ("J_pan",),
+        "pan body and tilt body",
+        "thesis Eq. 3.8, Table 5.1",
+        "",
+    ),
+    (
+        "viscous_friction",
+        "pan",
+        ("b_pan",),
+        "viscous friction in the joint",
+        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+    ),
+    (
+        "dc_motor",
+        "pan",
+        ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"),
+        "geared DC motor",
+        "thesis Eq. 3.10, Eq. 3.11 with erratum 8",
+        "",
+    ),
+    (
+        "shaft_compliance",
+        "pan",
+        ("k_shaft_pan", "d_shaft_pan"),
+        "flexible shaft",
+        "thesis Eq. 2.15 with erratum 4, Table 5.7",
+        "",
+    ),
+    (
+        "backlash",
+        "pan",
+        ("gap_pan",),
+        "backlash",
+        "thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
+        "Reverse slowly with and without a known preload torque on the joint: backlash disappears under preload, presliding does not.",
+    ),
+    (
+        "csvs_friction",
+        "pan",
+        ("F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan"),
+        "Coulomb, static, viscous and Stribeck friction",
+        "thesis Eq. 2.10, 2.11 with errata 2 and 3, Eq. 4.1, exponent 2",
+        "Crawl through standstill in both directions at several slow speeds.",
+    ),
+    (
+        "direction_dependent_friction",
+        "pan",
+        ("a_F_c_pan", "a_F_s_pan", "a_v_s_pan", "a_F_v_pan"),
+        "friction that differs by direction",
+        "thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)",
+        "Run the same speeds both ways at two supply polarities, or back-drive the joint without power: friction follows the motion, an offset does not.",
+    ),
+)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def mode_derivative(t, x, u, p, m, dx):
+    """Write the time derivative of the state into dx in the modes m."""
+    theta_pan = x[0]
+    omega_pan = x[1]
+    theta_gear_pan = x[2]
+    omega_gear_pan = x[3]
+    i_pan = x[4]
+    u_pan = u[0]
+    J_pan = p[0]
+    b_pan = p[1]
+    L_pan = p[2]
+    R_pan = p[3]
+    K_t_pan = p[4]
+    J_motor_pan = p[5]
+    N_pan = p[6]
+    k_shaft_pan = p[7]
+    d_shaft_pan = p[8]
+    gap_pan = p[9]
+    F_c_pan = p[10]
+    F_s_pan = p[11]
+    v_s_pan = p[12]
+    F_v_pan = p[13]
+    a_F_c_pan = p[14]
+    a_F_s_pan = p[15]
+    a_v_s_pan = p[16]
+    a_F_v_pan = p[17]
+    slide_pan = m[0]
+    side_pan = m[1]
+    active_pan = m[2]
+    dx[0] = omega_pan
+    part_of_force_pan = (active_pan) * (
+        d_shaft_pan * (omega_gear_pan - omega_pan)
+        + k_shaft_pan * (-0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan)
+    )
+    force_pan = -b_pan * omega_pan + part_of_force_pan
+    mass_pan = J_pan
+    inverse_mass_pan = 1.0 / mass_pan
+    accel_pan = force_pan * inverse_mass_pan
+    dx[1] = accel_pan
+    dx[2] = omega_gear_pan
+    part_of_force_gear_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    force_gear_pan = (
+        K_t_pan * N_pan * i_pan
+        - part_of_force_pan
+        - slide_pan
+        * (
+            F_v_pan * omega_gear_pan * slide_pan * (a_F_v_pan * slide_pan + 1.0)
+            + part_of_force_gear_pan
+            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - part_of_force_gear_pan)
+            * math.exp(
+                (-(omega_gear_pan * omega_gear_pan))
+                / (
+                    (v_s_pan * v_s_pan)
+                    * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
+                )
+            )
+        )
+    )
+    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
+    inverse_mass_gear_pan = 1.0 / mass_gear_pan
+    accel_gear_pan = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
+    dx[3] = accel_gear_pan
+    dx[4] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def jacobian(t, x, u, p, m, fx, fu, fp):
+    """Write the non-zero derivatives of mode_derivative by state, input and parameter."""
+    theta_pan = x[0]
+    omega_pan = x[1]
+    theta_gear_pan = x[2]
+    omega_gear_pan = x[3]
+    i_pan = x[4]
+    u_pan = u[0]
+    J_pan = p[0]
+    b_pan = p[1]
+    L_pan = p[2]
+    R_pan = p[3]
+    K_t_pan = p[4]
+    J_motor_pan = p[5]
+    N_pan = p[6]
+    k_shaft_pan = p[7]
+    d_shaft_pan = p[8]
+    gap_pan = p[9]
+    F_c_pan = p[10]
+    F_s_pan = p[11]
+    v_s_pan = p[12]
+    F_v_pan = p[13]
+    a_F_c_pan = p[14]
+    a_F_s_pan = p[15]
+    a_v_s_pan = p[16]
+    a_F_v_pan = p[17]
+    slide_pan = m[0]
+    side_pan = m[1]
+    active_pan = m[2]
+    mass_pan = J_pan
+    inverse_mass_pan = 1.0 / mass_pan
+    active_pan_inverse_mass_pan = active_pan * inverse_mass_pan
+    part_of_fx_1_0 = active_pan_inverse_mass_pan * k_shaft_pan
+    fx[1, 0] = -part_of_fx_1_0
+    N_pan_sq = N_pan * N_pan
+    mass_gear_pan = J_motor_pan * N_pan_sq
+    inverse_mass_gear_pan = 1.0 / mass_gear_pan
+    part_of_fx_3_0 = inverse_mass_gear_pan * (slide_pan * slide_pan)
+    active_pan_part_of_fx_3_0 = active_pan * part_of_fx_3_0
+    part_of_fx_3_0_2 = active_pan_part_of_fx_3_0 * k_shaft_pan
+    fx[3, 0] = part_of_fx_3_0_2
+    fx[0, 1] = 1.0
+    active_pan_d_shaft_pan = active_pan * d_shaft_pan
+    fx[1, 1] = inverse_mass_pan * (-active_pan_d_shaft_pan - b_pan)
+    fx[3, 1] = active_pan_d_shaft_pan * part_of_fx_3_0
+    fx[1, 2] = part_of_fx_1_0
+    fx[3, 2] = -part_of_fx_3_0_2
+    fx[1, 3] = active_pan_d_shaft_pan * inverse_mass_pan
+    fx[2, 3] = 1.0
+    part_of_fx_3_3 = a_F_v_pan * slide_pan + 1.0
+    F_v_pan_part_of_fx_3_3_slide_pan = F_v_pan * part_of_fx_3_3 * slide_pan
+    part_of_fx_3_3_2 = 1.0 / (v_s_pan * v_s_pan)
+    part_of_fx_3_3_3 = a_v_s_pan * slide_pan + 1.0
+    part_of_fx_3_3_4 = 1.0 / (part_of_fx_3_3_3 * part_of_fx_3_3_3)
+    part_of_fx_3_3_5 = part_of_fx_3_3_2 * part_of_fx_3_3_4
+    part_of_fx_3_3_6 = a_F_c_pan * slide_pan + 1.0
+    F_c_pan_part_of_fx_3_3_6 = F_c_pan * part_of_fx_3_3_6
+    part_of_fx_3_3_7 = a_F_s_pan * slide_pan + 1.0
+    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
+    part_of_fx_3_3_8 = math.exp(-omega_gear_pan_sq * part_of_fx_3_3_5)
+    part_of_fx_3_3_9 = part_of_fx_3_3_8 * (-F_c_pan_part_of_fx_3_3_6 + F_s_pan * part_of_fx_3_3_7)
+    part_of_fx_3_3_10 = 2.0 * part_of_fx_3_3_9
+    fx[3, 3] = (part_of_fx_3_0) * (
+        -active_pan_d_shaft_pan
+        - slide_pan
+        * (F_v_pan_part_of_fx_3_3_slide_pan - omega_gear_pan * part_of_fx_3_3_10 * part_of_fx_3_3_5)
+    )
+    L_pan_inverse = 1.0 / L_pan
+    K_t_pan_N_pan = K_t_pan * N_pan
+    fx[4, 3] = -K_t_pan_N_pan * L_pan_inverse
+    fx[3, 4] = K_t_pan_N_pan * part_of_fx_3_0
+    fx[4, 4] = -L_pan_inverse * R_pan
+    fu[4, 0] = L_pan_inverse
+    part_of_force_pan = omega_gear_pan - omega_pan
+    part_of_force_pan_2 = (0.5) * side_pan
+    part_of_force_pan_3 = -gap_pan * part_of_force_pan_2 + theta_gear_pan - theta_pan
+    part_of_force_pan_4 = (active_pan) * (
+        d_shaft_pan * part_of_force_pan + k_shaft_pan * part_of_force_pan_3
+    )
+    force_pan = -b_pan * omega_pan + part_of_force_pan_4
+    accel_pan = force_pan * inverse_mass_pan
+    fp[1, 0] = -accel_pan * inverse_mass_pan
+    fp[1, 1] = -inverse_mass_pan * omega_pan
+    fp[4, 2] = (K_t_pan_N_pan * omega_gear_pan + R_pan * i_pan - u_pan) / (L_pan * L_pan)
+    fp[4, 3] = -L_pan_inverse * i_pan
+    fp[3, 4] = N_pan * i_pan * part_of_fx_3_0
+    L_pan_inverse_omega_gear_pan = L_pan_inverse * omega_gear_pan
+    fp[4, 4] = -L_pan_inverse_omega_gear_pan * N_pan
+    force_gear_pan = (
+        K_t_pan * N_pan * i_pan
+        - part_of_force_pan_4
+        - slide_pan
+        * (
+            F_c_pan_part_of_fx_3_3_6
+            + F_v_pan_part_of_fx_3_3_slide_pan * omega_gear_pan
+            + part_of_fx_3_3_9
+        )
+    )
+    accel_gear_pan = force_gear_pan * part_of_fx_3_0
+    fp[3, 5] = -N_pan_sq * accel_gear_pan * part_of_fx_3_0
+    fp[3, 6] = part_of_fx_3_0 * (-2.0 * J_motor_pan * N_pan * accel_gear_pan + K_t_pan * i_pan)
+    fp[4, 6] = -K_t_pan * L_pan_inverse_omega_gear_pan
+    fp[1, 7] = active_pan_inverse_mass_pan * part_of_force_pan_3
+    fp[3, 7] = -active_pan_part_of_fx_3_0 * part_of_force_pan_3
+    fp[1, 8] = active_pan_inverse_mass_pan * part_of_force_pan
+    fp[3, 8] = -active_pan_part_of_fx_3_0 * part_of_force_pan
+    fp[1, 9] = -part_of_force_pan_2 * part_of_fx_1_0
+    fp[3, 9] = part_of_force_pan_2 * part_of_fx_3_0_2
+    part_of_fp_3_10 = inverse_mass_gear_pan * (slide_pan * slide_pan * slide_pan)
+    fp[3, 10] = -part_of_fp_3_10 * (-part_of_fx_3_3_6 * part_of_fx_3_3_8 + part_of_fx_3_3_6)
+    fp[3, 11] = -part_of_fp_3_10 * part_of_fx_3_3_7 * part_of_fx_3_3_8
+    part_of_fp_3_12 = omega_gear_pan_sq * part_of_fx_3_3_10
+    fp[3, 12] = (
+        (-1.0)
+        * (part_of_fp_3_10)
+        * (part_of_fp_3_12)
+        * (part_of_fx_3_3_4)
+        * (1.0 / (v_s_pan * v_s_pan * v_s_pan))
+    )
+    part_of_fp_3_13 = inverse_mass_gear_pan * (slide_pan * slide_pan * slide_pan * slide_pan)
+    fp[3, 13] = -omega_gear_pan * part_of_fp_3_13 * part_of_fx_3_3
+    F_c_pan_slide_pan = F_c_pan * slide_pan
+    fp[3, 14] = -part_of_fp_3_10 * (-F_c_pan_slide_pan * part_of_fx_3_3_8 + F_c_pan_slide_pan)
+    fp[3, 15] = -F_s_pan * part_of_fp_3_13 * part_of_fx_3_3_8
+    fp[3, 16] = (
+        (-1.0)
+        * (part_of_fp_3_12)
+        * (part_of_fp_3_13)
+        * (part_of_fx_3_3_2)
+        * (1.0 / (part_of_fx_3_3_3 * part_of_fx_3_3_3 * part_of_fx_3_3_3))
+    )
+    fp[3, 17] = -F_v_pan * inverse_mass_gear_pan * omega_gear_pan * slide_pan**5.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def guards(t, x, u, p, m, g):
+    """Write holding and breakaway torques, gap separations and contact torques into g."""
+    theta_pan = x[0]
+    omega_pan = x[1]
+    theta_gear_pan = x[2]
+    omega_gear_pan = x[3]
+    i_pan = x[4]
+    K_t_pan = p[4]
+    N_pan = p[6]
+    k_shaft_pan = p[7]
+    d_shaft_pan = p[8]
+    gap_pan = p[9]
+    F_s_pan = p[11]
+    a_F_s_pan = p[15]
+    side_pan = m[1]
+    active_pan = m[2]
+    part_of_g_0 = d_shaft_pan * (omega_gear_pan - omega_pan)
+    part_of_g_0_2 = (0.5) * gap_pan
+    part_of_g_0_3 = -theta_gear_pan + theta_pan
+    part_of_g_0_4 = active_pan * (
+        k_shaft_pan * (-part_of_g_0_2 * side_pan - part_of_g_0_3) + part_of_g_0
+    )
+    g[0] = K_t_pan * N_pan * i_pan - part_of_g_0_4
+    g[1] = F_s_pan * (a_F_s_pan + 1.0)
+    g[2] = F_s_pan * (1.0 - a_F_s_pan)
+    part_of_g_3 = theta_gear_pan - theta_pan
+    g[3] = part_of_g_3
+    g[4] = part_of_g_0_2
+    g[5] = k_shaft_pan * (-part_of_g_0_2 - part_of_g_0_3) + part_of_g_0
+    g[6] = k_shaft_pan * (part_of_g_0_2 + part_of_g_3) + part_of_g_0
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def guard_jacobian(t, x, u, p, m, gx, gp):
+    """Write the non-zero derivatives of guards by state and parameter."""
+    theta_pan = x[0]
+    omega_pan = x[1]
+    theta_gear_pan = x[2]
+    omega_gear_pan = x[3]
+    i_pan = x[4]
+    K_t_pan = p[4]
+    N_pan = p[6]
+    k_shaft_pan = p[7]
+    d_shaft_pan = p[8]
+    gap_pan = p[9]
+    F_s_pan = p[11]
+    a_F_s_pan = p[15]
+    side_pan = m[1]
+    active_pan = m[2]
+    active_pan_k_shaft_pan = active_pan * k_shaft_pan
+    gx[0, 0] = active_pan_k_shaft_pan
+    gx[3, 0] = -1.0
+    minus_k_shaft_pan = -k_shaft_pan
+    gx[5, 0] = minus_k_shaft_pan
+    gx[6, 0] = minus_k_shaft_pan
+    active_pan_d_shaft_pan = active_pan * d_shaft_pan
+    gx[0, 1] = active_pan_d_shaft_pan
+    minus_d_shaft_pan = -d_shaft_pan
+    gx[5, 1] = minus_d_shaft_pan
+    gx[6, 1] = minus_d_shaft_pan
+    gx[0, 2] = -active_pan_k_shaft_pan
+    gx[3, 2] = 1.0
+    gx[5, 2] = k_shaft_pan
+    gx[6, 2] = k_shaft_pan
+    gx[0, 3] = -active_pan_d_shaft_pan
+    gx[5, 3] = d_shaft_pan
+    gx[6, 3] = d_shaft_pan
+    gx[0, 4] = K_t_pan * N_pan
+    gp[0, 4] = N_pan * i_pan
+    gp[0, 6] = K_t_pan * i_pan
+    part_of_gp_0_7 = (0.5) * gap_pan
+    part_of_gp_0_7_2 = -theta_gear_pan + theta_pan
+    part_of_gp_0_7_3 = -part_of_gp_0_7 * side_pan - part_of_gp_0_7_2
+    gp[0, 7] = -active_pan * part_of_gp_0_7_3
+    gp[5, 7] = -part_of_gp_0_7 - part_of_gp_0_7_2
+    gp[6, 7] = part_of_gp_0_7 + theta_gear_pan - theta_pan
+    part_of_gp_0_8 = omega_gear_pan - omega_pan
+    gp[0, 8] = -active_pan * part_of_gp_0_8
+    gp[5, 8] = part_of_gp_0_8
+    gp[6, 8] = part_of_gp_0_8
+    gp[0, 9] = (0.5) * active_pan_k_shaft_pan * side_pan
+    gp[4, 9] = 0.5
+    part_of_gp_5_9 = (0.5) * k_shaft_pan
+    gp[5, 9] = -part_of_gp_5_9
+    gp[6, 9] = part_of_gp_5_9
+    gp[1, 11] = a_F_s_pan + 1.0
+    gp[2, 11] = 1.0 - a_F_s_pan
+    gp[1, 15] = F_s_pan
+    gp[2, 15] = -F_s_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def outputs(t, x, u, p, y):
+    """Write the measured signals into y."""
+    theta_pan = x[0]
+    i_pan = x[4]
+    y[0] = theta_pan
+    y[1] = i_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def output_jacobian(t, x, u, p, yx, yp):
+    """Write the non-zero derivatives of outputs by state and parameter."""
+    yx[0, 0] = 1.0
+    yx[1, 4] = 1.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def energy(t, x, u, p, m, e):
+    """Write stored energy in J, power in and dissipated power in W into e."""
+    theta_pan = x[0]
+    omega_pan = x[1]
+    theta_gear_pan = x[2]
+    omega_gear_pan = x[3]
+    i_pan = x[4]
+    u_pan = u[0]
+    J_pan = p[0]
+    b_pan = p[1]
+    L_pan = p[2]
+    R_pan = p[3]
+    J_motor_pan = p[5]
+    N_pan = p[6]
+    k_shaft_pan = p[7]
+    d_shaft_pan = p[8]
+    gap_pan = p[9]
+    F_c_pan = p[10]
+    F_s_pan = p[11]
+    v_s_pan = p[12]
+    F_v_pan = p[13]
+    a_F_c_pan = p[14]
+    a_F_s_pan = p[15]
+    a_v_s_pan = p[16]
+    a_F_v_pan = p[17]
+    slide_pan = m[0]
+    side_pan = m[1]
+    active_pan = m[2]
+    omega_pan_sq = omega_pan * omega_pan
+    i_pan_sq = i_pan * i_pan
+    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
+    side_pan_sq = side_pan * side_pan
+    part_of_e_0 = -0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan
+    e[0] = (
+        (0.5) * J_motor_pan * (N_pan * N_pan) * omega_gear_pan_sq
+        + (0.5) * J_pan * omega_pan_sq
+        + (0.5) * L_pan * i_pan_sq
+        + (0.5) * k_shaft_pan * (part_of_e_0 * part_of_e_0) * side_pan_sq
+    )
+    e[1] = i_pan * u_pan
+    part_of_e_2 = omega_gear_pan - omega_pan
+    part_of_e_2_2 = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
+    e[2] = (
+        R_pan * i_pan_sq
+        + b_pan * omega_pan_sq
+        + omega_gear_pan_slide_pan
+        * (
+            F_v_pan * omega_gear_pan_slide_pan * (a_F_v_pan * slide_pan + 1.0)
+            + part_of_e_2_2
+            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - part_of_e_2_2)
+            * math.exp(
+                (-omega_gear_pan_sq)
+                / (
+                    (v_s_pan * v_s_pan)
+                    * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
+                )
+            )
+        )
+        + part_of_e_2
+        * side_pan_sq
+        * (active_pan * d_shaft_pan * part_of_e_2 - k_shaft_pan * part_of_e_0 * (1.0 - active_pan))
+    )
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def initial_modes(t, x, u, p, m):
+    """Find the modes of a state: contact from the separation, sticking from the holding torque."""
+    frictions = len(FRICTION_RATES)
+    contacts = (len(m) - frictions) // 2
+    g = np.empty(3 * frictions + 4 * contacts)
+    m[:] = 0.0
+    guards(t, x, u, p, m, g)
+    for k in range(contacts):
+        at = 3 * frictions + 4 * k
+        side = 1.0 if g[at] > 0.0 else -1.0
+        if side * g[at] > g[at + 1]:
+            torque = g[at + 2] if side > 0.0 else g[at + 3]
+            m[frictions + 2 * k] = side
+            m[frictions + 2 * k + 1] = 1.0 if side * torque > 0.0 else 0.0
+    for k in range(frictions):
+        m[k] = np.sign(x[FRICTION_RATES[k]])
+    guards(t, x, u, p, m, g)
+    for k in range(frictions):
+        if m[k] == 0.0 and g[3 * k] > g[3 * k + 1]:
+            m[k] = 1.0
+        elif m[k] == 0.0 and -g[3 * k] > g[3 * k + 2]:
+            m[k] = -1.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def state_derivative(t, x, u, p, dx):
+    """Write the time derivative of the state into dx, in the modes that the state implies."""
+    m = np.empty(len(MODE_NAMES))
+    initial_modes(t, x, u, p, m)
+    mode_derivative(t, x, u, p, m, dx)
+
+
+# END sha256 0a747a38063f38c43137be07759f32ae7802310e8deeaa0dfdd391dffd73ee69

@@ -1,0 +1,739 @@
+"""Pan-tilt platform of the thesis with its payload: equations of motion, emitted; do not edit.
+
+M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
+
+  M[0, 0] = J_pan + J_x_payload*sin(theta_tilt)**2 + J_x_tilt*sin(theta_tilt)**2 +
+      J_z_payload*cos(theta_tilt)**2 + J_z_tilt*cos(theta_tilt)**2 +
+      c_x_payload**2*m_payload*cos(theta_tilt)**2 +
+      2*c_x_payload*c_z_payload*m_payload*sin(theta_tilt)*cos(theta_tilt) +
+      c_y_payload**2*m_payload*sin(theta_tilt)**2 + c_y_payload**2*m_payload*cos(theta_tilt)**2
+      + c_z_payload**2*m_payload*sin(theta_tilt)**2
+  M[0, 1] = c_x_payload*c_y_payload*m_payload*sin(theta_tilt) -
+      c_y_payload*c_z_payload*m_payload*cos(theta_tilt)
+  M[1, 1] = J_y_payload + J_y_tilt + c_x_payload**2*m_payload + c_z_payload**2*m_payload
+  forcing[omega_pan] = -2*J_x_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) -
+      2*J_x_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
+      2*J_z_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
+      2*J_z_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) - b_pan*omega_pan +
+      2*c_x_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) -
+      c_x_payload*c_y_payload*m_payload*omega_tilt**2*cos(theta_tilt) +
+      2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*sin(theta_tilt)**2 -
+      2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*cos(theta_tilt)**2 -
+      c_y_payload*c_z_payload*m_payload*omega_tilt**2*sin(theta_tilt) -
+      2*c_z_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) + tau_pan
+  forcing[omega_tilt] = J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
+      J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
+      J_z_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
+      J_z_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) - b_tilt*omega_tilt -
+      c_x_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
+      c_x_payload*c_z_payload*m_payload*omega_pan**2*sin(theta_tilt)**2 +
+      c_x_payload*c_z_payload*m_payload*omega_pan**2*cos(theta_tilt)**2 +
+      981*c_x_payload*m_payload*cos(theta_tilt)/100 +
+      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
+      981*c_z_payload*m_payload*sin(theta_tilt)/100 + tau_tilt
+
+Effects:
+- rigid_bodies: thesis Eq. 3.8, Table 5.1
+- payload: thesis section 3.2.2, Table 5.3 with erratum 18
+- viscous_friction (pan): thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)
+- viscous_friction (tilt): thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+MODEL_HASH = "7956bf39ca6e098e"
+NAME = "payload"
+TITLE = "Pan-tilt platform of the thesis with its payload"
+AXES = ("pan", "tilt")
+STATE_NAMES = ("theta_pan", "theta_tilt", "omega_pan", "omega_tilt")
+STATE_UNITS = ("rad", "rad", "rad/s", "rad/s")
+STATE_INITIAL = (0.0, 0.0, 0.0, 0.0)
+INPUT_NAMES = ("tau_pan", "tau_tilt")
+INPUT_UNITS = ("N m", "N m")
+OUTPUT_NAMES = ("theta_pan", "theta_tilt")
+OUTPUT_UNITS = ("rad", "rad")
+MODE_NAMES = ()
+FRICTION_RATES = ()
+# Per contact: state index of the angle at the gear output and at the joint.
+CONTACT_ANGLES = ()
+# Parameters: name, unit, default, lower and upper bound, value at which the effect
+# vanishes (None: any), values from which a search starts, period, meaning.
+PARAMETERS = (
+    ("J_pan", "kg m^2", 0.00053, 0.0, 10000.0, None, (), None, "inertia of the pan body about z"),
+    (
+        "J_x_tilt",
+        "kg m^2",
+        0.00041,
+        0.0,
+        10000.0,
+        None,
+        (),
+        None,
+        "inertia of the tilt body about x",
+    ),
+    (
+        "J_y_tilt",
+        "kg m^2",
+        0.00065,
+        0.0,
+        10000.0,
+        None,
+        (),
+        None,
+        "inertia of the tilt body about y",
+    ),
+    (
+        "J_z_tilt",
+        "kg m^2",
+        0.00027,
+        0.0,
+        10000.0,
+        None,
+        (),
+        None,
+        "inertia of the tilt body about z",
+    ),
+    ("m_payload", "kg", 4.992, 0.0, 100000.0, None, (), None, "payload mass"),
+    (
+        "J_x_payload",
+        "kg m^2",
+        0.0053,
+        0.0,
+        10000.0,
+        None,
+        (),
+        None,
+        "payload inertia about its own x axis",
+    ),
+    (
+        "J_y_payload",
+        "kg m^2",
+        0.0068,
+        0.0,
+        10000.0,
+        None,
+        (),
+        None,
+        "payload inertia about its own y axis",
+    ),
+    (
+        "J_z_payload",
+        "kg m^2",
+        0.0068,
+        0.0,
+        10000.0,
+        None,
+        (),
+        None,
+        "payload inertia about its own z axis",
+    ),
+    ("c_x_payload", "m", 0.1, -10.0, 10.0, None, (), None, "x of the payload's centre of mass"),
+    ("c_y_payload", "m", 0.0, -10.0, 10.0, None, (), None, "y of the payload's centre of mass"),
+    ("c_z_payload", "m", 0.0, -10.0, 10.0, None, (), None, "z of the payload's centre of mass"),
+    (
+        "b_pan",
+        "N m s/rad",
+        0.1,
+        0.0,
+        10000.0,
+        0.0,
+        (0.1,),
+        None,
+        "viscous friction in the pan joint",
+    ),
+    (
+        "b_tilt",
+        "N m s/rad",
+        0.1,
+        0.0,
+        10000.0,
+        0.0,
+        (0.1,),
+        None,
+        "viscous friction in the tilt joint",
+    ),
+)
+# Effects: id, axis, parameters, title, reference, separating experiment.
+EFFECTS = (
+    (
+        "rigid_bodies",
+        None,
+        ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"),
+        "pan body and tilt body",
+        "thesis Eq. 3.8, Table 5.1",
+        "",
+    ),
+    (
+        "payload",
+        None,
+        (
+            "m_payload",
+            "J_x_payload",
+            "J_y_payload",
+            "J_z_payload",
+            "c_x_payload",
+            "c_y_payload",
+            "c_z_payload",
+        ),
+        "payload",
+        "thesis section 3.2.2, Table 5.3 with erratum 18",
+        "",
+    ),
+    (
+        "viscous_friction",
+        "pan",
+        ("b_pan",),
+        "viscous friction in the joint",
+        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+    ),
+    (
+        "viscous_friction",
+        "tilt",
+        ("b_tilt",),
+        "viscous friction in the joint",
+        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+    ),
+)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def mode_derivative(t, x, u, p, m, dx):
+    """Write the time derivative of the state into dx in the modes m."""
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    tau_pan = u[0]
+    tau_tilt = u[1]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    m_payload = p[4]
+    J_x_payload = p[5]
+    J_y_payload = p[6]
+    J_z_payload = p[7]
+    c_x_payload = p[8]
+    c_y_payload = p[9]
+    c_z_payload = p[10]
+    b_pan = p[11]
+    b_tilt = p[12]
+    dx[0] = omega_pan
+    dx[1] = omega_tilt
+    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
+    part_of_inertia_pan_sin_sq_tilt = (c_x_payload * c_x_payload) * m_payload
+    part_of_inertia_pan_sin_sq_tilt_2 = (c_z_payload * c_z_payload) * m_payload
+    inertia_pan_sin_sq_tilt = (
+        J_x_payload
+        + J_x_tilt
+        - J_z_payload
+        - J_z_tilt
+        - part_of_inertia_pan_sin_sq_tilt
+        + part_of_inertia_pan_sin_sq_tilt_2
+    )
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = (
+        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
+    )
+    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
+    c_y_payload_m_payload = c_y_payload * m_payload
+    coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
+    coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
+    force_pan = (
+        -b_pan * omega_pan
+        - omega_tilt
+        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
+        + tau_pan
+    )
+    part_of_gravity_cos_tilt = (9.81) * m_payload
+    gravity_cos_tilt = c_x_payload * part_of_gravity_cos_tilt
+    gravity_sin_tilt = c_z_payload * part_of_gravity_cos_tilt
+    force_tilt = (
+        -b_tilt * omega_tilt
+        + (0.5) * coriolis * omega_pan
+        + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt
+        + tau_tilt
+    )
+    inertia_pan = (
+        J_pan
+        + J_z_payload
+        + J_z_tilt
+        + (c_y_payload * c_y_payload) * m_payload
+        + part_of_inertia_pan_sin_sq_tilt
+    )
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
+    inertia_tilt = (
+        J_y_payload + J_y_tilt + part_of_inertia_pan_sin_sq_tilt + part_of_inertia_pan_sin_sq_tilt_2
+    )
+    mass_tilt = inertia_tilt
+    inverse_determinant = 1.0 / (mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt))
+    accel_pan = inverse_determinant * (force_pan * mass_tilt - force_tilt * mass_pan_tilt)
+    dx[2] = accel_pan
+    accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
+    dx[3] = accel_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def jacobian(t, x, u, p, m, fx, fu, fp):
+    """Write the non-zero derivatives of mode_derivative by state, input and parameter."""
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    tau_pan = u[0]
+    tau_tilt = u[1]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    m_payload = p[4]
+    J_x_payload = p[5]
+    J_y_payload = p[6]
+    J_z_payload = p[7]
+    c_x_payload = p[8]
+    c_y_payload = p[9]
+    c_z_payload = p[10]
+    b_pan = p[11]
+    b_tilt = p[12]
+    sin_tilt = math.sin(theta_tilt)
+    sin_tilt_sq = sin_tilt * sin_tilt
+    J_x_payload_sin_tilt_sq = J_x_payload * sin_tilt_sq
+    J_x_tilt_sin_tilt_sq = J_x_tilt * sin_tilt_sq
+    cos_tilt = math.cos(theta_tilt)
+    cos_tilt_sq = cos_tilt * cos_tilt
+    J_z_payload_cos_tilt_sq = J_z_payload * cos_tilt_sq
+    J_z_tilt_cos_tilt_sq = J_z_tilt * cos_tilt_sq
+    c_x_payload_sq = c_x_payload * c_x_payload
+    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
+    part_of_mass_pan = c_x_payload_sq_m_payload * cos_tilt_sq
+    c_y_payload_sq = c_y_payload * c_y_payload
+    c_y_payload_sq_sin_tilt_sq = c_y_payload_sq * sin_tilt_sq
+    c_y_payload_sq_cos_tilt_sq = c_y_payload_sq * cos_tilt_sq
+    c_z_payload_sq = c_z_payload * c_z_payload
+    c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
+    part_of_mass_pan_2 = c_z_payload_sq_m_payload * sin_tilt_sq
+    c_x_payload_sin_tilt = c_x_payload * sin_tilt
+    c_x_payload_sin_tilt_m_payload = c_x_payload_sin_tilt * m_payload
+    c_z_payload_cos_tilt = c_z_payload * cos_tilt
+    part_of_mass_pan_3 = 2.0 * c_z_payload_cos_tilt
+    mass_pan = (
+        J_pan
+        + J_x_payload_sin_tilt_sq
+        + J_x_tilt_sin_tilt_sq
+        + J_z_payload_cos_tilt_sq
+        + J_z_tilt_cos_tilt_sq
+        + c_x_payload_sin_tilt_m_payload * part_of_mass_pan_3
+        + c_y_payload_sq_cos_tilt_sq * m_payload
+        + c_y_payload_sq_sin_tilt_sq * m_payload
+        + part_of_mass_pan
+        + part_of_mass_pan_2
+    )
+    c_x_payload_sin_tilt_c_y_payload = c_x_payload_sin_tilt * c_y_payload
+    c_y_payload_c_z_payload_cos_tilt = c_y_payload * c_z_payload_cos_tilt
+    part_of_mass_pan_tilt = c_y_payload_c_z_payload_cos_tilt * m_payload
+    mass_pan_tilt = c_x_payload_sin_tilt_c_y_payload * m_payload - part_of_mass_pan_tilt
+    mass_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
+    inverse_determinant = 1.0 / (mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt))
+    cos_tilt_sin_tilt = cos_tilt * sin_tilt
+    part_of_force_pan = 2.0 * cos_tilt_sin_tilt
+    J_x_payload_part_of_force_pan = J_x_payload * part_of_force_pan
+    omega_pan_omega_tilt = omega_pan * omega_tilt
+    J_x_tilt_part_of_force_pan = J_x_tilt * part_of_force_pan
+    omega_tilt_sq = omega_tilt * omega_tilt
+    c_y_payload_m_payload = c_y_payload * m_payload
+    c_x_payload_cos_tilt = c_x_payload * cos_tilt
+    part_of_force_pan_2 = c_x_payload_cos_tilt * c_y_payload_m_payload
+    c_z_payload_sin_tilt = c_z_payload * sin_tilt
+    part_of_force_pan_3 = c_y_payload_m_payload * c_z_payload_sin_tilt
+    part_of_force_pan_4 = 2.0 * cos_tilt_sq
+    c_x_payload_c_z_payload = c_x_payload * c_z_payload
+    part_of_force_pan_5 = c_x_payload_c_z_payload * m_payload
+    part_of_force_pan_6 = part_of_force_pan_4 * part_of_force_pan_5
+    part_of_force_pan_7 = c_z_payload_sq_m_payload * part_of_force_pan
+    force_pan = (
+        -J_x_payload_part_of_force_pan * omega_pan_omega_tilt
+        - J_x_tilt_part_of_force_pan * omega_pan_omega_tilt
+        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        - b_pan * omega_pan
+        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+        - omega_pan_omega_tilt * part_of_force_pan_6
+        - omega_pan_omega_tilt * part_of_force_pan_7
+        - omega_tilt_sq * part_of_force_pan_2
+        - omega_tilt_sq * part_of_force_pan_3
+        + tau_pan
+    )
+    part_of_force_tilt = (9.81) * sin_tilt
+    omega_pan_sq = omega_pan * omega_pan
+    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
+    cos_tilt_sq_omega_pan_sq = cos_tilt_sq * omega_pan_sq
+    omega_pan_sq_sin_tilt_sq = omega_pan_sq * sin_tilt_sq
+    part_of_force_tilt_2 = c_x_payload_c_z_payload * omega_pan_sq_sin_tilt_sq
+    force_tilt = (
+        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
+        - J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
+        - J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
+        - b_tilt * omega_tilt
+        + (9.81) * c_x_payload * cos_tilt * m_payload
+        + c_x_payload_c_z_payload * cos_tilt_sq_omega_pan_sq * m_payload
+        - c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + c_z_payload * m_payload * part_of_force_tilt
+        + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+        - m_payload * part_of_force_tilt_2
+        + tau_tilt
+    )
+    accel_pan = inverse_determinant * (force_pan * mass_tilt - force_tilt * mass_pan_tilt)
+    part_of_fx_2_1 = part_of_force_pan_2 + part_of_force_pan_3
+    part_of_fx_2_1_2 = (
+        J_x_payload * cos_tilt_sq * omega_pan_sq
+        - J_x_payload_sin_tilt_sq * omega_pan_sq
+        + J_x_tilt * cos_tilt_sq * omega_pan_sq
+        - J_x_tilt_sin_tilt_sq * omega_pan_sq
+        + J_z_payload * omega_pan_sq * sin_tilt_sq
+        - J_z_payload_cos_tilt_sq * omega_pan_sq
+        + J_z_tilt * omega_pan_sq * sin_tilt_sq
+        - J_z_tilt_cos_tilt_sq * omega_pan_sq
+        - accel_pan * part_of_fx_2_1
+        - 4.0 * c_x_payload_sin_tilt_m_payload * c_z_payload_cos_tilt * omega_pan_sq
+        - 9.81 * c_x_payload_sin_tilt_m_payload
+        + c_x_payload_sq * m_payload * omega_pan_sq * sin_tilt_sq
+        + (9.81) * c_z_payload * cos_tilt * m_payload
+        + c_z_payload_sq * cos_tilt_sq * m_payload * omega_pan_sq
+        - omega_pan_sq * part_of_mass_pan
+        - omega_pan_sq * part_of_mass_pan_2
+    )
+    accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
+    part_of_fx_2_1_3 = omega_pan_omega_tilt * part_of_force_pan_4
+    part_of_fx_2_1_4 = 2.0 * sin_tilt_sq
+    part_of_fx_2_1_5 = omega_pan_omega_tilt * part_of_fx_2_1_4
+    J_z_payload_part_of_force_pan = J_z_payload * part_of_force_pan
+    J_z_tilt_part_of_force_pan = J_z_tilt * part_of_force_pan
+    part_of_fx_2_1_6 = part_of_force_pan_5 * part_of_fx_2_1_4
+    part_of_fx_2_1_7 = c_x_payload_sq_m_payload * part_of_force_pan
+    part_of_fx_2_1_8 = (
+        2.0 * J_x_payload * omega_pan * omega_tilt * sin_tilt_sq
+        - J_x_payload * part_of_fx_2_1_3
+        + 2.0 * J_x_tilt * omega_pan * omega_tilt * sin_tilt_sq
+        - J_x_tilt * part_of_fx_2_1_3
+        + 2.0 * J_z_payload * cos_tilt_sq * omega_pan * omega_tilt
+        - J_z_payload * part_of_fx_2_1_5
+        + 2.0 * J_z_tilt * cos_tilt_sq * omega_pan * omega_tilt
+        - J_z_tilt * part_of_fx_2_1_5
+        - accel_pan
+        * (
+            J_x_payload_part_of_force_pan
+            + J_x_tilt_part_of_force_pan
+            - J_z_payload_part_of_force_pan
+            - J_z_tilt_part_of_force_pan
+            + part_of_force_pan_6
+            + part_of_force_pan_7
+            - part_of_fx_2_1_6
+            - part_of_fx_2_1_7
+        )
+        - accel_tilt * part_of_fx_2_1
+        + c_x_payload * c_y_payload * m_payload * omega_tilt_sq * sin_tilt
+        + 8.0 * c_x_payload * c_z_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+        + 2.0 * c_x_payload_sq * cos_tilt_sq * m_payload * omega_pan * omega_tilt
+        - c_x_payload_sq_m_payload * part_of_fx_2_1_5
+        + 2.0 * c_z_payload_sq * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        - c_z_payload_sq_m_payload * part_of_fx_2_1_3
+        - omega_tilt_sq * part_of_mass_pan_tilt
+    )
+    fx[2, 1] = inverse_determinant * (
+        -mass_pan_tilt * part_of_fx_2_1_2 + mass_tilt * part_of_fx_2_1_8
+    )
+    fx[3, 1] = inverse_determinant * (
+        mass_pan * part_of_fx_2_1_2 - mass_pan_tilt * part_of_fx_2_1_8
+    )
+    fx[0, 2] = 1.0
+    part_of_fx_2_2 = (
+        J_x_payload_part_of_force_pan * omega_pan
+        + J_x_tilt_part_of_force_pan * omega_pan
+        - J_z_payload_part_of_force_pan * omega_pan
+        - J_z_tilt_part_of_force_pan * omega_pan
+        + omega_pan * part_of_force_pan_6
+        + omega_pan * part_of_force_pan_7
+        - omega_pan * part_of_fx_2_1_6
+        - omega_pan * part_of_fx_2_1_7
+    )
+    part_of_fx_2_2_2 = (
+        -J_x_payload_part_of_force_pan * omega_tilt
+        - J_x_tilt_part_of_force_pan * omega_tilt
+        + 2.0 * J_z_payload * cos_tilt * omega_tilt * sin_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_tilt * sin_tilt
+        - b_pan
+        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_tilt * sin_tilt_sq
+        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_tilt * sin_tilt
+        - omega_tilt * part_of_force_pan_6
+        - omega_tilt * part_of_force_pan_7
+    )
+    fx[2, 2] = inverse_determinant * (
+        -mass_pan_tilt * part_of_fx_2_2 + mass_tilt * part_of_fx_2_2_2
+    )
+    fx[3, 2] = inverse_determinant * (mass_pan * part_of_fx_2_2 - mass_pan_tilt * part_of_fx_2_2_2)
+    fx[1, 3] = 1.0
+    part_of_fx_2_3 = 2.0 * omega_tilt
+    part_of_fx_2_3_2 = (
+        -part_of_force_pan_2 * part_of_fx_2_3
+        - part_of_force_pan_3 * part_of_fx_2_3
+        - part_of_fx_2_2
+    )
+    fx[2, 3] = inverse_determinant * (b_tilt * mass_pan_tilt + mass_tilt * part_of_fx_2_3_2)
+    fx[3, 3] = inverse_determinant * (-b_tilt * mass_pan - mass_pan_tilt * part_of_fx_2_3_2)
+    inverse_determinant_mass_tilt = inverse_determinant * mass_tilt
+    fu[2, 0] = inverse_determinant_mass_tilt
+    part_of_fu_3_0 = inverse_determinant * mass_pan_tilt
+    minus_part_of_fu_3_0 = -part_of_fu_3_0
+    fu[3, 0] = minus_part_of_fu_3_0
+    fu[2, 1] = minus_part_of_fu_3_0
+    inverse_determinant_mass_pan = inverse_determinant * mass_pan
+    fu[3, 1] = inverse_determinant_mass_pan
+    fp[2, 0] = -accel_pan * inverse_determinant_mass_tilt
+    fp[3, 0] = accel_pan * part_of_fu_3_0
+    part_of_fp_2_1 = cos_tilt_sin_tilt_omega_pan_sq * mass_pan_tilt
+    part_of_fp_2_1_2 = omega_pan_omega_tilt * part_of_force_pan
+    part_of_fp_2_1_3 = -accel_pan * sin_tilt_sq - part_of_fp_2_1_2
+    part_of_fp_2_1_4 = inverse_determinant * (mass_tilt * part_of_fp_2_1_3 - part_of_fp_2_1)
+    fp[2, 1] = part_of_fp_2_1_4
+    part_of_fp_3_1 = cos_tilt_sin_tilt_omega_pan_sq * mass_pan
+    part_of_fp_3_1_2 = inverse_determinant * (-mass_pan_tilt * part_of_fp_2_1_3 + part_of_fp_3_1)
+    fp[3, 1] = part_of_fp_3_1_2
+    accel_tilt_part_of_fu_3_0 = accel_tilt * part_of_fu_3_0
+    fp[2, 2] = accel_tilt_part_of_fu_3_0
+    part_of_fp_3_2 = -accel_tilt * inverse_determinant_mass_pan
+    fp[3, 2] = part_of_fp_3_2
+    part_of_fp_2_3 = -accel_pan * cos_tilt_sq + part_of_fp_2_1_2
+    part_of_fp_2_3_2 = inverse_determinant * (mass_tilt * part_of_fp_2_3 + part_of_fp_2_1)
+    fp[2, 3] = part_of_fp_2_3_2
+    part_of_fp_3_3 = inverse_determinant * (-mass_pan_tilt * part_of_fp_2_3 - part_of_fp_3_1)
+    fp[3, 3] = part_of_fp_3_3
+    part_of_fp_2_4 = c_x_payload_sin_tilt_c_y_payload - c_y_payload_c_z_payload_cos_tilt
+    part_of_fp_2_4_2 = (
+        -accel_pan * part_of_fp_2_4
+        - accel_tilt * (c_x_payload_sq + c_z_payload_sq)
+        + c_x_payload * c_z_payload * cos_tilt_sq * omega_pan_sq
+        + (9.81) * c_x_payload * cos_tilt
+        - c_x_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
+        + (9.81) * c_z_payload * sin_tilt
+        + c_z_payload_sq * cos_tilt * omega_pan_sq * sin_tilt
+        - part_of_force_tilt_2
+    )
+    c_y_payload_omega_tilt_sq = c_y_payload * omega_tilt_sq
+    part_of_fp_2_4_3 = (
+        -accel_pan
+        * (
+            c_x_payload_sin_tilt * part_of_mass_pan_3
+            + c_x_payload_sq * cos_tilt_sq
+            + c_y_payload_sq_cos_tilt_sq
+            + c_y_payload_sq_sin_tilt_sq
+            + c_z_payload_sq * sin_tilt_sq
+        )
+        - accel_tilt * part_of_fp_2_4
+        + 2.0 * c_x_payload * c_z_payload * omega_pan * omega_tilt * sin_tilt_sq
+        - c_x_payload_c_z_payload * part_of_fx_2_1_3
+        - c_x_payload_cos_tilt * c_y_payload_omega_tilt_sq
+        + 2.0 * c_x_payload_sq * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        - c_y_payload_omega_tilt_sq * c_z_payload_sin_tilt
+        - c_z_payload_sq * part_of_fp_2_1_2
+    )
+    fp[2, 4] = inverse_determinant * (
+        -mass_pan_tilt * part_of_fp_2_4_2 + mass_tilt * part_of_fp_2_4_3
+    )
+    fp[3, 4] = inverse_determinant * (
+        mass_pan * part_of_fp_2_4_2 - mass_pan_tilt * part_of_fp_2_4_3
+    )
+    fp[2, 5] = part_of_fp_2_1_4
+    fp[3, 5] = part_of_fp_3_1_2
+    fp[2, 6] = accel_tilt_part_of_fu_3_0
+    fp[3, 6] = part_of_fp_3_2
+    fp[2, 7] = part_of_fp_2_3_2
+    fp[3, 7] = part_of_fp_3_3
+    c_x_payload_m_payload = c_x_payload * m_payload
+    part_of_fp_2_8 = 2.0 * accel_tilt
+    c_y_payload_m_payload_sin_tilt = c_y_payload_m_payload * sin_tilt
+    c_z_payload_m_payload = c_z_payload * m_payload
+    part_of_fp_2_8_2 = 2.0 * c_x_payload_sin_tilt_m_payload * cos_tilt
+    part_of_fp_2_8_3 = (
+        -accel_pan * c_y_payload_m_payload_sin_tilt
+        - c_x_payload_m_payload * part_of_fp_2_8
+        + c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
+        - c_z_payload_m_payload * omega_pan_sq_sin_tilt_sq
+        + (9.81) * cos_tilt * m_payload
+        - omega_pan_sq * part_of_fp_2_8_2
+    )
+    c_y_payload_m_payload_cos_tilt = c_y_payload_m_payload * cos_tilt
+    part_of_fp_2_8_4 = c_x_payload_m_payload * part_of_force_pan_4
+    c_z_payload_cos_tilt_m_payload = c_z_payload_cos_tilt * m_payload
+    part_of_fp_2_8_5 = c_z_payload_cos_tilt_m_payload * sin_tilt
+    part_of_fp_2_8_6 = 2.0 * part_of_fp_2_8_5
+    part_of_fp_2_8_7 = (
+        -accel_pan * (part_of_fp_2_8_4 + part_of_fp_2_8_6)
+        - accel_tilt * c_y_payload_m_payload_sin_tilt
+        + 4.0 * c_x_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+        - c_y_payload_m_payload_cos_tilt * omega_tilt_sq
+        + 2.0 * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        - c_z_payload_m_payload * part_of_fx_2_1_3
+    )
+    fp[2, 8] = inverse_determinant * (
+        -mass_pan_tilt * part_of_fp_2_8_3 + mass_tilt * part_of_fp_2_8_7
+    )
+    fp[3, 8] = inverse_determinant * (
+        mass_pan * part_of_fp_2_8_3 - mass_pan_tilt * part_of_fp_2_8_7
+    )
+    part_of_fp_2_9 = c_x_payload_sin_tilt_m_payload - c_z_payload_cos_tilt_m_payload
+    accel_pan_part_of_fp_2_9 = accel_pan * part_of_fp_2_9
+    m_payload_omega_tilt_sq = m_payload * omega_tilt_sq
+    part_of_fp_2_9_2 = (
+        -accel_pan
+        * (c_y_payload_m_payload * part_of_force_pan_4 + c_y_payload_m_payload * part_of_fx_2_1_4)
+        - accel_tilt * part_of_fp_2_9
+        - c_x_payload_cos_tilt * m_payload_omega_tilt_sq
+        - c_z_payload_sin_tilt * m_payload_omega_tilt_sq
+    )
+    fp[2, 9] = (inverse_determinant) * (
+        accel_pan_part_of_fp_2_9 * mass_pan_tilt + mass_tilt * part_of_fp_2_9_2
+    )
+    fp[3, 9] = (inverse_determinant) * (
+        -accel_pan_part_of_fp_2_9 * mass_pan - mass_pan_tilt * part_of_fp_2_9_2
+    )
+    part_of_fp_2_10 = (
+        accel_pan * c_y_payload_m_payload_cos_tilt
+        + c_x_payload_m_payload * cos_tilt_sq_omega_pan_sq
+        - c_x_payload_m_payload * omega_pan_sq_sin_tilt_sq
+        - c_z_payload_m_payload * part_of_fp_2_8
+        + m_payload * part_of_force_tilt
+        + omega_pan_sq * part_of_fp_2_8_6
+    )
+    part_of_fp_2_10_2 = (
+        -accel_pan * (c_z_payload_m_payload * part_of_fx_2_1_4 + part_of_fp_2_8_2)
+        + accel_tilt * c_y_payload * cos_tilt * m_payload
+        + 2.0 * c_x_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        - c_y_payload_m_payload_sin_tilt * omega_tilt_sq
+        - omega_pan_omega_tilt * part_of_fp_2_8_4
+        - 4.0 * omega_pan_omega_tilt * part_of_fp_2_8_5
+    )
+    fp[2, 10] = inverse_determinant * (
+        -mass_pan_tilt * part_of_fp_2_10 + mass_tilt * part_of_fp_2_10_2
+    )
+    fp[3, 10] = inverse_determinant * (
+        mass_pan * part_of_fp_2_10 - mass_pan_tilt * part_of_fp_2_10_2
+    )
+    fp[2, 11] = -inverse_determinant_mass_tilt * omega_pan
+    fp[3, 11] = omega_pan * part_of_fu_3_0
+    fp[2, 12] = omega_tilt * part_of_fu_3_0
+    fp[3, 12] = -inverse_determinant_mass_pan * omega_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def guards(t, x, u, p, m, g):
+    """Write holding and breakaway torques, gap separations and contact torques into g."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def guard_jacobian(t, x, u, p, m, gx, gp):
+    """Write the non-zero derivatives of guards by state and parameter."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def outputs(t, x, u, p, y):
+    """Write the measured signals into y."""
+    theta_pan = x[0]
+    theta_tilt = x[1]
+    y[0] = theta_pan
+    y[1] = theta_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def output_jacobian(t, x, u, p, yx, yp):
+    """Write the non-zero derivatives of outputs by state and parameter."""
+    yx[0, 0] = 1.0
+    yx[1, 1] = 1.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def energy(t, x, u, p, m, e):
+    """Write stored energy in J, power in and dissipated power in W into e."""
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    tau_pan = u[0]
+    tau_tilt = u[1]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    m_payload = p[4]
+    J_x_payload = p[5]
+    J_y_payload = p[6]
+    J_z_payload = p[7]
+    c_x_payload = p[8]
+    c_y_payload = p[9]
+    c_z_payload = p[10]
+    b_pan = p[11]
+    b_tilt = p[12]
+    omega_pan_sq = omega_pan * omega_pan
+    part_of_e_0 = (0.5) * omega_pan_sq
+    omega_tilt_sq = omega_tilt * omega_tilt
+    part_of_e_0_2 = (0.5) * omega_tilt_sq
+    part_of_e_0_3 = (9.81) * m_payload
+    sin_tilt = math.sin(theta_tilt)
+    c_x_payload_sin_tilt = c_x_payload * sin_tilt
+    cos_tilt = math.cos(theta_tilt)
+    c_z_payload_cos_tilt = c_z_payload * cos_tilt
+    c_x_payload_sin_tilt_m_payload = c_x_payload_sin_tilt * m_payload
+    c_y_payload_omega_pan_omega_tilt = c_y_payload * omega_pan * omega_tilt
+    c_x_payload_sq = c_x_payload * c_x_payload
+    m_payload_part_of_e_0_2 = m_payload * part_of_e_0_2
+    c_z_payload_sq = c_z_payload * c_z_payload
+    part_of_e_0_4 = part_of_e_0 * (sin_tilt * sin_tilt)
+    part_of_e_0_5 = (cos_tilt * cos_tilt) * part_of_e_0
+    m_payload_part_of_e_0_5 = m_payload * part_of_e_0_5
+    c_y_payload_sq = c_y_payload * c_y_payload
+    m_payload_part_of_e_0_4 = m_payload * part_of_e_0_4
+    e[0] = (
+        J_pan * part_of_e_0
+        + J_x_payload * part_of_e_0_4
+        + J_x_tilt * part_of_e_0_4
+        + J_y_payload * part_of_e_0_2
+        + J_y_tilt * part_of_e_0_2
+        + J_z_payload * part_of_e_0_5
+        + J_z_tilt * part_of_e_0_5
+        - c_x_payload_sin_tilt * part_of_e_0_3
+        + c_x_payload_sin_tilt_m_payload * c_y_payload_omega_pan_omega_tilt
+        + c_x_payload_sin_tilt_m_payload * c_z_payload_cos_tilt * omega_pan_sq
+        + c_x_payload_sq * m_payload_part_of_e_0_2
+        + c_x_payload_sq * m_payload_part_of_e_0_5
+        - c_y_payload_omega_pan_omega_tilt * c_z_payload_cos_tilt * m_payload
+        + c_y_payload_sq * m_payload_part_of_e_0_4
+        + c_y_payload_sq * m_payload_part_of_e_0_5
+        + c_z_payload_cos_tilt * part_of_e_0_3
+        + c_z_payload_sq * m_payload_part_of_e_0_2
+        + c_z_payload_sq * m_payload_part_of_e_0_4
+    )
+    e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
+    e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def initial_modes(t, x, u, p, m):
+    """Leave m alone: this model has no modes."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def state_derivative(t, x, u, p, dx):
+    """Write the time derivative of the state into dx."""
+    mode_derivative(t, x, u, p, x, dx)
+
+
+# END sha256 bee0d887a8dd517c8037a4b1768ffc956e0deb3e876ec876d64cd023b020069a
