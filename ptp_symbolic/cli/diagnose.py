@@ -1,0 +1,124 @@
+"""`ptp-symbolic diagnose` and `fit`: a platform and its logs in, files out."""
+
+import json
+import sys
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+
+class Several(click.Option):
+    """An option that takes all values up to the next option, and may be repeated."""
+
+    def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
+        super().add_to_parser(parser, ctx)
+        own = next(
+            parser._long_opt[name] for name in self.opts if name in parser._long_opt
+        )
+        process = own.process
+
+        def take_all(value: str, state: Any) -> None:
+            process(value, state)
+            while state.rargs and not state.rargs[0].startswith("-"):
+                process(state.rargs.pop(0), state)
+
+        own.process = take_all
+
+
+def progress_line() -> Callable[[str], None]:
+    """A function that shows what is being done, on a terminal only."""
+    begun = time.monotonic()
+
+    def show(text: str) -> None:
+        if sys.stderr.isatty():
+            click.echo(f"[{time.monotonic() - begun:6.1f} s] {text}", err=True)
+
+    return show
+
+
+@click.command()
+@click.option("--platform", "source", required=True, help="Platform TOML or packaged name.")
+@click.option("--train", cls=Several, multiple=True, required=True, help="Logs or folders to fit.")
+@click.option(
+    "--validate", cls=Several, multiple=True, required=True, help="Logs never fitted, to judge."
+)
+@click.option("--out", type=Path, required=True, help="Folder for the results.")
+@click.option("--json", "as_json", is_flag=True, help="Print diagnosis.json instead of tables.")
+def diagnose(
+    source: str, train: tuple[str, ...], validate: tuple[str, ...], out: Path, as_json: bool
+) -> None:
+    """Find the effect that a declared platform lacks, from its logs."""
+    from ptp_symbolic.atomic import check_writable, write_files_atomically
+    from ptp_symbolic.diagnosis_run import diagnose_platform
+    from ptp_symbolic.platform import read_platform
+
+    platform = read_platform(source)
+    check_writable(out)
+    found = diagnose_platform(platform, train, validate, progress_line())
+    write_files_atomically(out, found.files)
+    if as_json:
+        click.echo(json.dumps(found.summary, indent=2))
+        return
+    _print_diagnosis(found.summary)
+    click.echo(f"Report: {out / 'report.html'}")
+
+
+@click.command()
+@click.option("--platform", "source", required=True, help="Platform TOML or packaged name.")
+@click.argument("logs", nargs=-1, required=True)
+@click.option("--out", type=Path, required=True, help="Folder for the results.")
+@click.option("--json", "as_json", is_flag=True, help="Print fit.json instead of a table.")
+def fit(source: str, logs: tuple[str, ...], out: Path, as_json: bool) -> None:
+    """Fit the free parameters of a platform to logs or folders of logs."""
+    from ptp_symbolic.atomic import check_writable, write_files_atomically
+    from ptp_symbolic.diagnosis_run import fit_platform
+    from ptp_symbolic.platform import read_platform
+
+    platform = read_platform(source)
+    check_writable(out)
+    found = fit_platform(platform, logs, progress_line())
+    write_files_atomically(out, found.files)
+    if as_json:
+        click.echo(json.dumps(found.summary, indent=2))
+        return
+    _print_parameters(found.summary["parameters"])
+    total = found.summary["error"]["after"]["total"]["rmse_counts"]
+    click.echo(f"{total:.3f} counts rms over all runs. Result: {out / 'fit.json'}")
+
+
+def _print_diagnosis(summary: Mapping[str, Any]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console()
+    console.print(f"{summary['verdict']}: {summary['summary']}", markup=False, soft_wrap=True)
+    for effect in summary["added"]:
+        _print_parameters(effect["parameters"])
+    for part, error in summary["error"].items():
+        title = "fitted" if part == "train" else "never fitted"
+        table = Table("run", "before", "after", "floor", box=None, title_justify="left")
+        table.title = f"{part} ({title}), counts rms"
+        for run in (*error["before"]["by_run"], "total"):
+            cells = [
+                error[when]["total"] if run == "total" else error[when]["by_run"][run]
+                for when in ("before", "after", "noise_floor")
+            ]
+            table.add_row(run, *(f"{cell['rmse_counts']:.3f}" for cell in cells))
+        console.print(table)
+
+
+def _print_parameters(parameters: Mapping[str, Any]) -> None:
+    for name, p in parameters.items():
+        low, high = (f"{v:.5g}" if v is not None else "?" for v in p["ci95"])
+        notes = [
+            note
+            for key, wanted, note in (
+                ("at_bound", True, "at its bound"), ("identified", False, "not identified"),
+            )
+            if p.get(key) is wanted
+        ]  # fmt: skip
+        more = f"  ({', '.join(notes)})" if notes else ""
+        click.echo(f"  {name} = {p['value']:.6g} {p['unit']}  [{low}, {high}]{more}")

@@ -1,0 +1,30 @@
+"""`ptp-symbolic report`: documents printed from the equations."""
+
+from pathlib import Path
+
+import click
+
+
+@click.group()
+def report() -> None:
+    """Write a document."""
+
+
+@report.command()
+@click.option("--platform", "source", required=True, help="Platform TOML or packaged name.")
+@click.option("--out", type=Path, required=True, help="Folder for the document.")
+def derivation(source: str, out: Path) -> None:
+    """Write the derivation of a platform's equations in LaTeX, and as PDF where pdflatex is."""
+    from ptp_symbolic.atomic import check_writable, write_files_atomically
+    from ptp_symbolic.platform import read_platform
+    from ptp_symbolic.report.derivation import compile_pdf, render_derivation
+
+    platform = read_platform(source)
+    check_writable(out)
+    files = dict(render_derivation(platform))
+    pdf = compile_pdf(files)
+    if pdf is not None:
+        files["derivation.pdf"] = pdf
+    write_files_atomically(out, files)
+    for name in files:
+        click.echo(out / name)
