@@ -27,19 +27,21 @@ def load(source: str | Path) -> Model:
 
     if not Path(source).suffix and str(source) not in preset_names():
         choices = ", ".join((*model_names(), *preset_names()))
-        raise InputError(f"Unknown model '{source}'. Choose one of: {choices}; or give a TOML file.")
+        raise InputError(
+            f"Unknown model '{source}'. Choose one of: {choices}; or give a TOML file."
+        )
     from ptp_symbolic.loop import emit
 
     return emit(read_platform(source))
 
 
 def simulate(model: Model, *args: Any, **kwargs: Any) -> Any:
-    """Simulate `model`; see `ptp_symbolic.simulate.run.simulate` for the arguments."""
-    return importlib.import_module("ptp_symbolic.simulate.run").simulate(model, *args, **kwargs)
+    """Simulate `model`; see `ptp_symbolic.simulation.run.simulate` for the arguments."""
+    return importlib.import_module("ptp_symbolic.simulation.run").simulate(model, *args, **kwargs)
 
 
 def sensitivity(model: Model, *args: Any, **kwargs: Any) -> Any:
-    """Forward sensitivities of `model`; see `ptp_symbolic.sensitivity.forward.sensitivity`."""
-    return importlib.import_module("ptp_symbolic.sensitivity.forward").sensitivity(
+    """Forward sensitivities of `model`; see `ptp_symbolic.sensitivities.forward.sensitivity`."""
+    return importlib.import_module("ptp_symbolic.sensitivities.forward").sensitivity(
         model, *args, **kwargs
     )

@@ -208,4 +208,3 @@ def _extended(platform: Platform, after: Trial) -> Platform:
     ]  # fmt: skip
     values = {name: v for name, v in after.train.values.items() if name in declared}
     return replace(loop.extended(platform, added, values, fitted), name=platform.name)
-

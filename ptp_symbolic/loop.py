@@ -70,14 +70,17 @@ def free_parameters(platform: Platform, model: Model) -> tuple[FreeParameter, ..
         if declaration.same_as is not None and declaration.name in own:
             ties.setdefault(declaration.same_as, []).append(declaration.name)
     return tuple(
-        replace(free_parameter(
-            d.name,
-            d.value,
-            own[d.name].lower if d.lower is None else d.lower,
-            own[d.name].upper if d.upper is None else d.upper,
-            own[d.name].period,
-            tuple(ties.get(d.name, ())),
-        ), table=d.value)
+        replace(
+            free_parameter(
+                d.name,
+                d.value,
+                own[d.name].lower if d.lower is None else d.lower,
+                own[d.name].upper if d.upper is None else d.upper,
+                own[d.name].period,
+                tuple(ties.get(d.name, ())),
+            ),
+            table=d.value,
+        )
         for d in platform.parameters
         if d.free and d.name in own
     )
@@ -107,6 +110,4 @@ def extended(
             continue
         value = values.get(declaration.name, declaration.value)
         kept.append(replace(declaration, value=value))
-    return replace(
-        platform, effects=(*platform.effects, *added), parameters=(*kept, *fitted)
-    )
+    return replace(platform, effects=(*platform.effects, *added), parameters=(*kept, *fitted))

@@ -15,9 +15,7 @@ class Several(click.Option):
 
     def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
         super().add_to_parser(parser, ctx)
-        own = next(
-            parser._long_opt[name] for name in self.opts if name in parser._long_opt
-        )
+        own = next(parser._long_opt[name] for name in self.opts if name in parser._long_opt)
         process = own.process
 
         def take_all(value: str, state: Any) -> None:

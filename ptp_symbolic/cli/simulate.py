@@ -29,7 +29,7 @@ def simulate(source: str, inputs: tuple[str, ...], duration: float | None, out: 
     """Simulate a platform; writes trajectory.csv and events.csv."""
     from ptp_symbolic import load
     from ptp_symbolic.atomic import check_writable, write_files_atomically
-    from ptp_symbolic.simulate.run import simulate as run
+    from ptp_symbolic.simulation.run import simulate as run
 
     check_writable(out)
     model = load(source)
@@ -65,7 +65,7 @@ def sensitivity(
     """Derivatives of states by parameters and initial states; writes sensitivity.csv."""
     from ptp_symbolic import load
     from ptp_symbolic.atomic import check_writable, write_files_atomically
-    from ptp_symbolic.sensitivity.forward import sensitivity as run
+    from ptp_symbolic.sensitivities.forward import sensitivity as run
 
     check_writable(out)
     model = load(source)
@@ -83,8 +83,8 @@ def _signals(
     from ptp_symbolic.data import read_inputs
     from ptp_symbolic.errors import InputError
     from ptp_symbolic.platform import read_platform
-    from ptp_symbolic.simulate.inputs import table
-    from ptp_symbolic.simulate.profile_text import parse_profile
+    from ptp_symbolic.simulation.inputs import table
+    from ptp_symbolic.simulation.profile_text import parse_profile
 
     signals: dict[str, Any] = {}
     end = 10.0 if duration is None else duration

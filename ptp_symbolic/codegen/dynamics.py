@@ -143,7 +143,8 @@ def derivative_of(
 
 def guard_expressions(equations: Equations, solve: Solve) -> list[sp.Expr]:
     """Per friction: holding torque, breakaway forward and backward; per contact: separation,
-    half gap, torque at the upper and at the lower face."""
+    half gap, torque at the upper and at the lower face.
+    """
     expressions: list[sp.Expr] = []
     for friction in equations.frictions:
         row = equations.rates.index(friction.rate)

@@ -6,7 +6,6 @@ from collections.abc import Iterable
 import sympy as sp
 
 from ptp_symbolic import kinematics
-
 from ptp_symbolic.derivation.equations import Equations
 from ptp_symbolic.parameters import Parameter
 

@@ -75,9 +75,7 @@ def sealed(text: str) -> str:
     return f"{text}{SEAL}{hashlib.sha256(text.encode()).hexdigest()}\n"
 
 
-def _kernel(
-    name: str, arguments: str, doc: str, vectors: Vectors, lines: Sequence[Line]
-) -> str:
+def _kernel(name: str, arguments: str, doc: str, vectors: Vectors, lines: Sequence[Line]) -> str:
     rows = [f'"""{doc}"""', *vectors.unpack(lines)]
     for target, expression in lines:
         rows.append(_assignment(target, expression))

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from ptp_symbolic import kinematics
-from ptp_symbolic.derivation.bodies import RigidConfiguration
+from ptp_symbolic.bodies import RigidConfiguration
 from ptp_symbolic.derivation.equations import Contact, Equations, Ledger, PlacedEffect
 from ptp_symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.derivation.placement import place_effects, resolved_parameters
-from ptp_symbolic.effects.effect import Change, Contribution, Drive, Friction, Input, Place, Shaft
+from ptp_symbolic.effects.effect import Contribution, Drive, Friction, Input, Shaft
 from ptp_symbolic.effects.effect import quantity as quantity_symbol
 from ptp_symbolic.parameters import Parameter
 from ptp_symbolic.platform import Platform
@@ -116,7 +116,9 @@ def _collect(platform: Platform, placed: Iterable[tuple]) -> _Parts:
     for contribution in contributions:
         for name, change in contribution.changes.items():
             values[name] = values[name] + change.addition
-    symbols = {quantity_symbol(name): sp.sympify(value, strict=True) for name, value in values.items()}
+    symbols = {
+        quantity_symbol(name): sp.sympify(value, strict=True) for name, value in values.items()
+    }
     return _Parts(contributions, tuple(effect.dissipative for effect, _ in placed), symbols)
 
 
@@ -184,9 +186,7 @@ def _joint_torques(platform: Platform, parts: _Parts) -> list[tuple[sp.Symbol, s
     ]
 
 
-def _drive_torques(
-    parts: _Parts, row: Mapping[sp.Symbol, int]
-) -> list[tuple[sp.Symbol, sp.Expr]]:
+def _drive_torques(parts: _Parts, row: Mapping[sp.Symbol, int]) -> list[tuple[sp.Symbol, sp.Expr]]:
     return [(_drive_rate(drive, row), drive.torque) for drive in parts.drives()]
 
 
@@ -258,7 +258,9 @@ def _ledger(
         dissipated += direction * friction.level * friction.rate
     for shaft in shafts:
         stored, dissipated = stored + shaft.stored, dissipated + shaft.dissipated
-    return Ledger(*(parts.resolve(sp.sympify(e, strict=True)) for e in (stored, power_in, dissipated)))
+    return Ledger(
+        *(parts.resolve(sp.sympify(e, strict=True)) for e in (stored, power_in, dissipated))
+    )
 
 
 def _with_parameters(equations: Equations, declared: dict[str, Parameter]) -> Equations:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ptp_symbolic.derivation.bodies import RigidConfiguration, RigidEquations
+from ptp_symbolic.bodies import RigidConfiguration, RigidEquations
 from ptp_symbolic.effects.effect import Effect, Friction, Input, State
 from ptp_symbolic.parameters import Parameter
 

@@ -11,7 +11,7 @@ from sympy.physics.mechanics import (
 )
 
 from ptp_symbolic import kinematics
-from ptp_symbolic.derivation.bodies import Body, RigidConfiguration, RigidEquations
+from ptp_symbolic.bodies import Body, RigidConfiguration, RigidEquations
 
 
 def kane(configuration: RigidConfiguration) -> RigidEquations:

@@ -7,7 +7,7 @@ and no constraint force is ever formed.
 import sympy as sp
 
 from ptp_symbolic import kinematics
-from ptp_symbolic.derivation.bodies import Body, RigidConfiguration, RigidEquations
+from ptp_symbolic.bodies import Body, RigidConfiguration, RigidEquations
 from ptp_symbolic.derivation.trigonometry import normal_form
 
 

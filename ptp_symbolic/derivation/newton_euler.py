@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic import kinematics
-from ptp_symbolic.derivation.bodies import Body, RigidConfiguration, RigidEquations
+from ptp_symbolic.bodies import Body, RigidConfiguration, RigidEquations
 
 
 @dataclass(frozen=True)

@@ -50,9 +50,7 @@ def resolved_parameters(
     return {name: _declared(parameter, declarations) for name, parameter in own.items()}
 
 
-def _declared(
-    parameter: Parameter, declarations: dict[str, ParameterDeclaration]
-) -> Parameter:
+def _declared(parameter: Parameter, declarations: dict[str, ParameterDeclaration]) -> Parameter:
     declaration = declarations.get(parameter.name)
     if declaration is None:
         return parameter

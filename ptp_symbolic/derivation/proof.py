@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from ptp_symbolic.derivation.bodies import RigidEquations
+from ptp_symbolic.bodies import RigidEquations
 from ptp_symbolic.derivation.trigonometry import normal_form
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import sympy as sp
 
-from ptp_symbolic.derivation.bodies import RigidEquations
+from ptp_symbolic.bodies import RigidEquations
 from ptp_symbolic.derivation.trigonometry import normal_form
 
 

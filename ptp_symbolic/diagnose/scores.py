@@ -20,7 +20,8 @@ Pairs = Sequence[tuple[Run, Evaluation]]
 @dataclass(frozen=True)
 class Score:
     """Lagrange multiplier statistic of a candidate, its p-value, and the share of its effect that
-    the declared parameters leave visible (0: absorbed)."""
+    the declared parameters leave visible (0: absorbed).
+    """
 
     statistic: float
     p_value: float

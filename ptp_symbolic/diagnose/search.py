@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.diagnose.floor import floor_counts
 from ptp_symbolic.diagnose.scores import Score, mean_square, score
+from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.identify.fit import Effort, Fit, all_values_at_start, fit_parameters, run_counts
 from ptp_symbolic.identify.run import Run
@@ -157,9 +157,7 @@ def _first_round(
 
     best: dict[tuple[str, ...], Trial] = {}
     for base, candidate, start, values, z in jobs:
-        fit = fit_parameters(
-            task.model, task.train, start, values, z, EFFECT_ONLY, task.executor
-        )
+        fit = fit_parameters(task.model, task.train, start, values, z, EFFECT_ONLY, task.executor)
         trial = Trial((*base.candidates, candidate), _all_free(base, fit))
         if trial.keys not in best or fit.cost < best[trial.keys].train.cost:
             best[trial.keys] = trial
@@ -203,9 +201,7 @@ def _best(trials: Sequence[Trial], count: int) -> list[Trial]:
     return [t for t in ordered[:count] if t.train.cost <= DROP_FACTOR * ordered[0].train.cost]
 
 
-def _continue(
-    task: Task, trials: Sequence[Trial], effort: Effort
-) -> list[Trial]:
+def _continue(task: Task, trials: Sequence[Trial], effort: Effort) -> list[Trial]:
     continued = []
     for trial in trials:
         free = _restarted(trial.train)

@@ -176,8 +176,11 @@ def residual_tests(trial: Trial) -> list[dict[str, Any]]:
     assert trial.validate is not None
     white, crossed, size = [], [], 0
     for run, e in trial.validate.pairs():
-        residual = residual_counts(run, e, int(np.flatnonzero(np.isfinite(run.counts))[0])
-                                   if np.isfinite(run.counts).any() else 0)
+        residual = residual_counts(
+            run,
+            e,
+            int(np.flatnonzero(np.isfinite(run.counts))[0]) if np.isfinite(run.counts).any() else 0,
+        )
         if residual.size <= 4 * LAGS:
             continue
         white.append(_correlation(residual, residual))
@@ -189,8 +192,18 @@ def residual_tests(trial: Trial) -> list[dict[str, Any]]:
     signal = trial.validate.runs[0].signals[0]
     rows = []
     for name, values, skip, meaning in (
-        ("whiteness", white, 1, "rounding and slow leftovers make an output error residual coloured"),
-        ("independence of the input", crossed, 0, "a residual that follows the input is a model error"),
+        (
+            "whiteness",
+            white,
+            1,
+            "rounding and slow leftovers make an output error residual coloured",
+        ),
+        (
+            "independence of the input",
+            crossed,
+            0,
+            "a residual that follows the input is a model error",
+        ),
     ):
         largest = float(np.max(np.abs(np.mean(values, axis=0)[skip:])))
         rows.append(
@@ -214,7 +227,9 @@ def curves_of(base: Trial, after: Trial) -> dict[str, Any]:
     for name in ("train", "validate"):
         before_fit, after_fit = getattr(base, name), getattr(after, name)
         groups = zip(
-            by_source(before_fit.pairs()).items(), by_source(after_fit.pairs()).values(), strict=True
+            by_source(before_fit.pairs()).items(),
+            by_source(after_fit.pairs()).values(),
+            strict=True,
         )
         for (source, before), later in groups:
             curves[f"{name}/{source}"] = _curve(name, before, later)
@@ -240,5 +255,7 @@ def _curve(kind: str, before: list[Pair], after: list[Pair]) -> dict[str, Any]:
         if signal.startswith("theta_"):
             axis = signal.removeprefix("theta_")
             angle[axis] = data["after"]
-            rate[axis] = np.gradient(data["after"], np.maximum.accumulate(time + 1e-9 * np.arange(time.size)))
+            rate[axis] = np.gradient(
+                data["after"], np.maximum.accumulate(time + 1e-9 * np.arange(time.size))
+            )
     return {"set": kind, "time": time, "signals": signals, "angle": angle, "rate": rate}

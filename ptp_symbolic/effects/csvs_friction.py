@@ -7,7 +7,9 @@ from ptp_symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter("F_c_{axis}", "N m", 0.2401, 0.0, 1e4, "Coulomb friction torque", 0.0, (0.05,)),
-    Parameter("F_s_{axis}", "N m", 0.675, 0.0, 1e4, "static (breakaway) friction torque", 0.0, (0.05,)),
+    Parameter(
+        "F_s_{axis}", "N m", 0.675, 0.0, 1e4, "static (breakaway) friction torque", 0.0, (0.05,)
+    ),
     Parameter("v_s_{axis}", "rad/s", 0.016, 1e-6, 1e3, "Stribeck speed", None, (0.05,)),
     Parameter("F_v_{axis}", "N m s/rad", 13.9424, 0.0, 1e4, "viscous part", 0.0, (0.0,)),
 )

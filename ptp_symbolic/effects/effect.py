@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from ptp_symbolic import kinematics
-from ptp_symbolic.derivation.bodies import Body
+from ptp_symbolic.bodies import Body
 from ptp_symbolic.parameters import Parameter
 
 

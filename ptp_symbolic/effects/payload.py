@@ -2,12 +2,14 @@
 
 import sympy as sp
 
-from ptp_symbolic.derivation.bodies import Body
+from ptp_symbolic.bodies import Body
 from ptp_symbolic.effects.effect import Contribution, Effect, Place
 from ptp_symbolic.parameters import Parameter
 
 INERTIAS = tuple(
-    Parameter(f"J_{k}_payload", "kg m^2", value, 0.0, 1e4, f"payload inertia about its own {k} axis")
+    Parameter(
+        f"J_{k}_payload", "kg m^2", value, 0.0, 1e4, f"payload inertia about its own {k} axis"
+    )
     for k, value in (("x", 5.3e-3), ("y", 6.8e-3), ("z", 6.8e-3))
 )
 OFFSETS = tuple(

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from ptp_symbolic.derivation.bodies import Body
+from ptp_symbolic.bodies import Body
 from ptp_symbolic.effects.effect import Contribution, Effect, Place
 from ptp_symbolic.parameters import Parameter
 

@@ -46,7 +46,9 @@ class Evaluation:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _compare(outputs, output_jacobian, time, x, s, u, p, measured, columns, picked, weight, y, r, j):
+def _compare(
+    outputs, output_jacobian, time, x, s, u, p, measured, columns, picked, weight, y, r, j
+):
     """Fill outputs y [k, ny], residuals r and their derivatives j; u is the held input."""
     k, n = x.shape
     ns = s.shape[2]

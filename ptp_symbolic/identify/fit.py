@@ -85,9 +85,7 @@ def fit_parameters(
     start_z = list(z) if z is not None else [np.zeros(len(run.unknowns)) for run in runs]
     if not free:
         return _fit_starts(model, runs, fixed, start_z, effort, executor)
-    problem = _problem(
-        model, runs, free, fixed, effort.tolerance, executor, effort.prior_sigma
-    )
+    problem = _problem(model, runs, free, fixed, effort.tolerance, executor, effort.prior_sigma)
     phi = to_search(free, {f.name: f.start for f in free})
     best = minimise(problem, phi, start_z, effort.iterations, effort.gain)
     values = {**fixed, **all_values(free, best.phi)}
@@ -124,9 +122,7 @@ def _problem(
     owner = np.array([i for i, f in enumerate(free) for _ in (f.name, *f.tied)], dtype=np.int64)
     base = model.parameter_vector(dict(fixed))
 
-    def evaluate_all(
-        phi: FloatArray, z: Sequence[FloatArray], tangents: bool
-    ) -> list[Evaluation]:
+    def evaluate_all(phi: FloatArray, z: Sequence[FloatArray], tangents: bool) -> list[Evaluation]:
         p = base.copy()
         for name, value in all_values(free, phi).items():
             p[names.index(name)] = value
@@ -158,9 +154,7 @@ def _problem(
     )
 
 
-def _prior(
-    free: Sequence[FreeParameter], sigma: float | None
-) -> tuple[FloatArray, FloatArray]:
+def _prior(free: Sequence[FreeParameter], sigma: float | None) -> tuple[FloatArray, FloatArray]:
     """Centre and precision of the prior in search coordinates; precision 0 where there is none."""
     held = [sigma is not None and f.logarithmic and f.table is not None for f in free]
     centre = [

@@ -22,7 +22,8 @@ UNIDENTIFIED = 1.0
 @dataclass(frozen=True)
 class Estimate:
     """A fitted value with its 95 % interval; SI. `identified` is False where the interval is wider
-    than the value itself, or the data do not see the parameter at all."""
+    than the value itself, or the data do not see the parameter at all.
+    """
 
     name: str
     value: float
@@ -50,7 +51,9 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
             low, high = value - spread * abs(by_phi[index]), value + spread * abs(by_phi[index])
         near = 1e-4 * max(abs(free.start), abs(value))
         at_bound = value - free.lower <= near or free.upper - value <= near
-        width = spread if free.logarithmic else spread * abs(by_phi[index]) / max(abs(value), 1e-300)
+        width = (
+            spread if free.logarithmic else spread * abs(by_phi[index]) / max(abs(value), 1e-300)
+        )
         seen = bool(np.isfinite(spread) and width < UNIDENTIFIED)
         result.append(
             Estimate(

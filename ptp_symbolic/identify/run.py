@@ -10,7 +10,7 @@ from ptp_symbolic.data import Log
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import Platform, SignalDeclaration
 from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulate.inputs import InputTable, stack, table
+from ptp_symbolic.simulation.inputs import InputTable, stack, table
 
 FloatArray = NDArray[np.float64]
 
@@ -87,7 +87,10 @@ def _prepare(
     model: Model, outputs: Sequence[SignalDeclaration], log: Log, inputs: FloatArray
 ) -> Run:
     counts = np.array(
-        [2 * np.pi / s.counts_per_revolution if s.counts_per_revolution else np.nan for s in outputs]
+        [
+            2 * np.pi / s.counts_per_revolution if s.counts_per_revolution else np.nan
+            for s in outputs
+        ]
     )
     sigma = np.array([_sigma(s, q) for s, q in zip(outputs, counts, strict=True)])
     run = Run(

@@ -15,7 +15,7 @@ from ptp_symbolic.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.identify.intervals import project_out
 from ptp_symbolic.identify.run import Run, split_run
 from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulate.inputs import stack, table
+from ptp_symbolic.simulation.inputs import stack, table
 
 FloatArray = NDArray[np.float64]
 
@@ -48,9 +48,7 @@ def window_length(
     grown = [_drift(model, run, p, input_noise(run, declared_noise), rng) for run in runs]
     durations = [float(run.time[-1] - run.time[0]) for run in runs]
     for length in lengths:
-        inside = [
-            np.mean(drift[time <= length] ** 2) for drift, time in grown if time.size
-        ]
+        inside = [np.mean(drift[time <= length] ** 2) for drift, time in grown if time.size]
         if inside and np.sqrt(np.median(inside)) <= ALLOWED_COUNTS:
             return None if length >= max(durations) else float(length)
     return LENGTHS[-1]

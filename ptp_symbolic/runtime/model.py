@@ -110,7 +110,12 @@ class Model:
         """Unit of every state, input, output and parameter."""
         m = self.module
         names = (*m.STATE_NAMES, *m.INPUT_NAMES, *m.OUTPUT_NAMES, *self.parameter_names)
-        units = (*m.STATE_UNITS, *m.INPUT_UNITS, *m.OUTPUT_UNITS, *(p.unit for p in self.parameters))
+        units = (
+            *m.STATE_UNITS,
+            *m.INPUT_UNITS,
+            *m.OUTPUT_UNITS,
+            *(p.unit for p in self.parameters),
+        )
         return dict(zip(names, units, strict=True))
 
     @cached_property

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-from ptp_symbolic.derivation.bodies import RigidEquations
+from ptp_symbolic.bodies import RigidEquations
 from ptp_symbolic.simplify.nesting import (
     AngleSums,
     Combination,

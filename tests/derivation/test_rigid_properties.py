@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from ptp_symbolic.derivation.bodies import RigidEquations
+from ptp_symbolic.bodies import RigidEquations
 from ptp_symbolic.derivation.kane import kane
 from ptp_symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.derivation.newton_euler import newton_euler

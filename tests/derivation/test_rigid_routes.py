@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from ptp_symbolic.derivation.bodies import RigidConfiguration, RigidEquations
+from ptp_symbolic.bodies import RigidConfiguration, RigidEquations
 from ptp_symbolic.derivation.kane import kane
 from ptp_symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.derivation.newton_euler import newton_euler

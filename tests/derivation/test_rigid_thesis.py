@@ -3,7 +3,7 @@
 import sympy as sp
 
 from ptp_symbolic import kinematics
-from ptp_symbolic.derivation.bodies import RigidConfiguration, RigidEquations
+from ptp_symbolic.bodies import RigidConfiguration, RigidEquations
 from ptp_symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.derivation.trigonometry import normal_form
 from tests.derivation import rigid_configurations as machines

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from ptp_symbolic.derivation.bodies import Body, RigidConfiguration, RigidEquations
+from ptp_symbolic.bodies import Body, RigidConfiguration, RigidEquations
 from ptp_symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.derivation.trigonometry import normal_form
 from ptp_symbolic.simplify.base_parameters import BaseForm, base_form

@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulate import hybrid
-from ptp_symbolic.simulate.inputs import InputSignal, constant, stack
-from ptp_symbolic.simulate.run import (
+from ptp_symbolic.simulation import hybrid
+from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
+from ptp_symbolic.simulation.run import (
     checked_parameters,
     output_times,
     refuse_failure,
@@ -69,7 +69,9 @@ def sensitivity(
     hybrid.evaluate_inputs(t[0], 1, *table.arrays, table.new_cursor(), u)
     module = model.module
     module.initial_modes(t[0], x, u, p, m)
-    stops = np.unique(np.concatenate([t, table.stops[(table.stops > t[0]) & (table.stops < t[-1])]]))
+    stops = np.unique(
+        np.concatenate([t, table.stops[(table.stops > t[0]) & (table.stops < t[-1])]])
+    )
     out_x, out_s = np.zeros((len(t), len(x))), np.zeros((len(t), *s.shape))
     status, reached, _, _ = hybrid.integrate(
         module.mode_derivative, module.jacobian, module.guards, module.guard_jacobian,

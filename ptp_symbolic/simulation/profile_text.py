@@ -3,7 +3,7 @@
 import re
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.simulate.inputs import (
+from ptp_symbolic.simulation.inputs import (
     InputSignal,
     constant,
     cubic_transition,

@@ -10,15 +10,15 @@ and Gantmacher, 1958).
 import numpy as np
 from numba import njit, types
 
-from ptp_symbolic.simulate import signatures
-from ptp_symbolic.simulate.inputs import evaluate_inputs
-from ptp_symbolic.simulate.modes import (
+from ptp_symbolic.simulation import signatures
+from ptp_symbolic.simulation.inputs import evaluate_inputs
+from ptp_symbolic.simulation.modes import (
     largest_violation,
     settle,
     violation,
     violation_gradient,
 )
-from ptp_symbolic.simulate.tableau import A, C, ERROR, STAGES, interpolation_weights
+from ptp_symbolic.simulation.tableau import ERROR, STAGES, A, C, interpolation_weights
 
 DONE, DIVERGED, CHATTERING, TOO_MANY_STEPS = 0, 1, 2, 3
 TIME_RESOLUTION = 1e-12
@@ -125,6 +125,7 @@ def _flush(values):
         if abs(flat[i]) < SMALLEST:
             flat[i] = 0.0
 
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def _record(t, m_before, m, frictions, elements, events, count):
     """Note every element whose mode changed; the count goes on past the capacity of `events`."""
@@ -185,9 +186,12 @@ def _locate(
     while high - low > 1e-9 * h and high - low > TIME_RESOLUTION:
         middle = 0.5 * (low + high)
         _interpolate(middle / h, h, x, k, weights, trial)
-        if _violation_at(
-            guards, t + middle, trial, u, p, m, table, cursor, held, g, friction_rates
-        ) > 0.0:
+        if (
+            _violation_at(
+                guards, t + middle, trial, u, p, m, table, cursor, held, g, friction_rates
+            )
+            > 0.0
+        ):
             high = middle
         else:
             low = middle
@@ -325,7 +329,9 @@ def integrate(
             if with_energy:
                 for i in range(STAGES - 1):
                     if not held:
-                        evaluate_inputs(t + C[i] * step_h, 1 if C[i] < 1.0 else -1, *table, cursor, u)
+                        evaluate_inputs(
+                            t + C[i] * step_h, 1 if C[i] < 1.0 else -1, *table, cursor, u
+                        )
                     energy(t + C[i] * step_h, stage[i], u, p, m, powers)
                     totals[1] += step_h * A[STAGES - 1, i] * powers[1]
                     totals[2] += step_h * A[STAGES - 1, i] * powers[2]

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulate import hybrid
-from ptp_symbolic.simulate.inputs import InputSignal, constant, stack
+from ptp_symbolic.simulation import hybrid
+from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
 
 FloatArray = NDArray[np.float64]
 
