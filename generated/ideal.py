@@ -18,7 +18,6 @@ Effects:
 
 import math
 
-import numpy as np
 from numba import njit
 
 MODEL_HASH = "bbecc2784e690c04"
@@ -36,8 +35,8 @@ MODE_NAMES = ()
 FRICTION_RATES = ()
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
-# Parameters: name, unit, default, lower and upper bound, value at which the effect
-# vanishes (None: any), values from which a search starts, period, meaning.
+# Parameters: name, unit, default, lower and upper bound, value at which the
+# effect vanishes (None: any), starts of a search, period, meaning.
 PARAMETERS = (
     ("J_pan", "kg m^2", 0.00053, 0.0, 10000.0, None, (), None, "inertia of the pan body about z"),
     (
@@ -308,4 +307,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 85bd1e28f5356b0cc81a1670888d89115806a8daa22782250a9b8e9e788e35b4
+# END sha256 e5b92e34dc1d2f49892eeec0a1909946e98892d171bc9c4dde61a3d61886ff83

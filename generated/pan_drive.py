@@ -44,8 +44,8 @@ MODE_NAMES = ("slide_pan", "side_pan", "active_pan")
 FRICTION_RATES = (3,)
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ((2, 0),)
-# Parameters: name, unit, default, lower and upper bound, value at which the effect
-# vanishes (None: any), values from which a search starts, period, meaning.
+# Parameters: name, unit, default, lower and upper bound, value at which the
+# effect vanishes (None: any), starts of a search, period, meaning.
 PARAMETERS = (
     ("J_pan", "kg m^2", 0.05, 0.0, 10000.0, None, (), None, "inertia of the pan body about z"),
     (
@@ -176,7 +176,8 @@ EFFECTS = (
         ("gap_pan",),
         "backlash",
         "thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
-        "Reverse slowly with and without a known preload torque on the joint: backlash disappears under preload, presliding does not.",
+        "Reverse slowly with and without a known preload torque on the joint: backlash "
+        "disappears under preload, presliding does not.",
     ),
     (
         "csvs_friction",
@@ -192,7 +193,8 @@ EFFECTS = (
         ("a_F_c_pan", "a_F_s_pan", "a_v_s_pan", "a_F_v_pan"),
         "friction that differs by direction",
         "thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)",
-        "Run the same speeds both ways at two supply polarities, or back-drive the joint without power: friction follows the motion, an offset does not.",
+        "Run the same speeds both ways at two supply polarities, or back-drive the joint "
+        "without power: friction follows the motion, an offset does not.",
     ),
 )
 
@@ -605,4 +607,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 0a747a38063f38c43137be07759f32ae7802310e8deeaa0dfdd391dffd73ee69
+# END sha256 65d20a420ae95271c659c61b2e5bf679d6565c900840e2ce3d5374e88a8ea47d

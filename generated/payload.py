@@ -41,7 +41,6 @@ Effects:
 
 import math
 
-import numpy as np
 from numba import njit
 
 MODEL_HASH = "7956bf39ca6e098e"
@@ -59,8 +58,8 @@ MODE_NAMES = ()
 FRICTION_RATES = ()
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
-# Parameters: name, unit, default, lower and upper bound, value at which the effect
-# vanishes (None: any), values from which a search starts, period, meaning.
+# Parameters: name, unit, default, lower and upper bound, value at which the
+# effect vanishes (None: any), starts of a search, period, meaning.
 PARAMETERS = (
     ("J_pan", "kg m^2", 0.00053, 0.0, 10000.0, None, (), None, "inertia of the pan body about z"),
     (
@@ -736,4 +735,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 bee0d887a8dd517c8037a4b1768ffc956e0deb3e876ec876d64cd023b020069a
+# END sha256 912cd909ae1dacf5df1ba7be91c307ce1cd000d0dabd7dca3d3194b267d7b53a

@@ -1,4 +1,4 @@
-"""The loop above both wings: emit the declared machine and its candidates, fit, diagnose, extend."""
+"""The loop above both wings: emit a declared machine and its candidates, extend it."""
 
 import hashlib
 import os

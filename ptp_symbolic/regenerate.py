@@ -34,7 +34,8 @@ def regenerate(models: Sequence[str] = (), check: bool = False) -> Outcome:
         if model not in COMMITTED:
             raise InputError(f"Unknown model '{model}'. Choose from: {', '.join(COMMITTED)}.")
     folder = generated_folder()
-    changed, unchanged = [], []
+    changed: list[str] = []
+    unchanged: list[str] = []
     for model in models or COMMITTED:
         path = folder / f"{model}.py"
         text = committed_text(model)

@@ -14,6 +14,7 @@ class Several(click.Option):
     """An option that takes all values up to the next option, and may be repeated."""
 
     def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
+        """Let the option take every value up to the next option."""
         super().add_to_parser(parser, ctx)
         own = next(parser._long_opt[name] for name in self.opts if name in parser._long_opt)
         process = own.process

@@ -1,1 +1,1 @@
-""""""
+"""From equations to numba modules and formulas for documents."""

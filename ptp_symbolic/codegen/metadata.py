@@ -9,13 +9,15 @@ from ptp_symbolic import kinematics
 from ptp_symbolic.derivation.equations import Equations
 from ptp_symbolic.parameters import Parameter
 
+TEXT_WIDTH = 80
+
 
 def metadata_text(equations: Equations, digest: str) -> str:
     """Return docstring, imports and constants of the module of `equations`."""
     parameters = equations.parameters
     sections = [
         _docstring(equations),
-        "import math\n\nimport numpy as np\nfrom numba import njit",
+        _imports(equations),
         "\n".join(
             [
                 f'MODEL_HASH = "{digest}"',
@@ -33,8 +35,8 @@ def metadata_text(equations: Equations, digest: str) -> str:
                 _tuple("FRICTION_RATES", map(str, _friction_rates(equations))),
                 "# Per contact: state index of the angle at the gear output and at the joint.",
                 _tuple("CONTACT_ANGLES", _contact_states(equations)),
-                "# Parameters: name, unit, default, lower and upper bound, value at which the effect",
-                "# vanishes (None: any), values from which a search starts, period, meaning.",
+                "# Parameters: name, unit, default, lower and upper bound, value at which the",
+                "# effect vanishes (None: any), starts of a search, period, meaning.",
                 _tuple("PARAMETERS", map(_parameter, parameters)),
                 "# Effects: id, axis, parameters, title, reference, separating experiment.",
                 _tuple("EFFECTS", _effects(equations)),
@@ -42,6 +44,17 @@ def metadata_text(equations: Equations, digest: str) -> str:
         ),
     ]
     return "\n\n".join(sections)
+
+
+def _imports(equations: Equations) -> str:
+    arrays = "import numpy as np\n" if equations.mode_symbols else ""
+    return f"import math\n\n{arrays}from numba import njit"
+
+
+def _long_text(value: str) -> str:
+    """A literal over as many lines as it needs."""
+    lines = textwrap.wrap(value, TEXT_WIDTH, drop_whitespace=False) or [""]
+    return "\n        ".join(repr_text(line) for line in lines)
 
 
 def repr_text(value: str) -> str:
@@ -141,6 +154,6 @@ def _effects(equations: Equations) -> list[str]:
         effect = placed.effect
         axis = "None" if placed.axis is None else f'"{placed.axis}"'
         texts = (effect.title, effect.reference, effect.separating_experiment)
-        fields = [f'"{effect.id}"', axis, inner, *map(repr_text, texts)]
+        fields = [f'"{effect.id}"', axis, inner, *map(_long_text, texts)]
         rows.append("(\n" + "".join(f"        {f},\n" for f in fields) + "    )")
     return rows

@@ -35,7 +35,7 @@ class KernelPrinter(PythonCodePrinter):
         return super()._print_Pow(expr, rational=rational)
 
     def _print_Mul(self, expr: sp.Mul) -> str:
-        """Products with one division; exponentials stay above the line, where they cannot overflow."""
+        """Products with one division; exponentials stay above it, where they cannot overflow."""
         below = [f for f in expr.args if f.is_Pow and f.exp.is_Integer and f.exp.is_negative]
         if not below:
             return super()._print_Mul(expr)

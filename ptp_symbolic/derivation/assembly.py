@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from ptp_symbolic import kinematics
-from ptp_symbolic.bodies import RigidConfiguration
+from ptp_symbolic.bodies import RigidConfiguration, RigidEquations
 from ptp_symbolic.derivation.equations import Contact, Equations, Ledger, PlacedEffect
 from ptp_symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.derivation.placement import place_effects, resolved_parameters
@@ -235,7 +235,7 @@ def _ledger(
     frictions: tuple[Friction, ...],
     potential: sp.Expr,
     shafts: list[Ledger],
-    rigid_equations: object,
+    rigid_equations: RigidEquations,
 ) -> Ledger:
     stored = rigid_equations.kinetic + rigid_equations.potential + potential
     power_in, dissipated = sp.Integer(0), sp.Integer(0)

@@ -33,7 +33,6 @@ def score(fit: Fit, extra: Sequence[FloatArray]) -> Score:
 
     The covariance sums over blocks of time, as in the intervals.
     """
-    gradient, middle, left, whole = 0.0, 0.0, 0.0, 0.0
     regressors, nuisance, residuals, labels = [], [], [], []
     for number, ((run, e), columns) in enumerate(zip(fit.pairs(), extra, strict=True)):
         regressors.append(project_out(columns, e.by_start))

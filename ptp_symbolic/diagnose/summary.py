@@ -1,4 +1,4 @@
-"""A diagnosis as plain data: errors before and after, ranking, parameters, residual tests, curves."""
+"""A diagnosis as plain data: errors, ranking, parameters, residual tests, curves."""
 
 from typing import Any
 
@@ -196,13 +196,13 @@ def residual_tests(trial: Trial) -> list[dict[str, Any]]:
             "whiteness",
             white,
             1,
-            "rounding and slow leftovers make an output error residual coloured",
+            "rounding and slow leftovers colour an output error residual",
         ),
         (
             "independence of the input",
             crossed,
             0,
-            "a residual that follows the input is a model error",
+            "what follows the input is a model error",
         ),
     ):
         largest = float(np.max(np.abs(np.mean(values, axis=0)[skip:])))
@@ -238,7 +238,7 @@ def curves_of(base: Trial, after: Trial) -> dict[str, Any]:
 
 def _curve(kind: str, before: list[Pair], after: list[Pair]) -> dict[str, Any]:
     first = before[0][0]
-    signals = {}
+    signals: dict[str, dict[str, Any]] = {}
     for column, signal in enumerate(first.signals):
         picked = first.outputs[column]
         count = first.counts[column]

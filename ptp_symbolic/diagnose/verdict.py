@@ -1,4 +1,4 @@
-"""The verdict: nothing missing, explained, explained up to a group, partly explained, unexplained."""
+"""The verdict: nothing missing, explained (up to a group, partly), or unexplained."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -70,9 +70,10 @@ def _choose(judged: Sequence[Trial], floor: float) -> tuple[Trial, tuple[Trial, 
             chosen = best, rivals
             continue
         left = max(held_out_cost(chosen[0]) - floor**2, 0.0)
-        if held_out_cost(best) - floor**2 <= SECOND_LEAVES * left and _away_from_zero(best):
-            if float(np.sqrt(held_out_cost(chosen[0]))) > AT_FLOOR * floor:
-                chosen = best, rivals
+        open_ = float(np.sqrt(held_out_cost(chosen[0]))) > AT_FLOOR * floor
+        most = held_out_cost(best) - floor**2 <= SECOND_LEAVES * left
+        if open_ and most and _away_from_zero(best):
+            chosen = best, rivals
     assert chosen is not None
     return chosen
 

@@ -1,4 +1,4 @@
-"""Coulomb, static, viscous and Stribeck friction, set-valued at rest, at the gear output or joint."""
+"""Coulomb, static, viscous and Stribeck friction, set-valued at rest."""
 
 import sympy as sp
 

@@ -25,11 +25,7 @@ class Change:
 
 @dataclass(frozen=True)
 class State:
-    """A state of an effect: name, unit, meaning, time derivative, value at the start.
-
-    With `reset_on_sticking` the state returns to its start when friction on `axis` starts to
-    stick or to slide (a dwell time, for example).
-    """
+    """A state of an effect: name, unit, meaning, time derivative, value at the start."""
 
     name: str
     unit: str
@@ -105,7 +101,7 @@ class Contribution:
 
 @dataclass(frozen=True)
 class Place:
-    """Where an effect sits: the axes of the machine, its own axis and site, which axes have a shaft."""
+    """Where an effect sits: axes of the machine, its own axis and site, axes with a shaft."""
 
     axes: tuple[str, ...]
     axis: str | None

@@ -13,7 +13,7 @@ SHIFTS = tuple(
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:
-    along_axis = {("pan",): "dc_z_payload", ("tilt",): "dc_y_payload"}.get(place.axes)
+    along_axis = {"pan": "dc_z_payload", "tilt": "dc_y_payload"}.get("".join(place.axes))
     return tuple(p for p in SHIFTS if p.name != along_axis)
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulate import hybrid
+from ptp_symbolic.simulation import hybrid
 
 FloatArray = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ class Tolerance:
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """Weighted residuals [k * ny] (measured - simulated) and their Jacobians; None when it failed."""
+    """Weighted residuals [k * ny] (measured - simulated) and their Jacobians."""
 
     residual: FloatArray
     by_parameter: FloatArray

@@ -22,6 +22,9 @@ from ptp_symbolic.runtime.model import Model
 FloatArray = NDArray[np.float64]
 
 
+DEFAULT_TOLERANCE = Tolerance()
+
+
 @dataclass(frozen=True)
 class Effort:
     """How hard to search: iterations, relative gain at which to stop, simulation tolerance.
@@ -32,7 +35,7 @@ class Effort:
 
     iterations: int = 30
     gain: float = 1e-5
-    tolerance: Tolerance = Tolerance()
+    tolerance: Tolerance = DEFAULT_TOLERANCE
     prior_sigma: float | None = None
 
 

@@ -100,7 +100,8 @@ def minimise(
     """Minimise from (phi, z); stops when two steps in a row gain less than the share `gain`.
 
     Priors of phi and z are weighed by the mean square residual: strong while the model is far off,
-    so that declared parameters and starts do not bend to stand in for an effect, and weak at the noise floor.
+    so that declared parameters and starts do not bend to stand in for an effect, and weak at the
+    noise floor.
     """
     phi, z = np.clip(phi, problem.lower, problem.upper), [a.copy() for a in z]
     now = problem.evaluate(phi, z, True)

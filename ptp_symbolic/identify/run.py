@@ -1,5 +1,6 @@
 """A run prepared for fitting: inputs as tables, measured signals with weights, unknown starts."""
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -194,7 +195,7 @@ def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
         return (run,)
     edges = _moving_edges(run, np.linspace(0, len(run.time) - 1, pieces + 1).astype(int))
     windows = []
-    for number, (a, b) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+    for number, (a, b) in enumerate(itertools.pairwise(edges)):
         part = slice(a, b + 1)
         piece = replace(
             run,

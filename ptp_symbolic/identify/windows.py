@@ -68,7 +68,7 @@ def _grows(model: Model, run: Run, p: FloatArray) -> bool:
 def _drift(
     model: Model, run: Run, p: FloatArray, noise: FloatArray, rng: np.random.Generator
 ) -> tuple[FloatArray, FloatArray]:
-    """Difference in counts [k] between a run and its noisy replay, with the time since its start."""
+    """Difference in counts [k] between a run and its noisy replay, and the time since start."""
     z = np.zeros(len(run.unknowns))
     found = _replay(model, run, p, z, noise, rng)
     if found is None:

@@ -30,7 +30,7 @@ def render_derivation(platform: Platform) -> dict[str, str | bytes]:
     parts = [
         PREAMBLE,
         rf"\title{{{escaped(platform.title)}\\\large Derivation of the equations of motion}}",
-        r"\date{}\begin{document}\maketitle",
+        r"\author{}\date{}\begin{document}\maketitle",
         _frames(equations),
         _symbols(equations, platform),
         _routes(equations),
@@ -69,8 +69,8 @@ Gravity in the base frame is
         + formula(r"\mathbf{g} = " + latex_of(equations.rigid.gravity))
         + (
             r"with the body rates $(-\omega_{\mathrm{pan}}\sin\theta_{\mathrm{tilt}},\;"
-            r"\omega_{\mathrm{tilt}},\;\omega_{\mathrm{pan}}\cos\theta_{\mathrm{tilt}})$ of the tilt"
-            " body (thesis Eq.~3.1)."
+            r"\omega_{\mathrm{tilt}},\;\omega_{\mathrm{pan}}\cos\theta_{\mathrm{tilt}})$ of the"
+            " tilt body (thesis Eq.~3.1)."
             if len(equations.axes) == 2
             else "in metres per second squared."
         )

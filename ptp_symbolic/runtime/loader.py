@@ -1,6 +1,7 @@
 """Load emitted modules, committed or from a cache folder, after verifying their checksum."""
 
 import hashlib
+import importlib
 import importlib.util
 import sys
 from pathlib import Path
@@ -14,9 +15,7 @@ TRAILER = "# END sha256 "
 
 def generated_folder() -> Path:
     """Folder of the committed modules."""
-    import ptp_symbolic.generated
-
-    return Path(next(iter(ptp_symbolic.generated.__path__)))
+    return Path(next(iter(importlib.import_module("ptp_symbolic.generated").__path__)))
 
 
 def model_names() -> tuple[str, ...]:

@@ -126,7 +126,7 @@ class Model:
     @cached_property
     def state_derivative(self) -> Callable[..., None]:
         """The jitted in-place function f(t, x, u, p, dx)."""
-        return self.module.state_derivative  # type: ignore[no-any-return]
+        return self.module.state_derivative
 
     def rhs(self, t: float, x: FloatArray, u: FloatArray, p: FloatArray) -> FloatArray:
         """Return dx/dt [n] at time t in s, state x [n], input u [nu], parameters p [np]."""

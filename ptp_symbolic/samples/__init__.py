@@ -1,0 +1,1 @@
+"""Sample logs that ship along, made by MuJoCo."""

@@ -1,1 +1,1 @@
-""""""
+"""Derivatives of simulations by parameters and initial states."""

@@ -85,7 +85,12 @@ def sensitivity(
 
 
 def _measured(
-    model: Model, t: FloatArray, x: FloatArray, s: FloatArray, p: FloatArray, columns: FloatArray
+    model: Model,
+    t: FloatArray,
+    x: FloatArray,
+    s: FloatArray,
+    p: FloatArray,
+    columns: NDArray[np.int64],
 ) -> tuple[FloatArray, FloatArray]:
     ny, u = len(model.output_names), np.zeros(len(model.input_names))
     y, signals = np.zeros((len(t), ny)), np.zeros((len(t), ny, s.shape[2]))

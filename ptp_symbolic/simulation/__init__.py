@@ -1,1 +1,1 @@
-""""""
+"""Simulation with located events: sticking, sliding, contact across a gap."""
