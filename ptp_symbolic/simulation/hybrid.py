@@ -12,200 +12,28 @@ from numba import njit, types
 
 from ptp_symbolic.simulation import signatures
 from ptp_symbolic.simulation.inputs import evaluate_inputs
+from ptp_symbolic.simulation.location import (
+    TIME_RESOLUTION,
+    first_violation,
+    locate_event,
+    record_switches,
+    worst_element,
+)
 from ptp_symbolic.simulation.modes import (
     largest_violation,
     settle,
     violation,
     violation_gradient,
 )
-from ptp_symbolic.simulation.tableau import ERROR, STAGES, A, C, interpolation_weights
+from ptp_symbolic.simulation.step import error_norm, fill_stages, flush, interpolate
+from ptp_symbolic.simulation.tableau import STAGES, A, C
+from ptp_symbolic.simulation.tangents import jump_tangents, push_tangents
 
 DONE, DIVERGED, CHATTERING, TOO_MANY_STEPS = 0, 1, 2, 3
-TIME_RESOLUTION = 1e-12
-SMALLEST = 1e-60
 MAX_INSTANT_EVENTS = 100
 
 _V, _M, _I = types.float64[::1], types.float64[:, ::1], types.int64[::1]
 TABLE = types.Tuple((_V, _M, _I, _M, _I, _M, _I))
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _stages(derivative, t, h, x, u, p, m, table, cursor, held, k, stage):
-    """Fill stage states [7, n] and slopes k [7, n]; k[0] and stage[0] = x are given."""
-    n = len(x)
-    for i in range(1, STAGES):
-        for a in range(n):
-            total = 0.0
-            for j in range(i):
-                total += A[i, j] * k[j, a]
-            stage[i, a] = x[a] + h * total
-        if not held:
-            side = -1 if C[i] == 1.0 else 1
-            evaluate_inputs(t + C[i] * h, side, *table, cursor, u)
-        derivative(t + C[i] * h, stage[i], u, p, m, k[i])
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _error_norm(h, x, k, stage, rtol, atol):
-    worst = 0.0
-    for a in range(len(x)):
-        e = 0.0
-        for i in range(STAGES):
-            e += ERROR[i] * k[i, a]
-        scale = atol[a] + rtol * max(abs(x[a]), abs(stage[STAGES - 1, a]))
-        worst = max(worst, abs(h * e) / scale)
-    return worst
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _interpolate(s, h, x, k, weights, out):
-    interpolation_weights(s, weights)
-    for a in range(len(x)):
-        total = 0.0
-        for i in range(STAGES):
-            total += weights[i] * k[i, a]
-        out[a] = x[a] + h * total
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _push_tangents(jacobian, t, h, x, u, p, m, table, cursor, held, stage, columns, s, work):
-    """Carry the tangents s [n, ns] over an accepted step; the first columns are parameters."""
-    fx, fu, fp, slopes, at = work
-    n, ns = s.shape
-    for i in range(STAGES - 1):
-        for a in range(n):
-            for c in range(ns):
-                at[a, c] = s[a, c]
-            for j in range(i):
-                factor = h * A[i, j]
-                for c in range(ns):
-                    at[a, c] += factor * slopes[j, a, c]
-        if not held:
-            evaluate_inputs(t + C[i] * h, -1 if C[i] == 1.0 else 1, *table, cursor, u)
-        jacobian(t + C[i] * h, stage[i], u, p, m, fx, fu, fp)
-        for a in range(n):
-            for c in range(ns):
-                slopes[i, a, c] = 0.0
-            for c in range(len(columns)):
-                slopes[i, a, c] = fp[a, columns[c]]
-            for b in range(n):
-                factor = fx[a, b]
-                if factor != 0.0:
-                    for c in range(ns):
-                        slopes[i, a, c] += factor * at[b, c]
-    for a in range(n):
-        for i in range(STAGES - 1):
-            factor = h * A[STAGES - 1, i]
-            for c in range(ns):
-                s[a, c] += factor * slopes[i, a, c]
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _jump_tangents(before, after, by_time, by_x, by_p, columns, s):
-    """Add (f- - f+) dt/dp to the tangents, dt/dp from the guard that ended the mode."""
-    n, ns = s.shape
-    slope = by_time
-    for a in range(n):
-        slope += by_x[a] * before[a]
-    if abs(slope) < 1e-300:
-        return
-    for c in range(ns):
-        shift = by_p[columns[c]] if c < len(columns) else 0.0
-        for a in range(n):
-            shift += by_x[a] * s[a, c]
-        shift /= -slope
-        for a in range(n):
-            s[a, c] += (before[a] - after[a]) * shift
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _flush(values):
-    flat = values.reshape(-1)
-    for i in range(flat.size):
-        if abs(flat[i]) < SMALLEST:
-            flat[i] = 0.0
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _record(t, m_before, m, frictions, elements, events, count):
-    """Note every element whose mode changed; the count goes on past the capacity of `events`."""
-    for element in range(elements):
-        where = element if element < frictions else 2 * element - frictions
-        changed = m[where] != m_before[where]
-        mode = m[where]
-        if element >= frictions:
-            changed = changed or m[where + 1] != m_before[where + 1]
-            mode = m[where] * (2.0 - m[where + 1])
-        if changed:
-            if count < events.shape[0]:
-                events[count, 0] = t
-                events[count, 1] = element
-                events[count, 2] = mode
-            count += 1
-    return count
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _worst_element(x, m, g, friction_rates, elements):
-    worst, found = -1e300, 0
-    for element in range(elements):
-        value = violation(element, x, m, g, friction_rates)
-        if value > worst:
-            worst, found = value, element
-    return found
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _violation_at(guards, t, x, u, p, m, table, cursor, held, g, friction_rates):
-    if not held:
-        evaluate_inputs(t, -1, *table, cursor, u)
-    guards(t, x, u, p, m, g)
-    return largest_violation(x, m, g, friction_rates)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _first_violation(
-    guards, t, h, x, k, u, p, m, table, cursor, held, g, friction_rates, weights, trial, x_end
-):  # fmt: skip
-    """Fraction of the step, 1/2 or 1, at which a mode is found to have ended; 0 if none has."""
-    _interpolate(0.5, h, x, k, weights, trial)
-    if _violation_at(guards, t + h / 2, trial, u, p, m, table, cursor, held, g, friction_rates) > 0:
-        return 0.5
-    if _violation_at(guards, t + h, x_end, u, p, m, table, cursor, held, g, friction_rates) > 0:
-        return 1.0
-    return 0.0
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _locate(
-    derivative, guards, t, high, h, x, k, stage, u, p, m, table, cursor, held, g, friction_rates,
-    weights, trial,
-):  # fmt: skip
-    """Length of the step that lands just past the first event; stages are left at that step."""
-    low = 0.0
-    while high - low > 1e-9 * h and high - low > TIME_RESOLUTION:
-        middle = 0.5 * (low + high)
-        _interpolate(middle / h, h, x, k, weights, trial)
-        if (
-            _violation_at(
-                guards, t + middle, trial, u, p, m, table, cursor, held, g, friction_rates
-            )
-            > 0.0
-        ):
-            high = middle
-        else:
-            low = middle
-    length = high
-    for _ in range(60):
-        _stages(derivative, t, length, x, u, p, m, table, cursor, held, k, stage)
-        trial[:] = stage[STAGES - 1]
-        value = _violation_at(
-            guards, t + length, trial, u, p, m, table, cursor, held, g, friction_rates
-        )
-        if value > 0.0:
-            break
-        length = min(h, length + max(TIME_RESOLUTION, 4.0 * (length - high) + 1e-9 * h))
-    return length
 
 
 @njit(
@@ -258,6 +86,7 @@ def integrate(
     work = (fx, fu, fp, np.zeros((STAGES, n, ns)), np.zeros((n, ns)))
     cursor = np.zeros(input_count, dtype=np.int64)
     m_before, powers, totals = np.zeros(len(m)), np.zeros(3), np.zeros(3)
+    stage_powers = np.zeros((STAGES, 3))
     with_energy = out_energy.shape[0] > 0
     t, h = stops[0], largest_step
     output, event_count, steps, instant = 0, 0, 0, 0
@@ -278,7 +107,9 @@ def integrate(
                 m_before[:] = m
                 if not settle(guards, t, x, u, p, m, g, friction_rates):
                     return CHATTERING, t, event_count, steps
-                event_count = _record(t, m_before, m, frictions, elements, events, event_count)
+                event_count = record_switches(
+                    t, m_before, m, frictions, elements, events, event_count
+                )
         derivative(t, x, u, p, m, k[0])
         while stop - t > TIME_RESOLUTION:
             remaining = stop - t
@@ -286,8 +117,8 @@ def integrate(
             trial_h = remaining if h >= remaining else remaining / np.ceil(remaining / h)
             steps += 1
             stage[0] = x
-            _stages(derivative, t, trial_h, x, u, p, m, table, cursor, held, k, stage)
-            error = _error_norm(trial_h, x, k, stage, rtol, atol)
+            fill_stages(derivative, t, trial_h, x, u, p, m, table, cursor, held, k, stage)
+            error = error_norm(trial_h, x, k, stage, rtol, atol)
             if not np.isfinite(error):
                 error = 1e10
             if error > 1.0:
@@ -302,39 +133,43 @@ def integrate(
             ended = False
             if elements > 0:
                 x_end[:] = stage[STAGES - 1]
-                high = _first_violation(
+                high = first_violation(
                     guards, t, step_h, x, k, u, p, m, table, cursor, held, g, friction_rates,
                     weights, trial, x_end,
                 )  # fmt: skip
                 if high > 0.0:
                     ended = True
-                    step_h = _locate(
+                    step_h = locate_event(
                         derivative, guards, t, high * step_h, step_h, x, k, stage, u, p, m, table,
                         cursor, held, g, friction_rates, weights, trial,
                     )  # fmt: skip
             t_new = stop if (not ended and trial_h == remaining) else t + step_h
+            if with_energy:
+                for i in range(STAGES):
+                    if not held:
+                        side = 1 if C[i] < 1.0 else -1
+                        evaluate_inputs(t + C[i] * step_h, side, *table, cursor, u)
+                    energy(t + C[i] * step_h, stage[i], u, p, m, stage_powers[i])
             while output < len(output_times) and output_times[output] < t_new - TIME_RESOLUTION:
-                s_fraction = (output_times[output] - t) / step_h
-                _interpolate(s_fraction, step_h, x, k, weights, out_x[output])
+                fraction = (output_times[output] - t) / step_h
+                interpolate(fraction, step_h, x, k, weights, out_x[output])
                 if with_energy:
-                    evaluate_inputs(output_times[output], 1, *table, cursor, u)
                     energy(output_times[output], out_x[output], u, p, m, powers)
-                    out_energy[output] = totals
                     out_energy[output, 0] = powers[0]
+                    for c in range(1, 3):
+                        gained = 0.0
+                        for i in range(STAGES):
+                            gained += weights[i] * stage_powers[i, c]
+                        out_energy[output, c] = totals[c] + step_h * gained
                 output += 1
             if ns > 0:
-                _push_tangents(
+                push_tangents(
                     jacobian, t, step_h, x, u, p, m, table, cursor, held, stage, columns, s, work
                 )
             if with_energy:
                 for i in range(STAGES - 1):
-                    if not held:
-                        evaluate_inputs(
-                            t + C[i] * step_h, 1 if C[i] < 1.0 else -1, *table, cursor, u
-                        )
-                    energy(t + C[i] * step_h, stage[i], u, p, m, powers)
-                    totals[1] += step_h * A[STAGES - 1, i] * powers[1]
-                    totals[2] += step_h * A[STAGES - 1, i] * powers[2]
+                    totals[1] += step_h * A[STAGES - 1, i] * stage_powers[i, 1]
+                    totals[2] += step_h * A[STAGES - 1, i] * stage_powers[i, 2]
             x[:] = stage[STAGES - 1]
             t = t_new
             if not ended:
@@ -350,7 +185,7 @@ def integrate(
             by_time = 0.0
             if ns > 0:
                 guards(t, x, u, p, m, g)
-                element = _worst_element(x, m, g, friction_rates, elements)
+                element = worst_element(x, m, g, friction_rates, elements)
                 guard_jacobian(t, x, u, p, m, gx, gp)
                 violation_gradient(element, m, g, gx, gp, friction_rates, x, by_x, by_p)
                 if not held:
@@ -363,18 +198,18 @@ def integrate(
                     ) / ahead
             if not settle(guards, t, x, u, p, m, g, friction_rates):
                 return CHATTERING, t, event_count, steps
-            event_count = _record(t, m_before, m, frictions, elements, events, event_count)
+            event_count = record_switches(t, m_before, m, frictions, elements, events, event_count)
             derivative(t, x, u, p, m, k[0])
             if ns > 0:
                 after[:] = k[0]
-                _jump_tangents(before, after, by_time, by_x, by_p, columns, s)
+                jump_tangents(before, after, by_time, by_x, by_p, columns, s)
                 for f in range(frictions):
                     if m[f] == 0.0:
                         s[friction_rates[f]] = 0.0
         t = stop
-        _flush(x)
+        flush(x)
         if ns > 0:
-            _flush(s)
+            flush(s)
         while output < len(output_times) and output_times[output] <= t + TIME_RESOLUTION:
             out_x[output] = x
             out_s[output] = s

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-NUMERIC_WING = ("runtime", "data", "simulate", "sensitivity", "identify", "diagnose")
+NUMERIC_WING = ("runtime", "data", "simulation", "sensitivities", "identify", "diagnose")
 SYMBOLIC_WING = ("parameters", "kinematics", "effects", "derivation", "simplify", "codegen")
 
 

@@ -71,8 +71,8 @@ def test_the_friction_of_the_pan_drive_is_table_4_1_in_either_direction() -> Non
         "F_v_pan": (13.5844, 14.3004),
     }
     for name, (forward, backward) in table.items():
-        assert drive[name] + drive[f"d{name}"] == pytest.approx(forward, rel=1e-12)
-        assert drive[name] - drive[f"d{name}"] == pytest.approx(backward, rel=1e-12)
+        assert drive[name] * (1 + drive[f"a_{name}"]) == pytest.approx(forward, rel=1e-12)
+        assert drive[name] * (1 - drive[f"a_{name}"]) == pytest.approx(backward, rel=1e-12)
 
 
 def test_the_field_logs_start_from_the_friction_tables() -> None:

@@ -1,0 +1,83 @@
+"""What the user gets wrong: one line, exit code 2, nothing written."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SAMPLE = Path(__file__).parents[2] / "ptp_symbolic" / "samples" / "tilted_base"
+CODE = "import sys; from ptp_symbolic.cli import main; sys.argv[0] = 'ptp-symbolic'; main()"
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-c", CODE, *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def refused(*arguments: str) -> str:
+    done = run(*arguments)
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.count("\n") == 1, done.stderr
+    return done.stderr
+
+
+def changed_platform(folder: Path, old: str, new: str) -> str:
+    text = (SAMPLE / "platform.toml").read_text(encoding="utf-8")
+    assert old in text
+    path = folder / "platform.toml"
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('effect = "payload"', 'effect = "paylod"', "Unknown effect 'paylod'"),
+        ('effect = "payload"', 'effect = "payload"\naxis = "roll"', "roll"),
+        ('axes = ["pan", "tilt"]', 'axes = ["pan", "tilt"', "platform.toml"),
+        ("value = 4.992", "value = nan", "nan"),
+        ("value = 4.992", "value = -4.992", "m_payload"),
+        ('unit = "kg"', 'unit = "m"', "m_payload"),
+    ],
+)
+def test_platforms(tmp_path: Path, old: str, new: str, expected: str) -> None:
+    platform, out = changed_platform(tmp_path, old, new), tmp_path / "out"
+    logs = ("--train", str(SAMPLE / "train"), "--validate", str(SAMPLE / "validate"))
+    assert expected in refused("diagnose", "--platform", platform, *logs, "--out", str(out))
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("content", "expected"),
+    [
+        ("", "empty"),
+        ("time [s],tau [N*m]\n0,1\n", "pan"),
+        ("\x00\x01", "text"),
+    ],
+)
+def test_logs(tmp_path: Path, content: str, expected: str) -> None:
+    log, out = tmp_path / "log.csv", tmp_path / "out"
+    log.write_text(content, encoding="utf-8")
+    platform = str(SAMPLE / "platform.toml")
+    arguments = ("diagnose", "--platform", platform, "--train", str(log), "--validate", str(log))
+    assert expected in refused(*arguments, "--out", str(out))
+    assert not out.exists()
+
+
+def test_output_that_cannot_be_written(tmp_path: Path) -> None:
+    blocked = tmp_path / "file"
+    blocked.write_text("", encoding="utf-8")
+    arguments = ("simulate", "--platform", "thesis-ideal", "--duration", "0.1")
+    refused(*arguments, "--out", str(blocked / "out"))
+
+
+def test_unknown_command_and_missing_option() -> None:
+    assert "No such command" in refused("diagnoze")
+    assert "--platform" in refused("diagnose")
+
+
+def test_check_says_that_all_is_up_to_date() -> None:
+    done = run("regenerate", "--check")
+    assert done.returncode == 0
+    assert "up to date" in done.stdout

@@ -1,0 +1,91 @@
+"""The committed modules: up to date, sealed, and right against independent programs."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import ptp_symbolic
+from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.platform import read_platform
+from ptp_symbolic.regenerate import COMMITTED, regenerate
+from ptp_symbolic.runtime.loader import generated_folder, load_module
+from ptp_symbolic.simplify.steps import simplify_rigid
+from tests.independent import rigid_platform
+
+STATES = 1000
+
+
+def test_nothing_has_drifted() -> None:
+    assert regenerate(check=True).changed == ()
+
+
+@pytest.mark.parametrize("seed", ["1", "20"])
+def test_same_bytes_under_every_hash_seed(seed: str) -> None:
+    code = "from ptp_symbolic.regenerate import regenerate as r; print(r(check=True).changed)"
+    environment = {**os.environ, "PYTHONHASHSEED": seed}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "()"
+
+
+@pytest.mark.parametrize("name", ["ideal", "payload"])
+def test_rigid_models_against_an_independent_newton_euler_program(name: str) -> None:
+    model, rng = ptp_symbolic.load(name), np.random.default_rng(7)
+    for _ in range(STATES):
+        values = {key: v * rng.uniform(0.5, 2.0) for key, v in model.defaults.items()}
+        for key in ("c_y_payload", "c_z_payload"):
+            if key in values:
+                values[key] = 0.1 * rng.normal()
+        x, u = 2.0 * rng.normal(size=4), rng.normal(size=2)
+        found = model.rhs(0.0, x, u, model.parameter_vector(values))
+        truth = rigid_platform.accelerations(x[:2], x[2:], u, values)
+        mass = rigid_platform.mass_matrix(x[:2], values)
+        bound = 1e-12 * np.linalg.cond(mass) * max(1.0, np.abs(truth).max())
+        assert np.abs(found[2:] - truth).max() <= bound
+        assert np.array_equal(found[:2], x[2:])
+
+
+@pytest.mark.parametrize("name", list(COMMITTED))
+def test_jacobian_against_central_differences(name: str) -> None:
+    model, rng = ptp_symbolic.load(name), np.random.default_rng(3)
+    n, nu, m = len(model.state_names), len(model.input_names), np.zeros(len(model.mode_names))
+    if m.size:
+        m[:] = [1.0, 1.0, 1.0]
+    p, x, u = model.parameter_vector(), 0.3 * rng.normal(size=n), rng.normal(size=nu)
+    fx, fu, fp = np.zeros((n, n)), np.zeros((n, nu)), np.zeros((n, len(p)))
+    model.module.jacobian(0.0, x, u, p, m, fx, fu, fp)
+    for array, matrix in ((x, fx), (u, fu), (p, fp)):
+        for j in range(len(array)):
+            step = 1e-6 * max(abs(array[j]), 1e-3)
+            sides = []
+            for sign in (1.0, -1.0):
+                kept, dx = array[j], np.zeros(n)
+                array[j] = kept + sign * step
+                model.module.mode_derivative(0.0, x, u, p, m, dx)
+                array[j] = kept
+                sides.append(dx)
+            difference = (sides[0] - sides[1]) / (2.0 * step)
+            scale = np.abs(difference).max() + 1e-6
+            assert np.abs(difference - matrix[:, j]).max() <= 2e-5 * scale + 1e-7 / step * 1e-6
+
+
+def test_payload_needs_few_operations() -> None:
+    equations = assemble(read_platform("thesis-payload"))
+    steps = simplify_rigid(
+        equations.rigid_equations, equations.mass_matrix, equations.forcing
+    ).steps
+    assert steps[-1].operations_after <= 44
+    assert all(step.proved for step in steps)
+
+
+def test_an_edited_module_is_refused(tmp_path) -> None:
+    text = (generated_folder() / "ideal.py").read_text(encoding="utf-8")
+    edited = tmp_path / "edited.py"
+    edited.write_text(text.replace("cos_tilt", "sin_tilt", 1), encoding="utf-8")
+    with pytest.raises(InputError, match=r"edited\.py does not fit its checksum"):
+        load_module(edited, "edited_module")

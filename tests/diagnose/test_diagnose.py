@@ -1,0 +1,63 @@
+"""The whole way: logs in, missing effect out by name."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.diagnosis_run import diagnose_platform
+from ptp_symbolic.platform import read_platform
+
+SAMPLE = Path(__file__).parents[2] / "ptp_symbolic" / "samples" / "tilted_base"
+PLATFORMS = Path(__file__).parents[1] / "platforms"
+
+
+@pytest.fixture(scope="module")
+def sample():
+    platform = read_platform(SAMPLE / "platform.toml")
+    return diagnose_platform(platform, [SAMPLE / "train"], [SAMPLE / "validate"])
+
+
+def test_sample_made_by_mujoco_is_explained_by_base_tilt(sample) -> None:
+    found = sample.summary
+    assert found["verdict"] == "explained"
+    (added,) = found["added"]
+    assert added["effect"] == "base_tilt"
+    assert np.degrees(added["parameters"]["beta_base"]["value"]) == pytest.approx(4.0, abs=0.01)
+    assert added["parameters"]["alpha_base"]["value"] == pytest.approx(-0.6, abs=0.01)
+    assert found["error"]["validate"]["before"]["total"]["rmse_counts"] > 10.0
+    for run in found["error"]["validate"]["after"]["by_run"].values():
+        assert run["rmse_counts"] < 0.35
+
+
+def test_files_are_complete_and_the_extended_platform_reads(sample, tmp_path) -> None:
+    assert {"diagnosis.json", "platform.toml", "equations.tex", "report.html"} <= set(sample.files)
+    assert json.loads(sample.files["diagnosis.json"]) == sample.summary
+    path = tmp_path / "platform.toml"
+    path.write_text(sample.files["platform.toml"], encoding="utf-8")
+    extended = read_platform(path)
+    assert extended.effects[-1].effect == "base_tilt"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("log", "platform", "effects"),
+    [
+        ("log-a", "fieldlog_pan", ["base_tilt"]),
+        ("log-b", "fieldlog_pan", ["cable_spring"]),
+        ("log-c", "fieldlog_pan", ["direction_dependent_friction"]),
+        ("log-d", "fieldlog_pan", []),
+        ("log-g", "fieldlog_two_axis", ["payload_com_offset"]),
+    ],
+)
+def test_field_logs(shared: Path, log: str, platform: str, effects: list[str]) -> None:
+    folder = shared / "fieldlogs" / log
+    declared = read_platform(PLATFORMS / f"{platform}.toml")
+    found = diagnose_platform(declared, [folder / "train"], [folder / "validate"]).summary
+    assert found["verdict"] == ("explained" if effects else "nothing_missing")
+    assert [added["effect"] for added in found["added"]] == effects
+    if log != "log-g":
+        for part in ("train", "validate"):
+            for run in found["error"][part]["after"]["by_run"].values():
+                assert run["rmse_counts"] < 0.35
