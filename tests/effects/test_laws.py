@@ -1,0 +1,145 @@
+"""Laws that hold for every effect of the catalogue, whatever it is."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from ptp_symbolic import effects as catalogue
+from ptp_symbolic import loop
+from ptp_symbolic.codegen import dynamics
+from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic.derivation.equations import Equations
+from ptp_symbolic.effects import EFFECTS, Effect
+from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
+from ptp_symbolic.platform.units import to_si
+
+PLATFORMS = Path(__file__).parents[1] / "platforms"
+BASES = tuple(
+    read_platform(source)
+    for source in (
+        "thesis-payload",
+        PLATFORMS / "fieldlog_pan.toml",
+        PLATFORMS / "fieldlog_two_axis.toml",
+    )
+)
+IDS = [effect.id for effect in EFFECTS]
+
+
+def with_effect(effect: Effect) -> Platform:
+    """The first base platform that has the effect, or that it can be added to."""
+    for base in BASES:
+        if any(e.effect == effect.id for e in base.effects):
+            return base
+        for addition in loop.candidate_effects(base):
+            if addition.effect == effect.id:
+                return replace(base, effects=(*base.effects, addition))
+    raise AssertionError(f"No base platform takes {effect.id}.")
+
+
+def without(platform: Platform, effect: Effect) -> Platform:
+    """`platform` without the effect and its parameters."""
+    own = {n for e in assemble(platform).effects if e.effect is effect for n in e.parameters}
+    return replace(
+        platform,
+        effects=tuple(e for e in platform.effects if e.effect != effect.id),
+        parameters=tuple(p for p in platform.parameters if p.name not in own),
+    )
+
+
+def vanishing(equations: Equations, effect: Effect) -> dict[sp.Symbol, sp.Expr]:
+    return {
+        sp.Symbol(p.name, real=True): sp.nsimplify(p.vanishes)
+        for placed in equations.effects
+        if placed.effect is effect
+        for p in equations.parameters
+        if p.name in placed.parameters and p.vanishes is not None
+    }
+
+
+def test_every_effect_has_its_file_and_one_import() -> None:
+    folder = Path(catalogue.__file__).parent
+    files = {p.stem for p in folder.glob("*.py")} - {"__init__", "effect"}
+    assert files == set(IDS)
+    assert all(len(p.read_text().splitlines()) <= 80 for p in folder.glob("*.py") if p.stem in IDS)
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=IDS)
+def test_declared_parameters_are_used_and_have_units(effect: Effect) -> None:
+    equations = assemble(with_effect(effect))
+    used = {p.name for p in equations.parameters}
+    for placed in equations.effects:
+        if placed.effect is effect:
+            assert set(placed.parameters) <= used
+    for parameter in equations.parameters:
+        assert parameter.meaning
+        assert parameter.unit == "1" or to_si(parameter.unit)[0] == 1.0
+
+
+@pytest.mark.parametrize("effect", [e for e in EFFECTS if not e.structural], ids=lambda e: e.id)
+def test_equations_are_unchanged_when_it_is_off(effect: Effect) -> None:
+    platform = with_effect(effect)
+    full = assemble(platform)
+    bare, off = assemble(without(platform, effect)), vanishing(full, effect)
+    assert off
+    for a, b in ((full.mass_matrix, bare.mass_matrix), (full.forcing, bare.forcing)):
+        difference = (a.subs(off) - b).applyfunc(sp.simplify)
+        if not full.contacts:
+            assert difference == sp.zeros(*difference.shape)
+        elif effect.id not in {e.effect.id for e in full.effects if e.effect.splits_axis}:
+            modes = {c.active: 1 for c in full.contacts} | {c.side: 0 for c in full.contacts}
+            assert difference.subs(modes).applyfunc(sp.simplify) == sp.zeros(*difference.shape)
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=IDS)
+def test_energy_ledger_closes_in_every_mode(effect: Effect) -> None:
+    equations = assemble(with_effect(effect))
+    rng = np.random.default_rng(11)
+    solve = dynamics.solve_accelerations(equations)
+    definitions = dict(solve.definitions)
+    rates = dynamics.state_rates(equations, solve)
+    states, ledger = equations.state_symbols, equations.ledger
+    change = sum(sp.diff(ledger.stored, s) * r for s, r in zip(states, rates, strict=True))
+    parts = [change, ledger.power_in, ledger.dissipated]
+    for name in reversed(list(definitions)):
+        named = {sp.Symbol(name, real=True): definitions[name]}
+        parts = [part.subs(named) for part in parts]
+    symbols = sorted(set().union(*(part.free_symbols for part in parts)), key=str)
+    function = sp.lambdify(symbols, parts, "numpy")
+    for _ in range(20):
+        values = [value_of(equations, str(symbol), rng) for symbol in symbols]
+        stored, supplied, dissipated = (float(v) for v in function(*values))
+        size = abs(stored) + abs(supplied) + abs(dissipated)
+        assert abs(stored - supplied + dissipated) <= 1e-9 * size
+
+
+def value_of(equations: Equations, name: str, rng: np.random.Generator) -> float:
+    """A random value; modes are consistent with sliding forward and touching the upper face."""
+    if name.startswith(("slide_", "side_", "active_")):
+        return 1.0
+    for parameter in equations.parameters:
+        if parameter.name == name:
+            base = parameter.default or 0.1
+            return float(base * rng.uniform(0.5, 1.5))
+    return float(rng.normal())
+
+
+@pytest.mark.parametrize("effect", [e for e in EFFECTS if e.dissipative], ids=lambda e: e.id)
+def test_a_dissipative_effect_takes_energy_out(effect: Effect) -> None:
+    platform = with_effect(effect)
+    model, rng = loop.emit(platform), np.random.default_rng(5)
+    p = model.parameter_vector()
+    for _ in range(200):
+        x, u = rng.normal(size=len(model.state_names)), rng.normal(size=len(model.input_names))
+        m, e = np.zeros(len(model.mode_names)), np.zeros(3)
+        model.module.initial_modes(0.0, x, u, p, m)
+        model.module.energy(0.0, x, u, p, m, e)
+        assert e[2] >= 0.0
+
+
+def test_an_unknown_effect_is_refused() -> None:
+    base = BASES[0]
+    with pytest.raises(ValueError, match=r"Unknown effect 'wings'\. Choose one of: rigid_bodies"):
+        assemble(replace(base, effects=(*base.effects, EffectDeclaration("wings", None, None))))
