@@ -232,7 +232,8 @@ def curves_of(base: Trial, after: Trial) -> dict[str, Any]:
             strict=True,
         )
         for (source, before), later in groups:
-            curves[f"{name}/{source}"] = _curve(name, before, later)
+            key = source if source not in curves else f"{source} ({name})"
+            curves[key] = _curve(name, before, later)
     return curves
 
 
@@ -244,18 +245,21 @@ def _curve(kind: str, before: list[Pair], after: list[Pair]) -> dict[str, Any]:
         count = first.counts[column]
         signals[signal] = {
             "unit": "rad" if signal.startswith("theta") else "",
-            "measured": np.concatenate([r.measured[:, column] for r, _ in before]),
-            "before": np.concatenate([e.outputs[:, picked] for _, e in before]),
-            "after": np.concatenate([e.outputs[:, picked] for _, e in after]),
+            "measured": _joined([r.measured[:, column] for r, _ in before]),
+            "before": _joined([e.outputs[:, picked] for _, e in before]),
+            "after": _joined([e.outputs[:, picked] for _, e in after]),
             "counts": float(count) if np.isfinite(count) else None,
         }
-    time = np.concatenate([r.time for r, _ in before])
+    time = _joined([r.time for r, _ in before])
     angle, rate = {}, {}
     for signal, data in signals.items():
         if signal.startswith("theta_"):
             axis = signal.removeprefix("theta_")
             angle[axis] = data["after"]
-            rate[axis] = np.gradient(
-                data["after"], np.maximum.accumulate(time + 1e-9 * np.arange(time.size))
-            )
+            rate[axis] = np.gradient(data["after"], time)
     return {"set": kind, "time": time, "signals": signals, "angle": angle, "rate": rate}
+
+
+def _joined(windows: list[FloatArray]) -> FloatArray:
+    """Windows end to end; each begins with the sample that ended the one before."""
+    return np.concatenate([windows[0], *(w[1:] for w in windows[1:])])
