@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pint
 import pytest
 import sympy as sp
 
@@ -143,3 +144,32 @@ def test_an_unknown_effect_is_refused() -> None:
     base = BASES[0]
     with pytest.raises(ValueError, match=r"Unknown effect 'wings'\. Choose one of: rigid_bodies"):
         assemble(replace(base, effects=(*base.effects, EffectDeclaration("wings", None, None))))
+
+
+def unit_factor(unit: str) -> float:
+    """How a number in `unit` changes when kg, m, s and A change; m = s^2 keeps gravity as it is."""
+    scales = {"[mass]": 3.0, "[length]": 4.0, "[time]": 2.0, "[current]": 7.0}
+    dimension = pint.get_application_registry()(unit if unit != "1" else "").to_base_units()
+    factor = 1.0
+    for base, exponent in dimension.dimensionality.items():
+        factor *= scales[base] ** exponent
+    return factor
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=IDS)
+def test_other_units_give_the_same_motion(effect: Effect) -> None:
+    model, rng = loop.emit(with_effect(effect)), np.random.default_rng(2)
+    units = model.units
+    names = (model.state_names, model.input_names, model.parameter_names)
+    x, u = (rng.normal(size=len(n)) for n in names[:2])
+    p = model.parameter_vector({q.name: q.default or q.upper * 1e-4 for q in model.parameters})
+    m = np.ones(len(model.mode_names))
+    scaled = [
+        a * np.array([unit_factor(units[n]) for n in group])
+        for a, group in zip((x, u, p), names, strict=True)
+    ]
+    dx, other = np.zeros(len(x)), np.zeros(len(x))
+    model.module.mode_derivative(0.0, x, u, p, m, dx)
+    model.module.mode_derivative(0.0, *scaled, m, other)
+    per_second = np.array([unit_factor(units[n]) / unit_factor("s") for n in names[0]])
+    assert other == pytest.approx(dx * per_second, rel=1e-9)
