@@ -14,6 +14,8 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       1))*exp(-omega_gear_pan**2/(v_s_pan**2*(a_v_s_pan*slide_pan + 1)**2))
   i_pan' = (-K_t_pan*N_pan*omega_gear_pan - R_pan*i_pan + u_pan)/L_pan
 
+Operations of the state derivative: 65 as derived, 53 as written.
+
 Effects:
 - rigid_bodies: thesis Eq. 3.8, Table 5.1
 - viscous_friction (pan): thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)
@@ -607,4 +609,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 65d20a420ae95271c659c61b2e5bf679d6565c900840e2ce3d5374e88a8ea47d
+# END sha256 1879c3b7644d74ddd1dd275a2d673b0c708189eadf47c2ca042b1057b8e669d7

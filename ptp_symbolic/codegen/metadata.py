@@ -12,11 +12,11 @@ from ptp_symbolic.parameters import Parameter
 TEXT_WIDTH = 80
 
 
-def metadata_text(equations: Equations, digest: str) -> str:
+def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]) -> str:
     """Return docstring, imports and constants of the module of `equations`."""
     parameters = equations.parameters
     sections = [
-        _docstring(equations),
+        _docstring(equations, operations),
         _imports(equations),
         "\n".join(
             [
@@ -62,7 +62,7 @@ def repr_text(value: str) -> str:
     return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def _docstring(equations: Equations) -> str:
+def _docstring(equations: Equations, operations: tuple[int, int]) -> str:
     lines = [f'"""{equations.title}: equations of motion, emitted; do not edit.', ""]
     lines.append("M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:")
     lines.append("")
@@ -78,6 +78,8 @@ def _docstring(equations: Equations) -> str:
         lines += _wrapped(f"sliding friction[{friction.rate}]", friction.level)
     for state in equations.extra_states:
         lines += _wrapped(f"{state.name}'", state.derivative)
+    before, after = operations
+    lines += ["", f"Operations of the state derivative: {before} as derived, {after} as written."]
     lines += ["", "Effects:"]
     for placed in equations.effects:
         where = f" ({placed.axis})" if placed.axis else ""

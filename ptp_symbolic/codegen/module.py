@@ -66,13 +66,23 @@ def module_text(equations: Equations) -> str:
         ]
     )
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
-    return sealed(f"{metadata_text(equations, digest)}\n\n\n{body}\n")
+    operations = _operations(equations, solve)
+    return sealed(f"{metadata_text(equations, digest, operations)}\n\n\n{body}\n")
 
 
 def sealed(text: str) -> str:
     """`text` with its SHA-256 as the last line, in place of an earlier one."""
     text = text.partition(SEAL)[0]
     return f"{text}{SEAL}{hashlib.sha256(text.encode()).hexdigest()}\n"
+
+
+def _operations(equations: Equations, solve: dynamics.Solve) -> tuple[int, int]:
+    """Operations of the state derivative as derived, and as written with shared terms."""
+    derived = [expression for _, expression in solve.definitions]
+    derived += [state.derivative for state in equations.extra_states]
+    written = [expression for _, expression in _state_lines(equations)]
+    before, after = (sum(int(sp.count_ops(e)) for e in es) for es in (derived, written))
+    return before, after
 
 
 def _kernel(name: str, arguments: str, doc: str, vectors: Vectors, lines: Sequence[Line]) -> str:
@@ -108,6 +118,12 @@ def _shared(definitions: Sequence[Line], outputs: Sequence[Line]) -> list[Line]:
 
 
 def _mode_derivative(equations: Equations, vectors: Vectors) -> str:
+    doc = "Write the time derivative of the state into dx in the modes m."
+    lines = _state_lines(equations)
+    return _kernel("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
+
+
+def _state_lines(equations: Equations) -> list[Line]:
     """The state derivative in base parameters, which need the fewest operations."""
     form = base_form(equations.rigid_equations, equations.mass_matrix, equations.forcing)
     regrouped = dynamics.solve_accelerations(
@@ -116,9 +132,7 @@ def _mode_derivative(equations: Equations, vectors: Vectors) -> str:
     rates = dynamics.state_rates(equations, regrouped)
     outputs = [(f"dx[{i}]", sp.sympify(rate, strict=True)) for i, rate in enumerate(rates)]
     named = [(str(s), e) for s, e in (*form.base_parameters, *form.shared_terms) if s != e]
-    lines = share((*named, *regrouped.definitions), outputs)
-    doc = "Write the time derivative of the state into dx in the modes m."
-    return _kernel("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
+    return share((*named, *regrouped.definitions), outputs)
 
 
 def _columns(
