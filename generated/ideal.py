@@ -31,72 +31,28 @@ STATE_UNITS = ("rad", "rad", "rad/s", "rad/s")
 STATE_INITIAL = (0.0, 0.0, 0.0, 0.0)
 INPUT_NAMES = ("tau_pan", "tau_tilt")
 INPUT_UNITS = ("N m", "N m")
+# Per input: index of the parameter by which it is late, or -1.
+INPUT_DELAYS = (-1, -1)
 OUTPUT_NAMES = ("theta_pan", "theta_tilt")
 OUTPUT_UNITS = ("rad", "rad")
 MODE_NAMES = ()
 FRICTION_RATES = ()
+# Per state: the friction that sets it to zero when it comes to rest, or -1.
+ZERO_AT_REST = (-1, -1, -1, -1)
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
-# Parameters: name, unit, default, lower and upper bound, value at which the
-# effect vanishes (None: any), starts of a search, period, meaning.
+# Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
-    ("J_pan", "kg m^2", 0.00053, 0.0, 10000.0, None, (), None, "inertia of the pan body about z"),
-    (
-        "J_x_tilt",
-        "kg m^2",
-        0.00041,
-        0.0,
-        10000.0,
-        None,
-        (),
-        None,
-        "inertia of the tilt body about x",
-    ),
-    (
-        "J_y_tilt",
-        "kg m^2",
-        0.00065,
-        0.0,
-        10000.0,
-        None,
-        (),
-        None,
-        "inertia of the tilt body about y",
-    ),
-    (
-        "J_z_tilt",
-        "kg m^2",
-        0.00027,
-        0.0,
-        10000.0,
-        None,
-        (),
-        None,
-        "inertia of the tilt body about z",
-    ),
-    (
-        "b_pan",
-        "N m s/rad",
-        0.1,
-        0.0,
-        10000.0,
-        0.0,
-        (0.1,),
-        None,
-        "viscous friction in the pan joint",
-    ),
-    (
-        "b_tilt",
-        "N m s/rad",
-        0.1,
-        0.0,
-        10000.0,
-        0.0,
-        (0.1,),
-        None,
-        "viscous friction in the tilt joint",
-    ),
+    ("J_pan", "kg m^2", 0.00053, 0.0, 10000.0, "inertia of the pan body about z"),
+    ("J_x_tilt", "kg m^2", 0.00041, 0.0, 10000.0, "inertia of the tilt body about x"),
+    ("J_y_tilt", "kg m^2", 0.00065, 0.0, 10000.0, "inertia of the tilt body about y"),
+    ("J_z_tilt", "kg m^2", 0.00027, 0.0, 10000.0, "inertia of the tilt body about z"),
+    ("b_pan", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the pan joint"),
+    ("b_tilt", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the tilt joint"),
 )
+# Searching them: name, value at which the effect vanishes (None: any), starts,
+# period, what a frequency is locked to.
+SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
 # Effects: id, axis, parameters, title, reference, separating experiment.
 EFFECTS = (
     (
@@ -309,4 +265,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 35ef94b1265e072fd606bc0ec1127b4e23fb29218cb22cf3c36571b40907e754
+# END sha256 63b6514cf4637b50efee4246a5f6153b89c14112821ab9d150d4dd06d869bea0

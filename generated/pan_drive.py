@@ -40,68 +40,38 @@ STATE_UNITS = ("rad", "rad/s", "rad", "rad/s", "A")
 STATE_INITIAL = (0.0, 0.0, 0.0, 0.0, 0.0)
 INPUT_NAMES = ("u_pan",)
 INPUT_UNITS = ("V",)
+# Per input: index of the parameter by which it is late, or -1.
+INPUT_DELAYS = (-1,)
 OUTPUT_NAMES = ("theta_pan", "i_pan")
 OUTPUT_UNITS = ("rad", "A")
 MODE_NAMES = ("slide_pan", "side_pan", "active_pan")
-FRICTION_RATES = (3,)
+FRICTION_RATES = np.array([3], dtype=np.int64)
+# Per state: the friction that sets it to zero when it comes to rest, or -1.
+ZERO_AT_REST = (-1, -1, -1, -1, -1)
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ((2, 0),)
-# Parameters: name, unit, default, lower and upper bound, value at which the
-# effect vanishes (None: any), starts of a search, period, meaning.
+# Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
-    ("J_pan", "kg m^2", 0.05, 0.0, 10000.0, None, (), None, "inertia of the pan body about z"),
-    (
-        "b_pan",
-        "N m s/rad",
-        2.0,
-        0.0,
-        10000.0,
-        0.0,
-        (0.1,),
-        None,
-        "viscous friction in the pan joint",
-    ),
-    ("L_pan", "H", 0.0069, 1e-09, 1000.0, None, (), None, "winding inductance"),
-    ("R_pan", "ohm", 12.9, 1e-06, 1000000.0, None, (), None, "winding resistance"),
-    ("K_t_pan", "N m/A", 0.0724, 1e-09, 10000.0, None, (), None, "torque constant"),
-    ("J_motor_pan", "kg m^2", 1.1e-05, 0.0, 1000.0, None, (), None, "rotor inertia"),
-    ("N_pan", "1", 500.0, 0.001, 1000000.0, None, (), None, "gear ratio"),
-    ("k_shaft_pan", "N m/rad", 5000.0, 0.001, 1000000000.0, None, (), None, "shaft stiffness"),
-    ("d_shaft_pan", "N m s/rad", 1.0, 0.0, 1000000.0, None, (), None, "shaft damping"),
-    (
-        "gap_pan",
-        "rad",
-        0.02600540585471551,
-        0.0,
-        1.0,
-        0.0,
-        (0.005, 0.02),
-        None,
-        "whole gap between the two faces",
-    ),
-    ("F_c_pan", "N m", 0.2401, 0.0, 10000.0, 0.0, (0.05,), None, "Coulomb friction torque"),
-    (
-        "F_s_pan",
-        "N m",
-        0.675,
-        0.0,
-        10000.0,
-        0.0,
-        (0.05,),
-        None,
-        "static (breakaway) friction torque",
-    ),
-    ("v_s_pan", "rad/s", 0.016, 1e-06, 1000.0, None, (0.05,), None, "Stribeck speed"),
-    ("F_v_pan", "N m s/rad", 13.9424, 0.0, 10000.0, 0.0, (0.0,), None, "viscous part"),
+    ("J_pan", "kg m^2", 0.05, 0.0, 10000.0, "inertia of the pan body about z"),
+    ("b_pan", "N m s/rad", 2.0, 0.0, 10000.0, "viscous friction in the pan joint"),
+    ("L_pan", "H", 0.0069, 1e-09, 1000.0, "winding inductance"),
+    ("R_pan", "ohm", 12.9, 1e-06, 1000000.0, "winding resistance"),
+    ("K_t_pan", "N m/A", 0.0724, 1e-09, 10000.0, "torque constant"),
+    ("J_motor_pan", "kg m^2", 1.1e-05, 0.0, 1000.0, "rotor inertia"),
+    ("N_pan", "1", 500.0, 0.001, 1000000.0, "gear ratio"),
+    ("k_shaft_pan", "N m/rad", 5000.0, 0.001, 1000000000.0, "shaft stiffness"),
+    ("d_shaft_pan", "N m s/rad", 1.0, 0.0, 1000000.0, "shaft damping"),
+    ("gap_pan", "rad", 0.02600540585471551, 0.0, 1.0, "whole gap between the two faces"),
+    ("F_c_pan", "N m", 0.2401, 0.0, 10000.0, "Coulomb friction torque"),
+    ("F_s_pan", "N m", 0.675, 0.0, 10000.0, "static (breakaway) friction torque"),
+    ("v_s_pan", "rad/s", 0.016, 1e-06, 1000.0, "Stribeck speed"),
+    ("F_v_pan", "N m s/rad", 13.9424, 0.0, 10000.0, "viscous part"),
     (
         "a_F_c_pan",
         "1",
         -0.05581007913369427,
         -0.95,
         0.95,
-        0.0,
-        (-0.1, 0.1),
-        None,
         "relative half difference of Coulomb friction",
     ),
     (
@@ -110,9 +80,6 @@ PARAMETERS = (
         -0.17362962962962966,
         -0.95,
         0.95,
-        0.0,
-        (0.0,),
-        None,
         "relative half difference of static friction",
     ),
     (
@@ -121,9 +88,6 @@ PARAMETERS = (
         -0.006249999999999962,
         -0.95,
         0.95,
-        0.0,
-        (0.0,),
-        None,
         "relative half difference of Stribeck speed",
     ),
     (
@@ -132,11 +96,22 @@ PARAMETERS = (
         -0.025677071379389464,
         -0.95,
         0.95,
-        0.0,
-        (0.0,),
-        None,
         "relative half difference of viscous friction",
     ),
+)
+# Searching them: name, value at which the effect vanishes (None: any), starts,
+# period, what a frequency is locked to.
+SEARCH = (
+    ("b_pan", 0.0, (0.1,), None, None),
+    ("gap_pan", 0.0, (0.005, 0.02), None, None),
+    ("F_c_pan", 0.0, (0.05,), None, None),
+    ("F_s_pan", 0.0, (0.05,), None, None),
+    ("v_s_pan", None, (0.05,), None, None),
+    ("F_v_pan", 0.0, (0.0,), None, None),
+    ("a_F_c_pan", 0.0, (-0.1, 0.1), None, None),
+    ("a_F_s_pan", 0.0, (0.0,), None, None),
+    ("a_v_s_pan", 0.0, (0.0,), None, None),
+    ("a_F_v_pan", 0.0, (0.0,), None, None),
 )
 # Effects: id, axis, parameters, title, reference, separating experiment.
 EFFECTS = (
@@ -609,4 +584,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 1879c3b7644d74ddd1dd275a2d673b0c708189eadf47c2ca042b1057b8e669d7
+# END sha256 c392eb2caa73e5cb6627499a027317032ceec22d81ce23f7c5eaa186ab91a8ce

@@ -54,109 +54,35 @@ STATE_UNITS = ("rad", "rad", "rad/s", "rad/s")
 STATE_INITIAL = (0.0, 0.0, 0.0, 0.0)
 INPUT_NAMES = ("tau_pan", "tau_tilt")
 INPUT_UNITS = ("N m", "N m")
+# Per input: index of the parameter by which it is late, or -1.
+INPUT_DELAYS = (-1, -1)
 OUTPUT_NAMES = ("theta_pan", "theta_tilt")
 OUTPUT_UNITS = ("rad", "rad")
 MODE_NAMES = ()
 FRICTION_RATES = ()
+# Per state: the friction that sets it to zero when it comes to rest, or -1.
+ZERO_AT_REST = (-1, -1, -1, -1)
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
-# Parameters: name, unit, default, lower and upper bound, value at which the
-# effect vanishes (None: any), starts of a search, period, meaning.
+# Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
-    ("J_pan", "kg m^2", 0.00053, 0.0, 10000.0, None, (), None, "inertia of the pan body about z"),
-    (
-        "J_x_tilt",
-        "kg m^2",
-        0.00041,
-        0.0,
-        10000.0,
-        None,
-        (),
-        None,
-        "inertia of the tilt body about x",
-    ),
-    (
-        "J_y_tilt",
-        "kg m^2",
-        0.00065,
-        0.0,
-        10000.0,
-        None,
-        (),
-        None,
-        "inertia of the tilt body about y",
-    ),
-    (
-        "J_z_tilt",
-        "kg m^2",
-        0.00027,
-        0.0,
-        10000.0,
-        None,
-        (),
-        None,
-        "inertia of the tilt body about z",
-    ),
-    ("m_payload", "kg", 4.992, 0.0, 100000.0, None, (), None, "payload mass"),
-    (
-        "J_x_payload",
-        "kg m^2",
-        0.0053,
-        0.0,
-        10000.0,
-        None,
-        (),
-        None,
-        "payload inertia about its own x axis",
-    ),
-    (
-        "J_y_payload",
-        "kg m^2",
-        0.0068,
-        0.0,
-        10000.0,
-        None,
-        (),
-        None,
-        "payload inertia about its own y axis",
-    ),
-    (
-        "J_z_payload",
-        "kg m^2",
-        0.0068,
-        0.0,
-        10000.0,
-        None,
-        (),
-        None,
-        "payload inertia about its own z axis",
-    ),
-    ("c_x_payload", "m", 0.1, -10.0, 10.0, None, (), None, "x of the payload's centre of mass"),
-    ("c_y_payload", "m", 0.0, -10.0, 10.0, None, (), None, "y of the payload's centre of mass"),
-    ("c_z_payload", "m", 0.0, -10.0, 10.0, None, (), None, "z of the payload's centre of mass"),
-    (
-        "b_pan",
-        "N m s/rad",
-        0.1,
-        0.0,
-        10000.0,
-        0.0,
-        (0.1,),
-        None,
-        "viscous friction in the pan joint",
-    ),
-    (
-        "b_tilt",
-        "N m s/rad",
-        0.1,
-        0.0,
-        10000.0,
-        0.0,
-        (0.1,),
-        None,
-        "viscous friction in the tilt joint",
-    ),
+    ("J_pan", "kg m^2", 0.00053, 0.0, 10000.0, "inertia of the pan body about z"),
+    ("J_x_tilt", "kg m^2", 0.00041, 0.0, 10000.0, "inertia of the tilt body about x"),
+    ("J_y_tilt", "kg m^2", 0.00065, 0.0, 10000.0, "inertia of the tilt body about y"),
+    ("J_z_tilt", "kg m^2", 0.00027, 0.0, 10000.0, "inertia of the tilt body about z"),
+    ("m_payload", "kg", 4.992, 0.0, 100000.0, "payload mass"),
+    ("J_x_payload", "kg m^2", 0.0053, 0.0, 10000.0, "payload inertia about its own x axis"),
+    ("J_y_payload", "kg m^2", 0.0068, 0.0, 10000.0, "payload inertia about its own y axis"),
+    ("J_z_payload", "kg m^2", 0.0068, 0.0, 10000.0, "payload inertia about its own z axis"),
+    ("c_x_payload", "m", 0.1, -10.0, 10.0, "x of the payload's centre of mass"),
+    ("c_y_payload", "m", 0.0, -10.0, 10.0, "y of the payload's centre of mass"),
+    ("c_z_payload", "m", 0.0, -10.0, 10.0, "z of the payload's centre of mass"),
+    ("b_pan", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the pan joint"),
+    ("b_tilt", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the tilt joint"),
 )
+# Searching them: name, value at which the effect vanishes (None: any), starts,
+# period, what a frequency is locked to.
+SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
 # Effects: id, axis, parameters, title, reference, separating experiment.
 EFFECTS = (
     (
@@ -737,4 +663,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 d17bc39f1ee4083738f2a2c243e973b4fe847c1fdf03c6cc2b1ee2072213c3d5
+# END sha256 774b086f0d7693fbe10b79281fce17c1c61b56377afce0583da20338cf7a3ee9

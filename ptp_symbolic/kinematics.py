@@ -9,6 +9,7 @@ section 3.1.1, Eq. 3.1.
 import sympy as sp
 
 AXES = ("pan", "tilt")
+TIME = sp.Symbol("t", real=True)
 
 
 def angle(axis: str) -> sp.Symbol:

@@ -10,7 +10,8 @@ class Parameter:
     `name` may hold the field ``{axis}``, filled in by `at_axis`. `vanishes` is the value that
     switches the effect off; None means that the value does not matter once the others are there
     (the rest angle of a spring without stiffness). `starts` are the values from which a search
-    begins when the parameter is not declared. A parameter with a `period` wraps around.
+    begins when the parameter is not declared. A parameter with a `period` wraps around. `locked_to`
+    ("time" or "angle") marks a frequency that is searched at the strongest lines of the residual.
     """
 
     name: str
@@ -22,6 +23,7 @@ class Parameter:
     vanishes: float | None = None
     starts: tuple[float, ...] = ()
     period: float | None = None
+    locked_to: str | None = None
 
     def at_axis(self, axis: str | None) -> "Parameter":
         """Return the parameter with its name and meaning filled in for `axis`."""

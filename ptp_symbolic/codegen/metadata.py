@@ -29,15 +29,21 @@ def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]
                 _tuple("STATE_INITIAL", map(repr, _state_initial(equations))),
                 _tuple("INPUT_NAMES", (f'"{i.name}"' for i in equations.inputs)),
                 _tuple("INPUT_UNITS", (f'"{i.unit}"' for i in equations.inputs)),
+                "# Per input: index of the parameter by which it is late, or -1.",
+                _tuple("INPUT_DELAYS", map(str, _delays(equations))),
                 _tuple("OUTPUT_NAMES", (f'"{name}"' for name, _, _ in equations.outputs)),
                 _tuple("OUTPUT_UNITS", (f'"{unit}"' for _, unit, _ in equations.outputs)),
                 _tuple("MODE_NAMES", (f'"{m}"' for m in equations.mode_symbols)),
-                _tuple("FRICTION_RATES", map(str, _friction_rates(equations))),
+                *_friction_rates(equations),
+                "# Per state: the friction that sets it to zero when it comes to rest, or -1.",
+                _tuple("ZERO_AT_REST", map(str, _zero_at_rest(equations))),
                 "# Per contact: state index of the angle at the gear output and at the joint.",
                 _tuple("CONTACT_ANGLES", _contact_states(equations)),
-                "# Parameters: name, unit, default, lower and upper bound, value at which the",
-                "# effect vanishes (None: any), starts of a search, period, meaning.",
+                "# Parameters: name, unit, default, lower and upper bound, meaning.",
                 _tuple("PARAMETERS", map(_parameter, parameters)),
+                "# Searching them: name, value at which the effect vanishes (None: any), starts,",
+                "# period, what a frequency is locked to.",
+                _tuple("SEARCH", [_search(p) for p in parameters if _is_searched(p)]),
                 "# Effects: id, axis, parameters, title, reference, separating experiment.",
                 _tuple("EFFECTS", _effects(equations)),
             ]
@@ -105,7 +111,16 @@ def _parameter(parameter: Parameter) -> str:
     p = parameter
     fields = [repr_text(p.name), repr_text(p.unit)]
     fields += [repr(float(value)) for value in (p.default, p.lower, p.upper)]
-    fields += [_number(p.vanishes), _floats(p.starts), _number(p.period), repr_text(p.meaning)]
+    return f"({', '.join([*fields, repr_text(p.meaning)])})"
+
+
+def _is_searched(p: Parameter) -> bool:
+    return (p.vanishes, p.starts, p.period, p.locked_to) != (None, (), None, None)
+
+
+def _search(p: Parameter) -> str:
+    lock = "None" if p.locked_to is None else repr_text(p.locked_to)
+    fields = [repr_text(p.name), _number(p.vanishes), _floats(p.starts), _number(p.period), lock]
     return f"({', '.join(fields)})"
 
 
@@ -142,9 +157,28 @@ def _contact_states(equations: Equations) -> list[str]:
     return pairs
 
 
-def _friction_rates(equations: Equations) -> list[int]:
+def _friction_rates(equations: Equations) -> list[str]:
+    """An array where the module has modes: compiled code cannot index an empty tuple."""
     states = list(equations.state_symbols)
-    return [states.index(friction.rate) for friction in equations.frictions]
+    indices = [str(states.index(friction.rate)) for friction in equations.frictions]
+    if not equations.mode_symbols:
+        return [_tuple("FRICTION_RATES", indices)]
+    return [f"FRICTION_RATES = np.array([{', '.join(indices)}], dtype=np.int64)"]
+
+
+def _delays(equations: Equations) -> list[int]:
+    names = [p.name for p in equations.parameters]
+    return [-1 if delay is None else names.index(str(delay)) for delay in equations.delays]
+
+
+def _zero_at_rest(equations: Equations) -> list[int]:
+    axes = [friction.axis for friction in equations.frictions]
+    zeroed = {
+        state.name: axes.index(state.zero_at_rest_of)
+        for state in equations.extra_states
+        if state.zero_at_rest_of in axes
+    }
+    return [zeroed.get(str(symbol), -1) for symbol in equations.state_symbols]
 
 
 def _effects(equations: Equations) -> list[str]:

@@ -34,6 +34,9 @@ class KernelPrinter(PythonCodePrinter):
             return f"1.0 / {product}" if exponent == -1 else f"1.0 / ({product})"
         return super()._print_Pow(expr, rational=rational)
 
+    def _print_Heaviside(self, expr: sp.Heaviside) -> str:
+        return f"(1.0 if {self._print(expr.args[0])} > 0.0 else 0.0)"
+
     def _print_Mul(self, expr: sp.Mul) -> str:
         """Products with one division; exponentials stay above it, where they cannot overflow."""
         below = [f for f in expr.args if f.is_Pow and f.exp.is_Integer and f.exp.is_negative]

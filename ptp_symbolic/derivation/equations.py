@@ -48,7 +48,8 @@ class Equations:
     """M(q) q'' = forcing, sliding friction apart, and the states of drives and effects.
 
     Set-valued friction and contact enter through mode symbols, so that the equations are smooth
-    in every mode. `forcing` holds everything but the friction torques.
+    in every mode. `forcing` holds everything but the friction torques. `delays` gives for every
+    input the time by which it is late, if it can be.
     """
 
     name: str
@@ -60,6 +61,7 @@ class Equations:
     forcing: sp.ImmutableMatrix
     extra_states: tuple[State, ...]
     inputs: tuple[Input, ...]
+    delays: tuple[sp.Symbol | None, ...]
     parameters: tuple[Parameter, ...]
     frictions: tuple[Friction, ...]
     contacts: tuple[Contact, ...]

@@ -29,9 +29,13 @@ def _contribute(place: Place) -> Contribution:
     sliding = coulomb + (static - coulomb) * stribeck + viscous * place.slide * rate
     names = [str(q).removeprefix("quantity:") for q in (coulomb, static, speed, viscous)]
     symbols = [place.parameter(p.name) for p in PARAMETERS]
+    breakaway = place.quantity("breakaway_torque_{axis}")
     return Contribution(
-        quantities=dict(zip(names, symbols, strict=True)),
-        frictions=(Friction(place.own_axis, rate, sliding, static),),
+        quantities={
+            **dict(zip(names, symbols, strict=True)),
+            f"breakaway_torque_{place.axis}": static,
+        },
+        frictions=(Friction(place.own_axis, rate, sliding, breakaway),),
     )
 
 

@@ -15,23 +15,35 @@ from ptp_symbolic.bodies import Body
 from ptp_symbolic.parameters import Parameter
 
 
+def _unchanged(value: sp.Expr) -> sp.Expr:
+    return value
+
+
 @dataclass(frozen=True)
 class Change:
-    """What an effect does to a quantity: multiply by `factor`, then add `addition`."""
+    """What an effect does to a quantity: multiply by `factor`, add `addition`, send it `through`.
+
+    All factors come first, then all additions, then all functions, each in catalogue order.
+    """
 
     factor: sp.Expr = sp.Integer(1)
     addition: sp.Expr = sp.Integer(0)
+    through: Callable[[sp.Expr], sp.Expr] = _unchanged
 
 
 @dataclass(frozen=True)
 class State:
-    """A state of an effect: name, unit, meaning, time derivative, value at the start."""
+    """A state of an effect: name, unit, meaning, time derivative, value at the start.
+
+    `zero_at_rest_of` names the axis whose friction sets the state to zero when it comes to rest.
+    """
 
     name: str
     unit: str
     meaning: str
     derivative: sp.Expr
     initial: float = 0.0
+    zero_at_rest_of: str | None = None
 
 
 @dataclass(frozen=True)
@@ -70,6 +82,7 @@ class Shaft:
 class Drive:
     """A motor on `axis`: inertia in kg m^2 and torque in N m, both seen at the gear output.
 
+    The inertia may depend on the joint angle (a linkage); it then moves along with the joint.
     `inputs` replaces the torque input of the axis; `power_in`, `stored` and `dissipated` are the
     electrical part of the energy ledger in W, J and W.
     """
@@ -85,18 +98,25 @@ class Drive:
 
 @dataclass(frozen=True)
 class Contribution:
-    """Everything that an effect may add to the machine."""
+    """Everything that an effect may add to the machine.
+
+    `potential` is an energy of the coordinates, whose gradient acts as torques; `stored` an energy
+    of the effect's own states, which its `torques` charge and discharge. `measured` is added to
+    the reading of a signal, `delays` hold back the inputs of an axis.
+    """
 
     quantities: Mapping[str, sp.Expr] = field(default_factory=dict)
     changes: Mapping[str, Change] = field(default_factory=dict)
     bodies: tuple[Body, ...] = ()
     potential: sp.Expr = sp.Integer(0)
+    stored: sp.Expr = sp.Integer(0)
     torques: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     frictions: tuple[Friction, ...] = ()
     shafts: tuple[Shaft, ...] = ()
     drives: tuple[Drive, ...] = ()
     states: tuple[State, ...] = ()
     measured: Mapping[str, sp.Expr] = field(default_factory=dict)
+    delays: Mapping[str, sp.Symbol] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -139,6 +159,13 @@ class Place:
         if self.own_axis in self.shafts:
             return kinematics.gear_rate(self.own_axis)
         return self.rate
+
+    @property
+    def gear_angle(self) -> sp.Symbol:
+        """Angle at the gear output: a coordinate of its own behind a shaft, else the joint's."""
+        if self.own_axis in self.shafts:
+            return kinematics.gear_angle(self.own_axis)
+        return self.angle
 
     @property
     def slide(self) -> sp.Symbol:

@@ -24,16 +24,22 @@ def _parameters(place: Place) -> tuple[Parameter, ...]:
 def _contribute(place: Place) -> Contribution:
     symbol = place.parameter
     at_axes = sp.ImmutableMatrix([0, 0, 0])
-    bodies = []
+    bodies, products = [], {}
     if "pan" in place.axes:
         inertia = sp.ImmutableMatrix(sp.diag(0, 0, symbol("J_pan")))
         bodies.append(Body("pan_body", "pan", sp.Integer(0), at_axes, inertia))
     if "tilt" in place.axes:
         full = "pan" in place.axes
         x, z = (symbol("J_x_tilt"), symbol("J_z_tilt")) if full else (0, 0)
-        inertia = sp.ImmutableMatrix(sp.diag(x, symbol("J_y_tilt"), z))
+        inertia = sp.diag(x, symbol("J_y_tilt"), z)
+        if full:
+            products = {f"tilt_product_{pair}": sp.Integer(0) for pair in ("xy", "xz", "yz")}
+            for name in products:
+                i, j = ("xyz".index(letter) for letter in name[-2:])
+                inertia[i, j] = inertia[j, i] = -place.quantity(name)
+        inertia = sp.ImmutableMatrix(inertia)
         bodies.append(Body("tilt_body", "tilt", sp.Integer(0), at_axes, inertia))
-    return Contribution(bodies=tuple(bodies))
+    return Contribution(quantities=products, bodies=tuple(bodies))
 
 
 RIGID_BODIES = Effect(

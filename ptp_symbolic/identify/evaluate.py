@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation import hybrid
+from ptp_symbolic.simulation.delays import delay_columns, delayed, delays_of
 
 FloatArray = NDArray[np.float64]
 
@@ -119,11 +120,16 @@ def evaluate(
     steps, n, ns = len(run.time), len(x), s.shape[1]
     m = np.zeros(len(model.mode_names))
     module.initial_modes(run.time[0], x, run.held_inputs[0], p, m)
+    late = delays_of(model, p)
+    table = delayed(run.inputs, late)
+    inner = table.stops[(table.stops > run.time[0]) & (table.stops < run.time[-1])]
+    stops = np.union1d(run.time, inner) if np.any(late) else run.time
     out_x, out_s = np.zeros((steps, n)), np.zeros((steps, n, ns))
     status, reached, _, _ = hybrid.integrate(
         module.mode_derivative, module.jacobian, module.guards, module.guard_jacobian,
-        module.energy, x, m, p, model.friction_rates, run.inputs.arrays, len(model.input_names),
-        True, run.time, run.time, out_x, columns, s, out_s, np.zeros((0, 3)), tolerance.relative,
+        module.energy, x, m, p, model.friction_rates, model.zero_at_rest, table.arrays,
+        len(model.input_names), True, stops, run.time, out_x, columns,
+        delay_columns(model, columns), s, out_s, np.zeros((0, 3)), tolerance.relative,
         tolerance.absolute(model), 1.0, np.zeros((0, 3)),
     )  # fmt: skip
     y = np.zeros((steps, len(model.output_names)))

@@ -19,6 +19,7 @@ Evaluate = Callable[[FloatArray, Sequence[FloatArray], bool], list[Evaluation]]
 LARGEST_STEP = 1.0
 FIRST_DAMPING = 1e-3
 LARGEST_REJECTIONS = 5
+TOO_STEEP = 1e15
 MANY_RUNS, BEND, NEARBY = 20, 2.5, 8.0
 
 
@@ -83,7 +84,11 @@ def cost_of(
     if any(e.failed for e in evaluations):
         return np.inf
     fit = sum(_loss(e, bend) for e in evaluations)
-    if not np.isfinite(fit) or not all(np.all(np.isfinite(e.by_parameter)) for e in evaluations):
+    steepest = max(
+        (np.max(np.abs(j), initial=0.0) for e in evaluations for j in (e.by_parameter, e.by_start)),
+        default=0.0,
+    )
+    if not np.isfinite(fit) or not steepest < TOO_STEEP:
         return np.inf
     return fit + sum(
         scale * float(np.sum((a / s) ** 2)) for a, s in zip(z, problem.start_sigma, strict=True)

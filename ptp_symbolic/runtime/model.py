@@ -37,10 +37,11 @@ class ModelParameter:
     default: float
     lower: float
     upper: float
-    vanishes: float | None
-    starts: tuple[float, ...]
-    period: float | None
     meaning: str
+    vanishes: float | None = None
+    starts: tuple[float, ...] = ()
+    period: float | None = None
+    locked_to: str | None = None
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,10 @@ class Model:
     @cached_property
     def parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters with unit, default, bounds and where they vanish."""
-        return tuple(ModelParameter(*row) for row in self.module.PARAMETERS)
+        search = {row[0]: row[1:] for row in self.module.SEARCH}
+        return tuple(
+            ModelParameter(*row, *search.get(row[0], ())) for row in self.module.PARAMETERS
+        )
 
     @cached_property
     def parameter_names(self) -> tuple[str, ...]:
@@ -122,6 +126,16 @@ class Model:
     def friction_rates(self) -> NDArray[np.int64]:
         """State index of the rate on which every friction acts."""
         return np.array(self.module.FRICTION_RATES, dtype=np.int64)
+
+    @cached_property
+    def zero_at_rest(self) -> NDArray[np.int64]:
+        """Per state the friction that sets it to zero when it comes to rest, or -1."""
+        return np.array(self.module.ZERO_AT_REST, dtype=np.int64)
+
+    @cached_property
+    def input_delays(self) -> NDArray[np.int64]:
+        """Per input the index of the parameter by which it is late, or -1."""
+        return np.array(self.module.INPUT_DELAYS, dtype=np.int64)
 
     @cached_property
     def state_derivative(self) -> Callable[..., None]:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation import hybrid
+from ptp_symbolic.simulation.delays import delay_columns, delayed, delays_of
 from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
 from ptp_symbolic.simulation.run import (
     checked_parameters,
@@ -58,10 +59,13 @@ def sensitivity(
     """
     t = output_times(times)
     given = inputs or {}
-    table = stack([given.get(name, constant(0.0)) for name in model.input_names])
+    p = checked_parameters(model, parameters or {})
+    table = delayed(
+        stack([given.get(name, constant(0.0)) for name in model.input_names]), delays_of(model, p)
+    )
     wanted = tuple(model.parameter_names if by_parameters is None else by_parameters)
     columns = np.array([_index(model.parameter_names, n, "parameter") for n in wanted], np.int64)
-    x, p = start_of(model, initial or {}), checked_parameters(model, parameters or {})
+    x = start_of(model, initial or {})
     s = np.zeros((len(x), len(columns) + len(by_initial)))
     for offset, name in enumerate(by_initial):
         s[_index(model.state_names, name, "state"), len(columns) + offset] = 1.0
@@ -75,9 +79,9 @@ def sensitivity(
     out_x, out_s = np.zeros((len(t), len(x))), np.zeros((len(t), *s.shape))
     status, reached, _, _ = hybrid.integrate(
         module.mode_derivative, module.jacobian, module.guards, module.guard_jacobian,
-        module.energy, x, m, p, model.friction_rates, table.arrays, len(u), False, stops, t, out_x,
-        columns, s, out_s, np.zeros((0, 3)), rtol, np.full(len(x), atol), largest_step,
-        np.zeros((0, 3)),
+        module.energy, x, m, p, model.friction_rates, model.zero_at_rest, table.arrays, len(u),
+        False, stops, t, out_x, columns, delay_columns(model, columns), s, out_s,
+        np.zeros((0, 3)), rtol, np.full(len(x), atol), largest_step, np.zeros((0, 3)),
     )  # fmt: skip
     refuse_failure(model, status, reached, x)
     y, signals = _measured(model, t, out_x, out_s, p, columns)

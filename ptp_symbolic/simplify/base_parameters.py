@@ -1,11 +1,12 @@
 """Base parameters: the fewest combinations of physical parameters that the motion depends on."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import sympy as sp
 
 from ptp_symbolic.bodies import RigidEquations
+from ptp_symbolic.kinematics import TIME
 from ptp_symbolic.simplify.nesting import (
     AngleSums,
     Combination,
@@ -71,6 +72,10 @@ def base_form(
     Khalil, Direct calculation of minimum set of inertial parameters of serial robots, IEEE Trans.
     Robotics and Automation 6, 1990, p. 368-373.
     """
+    clocks = _functions_of_time(rigid)
+    opened = {symbol: function for function, symbol in clocks.items()}
+    given = rigid.forcing
+    rigid = replace(rigid, forcing=given.xreplace(clocks))
     n = len(rigid.coordinates)
     mass = sp.Matrix(rigid.mass_matrix if mass_matrix is None else mass_matrix)
     force = sp.Matrix(rigid.forcing if forcing is None else forcing)
@@ -89,13 +94,20 @@ def base_form(
         mass[i, j] = mass[j, i] = sums.write_inertia(title, row)
     written = write_forcing(rows[len(titles) :], rigid.rates, sums)
     for i in range(n):
-        force[i] = written[i] + (force[i] - rigid.forcing[i])
+        force[i] = written[i] + (force[i] - given[i])
     return BaseForm(
-        base_parameters,
-        tuple(sums.lines),
-        sp.ImmutableMatrix(mass),
-        sp.ImmutableMatrix(force),
+        tuple((symbol, e.xreplace(opened)) for symbol, e in base_parameters),
+        tuple((name, e.xreplace(opened)) for name, e in sums.lines),
+        sp.ImmutableMatrix(mass).xreplace(opened),
+        sp.ImmutableMatrix(force).xreplace(opened),
     )
+
+
+def _functions_of_time(rigid: RigidEquations) -> dict[sp.Expr, sp.Symbol]:
+    """Sines and cosines of the time (a base that moves), to be carried along as they are."""
+    found = [f for f in rigid.forcing.atoms(sp.sin, sp.cos) if TIME in f.free_symbols]
+    ordered = sorted(found, key=sp.default_sort_key)
+    return {f: sp.Symbol(f"clock:{number}", real=True) for number, f in enumerate(ordered)}
 
 
 def _combined(

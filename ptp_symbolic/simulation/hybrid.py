@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit, types
 
 from ptp_symbolic.simulation import signatures
+from ptp_symbolic.simulation.delays import jump_by_delay
 from ptp_symbolic.simulation.inputs import evaluate_inputs
 from ptp_symbolic.simulation.location import (
     TIME_RESOLUTION,
@@ -47,6 +48,7 @@ TABLE = types.Tuple((_V, _M, _I, _M, _I, _M, _I))
         _V,  # modes, changed in place
         _V,  # parameters
         _I,  # state index of the rate of every friction
+        _I,  # per state the friction that zeroes it when it comes to rest, or -1
         TABLE,
         types.int64,  # number of inputs
         types.boolean,  # inputs are held between stops
@@ -54,6 +56,7 @@ TABLE = types.Tuple((_V, _M, _I, _M, _I, _M, _I))
         _V,  # output times, increasing
         _M,  # out: states [times, n]
         _I,  # parameter columns of the tangents
+        _I,  # per input the tangent column of its delay, or -1
         _M,  # tangents [n, ns], changed in place; ns = 0: none
         types.float64[:, :, ::1],  # out: tangents [times, n, ns]; output times must be stops
         types.float64[:, ::1],  # out: work [times, 3]: stored, supplied, dissipated; or no rows
@@ -67,9 +70,9 @@ TABLE = types.Tuple((_V, _M, _I, _M, _I, _M, _I))
     error_model="numpy",
 )
 def integrate(
-    derivative, jacobian, guards, guard_jacobian, energy, x, m, p, friction_rates, table,
-    input_count, held, stops, output_times, out_x, columns, s, out_s, out_energy, rtol, atol,
-    largest_step, events,
+    derivative, jacobian, guards, guard_jacobian, energy, x, m, p, friction_rates, zero_at_rest,
+    table, input_count, held, stops, output_times, out_x, columns, delay_column, s, out_s,
+    out_energy, rtol, atol, largest_step, events,
 ):  # fmt: skip
     """Integrate from the first to the last stop; returns (status, time reached, events, steps)."""
     n, ns, np_ = len(x), s.shape[1], len(p)
@@ -78,6 +81,7 @@ def integrate(
     guard_count = 3 * frictions + 4 * (elements - frictions)
     k, stage = np.zeros((STAGES, n)), np.zeros((STAGES, n))
     weights, x_end, trial = np.zeros(STAGES), np.zeros(n), np.zeros(n)
+    u_before = np.zeros(input_count)
     u, u_later = np.zeros(input_count), np.zeros(input_count)
     g, g_later = np.zeros(guard_count), np.zeros(guard_count)
     gx, gp = np.zeros((guard_count, n)), np.zeros((guard_count, np_))
@@ -100,12 +104,15 @@ def integrate(
         output += 1
     for stop_index in range(1, len(stops)):
         stop = stops[stop_index]
+        u_before[:] = u
         evaluate_inputs(t, 1, *table, cursor, u)
+        if ns > 0 and stop_index > 1:
+            jump_by_delay(derivative, t, x, u_before, u, p, m, delay_column, before, after, s)
         if elements > 0:
             guards(t, x, u, p, m, g)
             if largest_violation(x, m, g, friction_rates) > 0.0:
                 m_before[:] = m
-                if not settle(guards, t, x, u, p, m, g, friction_rates):
+                if not settle(guards, t, x, u, p, m, g, friction_rates, zero_at_rest):
                     return CHATTERING, t, event_count, steps
                 event_count = record_switches(
                     t, m_before, m, frictions, elements, events, event_count
@@ -164,7 +171,21 @@ def integrate(
                 output += 1
             if ns > 0:
                 push_tangents(
-                    jacobian, t, step_h, x, u, p, m, table, cursor, held, stage, columns, s, work
+                    jacobian,
+                    t,
+                    step_h,
+                    x,
+                    u,
+                    p,
+                    m,
+                    table,
+                    cursor,
+                    held,
+                    stage,
+                    columns,
+                    delay_column,
+                    s,
+                    work,
                 )
             if with_energy:
                 for i in range(STAGES - 1):
@@ -196,12 +217,17 @@ def integrate(
                         violation(element, x, m, g_later, friction_rates)
                         - violation(element, x, m, g, friction_rates)
                     ) / ahead
-            if not settle(guards, t, x, u, p, m, g, friction_rates):
+            if not settle(guards, t, x, u, p, m, g, friction_rates, zero_at_rest):
                 return CHATTERING, t, event_count, steps
             event_count = record_switches(t, m_before, m, frictions, elements, events, event_count)
             derivative(t, x, u, p, m, k[0])
             if ns > 0:
                 after[:] = k[0]
+                for a in range(n):
+                    friction = zero_at_rest[a]
+                    if friction >= 0 and m[friction] == 0.0 and m_before[friction] != 0.0:
+                        s[a] = 0.0
+                        before[a] = 0.0
                 jump_tangents(before, after, by_time, by_x, by_p, columns, s)
                 for f in range(frictions):
                     if m[f] == 0.0:

@@ -106,7 +106,7 @@ def switch_contacts(m, g, friction_rates):
 
 
 @njit(cache=True, nogil=True)
-def settle(guards, t, x, u, p, m, g, friction_rates):
+def settle(guards, t, x, u, p, m, g, friction_rates, zero_at_rest):
     """Resolve all violated modes at one instant; returns False when that does not end.
 
     Order matters: rates that reversed are zeroed first, then contacts switch, then the torque
@@ -118,6 +118,9 @@ def settle(guards, t, x, u, p, m, g, friction_rates):
             if m[k] != 0.0 and violation(k, x, m, g, friction_rates) > 0.0:
                 x[friction_rates[k]] = 0.0
                 m[k] = 0.0
+                for a in range(len(x)):
+                    if zero_at_rest[a] == k:
+                        x[a] = 0.0
         guards(t, x, u, p, m, g)
         switch_contacts(m, g, friction_rates)
         guards(t, x, u, p, m, g)

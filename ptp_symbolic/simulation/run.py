@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation import hybrid
+from ptp_symbolic.simulation.delays import delay_columns, delayed, delays_of
 from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
 
 FloatArray = NDArray[np.float64]
@@ -76,6 +77,7 @@ def simulate(
     _refuse_unknown("input", inputs or {}, model.input_names)
     x = start_of(model, initial or {})
     p = checked_parameters(model, parameters or {})
+    table = delayed(table, delays_of(model, p))
     m = np.zeros(len(model.mode_names))
     u = np.zeros(len(model.input_names))
     hybrid.evaluate_inputs(t[0], 1, *table.arrays, table.new_cursor(), u)
@@ -84,12 +86,13 @@ def simulate(
     inner = table.stops[(table.stops > t[0]) & (table.stops < t[-1])]
     stops = np.unique(np.concatenate([[t[0]], inner, [t[-1]]]))
     out_x, n = np.zeros((len(t), len(x))), len(x)
+    none = np.zeros(0, dtype=np.int64)
     ledger, events = np.zeros((len(t), 3)), np.zeros((EVENT_CAPACITY, 3))
     status, reached, count, steps = hybrid.integrate(
         module.mode_derivative, module.jacobian, module.guards, module.guard_jacobian,
-        module.energy, x, m, p, model.friction_rates, table.arrays, len(u), False, stops, t, out_x,
-        np.zeros(0, dtype=np.int64), np.zeros((n, 0)), np.zeros((len(t), n, 0)), ledger, rtol,
-        np.full(n, atol), largest_step, events,
+        module.energy, x, m, p, model.friction_rates, model.zero_at_rest, table.arrays, len(u),
+        False, stops, t, out_x, none, delay_columns(model, none), np.zeros((n, 0)),
+        np.zeros((len(t), n, 0)), ledger, rtol, np.full(n, atol), largest_step, events,
     )  # fmt: skip
     refuse_failure(model, status, reached, x)
     return Trajectory(

@@ -1,0 +1,88 @@
+"""What the placed effects contribute, flattened, with every named quantity resolved."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ptp_symbolic import kinematics
+from ptp_symbolic.effects.effect import Contribution, Drive, Effect, Friction, Place, Shaft
+from ptp_symbolic.effects.effect import quantity as quantity_symbol
+
+GRAVITY_QUANTITIES = ("gravity_tilt", "gravity_azimuth")
+BASE_ACCELERATION = tuple(f"base_acceleration_{k}" for k in "xyz")
+PLATFORM_QUANTITIES = (*GRAVITY_QUANTITIES, *BASE_ACCELERATION)
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Contributions of all effects, which of them only dissipate, and values of quantities."""
+
+    contributions: tuple[Contribution, ...]
+    dissipative: tuple[bool, ...]
+    values: Mapping[sp.Symbol, sp.Expr]
+
+    def resolve(self, expression: sp.Expr) -> sp.Expr:
+        """Replace quantity placeholders, also inside other quantities."""
+        expression = sp.sympify(expression, strict=True)
+        while True:
+            present = expression.free_symbols & self.values.keys()
+            if not present:
+                return expression
+            expression = expression.subs({symbol: self.values[symbol] for symbol in present})
+
+    @property
+    def frictions(self) -> list[Friction]:
+        """Set-valued frictions of all effects."""
+        return [f for c in self.contributions for f in c.frictions]
+
+    @property
+    def shafts(self) -> list[Shaft]:
+        """Shafts of all effects."""
+        return [s for c in self.contributions for s in c.shafts]
+
+    @property
+    def drives(self) -> list[Drive]:
+        """Drives of all effects."""
+        return [d for c in self.contributions for d in c.drives]
+
+    def drive_rate(self, drive: Drive) -> sp.Symbol:
+        """The rate that `drive` works on: at the gear output behind a shaft, else at the joint."""
+        if any(shaft.axis == drive.axis for shaft in self.shafts):
+            return kinematics.gear_rate(drive.axis)
+        return kinematics.rate(drive.axis)
+
+
+def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Parts:
+    """Let every placed effect contribute, and apply all changes to the quantities."""
+    placed = list(placed)
+    contributions = tuple(effect.contribute(place) for effect, place in placed)
+    values: dict[str, sp.Expr] = {name: sp.Integer(0) for name in PLATFORM_QUANTITIES}
+    for axis in axes:
+        values[f"transmitted_torque_{axis}"] = _transmitted(axis, contributions)
+        values[f"transmission_error_{axis}"] = sp.Integer(0)
+    for contribution in contributions:
+        values.update(contribution.quantities)
+    changes = [item for c in contributions for item in c.changes.items()]
+    for name, change in changes:
+        values[name] = values[name] * change.factor
+    for name, change in changes:
+        values[name] = values[name] + change.addition
+    for name, change in changes:
+        values[name] = change.through(values[name])
+    symbols = {
+        quantity_symbol(name): sp.sympify(value, strict=True) for name, value in values.items()
+    }
+    return Parts(contributions, tuple(effect.dissipative for effect, _ in placed), symbols)
+
+
+def _transmitted(axis: str, contributions: Iterable[Contribution]) -> sp.Expr:
+    """Torque that reaches the joint: of its shaft, else of its drive, else the torque input."""
+    contributions = list(contributions)
+    if any(shaft.axis == axis for c in contributions for shaft in c.shafts):
+        return quantity_symbol(f"shaft_torque_{axis}")
+    for contribution in contributions:
+        for drive in contribution.drives:
+            if drive.axis == axis:
+                return drive.torque
+    return kinematics.torque(axis)

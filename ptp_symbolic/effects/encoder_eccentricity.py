@@ -1,0 +1,38 @@
+"""An encoder disc off its centre: the reading leads and lags once per turn."""
+
+import sympy as sp
+
+from ptp_symbolic.effects.effect import Contribution, Effect, Place
+from ptp_symbolic.parameters import Parameter
+
+PARAMETERS = (
+    Parameter(
+        "e_sin_{axis}", "rad", 0.0, -0.2, 0.2, "reading error of the encoder, sine part",
+        vanishes=0.0, starts=(0.002,),
+    ),
+    Parameter(
+        "e_cos_{axis}", "rad", 0.0, -0.2, 0.2, "reading error of the encoder, cosine part",
+        vanishes=0.0, starts=(0.002,),
+    ),
+)  # fmt: skip
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
+
+
+def _contribute(place: Place) -> Contribution:
+    sine, cosine = (place.parameter(p.name) for p in PARAMETERS)
+    error = sine * sp.sin(place.angle) + cosine * sp.cos(place.angle)
+    return Contribution(measured={str(place.angle): error})
+
+
+ENCODER_ECCENTRICITY = Effect(
+    id="encoder_eccentricity",
+    title="encoder off its centre",
+    reference="Ellin and Dolsak (2008): eccentricity error of rotary encoders",
+    parameters=_parameters,
+    contribute=_contribute,
+    separating_experiment="Turn slowly against a second encoder or an optical polygon: the error"
+    " depends on the angle alone, at any speed and load.",
+)

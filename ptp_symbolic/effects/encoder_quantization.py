@@ -1,0 +1,50 @@
+"""An encoder that counts: the reading is the nearest whole count."""
+
+import sympy as sp
+from sympy.printing.printer import Printer
+
+from ptp_symbolic.effects.effect import Contribution, Effect, Place
+from ptp_symbolic.parameters import Parameter
+
+PARAMETERS = (
+    Parameter(
+        "q_count_{axis}", "rad", 8.726646259971648e-4, 1e-12, 1.0, "angle of one encoder count"
+    ),
+)
+
+
+class NearestCount(sp.Function):
+    """The multiple of `count` nearest to an angle; its slope is that of the angle, 1."""
+
+    nargs = 2
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """Return 1 by the angle (what a fit needs, on average), 0 by the count."""
+        return sp.Integer(1 if argindex == 1 else 0)
+
+    def _pythoncode(self, printer: Printer) -> str:
+        angle, count = (printer._print(a) for a in self.args)
+        return f"({count} * math.floor(({angle}) / {count} + 0.5))"
+
+    def _latex(self, printer: Printer, **_: object) -> str:
+        angle, count = (printer._print(a) for a in self.args)
+        return rf"{count} \left\lfloor \frac{{{angle}}}{{{count}}} + \frac{{1}}{{2}} \right\rfloor"
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
+
+
+def _contribute(place: Place) -> Contribution:
+    counted = NearestCount(place.angle, place.parameter("q_count_{axis}"))
+    return Contribution(measured={str(place.angle): counted - place.angle})
+
+
+ENCODER_QUANTIZATION = Effect(
+    id="encoder_quantization",
+    title="encoder that counts",
+    reference="thesis Table 5.7: 7200 counts per turn (1800 lines, four edges each)",
+    parameters=_parameters,
+    contribute=_contribute,
+    structural=True,
+)

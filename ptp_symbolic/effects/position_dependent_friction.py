@@ -1,0 +1,41 @@
+"""Friction that changes once per turn: a bent shaft, a bearing under uneven load."""
+
+import sympy as sp
+
+from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.parameters import Parameter
+
+PARAMETERS = (
+    Parameter(
+        "F_sin_{axis}", "N m", 0.0, -1e4, 1e4, "part of dry friction that goes with the sine",
+        vanishes=0.0, starts=(0.0, 0.1),
+    ),
+    Parameter(
+        "F_cos_{axis}", "N m", 0.0, -1e4, 1e4, "part of dry friction that goes with the cosine",
+        vanishes=0.0, starts=(0.1,),
+    ),
+)  # fmt: skip
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
+
+
+def _contribute(place: Place) -> Contribution:
+    sine, cosine = (place.parameter(p.name) for p in PARAMETERS)
+    added = Change(addition=sine * sp.sin(place.angle) + cosine * sp.cos(place.angle))
+    return Contribution(
+        changes={f"{word}_torque_{place.axis}": added for word in ("coulomb", "static")}
+    )
+
+
+POSITION_DEPENDENT_FRICTION = Effect(
+    id="position_dependent_friction",
+    title="friction that depends on the angle",
+    reference="Armstrong-Helouvry (1991), section 4: friction against position",
+    parameters=_parameters,
+    contribute=_contribute,
+    needs=("coulomb_torque_{axis}", "static_torque_{axis}"),
+    separating_experiment="Pass the same angles both ways at two speeds: gravity keeps its sign,"
+    " friction flips, an encoder error grows with the speed.",
+)
