@@ -22,7 +22,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "bbecc2784e690c04"
+MODEL_HASH = "34ecd3abdef9faca"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 AXES = ("pan", "tilt")
@@ -132,11 +132,11 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     sin_tilt = math.sin(theta_tilt)
     cos_tilt = math.cos(theta_tilt)
     cos_tilt_sin_tilt = cos_tilt * sin_tilt
-    part_of_force_pan = 2.0 * cos_tilt_sin_tilt
-    J_x_tilt_part_of_force_pan = J_x_tilt * part_of_force_pan
+    twice_cos_tilt_sin_tilt = 2.0 * cos_tilt_sin_tilt
+    J_x_tilt_twice_cos_tilt_sin_tilt = J_x_tilt * twice_cos_tilt_sin_tilt
     omega_pan_omega_tilt = omega_pan * omega_tilt
     force_pan = (
-        -J_x_tilt_part_of_force_pan * omega_pan_omega_tilt
+        -J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
         + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
         - b_pan * omega_pan
         + tau_pan
@@ -148,42 +148,44 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     mass_pan = J_pan + J_x_tilt_sin_tilt_sq + J_z_tilt_cos_tilt_sq
     inverse_mass_pan = 1.0 / mass_pan
     accel_pan = force_pan * inverse_mass_pan
-    part_of_fx_2_1 = 2.0 * omega_pan_omega_tilt
-    J_z_tilt_part_of_force_pan = J_z_tilt * part_of_force_pan
-    fx[2, 1] = (inverse_mass_pan) * (
-        -J_x_tilt * cos_tilt_sq * part_of_fx_2_1
+    twice_omega_pan_omega_tilt = 2.0 * omega_pan_omega_tilt
+    J_z_tilt_twice_cos_tilt_sin_tilt = J_z_tilt * twice_cos_tilt_sin_tilt
+    fx[2, 1] = inverse_mass_pan * (
+        -J_x_tilt * cos_tilt_sq * twice_omega_pan_omega_tilt
         + 2.0 * J_x_tilt * omega_pan * omega_tilt * sin_tilt_sq
         + 2.0 * J_z_tilt * cos_tilt_sq * omega_pan * omega_tilt
-        - J_z_tilt * part_of_fx_2_1 * sin_tilt_sq
-        - accel_pan * (J_x_tilt_part_of_force_pan - J_z_tilt_part_of_force_pan)
+        - J_z_tilt * sin_tilt_sq * twice_omega_pan_omega_tilt
+        - accel_pan * (J_x_tilt_twice_cos_tilt_sin_tilt - J_z_tilt_twice_cos_tilt_sin_tilt)
     )
     mass_tilt = J_y_tilt
     inverse_mass_tilt = 1.0 / mass_tilt
     omega_pan_sq = omega_pan * omega_pan
-    fx[3, 1] = (inverse_mass_tilt) * (
+    fx[3, 1] = inverse_mass_tilt * (
         J_x_tilt * cos_tilt_sq * omega_pan_sq
         - J_x_tilt_sin_tilt_sq * omega_pan_sq
         + J_z_tilt * omega_pan_sq * sin_tilt_sq
         - J_z_tilt_cos_tilt_sq * omega_pan_sq
     )
     fx[0, 2] = 1.0
-    fx[2, 2] = (inverse_mass_pan) * (
-        -J_x_tilt_part_of_force_pan * omega_tilt
+    fx[2, 2] = inverse_mass_pan * (
+        -J_x_tilt_twice_cos_tilt_sin_tilt * omega_tilt
         + 2.0 * J_z_tilt * cos_tilt * omega_tilt * sin_tilt
         - b_pan
     )
-    part_of_fx_3_2 = J_x_tilt_part_of_force_pan * omega_pan - J_z_tilt_part_of_force_pan * omega_pan
-    fx[3, 2] = inverse_mass_tilt * part_of_fx_3_2
+    accel_tilt_by_omega_pan_term = (
+        J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan - J_z_tilt_twice_cos_tilt_sin_tilt * omega_pan
+    )
+    fx[3, 2] = accel_tilt_by_omega_pan_term * inverse_mass_tilt
     fx[1, 3] = 1.0
-    fx[2, 3] = -inverse_mass_pan * part_of_fx_3_2
+    fx[2, 3] = -accel_tilt_by_omega_pan_term * inverse_mass_pan
     fx[3, 3] = -b_tilt * inverse_mass_tilt
     fu[2, 0] = inverse_mass_pan
     fu[3, 1] = inverse_mass_tilt
     fp[2, 0] = -accel_pan * inverse_mass_pan
-    part_of_fp_2_1 = omega_pan_omega_tilt * part_of_force_pan
-    fp[2, 1] = inverse_mass_pan * (-accel_pan * sin_tilt_sq - part_of_fp_2_1)
-    part_of_fp_3_1 = cos_tilt_sin_tilt * inverse_mass_tilt * omega_pan_sq
-    fp[3, 1] = part_of_fp_3_1
+    accel_pan_by_J_x_tilt_term = omega_pan_omega_tilt * twice_cos_tilt_sin_tilt
+    fp[2, 1] = inverse_mass_pan * (-accel_pan * sin_tilt_sq - accel_pan_by_J_x_tilt_term)
+    accel_tilt_by_J_x_tilt_term = cos_tilt_sin_tilt * inverse_mass_tilt * omega_pan_sq
+    fp[3, 1] = accel_tilt_by_J_x_tilt_term
     force_tilt = (
         J_x_tilt * cos_tilt_sin_tilt * omega_pan_sq
         - J_z_tilt * cos_tilt_sin_tilt * omega_pan_sq
@@ -192,8 +194,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     accel_tilt = force_tilt * inverse_mass_tilt
     fp[3, 2] = -accel_tilt * inverse_mass_tilt
-    fp[2, 3] = inverse_mass_pan * (-accel_pan * cos_tilt_sq + part_of_fp_2_1)
-    fp[3, 3] = -part_of_fp_3_1
+    fp[2, 3] = inverse_mass_pan * (-accel_pan * cos_tilt_sq + accel_pan_by_J_x_tilt_term)
+    fp[3, 3] = -accel_tilt_by_J_x_tilt_term
     fp[2, 4] = -inverse_mass_pan * omega_pan
     fp[3, 5] = -inverse_mass_tilt * omega_tilt
 
@@ -241,13 +243,13 @@ def energy(t, x, u, p, m, e):
     b_pan = p[4]
     b_tilt = p[5]
     omega_pan_sq = omega_pan * omega_pan
-    part_of_e_0 = (0.5) * omega_pan_sq
+    half_omega_pan_sq = 0.5 * omega_pan_sq
     omega_tilt_sq = omega_tilt * omega_tilt
     e[0] = (
-        J_pan * part_of_e_0
-        + J_x_tilt * part_of_e_0 * ((math.sin(theta_tilt)) * (math.sin(theta_tilt)))
-        + (0.5) * J_y_tilt * omega_tilt_sq
-        + J_z_tilt * part_of_e_0 * ((math.cos(theta_tilt)) * (math.cos(theta_tilt)))
+        J_pan * half_omega_pan_sq
+        + J_x_tilt * half_omega_pan_sq * ((math.sin(theta_tilt)) * (math.sin(theta_tilt)))
+        + 0.5 * J_y_tilt * omega_tilt_sq
+        + J_z_tilt * half_omega_pan_sq * ((math.cos(theta_tilt)) * (math.cos(theta_tilt)))
     )
     e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
     e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
@@ -265,4 +267,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 63b6514cf4637b50efee4246a5f6153b89c14112821ab9d150d4dd06d869bea0
+# END sha256 8f8a40e175c81ed64685f97a80281043f763369b3c54308a58e62ecf46cd40f7

@@ -19,11 +19,11 @@ Operations of the state derivative: 65 as derived, 53 as written.
 Effects:
 - rigid_bodies: thesis Eq. 3.8, Table 5.1
 - viscous_friction (pan): thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)
-- dc_motor (pan): thesis Eq. 3.10, Eq. 3.11 with erratum 8
-- shaft_compliance (pan): thesis Eq. 2.15 with erratum 4, Table 5.7
-- backlash (pan): thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull
 - csvs_friction (pan): thesis Eq. 2.10, 2.11 with errata 2 and 3, Eq. 4.1, exponent 2
 - direction_dependent_friction (pan): thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)
+- backlash (pan): thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull
+- shaft_compliance (pan): thesis Eq. 2.15 with erratum 4, Table 5.7
+- dc_motor (pan): thesis Eq. 3.10, Eq. 3.11 with erratum 8
 """
 
 import math
@@ -31,7 +31,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "2f767f35930b279b"
+MODEL_HASH = "68b424ebfd87ac21"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 AXES = ("pan",)
@@ -54,14 +54,6 @@ CONTACT_ANGLES = ((2, 0),)
 PARAMETERS = (
     ("J_pan", "kg m^2", 0.05, 0.0, 10000.0, "inertia of the pan body about z"),
     ("b_pan", "N m s/rad", 2.0, 0.0, 10000.0, "viscous friction in the pan joint"),
-    ("L_pan", "H", 0.0069, 1e-09, 1000.0, "winding inductance"),
-    ("R_pan", "ohm", 12.9, 1e-06, 1000000.0, "winding resistance"),
-    ("K_t_pan", "N m/A", 0.0724, 1e-09, 10000.0, "torque constant"),
-    ("J_motor_pan", "kg m^2", 1.1e-05, 0.0, 1000.0, "rotor inertia"),
-    ("N_pan", "1", 500.0, 0.001, 1000000.0, "gear ratio"),
-    ("k_shaft_pan", "N m/rad", 5000.0, 0.001, 1000000000.0, "shaft stiffness"),
-    ("d_shaft_pan", "N m s/rad", 1.0, 0.0, 1000000.0, "shaft damping"),
-    ("gap_pan", "rad", 0.02600540585471551, 0.0, 1.0, "whole gap between the two faces"),
     ("F_c_pan", "N m", 0.2401, 0.0, 10000.0, "Coulomb friction torque"),
     ("F_s_pan", "N m", 0.675, 0.0, 10000.0, "static (breakaway) friction torque"),
     ("v_s_pan", "rad/s", 0.016, 1e-06, 1000.0, "Stribeck speed"),
@@ -98,12 +90,19 @@ PARAMETERS = (
         0.95,
         "relative half difference of viscous friction",
     ),
+    ("gap_pan", "rad", 0.02600540585471551, 0.0, 1.0, "whole gap between the two faces"),
+    ("k_shaft_pan", "N m/rad", 5000.0, 0.001, 1000000000.0, "shaft stiffness"),
+    ("d_shaft_pan", "N m s/rad", 1.0, 0.0, 1000000.0, "shaft damping"),
+    ("L_pan", "H", 0.0069, 1e-09, 1000.0, "winding inductance"),
+    ("R_pan", "ohm", 12.9, 1e-06, 1000000.0, "winding resistance"),
+    ("K_t_pan", "N m/A", 0.0724, 1e-09, 10000.0, "torque constant"),
+    ("J_motor_pan", "kg m^2", 1.1e-05, 0.0, 1000.0, "rotor inertia"),
+    ("N_pan", "1", 500.0, 0.001, 1000000.0, "gear ratio"),
 )
 # Searching them: name, value at which the effect vanishes (None: any), starts,
 # period, what a frequency is locked to.
 SEARCH = (
     ("b_pan", 0.0, (0.1,), None, None),
-    ("gap_pan", 0.0, (0.005, 0.02), None, None),
     ("F_c_pan", 0.0, (0.05,), None, None),
     ("F_s_pan", 0.0, (0.05,), None, None),
     ("v_s_pan", None, (0.05,), None, None),
@@ -112,6 +111,7 @@ SEARCH = (
     ("a_F_s_pan", 0.0, (0.0,), None, None),
     ("a_v_s_pan", 0.0, (0.0,), None, None),
     ("a_F_v_pan", 0.0, (0.0,), None, None),
+    ("gap_pan", 0.0, (0.005, 0.02), None, None),
 )
 # Effects: id, axis, parameters, title, reference, separating experiment.
 EFFECTS = (
@@ -132,31 +132,6 @@ EFFECTS = (
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
     ),
     (
-        "dc_motor",
-        "pan",
-        ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"),
-        "geared DC motor",
-        "thesis Eq. 3.10, Eq. 3.11 with erratum 8",
-        "",
-    ),
-    (
-        "shaft_compliance",
-        "pan",
-        ("k_shaft_pan", "d_shaft_pan"),
-        "flexible shaft",
-        "thesis Eq. 2.15 with erratum 4, Table 5.7",
-        "",
-    ),
-    (
-        "backlash",
-        "pan",
-        ("gap_pan",),
-        "backlash",
-        "thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
-        "Reverse slowly with and without a known preload torque on the joint: backlash "
-        "disappears under preload, presliding does not.",
-    ),
-    (
         "csvs_friction",
         "pan",
         ("F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan"),
@@ -173,6 +148,31 @@ EFFECTS = (
         "Run the same speeds both ways at two supply polarities, or back-drive the joint "
         "without power: friction follows the motion, an offset does not.",
     ),
+    (
+        "backlash",
+        "pan",
+        ("gap_pan",),
+        "backlash",
+        "thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
+        "Reverse slowly with and without a known preload torque on the joint: backlash "
+        "disappears under preload, presliding does not.",
+    ),
+    (
+        "shaft_compliance",
+        "pan",
+        ("k_shaft_pan", "d_shaft_pan"),
+        "flexible shaft",
+        "thesis Eq. 2.15 with erratum 4, Table 5.7",
+        "",
+    ),
+    (
+        "dc_motor",
+        "pan",
+        ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"),
+        "geared DC motor",
+        "thesis Eq. 3.10, Eq. 3.11 with erratum 8",
+        "",
+    ),
 )
 
 
@@ -187,47 +187,47 @@ def mode_derivative(t, x, u, p, m, dx):
     u_pan = u[0]
     J_pan = p[0]
     b_pan = p[1]
-    L_pan = p[2]
-    R_pan = p[3]
-    K_t_pan = p[4]
-    J_motor_pan = p[5]
-    N_pan = p[6]
-    k_shaft_pan = p[7]
-    d_shaft_pan = p[8]
-    gap_pan = p[9]
-    F_c_pan = p[10]
-    F_s_pan = p[11]
-    v_s_pan = p[12]
-    F_v_pan = p[13]
-    a_F_c_pan = p[14]
-    a_F_s_pan = p[15]
-    a_v_s_pan = p[16]
-    a_F_v_pan = p[17]
+    F_c_pan = p[2]
+    F_s_pan = p[3]
+    v_s_pan = p[4]
+    F_v_pan = p[5]
+    a_F_c_pan = p[6]
+    a_F_s_pan = p[7]
+    a_v_s_pan = p[8]
+    a_F_v_pan = p[9]
+    gap_pan = p[10]
+    k_shaft_pan = p[11]
+    d_shaft_pan = p[12]
+    L_pan = p[13]
+    R_pan = p[14]
+    K_t_pan = p[15]
+    J_motor_pan = p[16]
+    N_pan = p[17]
     slide_pan = m[0]
     side_pan = m[1]
     active_pan = m[2]
     dx[0] = omega_pan
-    part_of_force_pan = (active_pan) * (
+    force_pan_term = active_pan * (
         d_shaft_pan * (omega_gear_pan - omega_pan)
         + k_shaft_pan * (-0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan)
     )
-    force_pan = -b_pan * omega_pan + part_of_force_pan
+    force_pan = -b_pan * omega_pan + force_pan_term
     mass_pan = J_pan
     inverse_mass_pan = 1.0 / mass_pan
     accel_pan = force_pan * inverse_mass_pan
     dx[1] = accel_pan
     dx[2] = omega_gear_pan
-    part_of_force_gear_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    force_gear_pan_term = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     force_gear_pan = (
         K_t_pan * N_pan * i_pan
-        - part_of_force_pan
+        - force_pan_term
         - slide_pan
         * (
             F_v_pan * omega_gear_pan * slide_pan * (a_F_v_pan * slide_pan + 1.0)
-            + part_of_force_gear_pan
-            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - part_of_force_gear_pan)
+            + force_gear_pan_term
+            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - force_gear_pan_term)
             * math.exp(
-                (-(omega_gear_pan * omega_gear_pan))
+                -(omega_gear_pan * omega_gear_pan)
                 / (
                     (v_s_pan * v_s_pan)
                     * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
@@ -253,128 +253,172 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     u_pan = u[0]
     J_pan = p[0]
     b_pan = p[1]
-    L_pan = p[2]
-    R_pan = p[3]
-    K_t_pan = p[4]
-    J_motor_pan = p[5]
-    N_pan = p[6]
-    k_shaft_pan = p[7]
-    d_shaft_pan = p[8]
-    gap_pan = p[9]
-    F_c_pan = p[10]
-    F_s_pan = p[11]
-    v_s_pan = p[12]
-    F_v_pan = p[13]
-    a_F_c_pan = p[14]
-    a_F_s_pan = p[15]
-    a_v_s_pan = p[16]
-    a_F_v_pan = p[17]
+    F_c_pan = p[2]
+    F_s_pan = p[3]
+    v_s_pan = p[4]
+    F_v_pan = p[5]
+    a_F_c_pan = p[6]
+    a_F_s_pan = p[7]
+    a_v_s_pan = p[8]
+    a_F_v_pan = p[9]
+    gap_pan = p[10]
+    k_shaft_pan = p[11]
+    d_shaft_pan = p[12]
+    L_pan = p[13]
+    R_pan = p[14]
+    K_t_pan = p[15]
+    J_motor_pan = p[16]
+    N_pan = p[17]
     slide_pan = m[0]
     side_pan = m[1]
     active_pan = m[2]
     mass_pan = J_pan
     inverse_mass_pan = 1.0 / mass_pan
     active_pan_inverse_mass_pan = active_pan * inverse_mass_pan
-    part_of_fx_1_0 = active_pan_inverse_mass_pan * k_shaft_pan
-    fx[1, 0] = -part_of_fx_1_0
+    active_pan_inverse_mass_pan_k_shaft_pan = active_pan_inverse_mass_pan * k_shaft_pan
+    fx[1, 0] = -active_pan_inverse_mass_pan_k_shaft_pan
     N_pan_sq = N_pan * N_pan
     mass_gear_pan = J_motor_pan * N_pan_sq
     inverse_mass_gear_pan = 1.0 / mass_gear_pan
-    part_of_fx_3_0 = inverse_mass_gear_pan * (slide_pan * slide_pan)
-    active_pan_part_of_fx_3_0 = active_pan * part_of_fx_3_0
-    part_of_fx_3_0_2 = active_pan_part_of_fx_3_0 * k_shaft_pan
-    fx[3, 0] = part_of_fx_3_0_2
+    accel_gear_pan_by_theta_pan_term = inverse_mass_gear_pan * (slide_pan * slide_pan)
+    accel_gear_pan_by_theta_pan_term_2 = accel_gear_pan_by_theta_pan_term * active_pan
+    accel_gear_pan_by_theta_pan_term_3 = accel_gear_pan_by_theta_pan_term_2 * k_shaft_pan
+    fx[3, 0] = accel_gear_pan_by_theta_pan_term_3
     fx[0, 1] = 1.0
     active_pan_d_shaft_pan = active_pan * d_shaft_pan
     fx[1, 1] = inverse_mass_pan * (-active_pan_d_shaft_pan - b_pan)
-    fx[3, 1] = active_pan_d_shaft_pan * part_of_fx_3_0
-    fx[1, 2] = part_of_fx_1_0
-    fx[3, 2] = -part_of_fx_3_0_2
+    fx[3, 1] = accel_gear_pan_by_theta_pan_term * active_pan_d_shaft_pan
+    fx[1, 2] = active_pan_inverse_mass_pan_k_shaft_pan
+    fx[3, 2] = -accel_gear_pan_by_theta_pan_term_3
     fx[1, 3] = active_pan_d_shaft_pan * inverse_mass_pan
     fx[2, 3] = 1.0
-    part_of_fx_3_3 = a_F_v_pan * slide_pan + 1.0
-    F_v_pan_part_of_fx_3_3_slide_pan = F_v_pan * part_of_fx_3_3 * slide_pan
-    part_of_fx_3_3_2 = 1.0 / (v_s_pan * v_s_pan)
-    part_of_fx_3_3_3 = a_v_s_pan * slide_pan + 1.0
-    part_of_fx_3_3_4 = 1.0 / (part_of_fx_3_3_3 * part_of_fx_3_3_3)
-    part_of_fx_3_3_5 = part_of_fx_3_3_2 * part_of_fx_3_3_4
-    part_of_fx_3_3_6 = a_F_c_pan * slide_pan + 1.0
-    F_c_pan_part_of_fx_3_3_6 = F_c_pan * part_of_fx_3_3_6
-    part_of_fx_3_3_7 = a_F_s_pan * slide_pan + 1.0
+    accel_gear_pan_by_omega_gear_pan_term = a_F_v_pan * slide_pan + 1.0
+    accel_gear_pan_by_omega_gear_pan_term_2 = (
+        F_v_pan * accel_gear_pan_by_omega_gear_pan_term * slide_pan
+    )
+    accel_gear_pan_by_omega_gear_pan_term_3 = 1.0 / (v_s_pan * v_s_pan)
+    accel_gear_pan_by_omega_gear_pan_term_4 = a_v_s_pan * slide_pan + 1.0
+    accel_gear_pan_by_omega_gear_pan_term_5 = 1.0 / (
+        accel_gear_pan_by_omega_gear_pan_term_4 * accel_gear_pan_by_omega_gear_pan_term_4
+    )
+    accel_gear_pan_by_omega_gear_pan_term_6 = (
+        accel_gear_pan_by_omega_gear_pan_term_3 * accel_gear_pan_by_omega_gear_pan_term_5
+    )
+    accel_gear_pan_by_omega_gear_pan_term_7 = a_F_c_pan * slide_pan + 1.0
+    accel_gear_pan_by_omega_gear_pan_term_8 = F_c_pan * accel_gear_pan_by_omega_gear_pan_term_7
+    accel_gear_pan_by_omega_gear_pan_term_9 = a_F_s_pan * slide_pan + 1.0
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    part_of_fx_3_3_8 = math.exp(-omega_gear_pan_sq * part_of_fx_3_3_5)
-    part_of_fx_3_3_9 = part_of_fx_3_3_8 * (-F_c_pan_part_of_fx_3_3_6 + F_s_pan * part_of_fx_3_3_7)
-    part_of_fx_3_3_10 = 2.0 * part_of_fx_3_3_9
-    fx[3, 3] = (part_of_fx_3_0) * (
+    accel_gear_pan_by_omega_gear_pan_term_10 = math.exp(
+        -accel_gear_pan_by_omega_gear_pan_term_6 * omega_gear_pan_sq
+    )
+    accel_gear_pan_by_omega_gear_pan_term_11 = accel_gear_pan_by_omega_gear_pan_term_10 * (
+        F_s_pan * accel_gear_pan_by_omega_gear_pan_term_9 - accel_gear_pan_by_omega_gear_pan_term_8
+    )
+    accel_gear_pan_by_omega_gear_pan_term_12 = 2.0 * accel_gear_pan_by_omega_gear_pan_term_11
+    fx[3, 3] = accel_gear_pan_by_theta_pan_term * (
         -active_pan_d_shaft_pan
         - slide_pan
-        * (F_v_pan_part_of_fx_3_3_slide_pan - omega_gear_pan * part_of_fx_3_3_10 * part_of_fx_3_3_5)
+        * (
+            -accel_gear_pan_by_omega_gear_pan_term_12
+            * accel_gear_pan_by_omega_gear_pan_term_6
+            * omega_gear_pan
+            + accel_gear_pan_by_omega_gear_pan_term_2
+        )
     )
     L_pan_inverse = 1.0 / L_pan
     K_t_pan_N_pan = K_t_pan * N_pan
     fx[4, 3] = -K_t_pan_N_pan * L_pan_inverse
-    fx[3, 4] = K_t_pan_N_pan * part_of_fx_3_0
+    fx[3, 4] = K_t_pan_N_pan * accel_gear_pan_by_theta_pan_term
     fx[4, 4] = -L_pan_inverse * R_pan
     fu[4, 0] = L_pan_inverse
-    part_of_force_pan = omega_gear_pan - omega_pan
-    part_of_force_pan_2 = (0.5) * side_pan
-    part_of_force_pan_3 = -gap_pan * part_of_force_pan_2 + theta_gear_pan - theta_pan
-    part_of_force_pan_4 = (active_pan) * (
-        d_shaft_pan * part_of_force_pan + k_shaft_pan * part_of_force_pan_3
-    )
-    force_pan = -b_pan * omega_pan + part_of_force_pan_4
+    force_pan_term = omega_gear_pan - omega_pan
+    half_side_pan = 0.5 * side_pan
+    force_pan_term_2 = -gap_pan * half_side_pan + theta_gear_pan - theta_pan
+    force_pan_term_3 = active_pan * (d_shaft_pan * force_pan_term + force_pan_term_2 * k_shaft_pan)
+    force_pan = -b_pan * omega_pan + force_pan_term_3
     accel_pan = force_pan * inverse_mass_pan
     fp[1, 0] = -accel_pan * inverse_mass_pan
     fp[1, 1] = -inverse_mass_pan * omega_pan
-    fp[4, 2] = (K_t_pan_N_pan * omega_gear_pan + R_pan * i_pan - u_pan) / (L_pan * L_pan)
-    fp[4, 3] = -L_pan_inverse * i_pan
-    fp[3, 4] = N_pan * i_pan * part_of_fx_3_0
-    L_pan_inverse_omega_gear_pan = L_pan_inverse * omega_gear_pan
-    fp[4, 4] = -L_pan_inverse_omega_gear_pan * N_pan
-    force_gear_pan = (
-        K_t_pan * N_pan * i_pan
-        - part_of_force_pan_4
-        - slide_pan
+    accel_gear_pan_by_F_c_pan_term = inverse_mass_gear_pan * (slide_pan * slide_pan * slide_pan)
+    fp[3, 2] = (
+        (-1.0)
+        * accel_gear_pan_by_F_c_pan_term
         * (
-            F_c_pan_part_of_fx_3_3_6
-            + F_v_pan_part_of_fx_3_3_slide_pan * omega_gear_pan
-            + part_of_fx_3_3_9
+            -accel_gear_pan_by_omega_gear_pan_term_10 * accel_gear_pan_by_omega_gear_pan_term_7
+            + accel_gear_pan_by_omega_gear_pan_term_7
         )
     )
-    accel_gear_pan = force_gear_pan * part_of_fx_3_0
-    fp[3, 5] = -N_pan_sq * accel_gear_pan * part_of_fx_3_0
-    fp[3, 6] = part_of_fx_3_0 * (-2.0 * J_motor_pan * N_pan * accel_gear_pan + K_t_pan * i_pan)
-    fp[4, 6] = -K_t_pan * L_pan_inverse_omega_gear_pan
-    fp[1, 7] = active_pan_inverse_mass_pan * part_of_force_pan_3
-    fp[3, 7] = -active_pan_part_of_fx_3_0 * part_of_force_pan_3
-    fp[1, 8] = active_pan_inverse_mass_pan * part_of_force_pan
-    fp[3, 8] = -active_pan_part_of_fx_3_0 * part_of_force_pan
-    fp[1, 9] = -part_of_force_pan_2 * part_of_fx_1_0
-    fp[3, 9] = part_of_force_pan_2 * part_of_fx_3_0_2
-    part_of_fp_3_10 = inverse_mass_gear_pan * (slide_pan * slide_pan * slide_pan)
-    fp[3, 10] = -part_of_fp_3_10 * (-part_of_fx_3_3_6 * part_of_fx_3_3_8 + part_of_fx_3_3_6)
-    fp[3, 11] = -part_of_fp_3_10 * part_of_fx_3_3_7 * part_of_fx_3_3_8
-    part_of_fp_3_12 = omega_gear_pan_sq * part_of_fx_3_3_10
-    fp[3, 12] = (
+    fp[3, 3] = (
         (-1.0)
-        * (part_of_fp_3_10)
-        * (part_of_fp_3_12)
-        * (part_of_fx_3_3_4)
-        * (1.0 / (v_s_pan * v_s_pan * v_s_pan))
+        * accel_gear_pan_by_F_c_pan_term
+        * accel_gear_pan_by_omega_gear_pan_term_10
+        * accel_gear_pan_by_omega_gear_pan_term_9
     )
-    part_of_fp_3_13 = inverse_mass_gear_pan * (slide_pan * slide_pan * slide_pan * slide_pan)
-    fp[3, 13] = -omega_gear_pan * part_of_fp_3_13 * part_of_fx_3_3
+    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_12 * omega_gear_pan_sq
+    fp[3, 4] = (
+        (-1.0)
+        * accel_gear_pan_by_F_c_pan_term
+        * accel_gear_pan_by_omega_gear_pan_term_5
+        * accel_gear_pan_by_v_s_pan_term
+        * 1.0
+        / (v_s_pan * v_s_pan * v_s_pan)
+    )
+    accel_gear_pan_by_F_v_pan_term = inverse_mass_gear_pan * (
+        slide_pan * slide_pan * slide_pan * slide_pan
+    )
+    fp[3, 5] = (
+        (-1.0)
+        * accel_gear_pan_by_F_v_pan_term
+        * accel_gear_pan_by_omega_gear_pan_term
+        * omega_gear_pan
+    )
     F_c_pan_slide_pan = F_c_pan * slide_pan
-    fp[3, 14] = -part_of_fp_3_10 * (-F_c_pan_slide_pan * part_of_fx_3_3_8 + F_c_pan_slide_pan)
-    fp[3, 15] = -F_s_pan * part_of_fp_3_13 * part_of_fx_3_3_8
-    fp[3, 16] = (
+    fp[3, 6] = (
         (-1.0)
-        * (part_of_fp_3_12)
-        * (part_of_fp_3_13)
-        * (part_of_fx_3_3_2)
-        * (1.0 / (part_of_fx_3_3_3 * part_of_fx_3_3_3 * part_of_fx_3_3_3))
+        * accel_gear_pan_by_F_c_pan_term
+        * (-F_c_pan_slide_pan * accel_gear_pan_by_omega_gear_pan_term_10 + F_c_pan_slide_pan)
     )
-    fp[3, 17] = -F_v_pan * inverse_mass_gear_pan * omega_gear_pan * slide_pan**5.0
+    fp[3, 7] = -F_s_pan * accel_gear_pan_by_F_v_pan_term * accel_gear_pan_by_omega_gear_pan_term_10
+    fp[3, 8] = (
+        (-1.0)
+        * accel_gear_pan_by_F_v_pan_term
+        * accel_gear_pan_by_omega_gear_pan_term_3
+        * 1.0
+        / (
+            accel_gear_pan_by_omega_gear_pan_term_4
+            * accel_gear_pan_by_omega_gear_pan_term_4
+            * accel_gear_pan_by_omega_gear_pan_term_4
+        )
+        * accel_gear_pan_by_v_s_pan_term
+    )
+    fp[3, 9] = -F_v_pan * inverse_mass_gear_pan * omega_gear_pan * slide_pan**5.0
+    fp[1, 10] = -active_pan_inverse_mass_pan_k_shaft_pan * half_side_pan
+    fp[3, 10] = accel_gear_pan_by_theta_pan_term_3 * half_side_pan
+    fp[1, 11] = active_pan_inverse_mass_pan * force_pan_term_2
+    fp[3, 11] = -accel_gear_pan_by_theta_pan_term_2 * force_pan_term_2
+    fp[1, 12] = active_pan_inverse_mass_pan * force_pan_term
+    fp[3, 12] = -accel_gear_pan_by_theta_pan_term_2 * force_pan_term
+    fp[4, 13] = -(-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / (L_pan * L_pan)
+    fp[4, 14] = -L_pan_inverse * i_pan
+    fp[3, 15] = N_pan * accel_gear_pan_by_theta_pan_term * i_pan
+    L_pan_inverse_omega_gear_pan = L_pan_inverse * omega_gear_pan
+    fp[4, 15] = -L_pan_inverse_omega_gear_pan * N_pan
+    force_gear_pan = (
+        K_t_pan * N_pan * i_pan
+        - force_pan_term_3
+        - slide_pan
+        * (
+            accel_gear_pan_by_omega_gear_pan_term_11
+            + accel_gear_pan_by_omega_gear_pan_term_2 * omega_gear_pan
+            + accel_gear_pan_by_omega_gear_pan_term_8
+        )
+    )
+    accel_gear_pan = accel_gear_pan_by_theta_pan_term * force_gear_pan
+    fp[3, 16] = -N_pan_sq * accel_gear_pan * accel_gear_pan_by_theta_pan_term
+    fp[3, 17] = accel_gear_pan_by_theta_pan_term * (
+        -2.0 * J_motor_pan * N_pan * accel_gear_pan + K_t_pan * i_pan
+    )
+    fp[4, 17] = -K_t_pan * L_pan_inverse_omega_gear_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -385,29 +429,29 @@ def guards(t, x, u, p, m, g):
     theta_gear_pan = x[2]
     omega_gear_pan = x[3]
     i_pan = x[4]
-    K_t_pan = p[4]
-    N_pan = p[6]
-    k_shaft_pan = p[7]
-    d_shaft_pan = p[8]
-    gap_pan = p[9]
-    F_s_pan = p[11]
-    a_F_s_pan = p[15]
+    F_s_pan = p[3]
+    a_F_s_pan = p[7]
+    gap_pan = p[10]
+    k_shaft_pan = p[11]
+    d_shaft_pan = p[12]
+    K_t_pan = p[15]
+    N_pan = p[17]
     side_pan = m[1]
     active_pan = m[2]
-    part_of_g_0 = d_shaft_pan * (omega_gear_pan - omega_pan)
-    part_of_g_0_2 = (0.5) * gap_pan
-    part_of_g_0_3 = -theta_gear_pan + theta_pan
-    part_of_g_0_4 = active_pan * (
-        k_shaft_pan * (-part_of_g_0_2 * side_pan - part_of_g_0_3) + part_of_g_0
+    holding_pan_term = d_shaft_pan * (omega_gear_pan - omega_pan)
+    half_gap_pan = 0.5 * gap_pan
+    holding_pan_term_2 = -theta_gear_pan + theta_pan
+    holding_pan_term_3 = active_pan * (
+        holding_pan_term + k_shaft_pan * (-half_gap_pan * side_pan - holding_pan_term_2)
     )
-    g[0] = K_t_pan * N_pan * i_pan - part_of_g_0_4
+    g[0] = K_t_pan * N_pan * i_pan - holding_pan_term_3
     g[1] = F_s_pan * (a_F_s_pan + 1.0)
     g[2] = F_s_pan * (1.0 - a_F_s_pan)
-    part_of_g_3 = theta_gear_pan - theta_pan
-    g[3] = part_of_g_3
-    g[4] = part_of_g_0_2
-    g[5] = k_shaft_pan * (-part_of_g_0_2 - part_of_g_0_3) + part_of_g_0
-    g[6] = k_shaft_pan * (part_of_g_0_2 + part_of_g_3) + part_of_g_0
+    separation_pan_term = theta_gear_pan - theta_pan
+    g[3] = separation_pan_term
+    g[4] = half_gap_pan
+    g[5] = holding_pan_term + k_shaft_pan * (-half_gap_pan - holding_pan_term_2)
+    g[6] = holding_pan_term + k_shaft_pan * (half_gap_pan + separation_pan_term)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -418,13 +462,13 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     theta_gear_pan = x[2]
     omega_gear_pan = x[3]
     i_pan = x[4]
-    K_t_pan = p[4]
-    N_pan = p[6]
-    k_shaft_pan = p[7]
-    d_shaft_pan = p[8]
-    gap_pan = p[9]
-    F_s_pan = p[11]
-    a_F_s_pan = p[15]
+    F_s_pan = p[3]
+    a_F_s_pan = p[7]
+    gap_pan = p[10]
+    k_shaft_pan = p[11]
+    d_shaft_pan = p[12]
+    K_t_pan = p[15]
+    N_pan = p[17]
     side_pan = m[1]
     active_pan = m[2]
     active_pan_k_shaft_pan = active_pan * k_shaft_pan
@@ -446,27 +490,27 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     gx[5, 3] = d_shaft_pan
     gx[6, 3] = d_shaft_pan
     gx[0, 4] = K_t_pan * N_pan
-    gp[0, 4] = N_pan * i_pan
-    gp[0, 6] = K_t_pan * i_pan
-    part_of_gp_0_7 = (0.5) * gap_pan
-    part_of_gp_0_7_2 = -theta_gear_pan + theta_pan
-    part_of_gp_0_7_3 = -part_of_gp_0_7 * side_pan - part_of_gp_0_7_2
-    gp[0, 7] = -active_pan * part_of_gp_0_7_3
-    gp[5, 7] = -part_of_gp_0_7 - part_of_gp_0_7_2
-    gp[6, 7] = part_of_gp_0_7 + theta_gear_pan - theta_pan
-    part_of_gp_0_8 = omega_gear_pan - omega_pan
-    gp[0, 8] = -active_pan * part_of_gp_0_8
-    gp[5, 8] = part_of_gp_0_8
-    gp[6, 8] = part_of_gp_0_8
-    gp[0, 9] = (0.5) * active_pan_k_shaft_pan * side_pan
-    gp[4, 9] = 0.5
-    part_of_gp_5_9 = (0.5) * k_shaft_pan
-    gp[5, 9] = -part_of_gp_5_9
-    gp[6, 9] = part_of_gp_5_9
-    gp[1, 11] = a_F_s_pan + 1.0
-    gp[2, 11] = 1.0 - a_F_s_pan
-    gp[1, 15] = F_s_pan
-    gp[2, 15] = -F_s_pan
+    gp[1, 3] = a_F_s_pan + 1.0
+    gp[2, 3] = 1.0 - a_F_s_pan
+    gp[1, 7] = F_s_pan
+    gp[2, 7] = -F_s_pan
+    gp[0, 10] = 0.5 * active_pan_k_shaft_pan * side_pan
+    gp[4, 10] = 0.5
+    half_k_shaft_pan = 0.5 * k_shaft_pan
+    gp[5, 10] = -half_k_shaft_pan
+    gp[6, 10] = half_k_shaft_pan
+    half_gap_pan = 0.5 * gap_pan
+    holding_pan_by_k_shaft_pan_term = -theta_gear_pan + theta_pan
+    holding_pan_by_k_shaft_pan_term_2 = -half_gap_pan * side_pan - holding_pan_by_k_shaft_pan_term
+    gp[0, 11] = -active_pan * holding_pan_by_k_shaft_pan_term_2
+    gp[5, 11] = -half_gap_pan - holding_pan_by_k_shaft_pan_term
+    gp[6, 11] = half_gap_pan + theta_gear_pan - theta_pan
+    holding_pan_by_d_shaft_pan_term = omega_gear_pan - omega_pan
+    gp[0, 12] = -active_pan * holding_pan_by_d_shaft_pan_term
+    gp[5, 12] = holding_pan_by_d_shaft_pan_term
+    gp[6, 12] = holding_pan_by_d_shaft_pan_term
+    gp[0, 15] = N_pan * i_pan
+    gp[0, 17] = K_t_pan * i_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -496,21 +540,21 @@ def energy(t, x, u, p, m, e):
     u_pan = u[0]
     J_pan = p[0]
     b_pan = p[1]
-    L_pan = p[2]
-    R_pan = p[3]
-    J_motor_pan = p[5]
-    N_pan = p[6]
-    k_shaft_pan = p[7]
-    d_shaft_pan = p[8]
-    gap_pan = p[9]
-    F_c_pan = p[10]
-    F_s_pan = p[11]
-    v_s_pan = p[12]
-    F_v_pan = p[13]
-    a_F_c_pan = p[14]
-    a_F_s_pan = p[15]
-    a_v_s_pan = p[16]
-    a_F_v_pan = p[17]
+    F_c_pan = p[2]
+    F_s_pan = p[3]
+    v_s_pan = p[4]
+    F_v_pan = p[5]
+    a_F_c_pan = p[6]
+    a_F_s_pan = p[7]
+    a_v_s_pan = p[8]
+    a_F_v_pan = p[9]
+    gap_pan = p[10]
+    k_shaft_pan = p[11]
+    d_shaft_pan = p[12]
+    L_pan = p[13]
+    R_pan = p[14]
+    J_motor_pan = p[16]
+    N_pan = p[17]
     slide_pan = m[0]
     side_pan = m[1]
     active_pan = m[2]
@@ -518,36 +562,39 @@ def energy(t, x, u, p, m, e):
     i_pan_sq = i_pan * i_pan
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
     side_pan_sq = side_pan * side_pan
-    part_of_e_0 = -0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan
+    stored_term = -0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan
     e[0] = (
-        (0.5) * J_motor_pan * (N_pan * N_pan) * omega_gear_pan_sq
-        + (0.5) * J_pan * omega_pan_sq
-        + (0.5) * L_pan * i_pan_sq
-        + (0.5) * k_shaft_pan * (part_of_e_0 * part_of_e_0) * side_pan_sq
+        0.5 * J_motor_pan * (N_pan * N_pan) * omega_gear_pan_sq
+        + 0.5 * J_pan * omega_pan_sq
+        + 0.5 * L_pan * i_pan_sq
+        + 0.5 * k_shaft_pan * side_pan_sq * (stored_term * stored_term)
     )
     e[1] = i_pan * u_pan
-    part_of_e_2 = omega_gear_pan - omega_pan
-    part_of_e_2_2 = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    dissipated_term = omega_gear_pan - omega_pan
+    dissipated_term_2 = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
     e[2] = (
         R_pan * i_pan_sq
         + b_pan * omega_pan_sq
+        + dissipated_term
+        * side_pan_sq
+        * (
+            active_pan * d_shaft_pan * dissipated_term
+            - k_shaft_pan * stored_term * (1.0 - active_pan)
+        )
         + omega_gear_pan_slide_pan
         * (
             F_v_pan * omega_gear_pan_slide_pan * (a_F_v_pan * slide_pan + 1.0)
-            + part_of_e_2_2
-            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - part_of_e_2_2)
+            + dissipated_term_2
+            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - dissipated_term_2)
             * math.exp(
-                (-omega_gear_pan_sq)
+                -omega_gear_pan_sq
                 / (
                     (v_s_pan * v_s_pan)
                     * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
                 )
             )
         )
-        + part_of_e_2
-        * side_pan_sq
-        * (active_pan * d_shaft_pan * part_of_e_2 - k_shaft_pan * part_of_e_0 * (1.0 - active_pan))
     )
 
 
@@ -584,4 +631,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 c392eb2caa73e5cb6627499a027317032ceec22d81ce23f7c5eaa186ab91a8ce
+# END sha256 1080de6f010f4edb2497da0e8f6eb772f94d37a9d7727bee68afc80a1412fd58

@@ -45,7 +45,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "7956bf39ca6e098e"
+MODEL_HASH = "ebfe6eb35abc93c6"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 AXES = ("pan", "tilt")
@@ -152,15 +152,15 @@ def mode_derivative(t, x, u, p, m, dx):
     dx[0] = omega_pan
     dx[1] = omega_tilt
     inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
-    part_of_inertia_pan_sin_sq_tilt = (c_x_payload * c_x_payload) * m_payload
-    part_of_inertia_pan_sin_sq_tilt_2 = (c_z_payload * c_z_payload) * m_payload
+    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
+    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
     inertia_pan_sin_sq_tilt = (
         J_x_payload
         + J_x_tilt
         - J_z_payload
         - J_z_tilt
-        - part_of_inertia_pan_sin_sq_tilt
-        + part_of_inertia_pan_sin_sq_tilt_2
+        - inertia_pan_sin_sq_tilt_term
+        + inertia_pan_sin_sq_tilt_term_2
     )
     cos_tilt = math.cos(theta_tilt)
     sin_tilt = math.sin(theta_tilt)
@@ -177,12 +177,12 @@ def mode_derivative(t, x, u, p, m, dx):
         * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
         + tau_pan
     )
-    part_of_gravity_cos_tilt = (9.81) * m_payload
-    gravity_cos_tilt = c_x_payload * part_of_gravity_cos_tilt
-    gravity_sin_tilt = c_z_payload * part_of_gravity_cos_tilt
+    gravity_cos_tilt_term = 9.81 * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
+    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
     force_tilt = (
         -b_tilt * omega_tilt
-        + (0.5) * coriolis * omega_pan
+        + 0.5 * coriolis * omega_pan
         + cos_tilt * gravity_cos_tilt
         + gravity_sin_tilt * sin_tilt
         + tau_tilt
@@ -192,12 +192,12 @@ def mode_derivative(t, x, u, p, m, dx):
         + J_z_payload
         + J_z_tilt
         + (c_y_payload * c_y_payload) * m_payload
-        + part_of_inertia_pan_sin_sq_tilt
+        + inertia_pan_sin_sq_tilt_term
     )
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
     inertia_tilt = (
-        J_y_payload + J_y_tilt + part_of_inertia_pan_sin_sq_tilt + part_of_inertia_pan_sin_sq_tilt_2
+        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
     )
     mass_tilt = inertia_tilt
     inverse_determinant = 1.0 / (mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt))
@@ -238,88 +238,88 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     J_z_tilt_cos_tilt_sq = J_z_tilt * cos_tilt_sq
     c_x_payload_sq = c_x_payload * c_x_payload
     c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    part_of_mass_pan = c_x_payload_sq_m_payload * cos_tilt_sq
+    c_x_payload_sq_m_payload_cos_tilt_sq = c_x_payload_sq_m_payload * cos_tilt_sq
     c_y_payload_sq = c_y_payload * c_y_payload
     c_y_payload_sq_sin_tilt_sq = c_y_payload_sq * sin_tilt_sq
     c_y_payload_sq_cos_tilt_sq = c_y_payload_sq * cos_tilt_sq
     c_z_payload_sq = c_z_payload * c_z_payload
     c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
-    part_of_mass_pan_2 = c_z_payload_sq_m_payload * sin_tilt_sq
+    c_z_payload_sq_m_payload_sin_tilt_sq = c_z_payload_sq_m_payload * sin_tilt_sq
     c_x_payload_sin_tilt = c_x_payload * sin_tilt
     c_x_payload_sin_tilt_m_payload = c_x_payload_sin_tilt * m_payload
     c_z_payload_cos_tilt = c_z_payload * cos_tilt
-    part_of_mass_pan_3 = 2.0 * c_z_payload_cos_tilt
+    twice_c_z_payload_cos_tilt = 2.0 * c_z_payload_cos_tilt
     mass_pan = (
         J_pan
         + J_x_payload_sin_tilt_sq
         + J_x_tilt_sin_tilt_sq
         + J_z_payload_cos_tilt_sq
         + J_z_tilt_cos_tilt_sq
-        + c_x_payload_sin_tilt_m_payload * part_of_mass_pan_3
+        + c_x_payload_sin_tilt_m_payload * twice_c_z_payload_cos_tilt
+        + c_x_payload_sq_m_payload_cos_tilt_sq
         + c_y_payload_sq_cos_tilt_sq * m_payload
         + c_y_payload_sq_sin_tilt_sq * m_payload
-        + part_of_mass_pan
-        + part_of_mass_pan_2
+        + c_z_payload_sq_m_payload_sin_tilt_sq
     )
     c_x_payload_sin_tilt_c_y_payload = c_x_payload_sin_tilt * c_y_payload
     c_y_payload_c_z_payload_cos_tilt = c_y_payload * c_z_payload_cos_tilt
-    part_of_mass_pan_tilt = c_y_payload_c_z_payload_cos_tilt * m_payload
-    mass_pan_tilt = c_x_payload_sin_tilt_c_y_payload * m_payload - part_of_mass_pan_tilt
+    mass_pan_tilt_term = c_y_payload_c_z_payload_cos_tilt * m_payload
+    mass_pan_tilt = c_x_payload_sin_tilt_c_y_payload * m_payload - mass_pan_tilt_term
     mass_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
     inverse_determinant = 1.0 / (mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt))
     cos_tilt_sin_tilt = cos_tilt * sin_tilt
-    part_of_force_pan = 2.0 * cos_tilt_sin_tilt
-    J_x_payload_part_of_force_pan = J_x_payload * part_of_force_pan
+    twice_cos_tilt_sin_tilt = 2.0 * cos_tilt_sin_tilt
+    J_x_payload_twice_cos_tilt_sin_tilt = J_x_payload * twice_cos_tilt_sin_tilt
     omega_pan_omega_tilt = omega_pan * omega_tilt
-    J_x_tilt_part_of_force_pan = J_x_tilt * part_of_force_pan
+    J_x_tilt_twice_cos_tilt_sin_tilt = J_x_tilt * twice_cos_tilt_sin_tilt
     omega_tilt_sq = omega_tilt * omega_tilt
     c_y_payload_m_payload = c_y_payload * m_payload
     c_x_payload_cos_tilt = c_x_payload * cos_tilt
-    part_of_force_pan_2 = c_x_payload_cos_tilt * c_y_payload_m_payload
+    force_pan_term = c_x_payload_cos_tilt * c_y_payload_m_payload
     c_z_payload_sin_tilt = c_z_payload * sin_tilt
-    part_of_force_pan_3 = c_y_payload_m_payload * c_z_payload_sin_tilt
-    part_of_force_pan_4 = 2.0 * cos_tilt_sq
+    force_pan_term_2 = c_y_payload_m_payload * c_z_payload_sin_tilt
+    twice_cos_tilt_sq = 2.0 * cos_tilt_sq
     c_x_payload_c_z_payload = c_x_payload * c_z_payload
-    part_of_force_pan_5 = c_x_payload_c_z_payload * m_payload
-    part_of_force_pan_6 = part_of_force_pan_4 * part_of_force_pan_5
-    part_of_force_pan_7 = c_z_payload_sq_m_payload * part_of_force_pan
+    c_x_payload_c_z_payload_m_payload = c_x_payload_c_z_payload * m_payload
+    force_pan_term_3 = c_x_payload_c_z_payload_m_payload * twice_cos_tilt_sq
+    force_pan_term_4 = c_z_payload_sq_m_payload * twice_cos_tilt_sin_tilt
     force_pan = (
-        -J_x_payload_part_of_force_pan * omega_pan_omega_tilt
-        - J_x_tilt_part_of_force_pan * omega_pan_omega_tilt
+        -J_x_payload_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
+        - J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
         + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
         + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
         - b_pan * omega_pan
         + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
         + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - omega_pan_omega_tilt * part_of_force_pan_6
-        - omega_pan_omega_tilt * part_of_force_pan_7
-        - omega_tilt_sq * part_of_force_pan_2
-        - omega_tilt_sq * part_of_force_pan_3
+        - force_pan_term * omega_tilt_sq
+        - force_pan_term_2 * omega_tilt_sq
+        - force_pan_term_3 * omega_pan_omega_tilt
+        - force_pan_term_4 * omega_pan_omega_tilt
         + tau_pan
     )
-    part_of_force_tilt = (9.81) * sin_tilt
+    force_tilt_term = 9.81 * sin_tilt
     omega_pan_sq = omega_pan * omega_pan
     cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
     cos_tilt_sq_omega_pan_sq = cos_tilt_sq * omega_pan_sq
     omega_pan_sq_sin_tilt_sq = omega_pan_sq * sin_tilt_sq
-    part_of_force_tilt_2 = c_x_payload_c_z_payload * omega_pan_sq_sin_tilt_sq
+    force_tilt_term_2 = c_x_payload_c_z_payload * omega_pan_sq_sin_tilt_sq
     force_tilt = (
         J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
         + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
         - J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
         - J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
         - b_tilt * omega_tilt
-        + (9.81) * c_x_payload * cos_tilt * m_payload
+        + 9.81 * c_x_payload * cos_tilt * m_payload
         + c_x_payload_c_z_payload * cos_tilt_sq_omega_pan_sq * m_payload
         - c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + c_z_payload * m_payload * part_of_force_tilt
+        + c_z_payload * force_tilt_term * m_payload
         + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-        - m_payload * part_of_force_tilt_2
+        - force_tilt_term_2 * m_payload
         + tau_tilt
     )
     accel_pan = inverse_determinant * (force_pan * mass_tilt - force_tilt * mass_pan_tilt)
-    part_of_fx_2_1 = part_of_force_pan_2 + part_of_force_pan_3
-    part_of_fx_2_1_2 = (
+    force_pan_term_plus_force_pan_term_2 = force_pan_term + force_pan_term_2
+    accel_pan_by_theta_tilt_term = (
         J_x_payload * cos_tilt_sq * omega_pan_sq
         - J_x_payload_sin_tilt_sq * omega_pan_sq
         + J_x_tilt * cos_tilt_sq * omega_pan_sq
@@ -328,234 +328,253 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - J_z_payload_cos_tilt_sq * omega_pan_sq
         + J_z_tilt * omega_pan_sq * sin_tilt_sq
         - J_z_tilt_cos_tilt_sq * omega_pan_sq
-        - accel_pan * part_of_fx_2_1
+        - accel_pan * force_pan_term_plus_force_pan_term_2
         - 4.0 * c_x_payload_sin_tilt_m_payload * c_z_payload_cos_tilt * omega_pan_sq
         - 9.81 * c_x_payload_sin_tilt_m_payload
         + c_x_payload_sq * m_payload * omega_pan_sq * sin_tilt_sq
-        + (9.81) * c_z_payload * cos_tilt * m_payload
+        - c_x_payload_sq_m_payload_cos_tilt_sq * omega_pan_sq
+        + 9.81 * c_z_payload * cos_tilt * m_payload
         + c_z_payload_sq * cos_tilt_sq * m_payload * omega_pan_sq
-        - omega_pan_sq * part_of_mass_pan
-        - omega_pan_sq * part_of_mass_pan_2
+        - c_z_payload_sq_m_payload_sin_tilt_sq * omega_pan_sq
     )
     accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
-    part_of_fx_2_1_3 = omega_pan_omega_tilt * part_of_force_pan_4
-    part_of_fx_2_1_4 = 2.0 * sin_tilt_sq
-    part_of_fx_2_1_5 = omega_pan_omega_tilt * part_of_fx_2_1_4
-    J_z_payload_part_of_force_pan = J_z_payload * part_of_force_pan
-    J_z_tilt_part_of_force_pan = J_z_tilt * part_of_force_pan
-    part_of_fx_2_1_6 = part_of_force_pan_5 * part_of_fx_2_1_4
-    part_of_fx_2_1_7 = c_x_payload_sq_m_payload * part_of_force_pan
-    part_of_fx_2_1_8 = (
+    omega_pan_omega_tilt_twice_cos_tilt_sq = omega_pan_omega_tilt * twice_cos_tilt_sq
+    twice_sin_tilt_sq = 2.0 * sin_tilt_sq
+    omega_pan_omega_tilt_twice_sin_tilt_sq = omega_pan_omega_tilt * twice_sin_tilt_sq
+    J_z_payload_twice_cos_tilt_sin_tilt = J_z_payload * twice_cos_tilt_sin_tilt
+    J_z_tilt_twice_cos_tilt_sin_tilt = J_z_tilt * twice_cos_tilt_sin_tilt
+    accel_pan_by_theta_tilt_term_2 = c_x_payload_c_z_payload_m_payload * twice_sin_tilt_sq
+    accel_pan_by_theta_tilt_term_3 = c_x_payload_sq_m_payload * twice_cos_tilt_sin_tilt
+    accel_pan_by_theta_tilt_term_4 = (
         2.0 * J_x_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - J_x_payload * part_of_fx_2_1_3
+        - J_x_payload * omega_pan_omega_tilt_twice_cos_tilt_sq
         + 2.0 * J_x_tilt * omega_pan * omega_tilt * sin_tilt_sq
-        - J_x_tilt * part_of_fx_2_1_3
+        - J_x_tilt * omega_pan_omega_tilt_twice_cos_tilt_sq
         + 2.0 * J_z_payload * cos_tilt_sq * omega_pan * omega_tilt
-        - J_z_payload * part_of_fx_2_1_5
+        - J_z_payload * omega_pan_omega_tilt_twice_sin_tilt_sq
         + 2.0 * J_z_tilt * cos_tilt_sq * omega_pan * omega_tilt
-        - J_z_tilt * part_of_fx_2_1_5
+        - J_z_tilt * omega_pan_omega_tilt_twice_sin_tilt_sq
         - accel_pan
         * (
-            J_x_payload_part_of_force_pan
-            + J_x_tilt_part_of_force_pan
-            - J_z_payload_part_of_force_pan
-            - J_z_tilt_part_of_force_pan
-            + part_of_force_pan_6
-            + part_of_force_pan_7
-            - part_of_fx_2_1_6
-            - part_of_fx_2_1_7
+            J_x_payload_twice_cos_tilt_sin_tilt
+            + J_x_tilt_twice_cos_tilt_sin_tilt
+            - J_z_payload_twice_cos_tilt_sin_tilt
+            - J_z_tilt_twice_cos_tilt_sin_tilt
+            - accel_pan_by_theta_tilt_term_2
+            - accel_pan_by_theta_tilt_term_3
+            + force_pan_term_3
+            + force_pan_term_4
         )
-        - accel_tilt * part_of_fx_2_1
+        - accel_tilt * force_pan_term_plus_force_pan_term_2
         + c_x_payload * c_y_payload * m_payload * omega_tilt_sq * sin_tilt
         + 8.0 * c_x_payload * c_z_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
         + 2.0 * c_x_payload_sq * cos_tilt_sq * m_payload * omega_pan * omega_tilt
-        - c_x_payload_sq_m_payload * part_of_fx_2_1_5
+        - c_x_payload_sq_m_payload * omega_pan_omega_tilt_twice_sin_tilt_sq
         + 2.0 * c_z_payload_sq * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_z_payload_sq_m_payload * part_of_fx_2_1_3
-        - omega_tilt_sq * part_of_mass_pan_tilt
+        - c_z_payload_sq_m_payload * omega_pan_omega_tilt_twice_cos_tilt_sq
+        - mass_pan_tilt_term * omega_tilt_sq
     )
     fx[2, 1] = inverse_determinant * (
-        -mass_pan_tilt * part_of_fx_2_1_2 + mass_tilt * part_of_fx_2_1_8
+        -accel_pan_by_theta_tilt_term * mass_pan_tilt + accel_pan_by_theta_tilt_term_4 * mass_tilt
     )
     fx[3, 1] = inverse_determinant * (
-        mass_pan * part_of_fx_2_1_2 - mass_pan_tilt * part_of_fx_2_1_8
+        accel_pan_by_theta_tilt_term * mass_pan - accel_pan_by_theta_tilt_term_4 * mass_pan_tilt
     )
     fx[0, 2] = 1.0
-    part_of_fx_2_2 = (
-        J_x_payload_part_of_force_pan * omega_pan
-        + J_x_tilt_part_of_force_pan * omega_pan
-        - J_z_payload_part_of_force_pan * omega_pan
-        - J_z_tilt_part_of_force_pan * omega_pan
-        + omega_pan * part_of_force_pan_6
-        + omega_pan * part_of_force_pan_7
-        - omega_pan * part_of_fx_2_1_6
-        - omega_pan * part_of_fx_2_1_7
+    accel_pan_by_omega_pan_term = (
+        J_x_payload_twice_cos_tilt_sin_tilt * omega_pan
+        + J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan
+        - J_z_payload_twice_cos_tilt_sin_tilt * omega_pan
+        - J_z_tilt_twice_cos_tilt_sin_tilt * omega_pan
+        - accel_pan_by_theta_tilt_term_2 * omega_pan
+        - accel_pan_by_theta_tilt_term_3 * omega_pan
+        + force_pan_term_3 * omega_pan
+        + force_pan_term_4 * omega_pan
     )
-    part_of_fx_2_2_2 = (
-        -J_x_payload_part_of_force_pan * omega_tilt
-        - J_x_tilt_part_of_force_pan * omega_tilt
+    accel_pan_by_omega_pan_term_2 = (
+        -J_x_payload_twice_cos_tilt_sin_tilt * omega_tilt
+        - J_x_tilt_twice_cos_tilt_sin_tilt * omega_tilt
         + 2.0 * J_z_payload * cos_tilt * omega_tilt * sin_tilt
         + 2.0 * J_z_tilt * cos_tilt * omega_tilt * sin_tilt
         - b_pan
         + 2.0 * c_x_payload * c_z_payload * m_payload * omega_tilt * sin_tilt_sq
         + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_tilt * sin_tilt
-        - omega_tilt * part_of_force_pan_6
-        - omega_tilt * part_of_force_pan_7
+        - force_pan_term_3 * omega_tilt
+        - force_pan_term_4 * omega_tilt
     )
     fx[2, 2] = inverse_determinant * (
-        -mass_pan_tilt * part_of_fx_2_2 + mass_tilt * part_of_fx_2_2_2
+        -accel_pan_by_omega_pan_term * mass_pan_tilt + accel_pan_by_omega_pan_term_2 * mass_tilt
     )
-    fx[3, 2] = inverse_determinant * (mass_pan * part_of_fx_2_2 - mass_pan_tilt * part_of_fx_2_2_2)
+    fx[3, 2] = inverse_determinant * (
+        accel_pan_by_omega_pan_term * mass_pan - accel_pan_by_omega_pan_term_2 * mass_pan_tilt
+    )
     fx[1, 3] = 1.0
-    part_of_fx_2_3 = 2.0 * omega_tilt
-    part_of_fx_2_3_2 = (
-        -part_of_force_pan_2 * part_of_fx_2_3
-        - part_of_force_pan_3 * part_of_fx_2_3
-        - part_of_fx_2_2
+    twice_omega_tilt = 2.0 * omega_tilt
+    accel_pan_by_omega_tilt_term = (
+        -accel_pan_by_omega_pan_term
+        - force_pan_term * twice_omega_tilt
+        - force_pan_term_2 * twice_omega_tilt
     )
-    fx[2, 3] = inverse_determinant * (b_tilt * mass_pan_tilt + mass_tilt * part_of_fx_2_3_2)
-    fx[3, 3] = inverse_determinant * (-b_tilt * mass_pan - mass_pan_tilt * part_of_fx_2_3_2)
+    fx[2, 3] = inverse_determinant * (
+        accel_pan_by_omega_tilt_term * mass_tilt + b_tilt * mass_pan_tilt
+    )
+    fx[3, 3] = inverse_determinant * (
+        -accel_pan_by_omega_tilt_term * mass_pan_tilt - b_tilt * mass_pan
+    )
     inverse_determinant_mass_tilt = inverse_determinant * mass_tilt
     fu[2, 0] = inverse_determinant_mass_tilt
-    part_of_fu_3_0 = inverse_determinant * mass_pan_tilt
-    minus_part_of_fu_3_0 = -part_of_fu_3_0
-    fu[3, 0] = minus_part_of_fu_3_0
-    fu[2, 1] = minus_part_of_fu_3_0
+    inverse_determinant_mass_pan_tilt = inverse_determinant * mass_pan_tilt
+    minus_inverse_determinant_mass_pan_tilt = -inverse_determinant_mass_pan_tilt
+    fu[3, 0] = minus_inverse_determinant_mass_pan_tilt
+    fu[2, 1] = minus_inverse_determinant_mass_pan_tilt
     inverse_determinant_mass_pan = inverse_determinant * mass_pan
     fu[3, 1] = inverse_determinant_mass_pan
     fp[2, 0] = -accel_pan * inverse_determinant_mass_tilt
-    fp[3, 0] = accel_pan * part_of_fu_3_0
-    part_of_fp_2_1 = cos_tilt_sin_tilt_omega_pan_sq * mass_pan_tilt
-    part_of_fp_2_1_2 = omega_pan_omega_tilt * part_of_force_pan
-    part_of_fp_2_1_3 = -accel_pan * sin_tilt_sq - part_of_fp_2_1_2
-    part_of_fp_2_1_4 = inverse_determinant * (mass_tilt * part_of_fp_2_1_3 - part_of_fp_2_1)
-    fp[2, 1] = part_of_fp_2_1_4
-    part_of_fp_3_1 = cos_tilt_sin_tilt_omega_pan_sq * mass_pan
-    part_of_fp_3_1_2 = inverse_determinant * (-mass_pan_tilt * part_of_fp_2_1_3 + part_of_fp_3_1)
-    fp[3, 1] = part_of_fp_3_1_2
-    accel_tilt_part_of_fu_3_0 = accel_tilt * part_of_fu_3_0
-    fp[2, 2] = accel_tilt_part_of_fu_3_0
-    part_of_fp_3_2 = -accel_tilt * inverse_determinant_mass_pan
-    fp[3, 2] = part_of_fp_3_2
-    part_of_fp_2_3 = -accel_pan * cos_tilt_sq + part_of_fp_2_1_2
-    part_of_fp_2_3_2 = inverse_determinant * (mass_tilt * part_of_fp_2_3 + part_of_fp_2_1)
-    fp[2, 3] = part_of_fp_2_3_2
-    part_of_fp_3_3 = inverse_determinant * (-mass_pan_tilt * part_of_fp_2_3 - part_of_fp_3_1)
-    fp[3, 3] = part_of_fp_3_3
-    part_of_fp_2_4 = c_x_payload_sin_tilt_c_y_payload - c_y_payload_c_z_payload_cos_tilt
-    part_of_fp_2_4_2 = (
-        -accel_pan * part_of_fp_2_4
+    fp[3, 0] = accel_pan * inverse_determinant_mass_pan_tilt
+    accel_pan_by_J_x_tilt_term = cos_tilt_sin_tilt_omega_pan_sq * mass_pan_tilt
+    accel_pan_by_J_x_tilt_term_2 = omega_pan_omega_tilt * twice_cos_tilt_sin_tilt
+    accel_pan_by_J_x_tilt_term_3 = -accel_pan * sin_tilt_sq - accel_pan_by_J_x_tilt_term_2
+    accel_pan_by_J_x_tilt_term_4 = inverse_determinant * (
+        -accel_pan_by_J_x_tilt_term + accel_pan_by_J_x_tilt_term_3 * mass_tilt
+    )
+    fp[2, 1] = accel_pan_by_J_x_tilt_term_4
+    cos_tilt_sin_tilt_omega_pan_sq_mass_pan = cos_tilt_sin_tilt_omega_pan_sq * mass_pan
+    accel_tilt_by_J_x_tilt_term = inverse_determinant * (
+        -accel_pan_by_J_x_tilt_term_3 * mass_pan_tilt + cos_tilt_sin_tilt_omega_pan_sq_mass_pan
+    )
+    fp[3, 1] = accel_tilt_by_J_x_tilt_term
+    accel_pan_by_J_y_tilt_term = accel_tilt * inverse_determinant_mass_pan_tilt
+    fp[2, 2] = accel_pan_by_J_y_tilt_term
+    accel_tilt_by_J_y_tilt_term = -accel_tilt * inverse_determinant_mass_pan
+    fp[3, 2] = accel_tilt_by_J_y_tilt_term
+    accel_pan_by_J_z_tilt_term = -accel_pan * cos_tilt_sq + accel_pan_by_J_x_tilt_term_2
+    accel_pan_by_J_z_tilt_term_2 = inverse_determinant * (
+        accel_pan_by_J_x_tilt_term + accel_pan_by_J_z_tilt_term * mass_tilt
+    )
+    fp[2, 3] = accel_pan_by_J_z_tilt_term_2
+    accel_tilt_by_J_z_tilt_term = inverse_determinant * (
+        -accel_pan_by_J_z_tilt_term * mass_pan_tilt - cos_tilt_sin_tilt_omega_pan_sq_mass_pan
+    )
+    fp[3, 3] = accel_tilt_by_J_z_tilt_term
+    accel_pan_by_m_payload_term = (
+        c_x_payload_sin_tilt_c_y_payload - c_y_payload_c_z_payload_cos_tilt
+    )
+    accel_pan_by_m_payload_term_2 = (
+        -accel_pan * accel_pan_by_m_payload_term
         - accel_tilt * (c_x_payload_sq + c_z_payload_sq)
         + c_x_payload * c_z_payload * cos_tilt_sq * omega_pan_sq
-        + (9.81) * c_x_payload * cos_tilt
+        + 9.81 * c_x_payload * cos_tilt
         - c_x_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
-        + (9.81) * c_z_payload * sin_tilt
+        + 9.81 * c_z_payload * sin_tilt
         + c_z_payload_sq * cos_tilt * omega_pan_sq * sin_tilt
-        - part_of_force_tilt_2
+        - force_tilt_term_2
     )
     c_y_payload_omega_tilt_sq = c_y_payload * omega_tilt_sq
-    part_of_fp_2_4_3 = (
+    accel_pan_by_m_payload_term_3 = (
         -accel_pan
         * (
-            c_x_payload_sin_tilt * part_of_mass_pan_3
+            c_x_payload_sin_tilt * twice_c_z_payload_cos_tilt
             + c_x_payload_sq * cos_tilt_sq
             + c_y_payload_sq_cos_tilt_sq
             + c_y_payload_sq_sin_tilt_sq
             + c_z_payload_sq * sin_tilt_sq
         )
-        - accel_tilt * part_of_fp_2_4
+        - accel_pan_by_J_x_tilt_term_2 * c_z_payload_sq
+        - accel_pan_by_m_payload_term * accel_tilt
         + 2.0 * c_x_payload * c_z_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_x_payload_c_z_payload * part_of_fx_2_1_3
+        - c_x_payload_c_z_payload * omega_pan_omega_tilt_twice_cos_tilt_sq
         - c_x_payload_cos_tilt * c_y_payload_omega_tilt_sq
         + 2.0 * c_x_payload_sq * cos_tilt * omega_pan * omega_tilt * sin_tilt
         - c_y_payload_omega_tilt_sq * c_z_payload_sin_tilt
-        - c_z_payload_sq * part_of_fp_2_1_2
     )
     fp[2, 4] = inverse_determinant * (
-        -mass_pan_tilt * part_of_fp_2_4_2 + mass_tilt * part_of_fp_2_4_3
+        -accel_pan_by_m_payload_term_2 * mass_pan_tilt + accel_pan_by_m_payload_term_3 * mass_tilt
     )
     fp[3, 4] = inverse_determinant * (
-        mass_pan * part_of_fp_2_4_2 - mass_pan_tilt * part_of_fp_2_4_3
+        accel_pan_by_m_payload_term_2 * mass_pan - accel_pan_by_m_payload_term_3 * mass_pan_tilt
     )
-    fp[2, 5] = part_of_fp_2_1_4
-    fp[3, 5] = part_of_fp_3_1_2
-    fp[2, 6] = accel_tilt_part_of_fu_3_0
-    fp[3, 6] = part_of_fp_3_2
-    fp[2, 7] = part_of_fp_2_3_2
-    fp[3, 7] = part_of_fp_3_3
+    fp[2, 5] = accel_pan_by_J_x_tilt_term_4
+    fp[3, 5] = accel_tilt_by_J_x_tilt_term
+    fp[2, 6] = accel_pan_by_J_y_tilt_term
+    fp[3, 6] = accel_tilt_by_J_y_tilt_term
+    fp[2, 7] = accel_pan_by_J_z_tilt_term_2
+    fp[3, 7] = accel_tilt_by_J_z_tilt_term
     c_x_payload_m_payload = c_x_payload * m_payload
-    part_of_fp_2_8 = 2.0 * accel_tilt
+    twice_accel_tilt = 2.0 * accel_tilt
     c_y_payload_m_payload_sin_tilt = c_y_payload_m_payload * sin_tilt
     c_z_payload_m_payload = c_z_payload * m_payload
-    part_of_fp_2_8_2 = 2.0 * c_x_payload_sin_tilt_m_payload * cos_tilt
-    part_of_fp_2_8_3 = (
+    accel_pan_by_c_x_payload_term = 2.0 * c_x_payload_sin_tilt_m_payload * cos_tilt
+    accel_pan_by_c_x_payload_term_2 = (
         -accel_pan * c_y_payload_m_payload_sin_tilt
-        - c_x_payload_m_payload * part_of_fp_2_8
+        - accel_pan_by_c_x_payload_term * omega_pan_sq
+        - c_x_payload_m_payload * twice_accel_tilt
         + c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
         - c_z_payload_m_payload * omega_pan_sq_sin_tilt_sq
-        + (9.81) * cos_tilt * m_payload
-        - omega_pan_sq * part_of_fp_2_8_2
+        + 9.81 * cos_tilt * m_payload
     )
     c_y_payload_m_payload_cos_tilt = c_y_payload_m_payload * cos_tilt
-    part_of_fp_2_8_4 = c_x_payload_m_payload * part_of_force_pan_4
+    c_x_payload_m_payload_twice_cos_tilt_sq = c_x_payload_m_payload * twice_cos_tilt_sq
     c_z_payload_cos_tilt_m_payload = c_z_payload_cos_tilt * m_payload
-    part_of_fp_2_8_5 = c_z_payload_cos_tilt_m_payload * sin_tilt
-    part_of_fp_2_8_6 = 2.0 * part_of_fp_2_8_5
-    part_of_fp_2_8_7 = (
-        -accel_pan * (part_of_fp_2_8_4 + part_of_fp_2_8_6)
+    c_z_payload_cos_tilt_m_payload_sin_tilt = c_z_payload_cos_tilt_m_payload * sin_tilt
+    accel_pan_by_c_x_payload_term_3 = 2.0 * c_z_payload_cos_tilt_m_payload_sin_tilt
+    accel_pan_by_c_x_payload_term_4 = (
+        -accel_pan * (accel_pan_by_c_x_payload_term_3 + c_x_payload_m_payload_twice_cos_tilt_sq)
         - accel_tilt * c_y_payload_m_payload_sin_tilt
         + 4.0 * c_x_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
         - c_y_payload_m_payload_cos_tilt * omega_tilt_sq
         + 2.0 * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_z_payload_m_payload * part_of_fx_2_1_3
+        - c_z_payload_m_payload * omega_pan_omega_tilt_twice_cos_tilt_sq
     )
     fp[2, 8] = inverse_determinant * (
-        -mass_pan_tilt * part_of_fp_2_8_3 + mass_tilt * part_of_fp_2_8_7
+        -accel_pan_by_c_x_payload_term_2 * mass_pan_tilt
+        + accel_pan_by_c_x_payload_term_4 * mass_tilt
     )
     fp[3, 8] = inverse_determinant * (
-        mass_pan * part_of_fp_2_8_3 - mass_pan_tilt * part_of_fp_2_8_7
+        accel_pan_by_c_x_payload_term_2 * mass_pan - accel_pan_by_c_x_payload_term_4 * mass_pan_tilt
     )
-    part_of_fp_2_9 = c_x_payload_sin_tilt_m_payload - c_z_payload_cos_tilt_m_payload
-    accel_pan_part_of_fp_2_9 = accel_pan * part_of_fp_2_9
+    accel_pan_by_c_y_payload_term = c_x_payload_sin_tilt_m_payload - c_z_payload_cos_tilt_m_payload
+    accel_pan_accel_pan_by_c_y_payload_term = accel_pan * accel_pan_by_c_y_payload_term
     m_payload_omega_tilt_sq = m_payload * omega_tilt_sq
-    part_of_fp_2_9_2 = (
+    accel_pan_by_c_y_payload_term_2 = (
         -accel_pan
-        * (c_y_payload_m_payload * part_of_force_pan_4 + c_y_payload_m_payload * part_of_fx_2_1_4)
-        - accel_tilt * part_of_fp_2_9
+        * (c_y_payload_m_payload * twice_cos_tilt_sq + c_y_payload_m_payload * twice_sin_tilt_sq)
+        - accel_pan_by_c_y_payload_term * accel_tilt
         - c_x_payload_cos_tilt * m_payload_omega_tilt_sq
         - c_z_payload_sin_tilt * m_payload_omega_tilt_sq
     )
-    fp[2, 9] = (inverse_determinant) * (
-        accel_pan_part_of_fp_2_9 * mass_pan_tilt + mass_tilt * part_of_fp_2_9_2
+    fp[2, 9] = inverse_determinant * (
+        accel_pan_accel_pan_by_c_y_payload_term * mass_pan_tilt
+        + accel_pan_by_c_y_payload_term_2 * mass_tilt
     )
-    fp[3, 9] = (inverse_determinant) * (
-        -accel_pan_part_of_fp_2_9 * mass_pan - mass_pan_tilt * part_of_fp_2_9_2
+    fp[3, 9] = inverse_determinant * (
+        -accel_pan_accel_pan_by_c_y_payload_term * mass_pan
+        - accel_pan_by_c_y_payload_term_2 * mass_pan_tilt
     )
-    part_of_fp_2_10 = (
+    accel_pan_by_c_z_payload_term = (
         accel_pan * c_y_payload_m_payload_cos_tilt
+        + accel_pan_by_c_x_payload_term_3 * omega_pan_sq
         + c_x_payload_m_payload * cos_tilt_sq_omega_pan_sq
         - c_x_payload_m_payload * omega_pan_sq_sin_tilt_sq
-        - c_z_payload_m_payload * part_of_fp_2_8
-        + m_payload * part_of_force_tilt
-        + omega_pan_sq * part_of_fp_2_8_6
+        - c_z_payload_m_payload * twice_accel_tilt
+        + force_tilt_term * m_payload
     )
-    part_of_fp_2_10_2 = (
-        -accel_pan * (c_z_payload_m_payload * part_of_fx_2_1_4 + part_of_fp_2_8_2)
+    accel_pan_by_c_z_payload_term_2 = (
+        -accel_pan * (accel_pan_by_c_x_payload_term + c_z_payload_m_payload * twice_sin_tilt_sq)
         + accel_tilt * c_y_payload * cos_tilt * m_payload
         + 2.0 * c_x_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        - c_x_payload_m_payload_twice_cos_tilt_sq * omega_pan_omega_tilt
         - c_y_payload_m_payload_sin_tilt * omega_tilt_sq
-        - omega_pan_omega_tilt * part_of_fp_2_8_4
-        - 4.0 * omega_pan_omega_tilt * part_of_fp_2_8_5
+        - 4.0 * c_z_payload_cos_tilt_m_payload_sin_tilt * omega_pan_omega_tilt
     )
     fp[2, 10] = inverse_determinant * (
-        -mass_pan_tilt * part_of_fp_2_10 + mass_tilt * part_of_fp_2_10_2
+        -accel_pan_by_c_z_payload_term * mass_pan_tilt + accel_pan_by_c_z_payload_term_2 * mass_tilt
     )
     fp[3, 10] = inverse_determinant * (
-        mass_pan * part_of_fp_2_10 - mass_pan_tilt * part_of_fp_2_10_2
+        accel_pan_by_c_z_payload_term * mass_pan - accel_pan_by_c_z_payload_term_2 * mass_pan_tilt
     )
     fp[2, 11] = -inverse_determinant_mass_tilt * omega_pan
-    fp[3, 11] = omega_pan * part_of_fu_3_0
-    fp[2, 12] = omega_tilt * part_of_fu_3_0
+    fp[3, 11] = inverse_determinant_mass_pan_tilt * omega_pan
+    fp[2, 12] = inverse_determinant_mass_pan_tilt * omega_tilt
     fp[3, 12] = -inverse_determinant_mass_pan * omega_tilt
 
 
@@ -609,10 +628,10 @@ def energy(t, x, u, p, m, e):
     b_pan = p[11]
     b_tilt = p[12]
     omega_pan_sq = omega_pan * omega_pan
-    part_of_e_0 = (0.5) * omega_pan_sq
+    half_omega_pan_sq = 0.5 * omega_pan_sq
     omega_tilt_sq = omega_tilt * omega_tilt
-    part_of_e_0_2 = (0.5) * omega_tilt_sq
-    part_of_e_0_3 = (9.81) * m_payload
+    half_omega_tilt_sq = 0.5 * omega_tilt_sq
+    stored_term = 9.81 * m_payload
     sin_tilt = math.sin(theta_tilt)
     c_x_payload_sin_tilt = c_x_payload * sin_tilt
     cos_tilt = math.cos(theta_tilt)
@@ -620,32 +639,32 @@ def energy(t, x, u, p, m, e):
     c_x_payload_sin_tilt_m_payload = c_x_payload_sin_tilt * m_payload
     c_y_payload_omega_pan_omega_tilt = c_y_payload * omega_pan * omega_tilt
     c_x_payload_sq = c_x_payload * c_x_payload
-    m_payload_part_of_e_0_2 = m_payload * part_of_e_0_2
+    half_omega_tilt_sq_m_payload = half_omega_tilt_sq * m_payload
     c_z_payload_sq = c_z_payload * c_z_payload
-    part_of_e_0_4 = part_of_e_0 * (sin_tilt * sin_tilt)
-    part_of_e_0_5 = (cos_tilt * cos_tilt) * part_of_e_0
-    m_payload_part_of_e_0_5 = m_payload * part_of_e_0_5
+    stored_term_2 = half_omega_pan_sq * (sin_tilt * sin_tilt)
+    stored_term_3 = (cos_tilt * cos_tilt) * half_omega_pan_sq
+    m_payload_stored_term_3 = m_payload * stored_term_3
     c_y_payload_sq = c_y_payload * c_y_payload
-    m_payload_part_of_e_0_4 = m_payload * part_of_e_0_4
+    m_payload_stored_term_2 = m_payload * stored_term_2
     e[0] = (
-        J_pan * part_of_e_0
-        + J_x_payload * part_of_e_0_4
-        + J_x_tilt * part_of_e_0_4
-        + J_y_payload * part_of_e_0_2
-        + J_y_tilt * part_of_e_0_2
-        + J_z_payload * part_of_e_0_5
-        + J_z_tilt * part_of_e_0_5
-        - c_x_payload_sin_tilt * part_of_e_0_3
+        J_pan * half_omega_pan_sq
+        + J_x_payload * stored_term_2
+        + J_x_tilt * stored_term_2
+        + J_y_payload * half_omega_tilt_sq
+        + J_y_tilt * half_omega_tilt_sq
+        + J_z_payload * stored_term_3
+        + J_z_tilt * stored_term_3
+        - c_x_payload_sin_tilt * stored_term
         + c_x_payload_sin_tilt_m_payload * c_y_payload_omega_pan_omega_tilt
         + c_x_payload_sin_tilt_m_payload * c_z_payload_cos_tilt * omega_pan_sq
-        + c_x_payload_sq * m_payload_part_of_e_0_2
-        + c_x_payload_sq * m_payload_part_of_e_0_5
+        + c_x_payload_sq * half_omega_tilt_sq_m_payload
+        + c_x_payload_sq * m_payload_stored_term_3
         - c_y_payload_omega_pan_omega_tilt * c_z_payload_cos_tilt * m_payload
-        + c_y_payload_sq * m_payload_part_of_e_0_4
-        + c_y_payload_sq * m_payload_part_of_e_0_5
-        + c_z_payload_cos_tilt * part_of_e_0_3
-        + c_z_payload_sq * m_payload_part_of_e_0_2
-        + c_z_payload_sq * m_payload_part_of_e_0_4
+        + c_y_payload_sq * m_payload_stored_term_2
+        + c_y_payload_sq * m_payload_stored_term_3
+        + c_z_payload_cos_tilt * stored_term
+        + c_z_payload_sq * half_omega_tilt_sq_m_payload
+        + c_z_payload_sq * m_payload_stored_term_2
     )
     e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
     e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
@@ -663,4 +682,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 774b086f0d7693fbe10b79281fce17c1c61b56377afce0583da20338cf7a3ee9
+# END sha256 f18df0dbb418d389f4c52bb829ddc498c117f5423c1a2ccef17ce21a60922af8

@@ -9,9 +9,10 @@ import sympy as sp
 
 from ptp_symbolic.codegen import dynamics
 from ptp_symbolic.codegen.metadata import metadata_text
-from ptp_symbolic.codegen.printer import print_expression
+from ptp_symbolic.codegen.printer import print_expression, print_factor
 from ptp_symbolic.codegen.sharing import Line, share
 from ptp_symbolic.codegen.templates import STATE_DERIVATIVE_HYBRID, STATE_DERIVATIVE_SMOOTH
+from ptp_symbolic.codegen.words import words_of
 from ptp_symbolic.derivation.equations import Equations
 from ptp_symbolic.simplify.base_parameters import base_form
 
@@ -109,12 +110,15 @@ def _wrapped(target: str, expression: sp.Expr) -> list[str]:
         first, *rest = terms
         signed = [f"- {t[1:].strip()}" if t.startswith("-") else f"+ {t}" for t in rest]
         return [f"{target} = (", f"    {first}", *(f"    {t}" for t in signed), ")"]
-    factors = [f"({print_expression(f)})" for f in expression.as_ordered_factors()]
+    factors = [print_factor(f) for f in expression.as_ordered_factors()]
     return [f"{target} = (", f"    {factors[0]}", *(f"    * {f}" for f in factors[1:]), ")"]
 
 
-def _shared(definitions: Sequence[Line], outputs: Sequence[Line]) -> list[Line]:
-    return share(definitions, [(t, sp.sympify(e, strict=True)) for t, e in outputs if e != 0])
+def _shared(
+    equations: Equations, definitions: Sequence[Line], outputs: Sequence[Line]
+) -> list[Line]:
+    present = [(t, sp.sympify(e, strict=True)) for t, e in outputs if e != 0]
+    return share(definitions, present, words_of(equations))
 
 
 def _mode_derivative(equations: Equations, vectors: Vectors) -> str:
@@ -132,7 +136,7 @@ def _state_lines(equations: Equations) -> list[Line]:
     rates = dynamics.state_rates(equations, regrouped)
     outputs = [(f"dx[{i}]", sp.sympify(rate, strict=True)) for i, rate in enumerate(rates)]
     named = [(str(s), e) for s, e in (*form.base_parameters, *form.shared_terms) if s != e]
-    return share((*named, *regrouped.definitions), outputs)
+    return share((*named, *regrouped.definitions), outputs, words_of(equations))
 
 
 def _columns(
@@ -156,7 +160,7 @@ def _jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> 
             for i, state in enumerate(equations.state_symbols):
                 outputs.append((f"f{letter}[{i}, {j}]", rows[state]))
     doc = "Write the non-zero derivatives of mode_derivative by state, input and parameter."
-    lines = _shared(solve.definitions, outputs)
+    lines = _shared(equations, solve.definitions, outputs)
     return _kernel("jacobian", f"{MODE_ARGUMENTS}, fx, fu, fp", doc, vectors, lines)
 
 
@@ -166,7 +170,7 @@ def _guards(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> st
         for i, e in enumerate(dynamics.guard_expressions(equations, solve))
     ]
     doc = "Write holding and breakaway torques, gap separations and contact torques into g."
-    lines = share(solve.definitions, outputs) if outputs else []
+    lines = share(solve.definitions, outputs, words_of(equations)) if outputs else []
     return _kernel("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
 
 
@@ -182,12 +186,13 @@ def _guard_jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vector
                 value = dynamics.derivative_of(equations, solve, expression, variable, by)
                 outputs.append((f"g{letter}[{i}, {j}]", value))
     doc = "Write the non-zero derivatives of guards by state and parameter."
-    lines = _shared(solve.definitions, outputs)
+    lines = _shared(equations, solve.definitions, outputs)
     return _kernel("guard_jacobian", f"{MODE_ARGUMENTS}, gx, gp", doc, vectors, lines)
 
 
 def _outputs(equations: Equations, vectors: Vectors) -> str:
-    lines = share((), [(f"y[{i}]", e) for i, (_, _, e) in enumerate(equations.outputs)])
+    outputs = [(f"y[{i}]", e) for i, (_, _, e) in enumerate(equations.outputs)]
+    lines = share((), outputs, words_of(equations))
     return _kernel("outputs", "t, x, u, p, y", "Write the measured signals into y.", vectors, lines)
 
 
@@ -200,7 +205,7 @@ def _output_jacobian(equations: Equations, vectors: Vectors) -> str:
         for i, (_, _, expression) in enumerate(equations.outputs)
     ]
     doc = "Write the non-zero derivatives of outputs by state and parameter."
-    lines = _shared((), outputs)
+    lines = _shared(equations, (), outputs)
     return _kernel("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
 
 
@@ -208,4 +213,5 @@ def _energy(equations: Equations, vectors: Vectors) -> str:
     ledger = equations.ledger
     outputs = [("e[0]", ledger.stored), ("e[1]", ledger.power_in), ("e[2]", ledger.dissipated)]
     doc = "Write stored energy in J, power in and dissipated power in W into e."
-    return _kernel("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, share((), outputs))
+    lines = share((), outputs, words_of(equations))
+    return _kernel("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, lines)

@@ -39,15 +39,26 @@ class KernelPrinter(PythonCodePrinter):
 
     def _print_Mul(self, expr: sp.Mul) -> str:
         """Products with one division; exponentials stay above it, where they cannot overflow."""
-        below = [f for f in expr.args if f.is_Pow and f.exp.is_Integer and f.exp.is_negative]
-        if not below:
-            return super()._print_Mul(expr)
-        above = sp.Mul(*[f for f in expr.args if f not in below])
-        level = sp.printing.precedence.PRECEDENCE
-        top = self.parenthesize(above, level["Mul"], strict=True)
-        bottom = sp.Mul(*[1 / f for f in below])
-        under = self.parenthesize(bottom, level["Atom"], strict=True)
-        return f"{top} / {under}"
+        coefficient, product = expr.as_coeff_Mul()
+        factors = product.as_ordered_factors()
+        below = [f for f in factors if f.is_Pow and f.exp.is_Integer and f.exp.is_negative]
+        above = [print_factor(f) for f in factors if f not in below]
+        if abs(coefficient) != 1 or not above:
+            above.insert(0, self._print(abs(coefficient)))
+        text = " * ".join(above)
+        if below:
+            under = sp.Mul(*[1 / f for f in below])
+            level = sp.printing.precedence.PRECEDENCE["Atom"]
+            text += f" / {self.parenthesize(under, level, strict=True)}"
+        return f"-{text}" if coefficient.is_negative else text
+
+
+def print_factor(expression: sp.Expr) -> str:
+    """Return Python source of `expression`, in parentheses where a product needs them."""
+    printer, level = KernelPrinter(), sp.printing.precedence.PRECEDENCE["Mul"]
+    if expression.is_Rational and expression.is_nonnegative:
+        return printer.doprint(expression)
+    return printer.parenthesize(expression, level, strict=True)
 
 
 def print_expression(expression: sp.Expr) -> str:

@@ -1,19 +1,23 @@
 """Share common subexpressions among definitions and outputs, and name them readably."""
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import sympy as sp
 
 Line = tuple[str, sp.Expr]
-MAX_NAME = 32
+MAX_NAME = 40
+MULTIPLES = {2: "twice", 3: "thrice", sp.Rational(1, 2): "half"}
 
 
-def share(definitions: Sequence[Line], outputs: Sequence[Line]) -> list[Line]:
+def share(
+    definitions: Sequence[Line], outputs: Sequence[Line], words: Mapping[str, str]
+) -> list[Line]:
     """Return the assignments that compute `outputs`, each name assigned before it is used.
 
     `definitions` name intermediate results (a determinant, an acceleration) that outputs may use;
-    those that nothing uses are dropped. Targets of outputs keep their text, e.g. ``dx[0]``.
+    those that nothing uses are dropped. Targets of outputs keep their text, e.g. ``dx[0]``; `words`
+    say what they are, for the names of shared terms.
     """
     expressions = [expression for _, expression in (*definitions, *outputs)]
     replacements, reduced = sp.cse(expressions, symbols=_numbered(), order="canonical")
@@ -22,7 +26,7 @@ def share(definitions: Sequence[Line], outputs: Sequence[Line]) -> list[Line]:
     defined = [(name, e) for (name, _), e in zip(definitions, reduced[:count], strict=True)]
     final = [(name, e) for (name, _), e in zip(outputs, reduced[count:], strict=True)]
     ordered = _ordered([*named, *defined], final)
-    return _renamed(ordered, {name for name, _ in definitions})
+    return _renamed(ordered, {name for name, _ in definitions}, words)
 
 
 def _numbered() -> Iterator[sp.Symbol]:
@@ -58,9 +62,9 @@ def _natural(symbol: sp.Symbol) -> list[object]:
     return [(0, int(part), "") if part.isdigit() else (1, 0, part) for part in parts]
 
 
-def _renamed(lines: Iterable[Line], kept: set[str]) -> list[Line]:
+def _renamed(lines: Iterable[Line], kept: set[str], words: Mapping[str, str]) -> list[Line]:
     lines = list(lines)
-    final_use = _first_target(lines)
+    final_use = _first_target(lines, words)
     names: dict[sp.Symbol, sp.Symbol] = {}
     taken = {str(s) for _, e in lines for s in e.free_symbols} | kept
     result: list[Line] = []
@@ -69,19 +73,18 @@ def _renamed(lines: Iterable[Line], kept: set[str]) -> list[Line]:
         if not name.startswith("shared:"):
             result.append((name, expression))
             continue
-        readable = _unused(_describe(expression) or f"part_of_{final_use[name]}", taken)
+        readable = _unused(_describe(expression) or f"{final_use[name]}_term", taken)
         taken.add(readable)
         names[sp.Symbol(name, real=True)] = sp.Symbol(readable, real=True)
         result.append((readable, expression))
     return result
 
 
-def _first_target(lines: Sequence[Line]) -> dict[str, str]:
+def _first_target(lines: Sequence[Line], words: Mapping[str, str]) -> dict[str, str]:
     """For every shared term, a word for what it is first used in."""
     first: dict[str, str] = {}
     for name, expression in reversed(lines):
-        word = first.get(name, name) if name.startswith("shared:") else name
-        word = re.sub(r"\W+", "_", word).strip("_")
+        word = first.get(name, name) if name.startswith("shared:") else words.get(name, name)
         for symbol in expression.free_symbols:
             first[str(symbol)] = word
     return first
@@ -104,9 +107,26 @@ def _describe(expression: sp.Expr) -> str | None:
     if expression.is_Pow and expression.base.is_Symbol:
         suffix = {2: "sq", 3: "cubed", -1: "inverse"}.get(expression.exp)
         return None if suffix is None else f"{expression.base}_{suffix}"
-    if expression.is_Mul and all(a.is_Symbol or a == -1 for a in expression.args):
-        factors = [str(a) for a in expression.args if a.is_Symbol]
-        sign = "minus_" if len(factors) < len(expression.args) else ""
-        name = sign + "_".join(sorted(factors))
-        return name if len(name) <= MAX_NAME else None
+    if expression.is_Mul:
+        coefficient, product = expression.as_coeff_Mul()
+        factors = sp.Mul.make_args(product)
+        if abs(coefficient) == 1 or abs(coefficient) in MULTIPLES:
+            prefix = ["minus"] if coefficient.is_negative else []
+            prefix += [MULTIPLES[abs(coefficient)]] if abs(coefficient) != 1 else []
+            return _joined(prefix, "", factors)
+    if (
+        expression.is_Add
+        and len(expression.args) == 2
+        and all(a.is_Symbol for a in expression.args)
+    ):
+        return _joined([], "plus", expression.args)
     return None
+
+
+def _joined(prefix: list[str], between: str, symbols: Sequence[sp.Basic]) -> str | None:
+    """The names of `symbols` as one name; None where it gets long or something is no symbol."""
+    if not all(symbol.is_Symbol for symbol in symbols):
+        return None
+    parts = sorted(map(str, symbols))
+    name = "_".join([*prefix, f"_{between}_".join(parts) if between else "_".join(parts)])
+    return name if len(name) <= MAX_NAME else None

@@ -156,16 +156,12 @@ def _extra_states(parts: Parts) -> tuple[State, ...]:
 
 
 def _outputs(platform: Platform, parts: Parts) -> tuple[tuple[str, str, sp.Expr], ...]:
-    """Measured signals: joint angles, then extra states, each with what sensing effects add."""
+    """Measured signals: joint angles, then extra states, as their sensors show them."""
     signals = {str(kinematics.angle(axis)): "rad" for axis in platform.axes}
     for contribution in parts.contributions:
         signals.update({state.name: state.unit for state in contribution.states})
-    added: dict[str, sp.Expr] = {}
-    for contribution in parts.contributions:
-        for signal, expression in contribution.measured.items():
-            added[signal] = added.get(signal, sp.Integer(0)) + parts.resolve(expression)
     return tuple(
-        (name, unit, sp.Symbol(name, real=True) + added.get(name, sp.Integer(0)))
+        (name, unit, parts.resolve(quantity_symbol(f"reading_{name}")))
         for name, unit in signals.items()
     )
 

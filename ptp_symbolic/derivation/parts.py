@@ -61,8 +61,12 @@ def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Part
     for axis in axes:
         values[f"transmitted_torque_{axis}"] = _transmitted(axis, contributions)
         values[f"transmission_error_{axis}"] = sp.Integer(0)
+        values[f"reading_{kinematics.angle(axis)}"] = kinematics.angle(axis)
     for contribution in contributions:
         values.update(contribution.quantities)
+        values.update(
+            {f"reading_{s.name}": sp.Symbol(s.name, real=True) for s in contribution.states}
+        )
     changes = [item for c in contributions for item in c.changes.items()]
     for name, change in changes:
         values[name] = values[name] * change.factor

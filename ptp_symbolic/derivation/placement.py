@@ -20,8 +20,13 @@ def find_effect(identifier: str) -> Effect:
 
 
 def place_effects(platform: Platform) -> list[tuple[Effect, Place]]:
-    """Return every declared effect with its place, after checking names, units and bounds."""
+    """Return every declared effect with its place, after checking names, units and bounds.
+
+    The order is that of the catalogue, however the platform lists them: the same machine has the
+    same equations.
+    """
     found = [(find_effect(d.effect), d) for d in platform.effects]
+    found.sort(key=lambda pair: EFFECTS.index(pair[0]))
     shafts = frozenset(d.axis for e, d in found if e.splits_axis and d.axis is not None)
     placed = []
     for effect, declaration in found:
@@ -32,6 +37,7 @@ def place_effects(platform: Platform) -> list[tuple[Effect, Place]]:
         axis = declaration.axis if effect.on_axis else None
         placed.append((effect, Place(platform.axes, axis, declaration.site, shafts)))
     _check_needs(placed)
+    _check_ownership(placed)
     _check_parameters(platform, placed)
     return placed
 
@@ -75,6 +81,23 @@ def _check_needs(placed: list[tuple[Effect, Place]]) -> None:
                     f"Effect '{effect.id}' acts on '{name}', which no declared effect defines;"
                     " declare the effect that brings it."
                 )
+
+
+def _check_ownership(placed: list[tuple[Effect, Place]]) -> None:
+    """Refuse what would count twice: one effect declared again, or two that share parameters."""
+    owners: dict[str, Effect] = {}
+    for effect, place in placed:
+        for parameter in effect.parameters(place):
+            other = owners.setdefault(parameter.name, effect)
+            if other is not effect:
+                raise InputError(
+                    f"Effects '{other.id}' and '{effect.id}' both describe {parameter.name};"
+                    " declare one of them."
+                )
+        again = [p for e, p in placed if e is effect and p.axis == place.axis]
+        if len(again) > 1:
+            where = "" if place.axis is None else f" on axis '{place.axis}'"
+            raise InputError(f"Effect '{effect.id}'{where} is declared twice; remove one.")
 
 
 def _check_parameters(platform: Platform, placed: list[tuple[Effect, Place]]) -> None:

@@ -15,7 +15,7 @@ PARAMETERS = (
     ),
     Parameter("f_base", "Hz", 1.0, 1e-3, 1e3, "frequency of the base's motion", locked_to="time"),
     Parameter(
-        "phi_base", "rad", 0.0, -7.0, 7.0, "phase of the base's motion at time zero",
+        "phi_base", "rad", 0.0, -7.0, 7.0, "phase of the base's acceleration (a sine) at time zero",
         starts=(0.0, 2.0, -2.0), period=2 * math.pi,
     ),
     Parameter(

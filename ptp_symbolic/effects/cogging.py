@@ -7,11 +7,12 @@ from ptp_symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "T_sin_{axis}", "N m", 0.0, -1e4, 1e4, "cogging torque at the gear output, sine part",
+        "T_sin_{axis}", "N m", 0.0, -1e4, 1e4,
+        "cogging torque that goes with the sine of the gear output's angle",
         vanishes=0.0, starts=(0.2,),
     ),
     Parameter(
-        "T_cos_{axis}", "N m", 0.0, -1e4, 1e4, "cogging torque at the gear output, cosine part",
+        "T_cos_{axis}", "N m", 0.0, -1e4, 1e4, "cogging torque that goes with the cosine",
         vanishes=0.0, starts=(0.2,),
     ),
     Parameter(

@@ -101,8 +101,8 @@ class Contribution:
     """Everything that an effect may add to the machine.
 
     `potential` is an energy of the coordinates, whose gradient acts as torques; `stored` an energy
-    of the effect's own states, which its `torques` charge and discharge. `measured` is added to
-    the reading of a signal, `delays` hold back the inputs of an axis.
+    of the effect's own states, which its `torques` charge and discharge. `delays` hold back the
+    inputs of an axis. What a sensor shows is the quantity ``reading_<state>``.
     """
 
     quantities: Mapping[str, sp.Expr] = field(default_factory=dict)
@@ -115,7 +115,6 @@ class Contribution:
     shafts: tuple[Shaft, ...] = ()
     drives: tuple[Drive, ...] = ()
     states: tuple[State, ...] = ()
-    measured: Mapping[str, sp.Expr] = field(default_factory=dict)
     delays: Mapping[str, sp.Symbol] = field(default_factory=dict)
 
 

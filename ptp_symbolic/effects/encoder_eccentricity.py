@@ -2,16 +2,18 @@
 
 import sympy as sp
 
-from ptp_symbolic.effects.effect import Contribution, Effect, Place
+from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place
 from ptp_symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "e_sin_{axis}", "rad", 0.0, -0.2, 0.2, "reading error of the encoder, sine part",
+        "e_sin_{axis}", "rad", 0.0, -0.2, 0.2,
+        "reading error of the encoder: part that goes with the sine of the joint angle",
         vanishes=0.0, starts=(0.002,),
     ),
     Parameter(
-        "e_cos_{axis}", "rad", 0.0, -0.2, 0.2, "reading error of the encoder, cosine part",
+        "e_cos_{axis}", "rad", 0.0, -0.2, 0.2,
+        "reading error of the encoder: part that goes with the cosine",
         vanishes=0.0, starts=(0.002,),
     ),
 )  # fmt: skip
@@ -24,7 +26,7 @@ def _parameters(place: Place) -> tuple[Parameter, ...]:
 def _contribute(place: Place) -> Contribution:
     sine, cosine = (place.parameter(p.name) for p in PARAMETERS)
     error = sine * sp.sin(place.angle) + cosine * sp.cos(place.angle)
-    return Contribution(measured={str(place.angle): error})
+    return Contribution(changes={f"reading_{place.angle}": Change(addition=error)})
 
 
 ENCODER_ECCENTRICITY = Effect(

@@ -3,7 +3,7 @@
 import sympy as sp
 from sympy.printing.printer import Printer
 
-from ptp_symbolic.effects.effect import Contribution, Effect, Place
+from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place
 from ptp_symbolic.parameters import Parameter
 
 PARAMETERS = (
@@ -36,8 +36,9 @@ def _parameters(place: Place) -> tuple[Parameter, ...]:
 
 
 def _contribute(place: Place) -> Contribution:
-    counted = NearestCount(place.angle, place.parameter("q_count_{axis}"))
-    return Contribution(measured={str(place.angle): counted - place.angle})
+    count = place.parameter("q_count_{axis}")
+    counted = Change(through=lambda shown: NearestCount(shown, count))
+    return Contribution(changes={f"reading_{place.angle}": counted})
 
 
 ENCODER_QUANTIZATION = Effect(

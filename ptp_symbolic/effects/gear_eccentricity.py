@@ -7,11 +7,12 @@ from ptp_symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "g_sin_{axis}", "rad", 0.0, -0.2, 0.2, "transmission error of the gear, sine part",
+        "g_sin_{axis}", "rad", 0.0, -0.2, 0.2,
+        "transmission error: part that goes with the sine of the gear output's angle",
         vanishes=0.0, starts=(0.002,),
     ),
     Parameter(
-        "g_cos_{axis}", "rad", 0.0, -0.2, 0.2, "transmission error of the gear, cosine part",
+        "g_cos_{axis}", "rad", 0.0, -0.2, 0.2, "transmission error: part that goes with the cosine",
         vanishes=0.0, starts=(0.002,),
     ),
 )  # fmt: skip

@@ -7,7 +7,8 @@ from ptp_symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "F_sin_{axis}", "N m", 0.0, -1e4, 1e4, "part of dry friction that goes with the sine",
+        "F_sin_{axis}", "N m", 0.0, -1e4, 1e4,
+        "part of dry friction that goes with the sine of the joint angle",
         vanishes=0.0, starts=(0.0, 0.1),
     ),
     Parameter(
@@ -23,7 +24,10 @@ def _parameters(place: Place) -> tuple[Parameter, ...]:
 
 def _contribute(place: Place) -> Contribution:
     sine, cosine = (place.parameter(p.name) for p in PARAMETERS)
-    added = Change(addition=sine * sp.sin(place.angle) + cosine * sp.cos(place.angle))
+    added = Change(
+        addition=sine * sp.sin(place.angle) + cosine * sp.cos(place.angle),
+        through=lambda torque: sp.Max(torque, 0),
+    )
     return Contribution(
         changes={f"{word}_torque_{place.axis}": added for word in ("coulomb", "static")}
     )

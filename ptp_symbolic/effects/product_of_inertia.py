@@ -5,7 +5,8 @@ from ptp_symbolic.parameters import Parameter
 
 PARAMETERS = tuple(
     Parameter(
-        f"J_{pair}_tilt", "kg m^2", 0.0, -1e4, 1e4, f"product of inertia {pair} of the tilt body",
+        f"J_{pair}_tilt", "kg m^2", 0.0, -1e4, 1e4,
+        f"element {pair} of the tilt body's inertia tensor (minus the integral of {pair} dm)",
         vanishes=0.0, starts=(0.0,),
     )
     for pair in ("xy", "xz", "yz")
@@ -28,7 +29,7 @@ def _contribute(place: Place) -> Contribution:
 PRODUCT_OF_INERTIA = Effect(
     id="product_of_inertia",
     title="products of inertia of the tilt body",
-    reference="thesis Table 2.2 with erratum 27",
+    reference="thesis Table 2.2 with erratum 27: M_pt = -J_xy sin + J_yz cos",
     parameters=_parameters,
     contribute=_contribute,
     on_axis=False,

@@ -28,7 +28,8 @@ def _contribute(place: Place) -> Contribution:
         changes={f"breakaway_torque_{place.axis}": Change(1 + gain * sp.log(1 + rest / time))},
         states=(
             State(
-                str(rest), "s", f"time for which the {place.axis} friction has been at rest",
+                str(rest), "s",
+                f"rest of the {place.axis} friction; while sliding, its last one",
                 1 - place.slide**2, zero_at_rest_of=place.axis,
             ),
         ),

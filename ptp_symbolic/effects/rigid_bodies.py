@@ -36,7 +36,7 @@ def _contribute(place: Place) -> Contribution:
             products = {f"tilt_product_{pair}": sp.Integer(0) for pair in ("xy", "xz", "yz")}
             for name in products:
                 i, j = ("xyz".index(letter) for letter in name[-2:])
-                inertia[i, j] = inertia[j, i] = -place.quantity(name)
+                inertia[i, j] = inertia[j, i] = place.quantity(name)
         inertia = sp.ImmutableMatrix(inertia)
         bodies.append(Body("tilt_body", "tilt", sp.Integer(0), at_axes, inertia))
     return Contribution(quantities=products, bodies=tuple(bodies))
