@@ -15,7 +15,7 @@ from ptp_symbolic.data import Log, read_logs
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.diagnose.candidates import find_candidates, vanished
 from ptp_symbolic.diagnose.rounds import Diagnosis, diagnose
-from ptp_symbolic.diagnose.search import Task, Trial, fit_declared
+from ptp_symbolic.diagnose.search import fit_declared
 from ptp_symbolic.diagnose.summary import (
     curves_of,
     error_table,
@@ -24,6 +24,7 @@ from ptp_symbolic.diagnose.summary import (
     ranking,
     residual_tests,
 )
+from ptp_symbolic.diagnose.trial import Task, Trial
 from ptp_symbolic.diagnose.verdict import EXPLAINED, PARTLY, UP_TO_GROUP
 from ptp_symbolic.identify.intervals import Estimate, estimates
 from ptp_symbolic.identify.run import prepare_runs

@@ -10,14 +10,12 @@ from ptp_symbolic.diagnose.scores import Score
 from ptp_symbolic.diagnose.search import (
     BEAM,
     VISIBLE_SHARE,
-    Task,
-    Trial,
     fit_declared,
-    held_out_cost,
     scores,
     try_candidates,
     without_idle,
 )
+from ptp_symbolic.diagnose.trial import Task, Trial, held_out_cost
 from ptp_symbolic.diagnose.verdict import Verdict, decide, is_settled
 
 

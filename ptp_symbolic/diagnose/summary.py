@@ -9,7 +9,7 @@ from scipy import stats
 from ptp_symbolic.diagnose.candidates import DECLARED_VALUE
 from ptp_symbolic.diagnose.floor import floor_counts, residual_counts
 from ptp_symbolic.diagnose.rounds import Diagnosis
-from ptp_symbolic.diagnose.search import Trial, held_out_cost
+from ptp_symbolic.diagnose.trial import Trial, held_out_cost
 from ptp_symbolic.diagnose.verdict import (
     EXPLAINED,
     NOTHING_MISSING,
@@ -133,7 +133,7 @@ def ranking(found: Diagnosis) -> list[dict[str, Any]]:
                 "axis": trial.candidates[0].axis,
                 "statistic": score.statistic,
                 "p_value": score.p_value,
-                "train_error_after": _finite(trial.train.rms_counts()),
+                "train_error_after": _train_error(found, trial),
                 "validate_error_after": float(np.sqrt(held_out_cost(trial))) if judged else None,
                 "parameters": {
                     n: trial.train.values[n] for c in trial.candidates for n in c.parameters
@@ -153,6 +153,12 @@ def ranking(found: Diagnosis) -> list[dict[str, Any]]:
             }
         )  # fmt: skip
     return rows
+
+
+def _train_error(found: Diagnosis, trial: Trial) -> float | None:
+    """Error on all train runs; None where a trial was dropped before it saw them all."""
+    whole = len(trial.train.runs) == len(found.base.train.runs)
+    return _finite(trial.train.rms_counts()) if whole else None
 
 
 def _why(found: Diagnosis, trial: Trial) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ptp_symbolic.diagnose.floor import floor_counts
 from ptp_symbolic.diagnose.scores import share_explained, share_improved
-from ptp_symbolic.diagnose.search import Task, Trial, held_out_cost
+from ptp_symbolic.diagnose.trial import Task, Trial, held_out_cost
 from ptp_symbolic.identify.intervals import estimates
 from ptp_symbolic.identify.windows import propagated_noise
 

@@ -15,14 +15,16 @@ from ptp_symbolic.identify.coordinates import (
     to_values,
 )
 from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
-from ptp_symbolic.identify.least_squares import Optimum, Problem, minimise
+from ptp_symbolic.identify.least_squares import Optimum, Problem, cost_of, minimise
 from ptp_symbolic.identify.run import Run
+from ptp_symbolic.identify.secants import secants
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 
 
 DEFAULT_TOLERANCE = Tolerance()
+GAP_PLACES = (-0.9, -0.45, 0.45, 0.9)
 
 
 @dataclass(frozen=True)
@@ -30,13 +32,14 @@ class Effort:
     """How hard to search: iterations, relative gain at which to stop, simulation tolerance.
 
     `prior_sigma` holds parameters with a table value (see `FreeParameter.table`) near it, as a
-    natural logarithm.
+    natural logarithm. `secants` mends derivatives that mislead (see `identify.secants`).
     """
 
     iterations: int = 30
     gain: float = 1e-5
     tolerance: Tolerance = DEFAULT_TOLERANCE
     prior_sigma: float | None = None
+    secants: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +91,7 @@ def fit_parameters(
     start_z = list(z) if z is not None else [np.zeros(len(run.unknowns)) for run in runs]
     if not free:
         return _fit_starts(model, runs, fixed, start_z, effort, executor)
-    problem = _problem(model, runs, free, fixed, effort.tolerance, executor, effort.prior_sigma)
+    problem = _problem(model, runs, free, fixed, effort, executor)
     phi = to_search(free, {f.name: f.start for f in free})
     best = minimise(problem, phi, start_z, effort.iterations, effort.gain)
     values = {**fixed, **all_values(free, best.phi)}
@@ -114,9 +117,8 @@ def _problem(
     runs: Sequence[Run],
     free: Sequence[FreeParameter],
     fixed: Mapping[str, float],
-    tolerance: Tolerance,
+    effort: Effort,
     executor: Executor | None,
-    prior_sigma: float | None = None,
 ) -> Problem:
     names = list(model.parameter_names)
     columns = np.array(
@@ -125,15 +127,23 @@ def _problem(
     owner = np.array([i for i, f in enumerate(free) for _ in (f.name, *f.tied)], dtype=np.int64)
     base = model.parameter_vector(dict(fixed))
 
-    def evaluate_all(phi: FloatArray, z: Sequence[FloatArray], tangents: bool) -> list[Evaluation]:
+    def parameters(phi: FloatArray) -> FloatArray:
         p = base.copy()
         for name, value in all_values(free, phi).items():
             p[names.index(name)] = value
+        return p
+
+    def residual(index: int, phi: FloatArray, z: FloatArray) -> FloatArray | None:
+        e = evaluate(model, runs[index], parameters(phi), z, columns, False, effort.tolerance)
+        return None if e.failed else e.residual
+
+    def evaluate_all(phi: FloatArray, z: Sequence[FloatArray], tangents: bool) -> list[Evaluation]:
+        p = parameters(phi)
         by_phi = np.zeros((len(columns), len(free)))
         by_phi[np.arange(len(columns)), owner] = slopes(free, phi)[owner] if len(free) else 0.0
 
         def one(pair: tuple[Run, FloatArray]) -> Evaluation:
-            e = evaluate(model, pair[0], p, pair[1], columns, tangents, tolerance)
+            e = evaluate(model, pair[0], p, pair[1], columns, tangents, effort.tolerance)
             if not tangents:
                 return e
             return Evaluation(
@@ -144,7 +154,7 @@ def _problem(
         return list(executor.map(one, pairs)) if executor else [one(pair) for pair in pairs]
 
     lower, upper = limits(free)
-    centre, precision = _prior(free, prior_sigma)
+    centre, precision = _prior(free, effort.prior_sigma)
     return Problem(
         evaluate_all,
         lower,
@@ -154,6 +164,7 @@ def _problem(
         [np.array([u.sigma for u in run.unknowns]) for run in runs],
         centre,
         precision,
+        secants(residual, lower, upper, executor) if effort.secants else None,
     )
 
 
@@ -177,23 +188,21 @@ def _fit_starts(
 ) -> Fit:
     """Runs that share no free parameter are independent: fit the start of each by itself.
 
-    The place in a gap is hard to find from its middle, so both faces are tried too.
+    The place in a gap is hard to find from afar, so the search begins at the best of a few places.
     """
     nothing = np.zeros(0)
 
     def one(pair: tuple[Run, FloatArray]) -> Optimum:
         run, start = pair
-        problem = _problem(model, [run], (), fixed, effort.tolerance, None)
-        found = minimise(problem, nothing, [start], effort.iterations, effort.gain)
+        problem = _problem(model, [run], (), fixed, effort, None)
         for index, unknown in enumerate(run.unknowns):
-            if unknown.contact is None:
-                continue
-            for face in (-0.9, 0.9):
-                begin = start.copy()
-                begin[index] = face
-                other = minimise(problem, nothing, [begin], effort.iterations, effort.gain)
-                found = other if other.cost < found.cost else found
-        return found
+            if unknown.contact is not None:
+                places = [_moved(start, index, value) for value in (start[index], *GAP_PLACES)]
+                costs = [
+                    cost_of(problem, problem.evaluate(nothing, [p], False), [p]) for p in places
+                ]
+                start = places[int(np.argmin(costs))]
+        return minimise(problem, nothing, [start], effort.iterations, effort.gain)
 
     pairs = list(zip(runs, z, strict=True))
     best = list(executor.map(one, pairs)) if executor else [one(pair) for pair in pairs]
@@ -202,3 +211,10 @@ def _fit_starts(
         float(sum(b.cost for b in best)), tuple(b.evaluations[0] for b in best),
         next((b.failed for b in best if b.failed), None),
     )  # fmt: skip
+
+
+def _moved(start: FloatArray, index: int, value: float) -> FloatArray:
+    """A copy of `start` with one entry changed."""
+    moved = start.copy()
+    moved[index] = value
+    return moved

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.identify.evaluate import Evaluation
+from ptp_symbolic.identify.secants import Refine
 
 FloatArray = NDArray[np.float64]
 Evaluate = Callable[[FloatArray, Sequence[FloatArray], bool], list[Evaluation]]
@@ -25,7 +26,10 @@ MANY_RUNS, BEND, NEARBY = 20, 2.5, 8.0
 
 @dataclass(frozen=True)
 class Problem:
-    """What to minimise: `evaluate(phi, z, tangents)`, bounds of phi, bounds and prior of z."""
+    """What to minimise: `evaluate(phi, z, tangents)`, bounds of phi, bounds and prior of z.
+
+    `refine`, where given, mends the derivatives at every point that the search accepts.
+    """
 
     evaluate: Evaluate
     lower: FloatArray
@@ -35,6 +39,7 @@ class Problem:
     start_sigma: Sequence[FloatArray]
     prior_centre: FloatArray
     prior_precision: FloatArray
+    refine: Refine | None = None
 
 
 @dataclass(frozen=True)
@@ -45,7 +50,6 @@ class Optimum:
     z: list[FloatArray]
     cost: float
     evaluations: list[Evaluation] = field(repr=False, default_factory=list)
-    iterations: int = 0
     failed: str | None = None
 
 
@@ -113,15 +117,17 @@ def minimise(
     cost = cost_of(problem, now, z)
     if not np.isfinite(cost):
         why = next((e.failed for e in now if e.failed), "not finite")
-        return Optimum(phi, z, np.inf, now, 0, why)
+        return Optimum(phi, z, np.inf, now, why)
     damping, quiet = FIRST_DAMPING, 0
-    for iteration in range(1, iterations + 1):
+    for _ in range(iterations):
+        if problem.refine is not None:
+            now = problem.refine(phi, z, now)
         bend = robust_bend(now)
         size = sum(e.residual.size for e in now)
         mean_square = sum(_loss(e, bend) for e in now) / size
         weight, scale = problem.prior_precision * mean_square, max(1.0, mean_square)
         cost = cost_of(problem, now, z, bend, scale)
-        for _ in range(LARGEST_REJECTIONS):
+        for _rejection in range(LARGEST_REJECTIONS):
             step, steps_z = _step(problem, now, phi, z, damping, weight, bend, scale)
             trial = np.clip(phi + step, problem.lower, problem.upper)
             trial_z = [
@@ -136,14 +142,16 @@ def minimise(
                 break
             damping *= 10.0
         else:
-            return Optimum(phi, z, cost, now, iteration)
+            break
         gained = abs(cost - new_cost) / cost
         phi, z, now, cost = trial, trial_z, after, new_cost
         damping = max(damping / 10.0, 1e-12)
         quiet = quiet + 1 if gained < gain else 0
         if quiet >= 2:
-            return Optimum(phi, z, cost, now, iteration)
-    return Optimum(phi, z, cost, now, iterations)
+            break
+    if problem.refine is not None:
+        now = problem.refine(phi, z, now)
+    return Optimum(phi, z, cost, now)
 
 
 def _prior(problem: Problem, weight: FloatArray, phi: FloatArray) -> float:

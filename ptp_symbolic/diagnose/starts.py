@@ -1,0 +1,145 @@
+"""Where the search for a candidate begins: origins, grids of starts, and their elimination.
+
+Every candidate starts from its grid, with the declared parameters at their table start and at the
+declared optimum. The parameters of the candidate move alone first, so that the declared ones are
+not bent to stand in for an effect that is still far from its place. Starts are tried on the runs
+that tell most, and only the best go on to all runs.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.lines import with_lines
+from ptp_symbolic.diagnose.trial import COARSE, Task, Trial, restarted
+from ptp_symbolic.identify.coordinates import FreeParameter
+from ptp_symbolic.identify.fit import Effort, Fit, all_values_at_start, fit_parameters
+
+FloatArray = NDArray[np.float64]
+
+PROBE, SEEK = Effort(1, 1e-2, COARSE), Effort(2, 1e-2, COARSE)
+GO_ON, CONFIRM = Effort(3, 1e-2, COARSE), Effort(2, 1e-2, COARSE)
+PROBED_SHARE, TELLING_SHARE = 0.1, 0.4
+STARTS_KEPT, START_FACTOR = 2, 2.0
+SOUGHT, CONFIRMED, FAR_BEHIND = 14, 8, 50.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """A candidate on its way from one start: what is held fixed, what moves, from where."""
+
+    base: Trial
+    candidate: Candidate
+    free: tuple[FreeParameter, ...]
+    fixed: Mapping[str, float]
+    z: tuple[FloatArray, ...]
+    fit: Fit | None = None
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        return tuple(sorted((*self.base.keys, self.candidate.key)))
+
+    @property
+    def cost(self) -> float:
+        return np.inf if self.fit is None else self.fit.cost
+
+    def trial(self) -> list[Trial]:
+        """The search as a trial in which the declared parameters are free too; none if failed."""
+        if self.fit is None:
+            return []
+        own = {f.name for f in self.fit.free}
+        free = (*(f for f in self.base.train.free if f.name not in own), *self.fit.free)
+        return [Trial((*self.base.candidates, self.candidate), replace(self.fit, free=free))]
+
+
+def first_round(
+    task: Task, bases: Sequence[Trial], candidates: Sequence[Candidate]
+) -> tuple[list[Trial], list[Trial]]:
+    """The best start of every candidate after a few coarse iterations.
+
+    Returns those worth going on with, fitted to all train runs, and the rest, fitted to the runs
+    that tell most.
+    """
+    candidates = with_lines(task, bases[0].train, candidates)
+    searches = [
+        _Search(base, candidate, start, values, z)
+        for base in bases
+        for candidate in candidates
+        if candidate.key not in base.keys
+        for values, z in _origins(task, base, candidate)
+        for start in candidate.starts
+    ]
+    task.progress(f"trying {len(candidates)} candidates from {len(searches)} starts")
+    probed = _advance(task, searches, _telling_runs(bases[0].train, PROBED_SHARE), PROBE)
+    telling = _telling_runs(bases[0].train, TELLING_SHARE)
+    sought = _leaders(_advance(task, _leaders(probed, STARTS_KEPT), telling, SEEK), 1)
+    near, behind = _split(sought, SOUGHT)
+    kept, left = _split(_advance(task, near, telling, GO_ON), CONFIRMED)
+    confirmed = _advance(task, kept, tuple(range(len(task.train))), CONFIRM)
+    return (
+        [t for search in confirmed for t in search.trial()],
+        [t for search in (*left, *behind) for t in search.trial()],
+    )
+
+
+def _telling_runs(fit: Fit, share: float) -> tuple[int, ...]:
+    """Indices of the runs with the largest residuals, up to a share of all samples."""
+    squares = [float(np.sum(e.residual**2)) for e in fit.evaluations]
+    enough, taken = share * sum(run.size for run in fit.runs), 0
+    found: list[int] = []
+    for index in np.argsort(squares)[::-1]:
+        if taken >= enough:
+            break
+        found.append(int(index))
+        taken += fit.runs[index].size
+    return tuple(sorted(found))
+
+
+def _origins(
+    task: Task, base: Trial, candidate: Candidate
+) -> list[tuple[dict[str, float], tuple[FloatArray, ...]]]:
+    """Where searches begin: the optimum of `base`; for the first effect also the table start."""
+    optimum = (dict(base.train.values), tuple(base.train.z))
+    if base.candidates or candidate.is_declared_value:
+        return [optimum]
+    rest = tuple(np.zeros(len(run.unknowns)) for run in task.train)
+    return [({**base.train.values, **all_values_at_start(task.free)}, rest), optimum]
+
+
+def _advance(
+    task: Task, searches: Sequence[_Search], runs: Sequence[int], effort: Effort
+) -> list[_Search]:
+    """Let every search go on for a few iterations on some of the runs, all at the same time."""
+
+    def go_on(search: _Search) -> _Search:
+        fit = fit_parameters(
+            task.model, [task.train[i] for i in runs], search.free, search.fixed,
+            [search.z[i] for i in runs], effort,
+        )  # fmt: skip
+        if fit.failed:
+            return replace(search, fit=None)
+        z = list(search.z)
+        for index, found in zip(runs, fit.z, strict=True):
+            z[index] = found
+        return replace(search, free=restarted(fit), z=tuple(z), fit=fit)
+
+    return list(task.executor.map(go_on, searches))
+
+
+def _split(searches: Sequence[_Search], count: int) -> tuple[list[_Search], list[_Search]]:
+    """The best `count` searches that are not far behind the best, and the others."""
+    ordered = sorted(searches, key=lambda search: search.cost)
+    near = [s for s in ordered[:count] if s.cost <= FAR_BEHIND * ordered[0].cost]
+    return near, ordered[len(near) :]
+
+
+def _leaders(searches: Sequence[_Search], count: int) -> list[_Search]:
+    """For every set of effects its `count` best searches, as far as they are near the best."""
+    leaders: list[_Search] = []
+    for key in dict.fromkeys(search.key for search in searches):
+        own = sorted((s for s in searches if s.key == key), key=lambda search: search.cost)
+        leaders += [s for s in own[:count] if s.cost <= START_FACTOR * own[0].cost]
+    return leaders

@@ -1,0 +1,90 @@
+"""A trial: the declared model with a set of candidates, fitted and judged."""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.scores import mean_square
+from ptp_symbolic.identify.coordinates import FreeParameter
+from ptp_symbolic.identify.evaluate import Tolerance
+from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters
+from ptp_symbolic.identify.run import Run
+from ptp_symbolic.runtime.model import Model
+
+Progress = Callable[[str], None]
+
+COARSE, FINE = Tolerance(1e-4, 1e-6), Tolerance(1e-5, 1e-7)
+NEXT = Effort(14, 1e-3, COARSE, 0.5, secants=True)
+LAST = Effort(20, 1e-4, FINE)
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What stays the same through a diagnosis."""
+
+    model: Model
+    train: tuple[Run, ...]
+    validate: tuple[Run, ...]
+    free: tuple[FreeParameter, ...]
+    fixed: Mapping[str, float]
+    executor: Executor
+    progress: Progress
+    input_noise: tuple[float | None, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """One set of candidates with its fit, and the held-out runs once it was judged."""
+
+    candidates: tuple[Candidate, ...]
+    train: Fit
+    validate: Fit | None = None
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of the candidates, sorted."""
+        return tuple(sorted(c.key for c in self.candidates))
+
+
+def held_out_cost(trial: Trial) -> float:
+    """Mean square of the held-out residuals; infinite when not judged."""
+    if trial.validate is None or trial.validate.failed:
+        return np.inf
+    return mean_square(trial.validate.pairs())
+
+
+def restarted(fit: Fit) -> tuple[FreeParameter, ...]:
+    """The free parameters of `fit`, started where it ended."""
+    return tuple(
+        replace(f, start=max(fit.values[f.name], 1e-6 * f.start) if f.logarithmic else
+                float(np.clip(fit.values[f.name], f.lower, f.upper)))
+        for f in fit.free
+    )  # fmt: skip
+
+
+def fixed_values(task: Task, free: Sequence[FreeParameter]) -> dict[str, float]:
+    """Values of the parameters that stay fixed while `free` are searched."""
+    names = {name for f in free for name in (f.name, *f.tied)}
+    return {name: value for name, value in task.fixed.items() if name not in names}
+
+
+def continue_fits(task: Task, trials: Sequence[Trial], effort: Effort) -> list[Trial]:
+    """Fit every trial on from where it ended, best first; a worse end is not taken."""
+    continued = []
+    for trial in trials:
+        free = restarted(trial.train)
+        fit = fit_parameters(
+            task.model,
+            task.train,
+            free,
+            fixed_values(task, free),
+            trial.train.z,
+            effort,
+            task.executor,
+        )
+        kept = fit if fit.cost <= 1.02 * trial.train.cost else trial.train
+        continued.append(replace(trial, train=kept))
+    return sorted(continued, key=lambda trial: trial.train.cost)

@@ -1,0 +1,86 @@
+"""Derivatives over a finite step, where those at a point mislead.
+
+Inputs that are held from sample to sample let a friction break away at one sample or the next: the
+residual is then a staircase of the parameter, and its derivative sees the treads alone. Bounces in
+a gap that appear and vanish do the same. A difference over a finite step sees both.
+"""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.identify.evaluate import Evaluation
+
+FloatArray = NDArray[np.float64]
+Shift = tuple[int, int]
+Residual = Callable[[int, FloatArray, FloatArray], FloatArray | None]
+Refine = Callable[[FloatArray, Sequence[FloatArray], list[Evaluation]], list[Evaluation]]
+
+STEP = 0.02
+MISLEADING = 0.1
+
+
+def secants(
+    residual: Residual,
+    lower: FloatArray,
+    upper: FloatArray,
+    executor: Executor | None = None,
+) -> Refine:
+    """Return a function that replaces misleading derivatives by phi with central differences.
+
+    `residual(run, phi, z)` simulates one run (None: it failed); lower and upper [nf] bound phi. On
+    its first call the function compares every column of every run, later only those that misled.
+    """
+    chosen: list[Shift] | None = None
+
+    def difference(
+        phi: FloatArray, z: Sequence[FloatArray], evaluations: Sequence[Evaluation], shift: Shift
+    ) -> FloatArray:
+        run, column = shift
+        ends = []
+        for sign in (1.0, -1.0):
+            moved = phi.copy()
+            moved[column] = np.clip(phi[column] + sign * STEP, lower[column], upper[column])
+            ends.append((moved[column], residual(run, moved, z[run])))
+        (high, above), (low, below) = ends
+        if above is None or below is None or high <= low:
+            return evaluations[run].by_parameter[:, column]
+        return (above - below) / (high - low)
+
+    def refine(
+        phi: FloatArray, z: Sequence[FloatArray], evaluations: list[Evaluation]
+    ) -> list[Evaluation]:
+        nonlocal chosen
+        first = chosen is None
+        shifts = [(r, c) for r in range(len(evaluations)) for c in range(len(phi))]
+        shifts = shifts if chosen is None else chosen
+
+        def at(shift: Shift) -> FloatArray:
+            return difference(phi, z, evaluations, shift)
+
+        columns = list(executor.map(at, shifts) if executor else map(at, shifts))
+        if first:
+            chosen = [
+                (r, c)
+                for (r, c), column in zip(shifts, columns, strict=True)
+                if _misleads(evaluations[r].by_parameter[:, c], column)
+            ]
+        return _replaced(evaluations, shifts, columns)
+
+    return refine
+
+
+def _misleads(tangent: FloatArray, secant: FloatArray) -> bool:
+    return bool(np.linalg.norm(tangent - secant) > MISLEADING * np.linalg.norm(secant))
+
+
+def _replaced(
+    evaluations: Sequence[Evaluation], shifts: Sequence[Shift], columns: Sequence[FloatArray]
+) -> list[Evaluation]:
+    jacobians = [e.by_parameter.copy() for e in evaluations]
+    for (run, column), values in zip(shifts, columns, strict=True):
+        jacobians[run][:, column] = values
+    return [replace(e, by_parameter=j) for e, j in zip(evaluations, jacobians, strict=True)]
