@@ -10,6 +10,7 @@ from ptp_symbolic.identify.run import Run
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation import hybrid
 from ptp_symbolic.simulation.delays import delay_columns, delayed, delays_of
+from ptp_symbolic.simulation.passage import Accuracy, default_method, pass_through
 
 FloatArray = NDArray[np.float64]
 
@@ -112,35 +113,29 @@ def evaluate(
     tolerance: Tolerance,
 ) -> Evaluation:
     """Simulate `run` and compare. A simulation that fails says so and scores as failed."""
-    module = model.module
     columns = columns if tangents else columns[:0]
     x, s = start_state(model, run, p, z, columns)
-    if not tangents:
-        s = s[:, :0].copy()
-    steps, n, ns = len(run.time), len(x), s.shape[1]
-    m = np.zeros(len(model.mode_names))
-    module.initial_modes(run.time[0], x, run.held_inputs[0], p, m)
     late = delays_of(model, p)
     table = delayed(run.inputs, late)
     inner = table.stops[(table.stops > run.time[0]) & (table.stops < run.time[-1])]
-    stops = np.union1d(run.time, inner) if np.any(late) else run.time
-    out_x, out_s = np.zeros((steps, n)), np.zeros((steps, n, ns))
-    status, reached, _, _ = hybrid.integrate(
-        module.mode_derivative, module.jacobian, module.guards, module.guard_jacobian,
-        module.energy, x, m, p, model.friction_rates, model.zero_at_rest, table.arrays,
-        len(model.input_names), True, stops, run.time, out_x, columns,
-        delay_columns(model, columns), s, out_s, np.zeros((0, 3)), tolerance.relative,
-        tolerance.absolute(model), 1.0, np.zeros((0, 3)),
+    found = pass_through(
+        model, default_method(model), p, x, table, True,
+        np.union1d(run.time, inner) if np.any(late) else run.time, run.time,
+        Accuracy(tolerance.relative, tolerance.absolute(model), 1.0),
+        s if tangents else None, columns, delay_columns(model, columns),
     )  # fmt: skip
+    steps, ns, module = len(run.time), found.s.shape[2], model.module
     y = np.zeros((steps, len(model.output_names)))
     r, j = np.zeros(run.size), np.zeros((run.size, ns))
-    failed = None if status == hybrid.DONE else f"{run.name}: stopped at {reached:.4f} s"
+    failed = (
+        None if found.status == hybrid.DONE else f"{run.name}: stopped at {found.reached:.4f} s"
+    )
     if failed is None:
         _compare(
-            module.outputs, module.output_jacobian, run.time, out_x, out_s, run.held_inputs, p,
+            module.outputs, module.output_jacobian, run.time, found.x, found.s, run.held_inputs, p,
             run.measured, columns, run.outputs, run.weight, y, r, j,
         )  # fmt: skip
         if not np.all(np.isfinite(r)):
             failed = f"{run.name}: not finite"
     split = len(columns)
-    return Evaluation(r, j[:, :split], j[:, split:], y, out_x, failed)
+    return Evaluation(r, j[:, :split], j[:, split:], y, found.x, failed)

@@ -1,7 +1,7 @@
 """Forward sensitivities of states and measured signals, through located events.
 
-The tangents are the exact derivative of the accepted Runge-Kutta steps; at an event they jump by
-the change of the vector field times the shift of the event (Aizerman and Gantmacher, 1958).
+The tangents follow the variational equation with the method of the run itself; at an event they jump
+by the change of the vector field times the shift of the event (Aizerman and Gantmacher, 1958).
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation import hybrid
 from ptp_symbolic.simulation.delays import delay_columns, delayed, delays_of
 from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
+from ptp_symbolic.simulation.passage import Accuracy, pass_through, tolerance_weights
 from ptp_symbolic.simulation.run import (
     checked_parameters,
+    chosen_method,
     output_times,
     refuse_failure,
     start_of,
@@ -50,12 +51,13 @@ def sensitivity(
     by_parameters: Sequence[str] | None = None,
     by_initial: Sequence[str] = (),
     rtol: float = 1e-8,
-    atol: float = 1e-10,
+    atol: float = 1e-9,
     largest_step: float = 0.1,
+    method: str | None = None,
 ) -> Sensitivities:
     """Derivatives by parameters (None: all) and by initial states, at `times` as in `simulate`.
 
-    Raises InputError for unknown names and SimulationError when the simulation cannot go on.
+    Tolerances and `method` are as in `simulate` too. Raises InputError for unknown names and SimulationError when the simulation cannot go on.
     """
     t = output_times(times)
     given = inputs or {}
@@ -69,23 +71,17 @@ def sensitivity(
     s = np.zeros((len(x), len(columns) + len(by_initial)))
     for offset, name in enumerate(by_initial):
         s[_index(model.state_names, name, "state"), len(columns) + offset] = 1.0
-    m, u = np.zeros(len(model.mode_names)), np.zeros(len(model.input_names))
-    hybrid.evaluate_inputs(t[0], 1, *table.arrays, table.new_cursor(), u)
-    module = model.module
-    module.initial_modes(t[0], x, u, p, m)
     stops = np.unique(
         np.concatenate([t, table.stops[(table.stops > t[0]) & (table.stops < t[-1])]])
     )
-    out_x, out_s = np.zeros((len(t), len(x))), np.zeros((len(t), *s.shape))
-    status, reached, _, _ = hybrid.integrate(
-        module.mode_derivative, module.jacobian, module.guards, module.guard_jacobian,
-        module.energy, x, m, p, model.friction_rates, model.zero_at_rest, table.arrays, len(u),
-        False, stops, t, out_x, columns, delay_columns(model, columns), s, out_s,
-        np.zeros((0, 3)), rtol, np.full(len(x), atol), largest_step, np.zeros((0, 3)),
+    found = pass_through(
+        model, chosen_method(model, method), p, x, table, table.held, stops, t,
+        Accuracy(rtol, atol * tolerance_weights(model), largest_step), s, columns,
+        delay_columns(model, columns),
     )  # fmt: skip
-    refuse_failure(model, status, reached, x)
-    y, signals = _measured(model, t, out_x, out_s, p, columns)
-    return Sensitivities(t, out_x, y, (*wanted, *by_initial), out_s, signals)
+    refuse_failure(model, found.status, found.reached, found.state)
+    y, signals = _measured(model, t, found.x, found.s, p, columns)
+    return Sensitivities(t, found.x, y, (*wanted, *by_initial), found.s, signals)
 
 
 def _measured(

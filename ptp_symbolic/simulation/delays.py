@@ -1,9 +1,8 @@
-"""Inputs that reach the machine late: tables shifted in time, and what a delay does to tangents."""
+"""Inputs that reach the machine late, as tables shifted in time."""
 
 from dataclasses import replace
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from ptp_symbolic.runtime.model import Model
@@ -36,19 +35,3 @@ def delay_columns(model: Model, columns: NDArray[np.int64]) -> NDArray[np.int64]
     """Per input the tangent column of its delay among parameter `columns`, or -1."""
     where = {int(c): k for k, c in enumerate(columns)}
     return np.array([where.get(int(i), -1) if i >= 0 else -1 for i in model.input_delays], np.int64)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def jump_by_delay(derivative, t, x, u_before, u, p, m, delay_column, before, after, s):
-    """Add (f- - f+) to the tangent of every delay whose held input has just changed."""
-    for j in range(len(u)):
-        column = delay_column[j]
-        if column < 0 or u[j] == u_before[j]:
-            continue
-        now = u[j]
-        derivative(t, x, u, p, m, after)
-        u[j] = u_before[j]
-        derivative(t, x, u, p, m, before)
-        u[j] = now
-        for a in range(len(x)):
-            s[a, column] += before[a] - after[a]

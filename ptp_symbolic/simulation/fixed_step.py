@@ -25,7 +25,8 @@ from ptp_symbolic.simulation.implicit_step import (
     fixed_mode_step,
     mode_finding_step,
 )
-from ptp_symbolic.simulation.inputs import InputTable, evaluate_inputs
+from ptp_symbolic.simulation.input_values import evaluate_inputs
+from ptp_symbolic.simulation.inputs import InputTable
 
 FloatArray = NDArray[np.float64]
 

@@ -1,250 +1,233 @@
-"""The compiled runner: adaptive Runge-Kutta steps, located events, tangents through both.
+"""The compiled runner: adaptive steps by either method, located events, tangents through both.
 
 One runner serves every model: the emitted functions come in as typed function pointers. Steps end
 at every stop (sample of a held input, break of a profile). A mode that ends inside a step is found
 on the step's interpolant, then by repeating the step itself until the landing point lies just past
-the event. Tangents are the exact derivative of the accepted steps; at an event they jump (Aizerman
-and Gantmacher, 1958).
+the event. The step length is carried over stops and events.
 """
 
 import numpy as np
 from numba import njit, types
 
-from ptp_symbolic.simulation import signatures
-from ptp_symbolic.simulation.delays import jump_by_delay
-from ptp_symbolic.simulation.inputs import evaluate_inputs
+from ptp_symbolic.simulation.crossing import cross, jump_by_delay
+from ptp_symbolic.simulation.input_values import evaluate_inputs
+from ptp_symbolic.simulation.kernels import (
+    CUBE,
+    INSTANT,
+    INTEGERS,
+    KERNEL,
+    LENGTH,
+    MATRIX,
+    STEPS,
+    TABLE,
+    TIME,
+    VECTOR,
+    Equations,
+    Inputs,
+    Record,
+    Step,
+    Tangents,
+    Watch,
+    copy,
+    flush,
+    inlined,
+    kernel,
+)
 from ptp_symbolic.simulation.location import (
     TIME_RESOLUTION,
+    fill_violations,
     first_violation,
     locate_event,
-    record_switches,
-    worst_element,
 )
-from ptp_symbolic.simulation.modes import (
-    largest_violation,
-    settle,
-    violation,
-    violation_gradient,
+from ptp_symbolic.simulation.modes import settle
+from ptp_symbolic.simulation.outputs import (
+    fill_powers,
+    note_switches,
+    work_done,
+    write_here,
+    write_inside,
 )
-from ptp_symbolic.simulation.step import error_norm, fill_stages, flush, interpolate
-from ptp_symbolic.simulation.tableau import STAGES, A, C
-from ptp_symbolic.simulation.tangents import jump_tangents, push_tangents
+from ptp_symbolic.simulation.steps import (
+    RUNGE_KUTTA,
+    attempt,
+    begin,
+    end_slope,
+    error_norm,
+    fill_dense,
+    push_tangents,
+)
 
-DONE, DIVERGED, CHATTERING, TOO_MANY_STEPS = 0, 1, 2, 3
+DONE, DIVERGED, CHATTERING = 0, 1, 2
 MAX_INSTANT_EVENTS = 100
+SHORTEST = 1e-11  # s
+INSTANT_STEP = 1e-10  # s
+LARGEST_STATE = 1e12
 
-_V, _M, _I = types.float64[::1], types.float64[:, ::1], types.int64[::1]
-TABLE = types.Tuple((_V, _M, _I, _M, _I, _M, _I))
+_V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
+_STEP = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _I, _V, _V))
+_WATCH = types.Tuple((_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V))
+_TANGENTS = types.Tuple((_M, _I, _I, _C, _M, _M, _M, _C, _C, _M, _M, _M))
+_RECORD = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
+
+
+@inlined
+def enter(equations, inputs, t, x, watch, record):
+    """Settle modes that the inputs from t on have ended; False when that does not end."""
+    elements = len(watch.at_end)
+    if elements == 0 or fill_violations(equations, inputs, t, x, watch, watch.at_start) <= 0.0:
+        return True
+    copy(watch.m, watch.m_before)
+    if not settle(
+        equations.guards, t, x, inputs.u, equations.p, watch.m, watch.g, equations.friction_rates,
+        equations.zero_at_rest,
+    ):  # fmt: skip
+        return False
+    note_switches(t, watch, len(equations.friction_rates), elements, record)
+    fill_violations(equations, inputs, t, x, watch, watch.at_start)
+    return True
+
+
+@kernel
+def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tangents, record):
+    """Take steps up to `stop`; returns a status."""
+    clock, counts = record.clock, record.counts
+    known = False
+    while stop - clock[TIME] > TIME_RESOLUTION:
+        t = clock[TIME]
+        if not known:
+            begin(method, equations, inputs, t, x, watch.m, step)
+            known = True
+        length = next_length(stop - t, limits[1], clock)
+        counts[STEPS] += 1
+        attempt(method, equations, inputs, t, length, x, watch.m, step)
+        if not accept(error_norm(method, length, x, step, limits[0], atol), length, clock):
+            if clock[LENGTH] < SHORTEST:
+                return DIVERGED
+            continue
+        fill_dense(method, length, x, step)
+        fraction = 0.0
+        if len(watch.at_end) > 0:
+            fraction = first_violation(equations, inputs, t, length, step, watch)
+        t_new = stop if length == stop - t else t + length
+        if fraction > 0.0:
+            length = locate_event(method, equations, inputs, t, length, fraction, x, step, watch)
+            t_new = t + length
+            end_slope(method, equations, inputs, t_new, watch.m, step, watch.before)
+        leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record)
+        known = method == RUNGE_KUTTA
+        if known:
+            end_slope(method, equations, inputs, t_new, watch.m, step, step.slope)
+        if fraction > 0.0:
+            counts[INSTANT] = counts[INSTANT] + 1 if length < INSTANT_STEP else 0
+            if counts[INSTANT] > MAX_INSTANT_EVENTS or not cross(
+                equations, inputs, t_new, x, watch, tangents, record
+            ):
+                return CHATTERING
+            fill_violations(equations, inputs, t_new, x, watch, watch.at_start)
+            known = False
+        else:
+            counts[INSTANT] = 0
+            copy(watch.at_end, watch.at_start)
+        for a in range(len(x)):
+            if not abs(x[a]) < LARGEST_STATE:
+                return DIVERGED
+    clock[TIME] = stop
+    return DONE
+
+
+@inlined
+def next_length(remaining, largest, clock):
+    """Length of the next attempt: as planned, but so that equal steps reach the stop."""
+    planned = min(clock[LENGTH], largest)
+    return remaining if planned >= remaining else remaining / np.ceil(remaining / planned)
+
+
+@inlined
+def accept(error, length, clock):
+    """Plan the next step from the error of an attempt; False when it must be repeated."""
+    if not error < 1e10:
+        error = 1e10
+    if error > 1.0:
+        clock[LENGTH] = length * max(0.2, 0.9 * error**-0.2)
+        return False
+    grow = 5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2)
+    if grow > 1.0 or clock[LENGTH] <= length:
+        clock[LENGTH] = length * grow
+    return True
+
+
+@kernel
+def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record):
+    """Go to the end of an accepted step: outputs inside it, work done over it, tangents."""
+    if len(record.ledger) > 0:
+        fill_powers(equations, inputs, t, length, watch.m, step, record)
+    write_inside(equations, inputs, t, length, t_new, watch.m, step, record)
+    if len(record.ledger) > 0:
+        for c in range(1, 3):
+            record.totals[c] += work_done(1.0, length, record.powers, c)
+    if tangents.s.shape[1] > 0:
+        push_tangents(method, equations, inputs, t, length, watch.m, step, tangents)
+        for a in range(len(x)):
+            flush(tangents.s[a])
+    copy(step.end, x)
+    flush(x)
+    record.clock[TIME] = t_new
 
 
 @njit(
-    types.Tuple((types.int64, types.float64, types.int64, types.int64))(
-        signatures.MODE_DERIVATIVE,
-        signatures.JACOBIAN,
-        signatures.GUARDS,
-        signatures.GUARD_JACOBIAN,
-        signatures.ENERGY,
-        _V,  # x, changed in place
-        _V,  # modes, changed in place
+    types.int64(
+        types.int64,  # method
+        _I,  # addresses of the emitted functions
         _V,  # parameters
         _I,  # state index of the rate of every friction
         _I,  # per state the friction that zeroes it when it comes to rest, or -1
         TABLE,
-        types.int64,  # number of inputs
+        _I,  # cursor [nu]
         types.boolean,  # inputs are held between stops
+        _M,  # inputs: now, ahead, before [3, nu]
+        _V,  # x, changed in place
         _V,  # stops, the first is the start
-        _V,  # output times, increasing
-        _M,  # out: states [times, n]
-        _I,  # parameter columns of the tangents
-        _I,  # per input the tangent column of its delay, or -1
-        _M,  # tangents [n, ns], changed in place; ns = 0: none
-        types.float64[:, :, ::1],  # out: tangents [times, n, ns]; output times must be stops
-        types.float64[:, ::1],  # out: work [times, 3]: stored, supplied, dissipated; or no rows
-        types.float64,  # rtol
+        _V,  # rtol, largest step
         _V,  # atol
-        types.float64,  # largest step
-        types.float64[:, ::1],  # out: events [capacity, 3]: time, element, mode entered
+        _STEP,
+        _WATCH,
+        _TANGENTS,
+        _RECORD,
     ),
     cache=True,
-    nogil=True,
-    error_model="numpy",
+    **KERNEL,
 )
-def integrate(
-    derivative, jacobian, guards, guard_jacobian, energy, x, m, p, friction_rates, zero_at_rest,
-    table, input_count, held, stops, output_times, out_x, columns, delay_column, s, out_s,
-    out_energy, rtol, atol, largest_step, events,
+def run(
+    method, functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, stops, limits,
+    atol, step, watch, tangents, record,
 ):  # fmt: skip
-    """Integrate from the first to the last stop; returns (status, time reached, events, steps)."""
-    n, ns, np_ = len(x), s.shape[1], len(p)
-    frictions = len(friction_rates)
-    elements = frictions + (len(m) - frictions) // 2
-    guard_count = 3 * frictions + 4 * (elements - frictions)
-    k, stage = np.zeros((STAGES, n)), np.zeros((STAGES, n))
-    weights, x_end, trial = np.zeros(STAGES), np.zeros(n), np.zeros(n)
-    u_before = np.zeros(input_count)
-    u, u_later = np.zeros(input_count), np.zeros(input_count)
-    g, g_later = np.zeros(guard_count), np.zeros(guard_count)
-    gx, gp = np.zeros((guard_count, n)), np.zeros((guard_count, np_))
-    by_x, by_p, before, after = np.zeros(n), np.zeros(np_), np.zeros(n), np.zeros(n)
-    fx, fu, fp = np.zeros((n, n)), np.zeros((n, input_count)), np.zeros((n, np_))
-    work = (fx, fu, fp, np.zeros((STAGES, n, ns)), np.zeros((n, ns)))
-    cursor = np.zeros(input_count, dtype=np.int64)
-    m_before, powers, totals = np.zeros(len(m)), np.zeros(3), np.zeros(3)
-    stage_powers = np.zeros((STAGES, 3))
-    with_energy = out_energy.shape[0] > 0
-    t, h = stops[0], largest_step
-    output, event_count, steps, instant = 0, 0, 0, 0
-    while output < len(output_times) and output_times[output] <= t:
-        out_x[output] = x
-        out_s[output] = s
-        if with_energy:
-            evaluate_inputs(t, 1, *table, cursor, u)
-            energy(t, x, u, p, m, powers)
-            out_energy[output, 0] = powers[0]
-        output += 1
-    for stop_index in range(1, len(stops)):
-        stop = stops[stop_index]
-        u_before[:] = u
-        evaluate_inputs(t, 1, *table, cursor, u)
-        if ns > 0 and stop_index > 1:
-            jump_by_delay(derivative, t, x, u_before, u, p, m, delay_column, before, after, s)
-        if elements > 0:
-            guards(t, x, u, p, m, g)
-            if largest_violation(x, m, g, friction_rates) > 0.0:
-                m_before[:] = m
-                if not settle(guards, t, x, u, p, m, g, friction_rates, zero_at_rest):
-                    return CHATTERING, t, event_count, steps
-                event_count = record_switches(
-                    t, m_before, m, frictions, elements, events, event_count
-                )
-        derivative(t, x, u, p, m, k[0])
-        while stop - t > TIME_RESOLUTION:
-            remaining = stop - t
-            h = min(h, largest_step)
-            trial_h = remaining if h >= remaining else remaining / np.ceil(remaining / h)
-            steps += 1
-            stage[0] = x
-            fill_stages(derivative, t, trial_h, x, u, p, m, table, cursor, held, k, stage)
-            error = error_norm(trial_h, x, k, stage, rtol, atol)
-            if not np.isfinite(error):
-                error = 1e10
-            if error > 1.0:
-                h = trial_h * max(0.2, 0.9 * error**-0.2)
-                if h < 1e-11:
-                    return DIVERGED, t, event_count, steps
-                continue
-            grow = 5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2)
-            if grow > 1.0 or h <= trial_h:
-                h = trial_h * grow
-            step_h = trial_h
-            ended = False
-            if elements > 0:
-                x_end[:] = stage[STAGES - 1]
-                high = first_violation(
-                    guards, t, step_h, x, k, u, p, m, table, cursor, held, g, friction_rates,
-                    weights, trial, x_end,
-                )  # fmt: skip
-                if high > 0.0:
-                    ended = True
-                    step_h = locate_event(
-                        derivative, guards, t, high * step_h, step_h, x, k, stage, u, p, m, table,
-                        cursor, held, g, friction_rates, weights, trial,
-                    )  # fmt: skip
-            t_new = stop if (not ended and trial_h == remaining) else t + step_h
-            if with_energy:
-                for i in range(STAGES):
-                    if not held:
-                        side = 1 if C[i] < 1.0 else -1
-                        evaluate_inputs(t + C[i] * step_h, side, *table, cursor, u)
-                    energy(t + C[i] * step_h, stage[i], u, p, m, stage_powers[i])
-            while output < len(output_times) and output_times[output] < t_new - TIME_RESOLUTION:
-                fraction = (output_times[output] - t) / step_h
-                interpolate(fraction, step_h, x, k, weights, out_x[output])
-                if with_energy:
-                    energy(output_times[output], out_x[output], u, p, m, powers)
-                    out_energy[output, 0] = powers[0]
-                    for c in range(1, 3):
-                        gained = 0.0
-                        for i in range(STAGES):
-                            gained += weights[i] * stage_powers[i, c]
-                        out_energy[output, c] = totals[c] + step_h * gained
-                output += 1
-            if ns > 0:
-                push_tangents(
-                    jacobian,
-                    t,
-                    step_h,
-                    x,
-                    u,
-                    p,
-                    m,
-                    table,
-                    cursor,
-                    held,
-                    stage,
-                    columns,
-                    delay_column,
-                    s,
-                    work,
-                )
-            if with_energy:
-                for i in range(STAGES - 1):
-                    totals[1] += step_h * A[STAGES - 1, i] * stage_powers[i, 1]
-                    totals[2] += step_h * A[STAGES - 1, i] * stage_powers[i, 2]
-            x[:] = stage[STAGES - 1]
-            t = t_new
-            if not ended:
-                k[0] = k[STAGES - 1]
-                instant = 0
-                continue
-            instant = instant + 1 if step_h < 1e-10 else 0
-            if instant > MAX_INSTANT_EVENTS:
-                return CHATTERING, t, event_count, steps
-            evaluate_inputs(t, 1, *table, cursor, u)
-            m_before[:] = m
-            before[:] = k[STAGES - 1]
-            by_time = 0.0
-            if ns > 0:
-                guards(t, x, u, p, m, g)
-                element = worst_element(x, m, g, friction_rates, elements)
-                guard_jacobian(t, x, u, p, m, gx, gp)
-                violation_gradient(element, m, g, gx, gp, friction_rates, x, by_x, by_p)
-                if not held:
-                    ahead = 1e-7
-                    evaluate_inputs(t + ahead, 1, *table, cursor, u_later)
-                    guards(t, x, u_later, p, m, g_later)
-                    by_time = (
-                        violation(element, x, m, g_later, friction_rates)
-                        - violation(element, x, m, g, friction_rates)
-                    ) / ahead
-            if not settle(guards, t, x, u, p, m, g, friction_rates, zero_at_rest):
-                return CHATTERING, t, event_count, steps
-            event_count = record_switches(t, m_before, m, frictions, elements, events, event_count)
-            derivative(t, x, u, p, m, k[0])
-            if ns > 0:
-                after[:] = k[0]
-                for a in range(n):
-                    friction = zero_at_rest[a]
-                    if friction >= 0 and m[friction] == 0.0 and m_before[friction] != 0.0:
-                        s[a] = 0.0
-                        before[a] = 0.0
-                jump_tangents(before, after, by_time, by_x, by_p, columns, s)
-                for f in range(frictions):
-                    if m[f] == 0.0:
-                        s[friction_rates[f]] = 0.0
-        t = stop
-        flush(x)
-        if ns > 0:
-            flush(s)
-        while output < len(output_times) and output_times[output] <= t + TIME_RESOLUTION:
-            out_x[output] = x
-            out_s[output] = s
-            if with_energy:
-                energy(t, x, u, p, m, powers)
-                out_energy[output] = totals
-                out_energy[output, 0] = powers[0]
-            output += 1
-        for a in range(n):
-            if not abs(x[a]) < 1e12:
-                return DIVERGED, t, event_count, steps
-    return DONE, t, event_count, steps
+    """Integrate from the first to the last stop; returns a status, the rest is in the records."""
+    equations = Equations(
+        functions[0],
+        functions[1],
+        functions[2],
+        functions[3],
+        functions[4],
+        p,
+        friction_rates,
+        zero_at_rest,
+    )
+    inputs, step, watch = Inputs(table, cursor, held, u[0], u[1]), Step(*step), Watch(*watch)
+    tangents, record = Tangents(*tangents), Record(*record)
+    record.clock[TIME], record.clock[LENGTH] = stops[0], limits[1]
+    evaluate_inputs(stops[0], 1, *inputs.table, inputs.cursor, inputs.u)
+    write_here(equations, inputs, stops[0], x, watch.m, tangents, record)
+    for index in range(1, len(stops)):
+        copy(inputs.u, u[2])
+        evaluate_inputs(stops[index - 1], 1, *inputs.table, inputs.cursor, inputs.u)
+        if tangents.s.shape[1] > 0 and index > 1:
+            jump_by_delay(equations, inputs, stops[index - 1], x, u[2], watch, tangents)
+        if not enter(equations, inputs, stops[index - 1], x, watch, record):
+            return CHATTERING
+        status = advance(
+            method, equations, inputs, stops[index], x, limits, atol, step, watch, tangents, record
+        )
+        if status != DONE:
+            return status
+        write_here(equations, inputs, stops[index], x, watch.m, tangents, record)
+    return DONE

@@ -5,13 +5,11 @@ values: `side` +1 asks for the one after it (signals are right-continuous), -1 f
 which is what an integration step that ends at the jump must see.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError
@@ -211,6 +209,12 @@ class InputTable:
             self.sweeps, self.sweep_offsets,
         )  # fmt: skip
 
+    @property
+    def held(self) -> bool:
+        """True when every signal is constant between stops."""
+        moving = len(self.sines) or len(self.sweeps) or np.any(self.coefficients[:, 1:])
+        return not moving
+
     def new_cursor(self) -> IntArray:
         """Where each signal was found last, [nu]; one per integration, evaluate_inputs moves it."""
         return np.zeros(len(self.offsets) - 1, dtype=np.int64)
@@ -244,46 +248,3 @@ def _jumps(signal: InputSignal) -> FloatArray:
     right = np.concatenate([signal.coefficients, outside])
     left[0, 0], right[-1, 0] = c0[0], ends[-1, 0]
     return np.append(signal.breaks[np.any(left != right, axis=1)], signal.sweep[:, 3:])
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
-def evaluate_inputs(
-    t: float,
-    side: int,
-    breaks: FloatArray,
-    coefficients: FloatArray,
-    offsets: IntArray,
-    sines: FloatArray,
-    sine_offsets: IntArray,
-    sweeps: FloatArray,
-    sweep_offsets: IntArray,
-    cursor: IntArray,
-    u: FloatArray,
-) -> None:
-    """Fill u [nu] with every signal at time t in s; side +1: value after a jump at t, -1: before.
-
-    The arrays are those of an InputTable. cursor [nu], read and written, holds the piece found
-    last, so that a walk through thousands of samples costs one comparison per call.
-    """
-    for j in range(u.shape[0]):
-        pieces = offsets[j + 1] - offsets[j]
-        at = offsets[j] + j
-        k = cursor[j]
-        while k < pieces and (breaks[at + k + 1] < t or (side > 0 and breaks[at + k + 1] == t)):
-            k += 1
-        while k >= 0 and (breaks[at + k] > t or (side < 0 and breaks[at + k] == t)):
-            k -= 1
-        cursor[j] = k
-        piece = min(max(k, 0), pieces - 1)
-        c = coefficients[offsets[j] + piece]
-        s = min(max(t, breaks[at]), breaks[at + pieces]) - breaks[at + piece]
-        value = c[0] + s * (c[1] + s * (c[2] + s * c[3]))
-        for i in range(sine_offsets[j], sine_offsets[j + 1]):
-            value += sines[i, 0] * math.sin(2.0 * math.pi * sines[i, 1] * t + sines[i, 2])
-        for i in range(sweep_offsets[j], sweep_offsets[j + 1]):
-            t0, t1 = sweeps[i, 3], sweeps[i, 4]
-            if t0 <= t < t1 or (side < 0 and t == t1):
-                rate = 0.5 * (sweeps[i, 2] - sweeps[i, 1]) / (t1 - t0)
-                turns = (sweeps[i, 1] + rate * (t - t0)) * (t - t0)
-                value += sweeps[i, 0] * math.sin(2.0 * math.pi * turns)
-        u[j] = value

@@ -1,93 +1,124 @@
-"""Locate the end of a mode inside a step, and note what switched."""
+"""Find the end of a mode inside a step, and step to just past it."""
 
-from numba import njit
-
-from ptp_symbolic.simulation.inputs import evaluate_inputs
+from ptp_symbolic.simulation.emitted import call
+from ptp_symbolic.simulation.input_values import evaluate_inputs
+from ptp_symbolic.simulation.kernels import inlined, kernel
 from ptp_symbolic.simulation.modes import largest_violation, violation
-from ptp_symbolic.simulation.step import fill_stages, interpolate
-from ptp_symbolic.simulation.tableau import STAGES
+from ptp_symbolic.simulation.steps import attempt, curve, fill_dense
 
-TIME_RESOLUTION = 1e-12
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def record_switches(t, m_before, m, frictions, elements, events, count):
-    """Note every element whose mode changed; the count goes on past the capacity of `events`."""
-    for element in range(elements):
-        where = element if element < frictions else 2 * element - frictions
-        changed = m[where] != m_before[where]
-        mode = m[where]
-        if element >= frictions:
-            changed = changed or m[where + 1] != m_before[where + 1]
-            mode = m[where] * (2.0 - m[where + 1])
-        if changed:
-            if count < events.shape[0]:
-                events[count, 0] = t
-                events[count, 1] = element
-                events[count, 2] = mode
-            count += 1
-    return count
+TIME_RESOLUTION = 1e-12  # s
+LANDING = 1e-11  # s; how far past an event a step may end
+NEARLY = 0.25
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def worst_element(x, m, g, friction_rates, elements):
-    """Index of the element whose mode is violated most."""
-    worst, found = -1e300, 0
-    for element in range(elements):
-        value = violation(element, x, m, g, friction_rates)
-        if value > worst:
-            worst, found = value, element
-    return found
+@inlined
+def fill_violations(equations, inputs, t, x, watch, out):
+    """Write how far every element is past the end of its mode into out; returns the largest."""
+    call(equations.guards, t, x, inputs.u, equations.p, watch.m, watch.g)
+    worst = -1e300
+    for element in range(len(out)):
+        out[element] = violation(element, x, watch.m, watch.g, equations.friction_rates)
+        worst = max(worst, out[element])
+    return worst
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _violation_at(guards, t, x, u, p, m, table, cursor, held, g, friction_rates):
-    if not held:
-        evaluate_inputs(t, -1, *table, cursor, u)
-    guards(t, x, u, p, m, g)
-    return largest_violation(x, m, g, friction_rates)
+@kernel
+def violation_at(equations, inputs, t, x, watch):
+    """The largest violation at time t in s and state x; inputs as they are before a jump at t."""
+    if not inputs.held:
+        evaluate_inputs(t, -1, *inputs.table, inputs.cursor, inputs.u)
+    call(equations.guards, t, x, inputs.u, equations.p, watch.m, watch.g)
+    return largest_violation(x, watch.m, watch.g, equations.friction_rates)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def first_violation(
-    guards, t, h, x, k, u, p, m, table, cursor, held, g, friction_rates, weights, trial, x_end
-):  # fmt: skip
-    """Fraction of the step, 1/2 or 1, at which a mode is found to have ended; 0 if none has."""
-    interpolate(0.5, h, x, k, weights, trial)
-    if _violation_at(guards, t + h / 2, trial, u, p, m, table, cursor, held, g, friction_rates) > 0:
+@inlined
+def on_curve(equations, inputs, t, h, fraction, step, watch):
+    """The largest violation at a fraction of the step."""
+    curve(fraction, step, step.point)
+    return violation_at(equations, inputs, t + fraction * h, step.point, watch)
+
+
+@kernel
+def first_violation(equations, inputs, t, h, step, watch):
+    """A fraction of the step at which a mode is found to have ended; 0 if none has.
+
+    Middle and end are looked at, and the summit of the parabola through start, middle and end of
+    every element whose summit comes near: a mode may end and hold again within one step.
+    """
+    curve(0.5, step, step.point)
+    if not inputs.held:
+        evaluate_inputs(t + 0.5 * h, -1, *inputs.table, inputs.cursor, inputs.u)
+    if fill_violations(equations, inputs, t + 0.5 * h, step.point, watch, watch.at_middle) > 0.0:
         return 0.5
-    if _violation_at(guards, t + h, x_end, u, p, m, table, cursor, held, g, friction_rates) > 0:
-        return 1.0
-    return 0.0
+    if not inputs.held:
+        evaluate_inputs(t + h, -1, *inputs.table, inputs.cursor, inputs.u)
+    ended = fill_violations(equations, inputs, t + h, step.end, watch, watch.at_end) > 0.0
+    for element in range(len(watch.at_end)):
+        start, end = watch.at_start[element], watch.at_end[element]
+        middle = watch.at_middle[element]
+        bend, rise = 2.0 * (start + end) - 4.0 * middle, 4.0 * middle - 3.0 * start - end
+        if bend < 0.0 < rise < -2.0 * bend:
+            summit = -0.5 * rise / bend
+            size = abs(middle - start) + abs(end - middle)
+            near = start + summit * (rise + summit * bend) > -NEARLY * size
+            if near and on_curve(equations, inputs, t, h, summit, step, watch) > 0.0:
+                return summit
+    return 1.0 if ended else 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def locate_event(
-    derivative, guards, t, high, h, x, k, stage, u, p, m, table, cursor, held, g, friction_rates,
-    weights, trial,
-):  # fmt: skip
-    """Length of the step that lands just past the first event; stages are left at that step."""
-    low = 0.0
-    while high - low > 1e-9 * h and high - low > TIME_RESOLUTION:
-        middle = 0.5 * (low + high)
-        interpolate(middle / h, h, x, k, weights, trial)
-        if (
-            _violation_at(
-                guards, t + middle, trial, u, p, m, table, cursor, held, g, friction_rates
-            )
-            > 0.0
-        ):
-            high = middle
-        else:
-            low = middle
-    length = high
+@kernel
+def root_on_curve(equations, inputs, t, h, high, step, watch):
+    """The fraction below `high` at which the largest violation passes zero (Illinois method)."""
+    low, below = 0.0, on_curve(equations, inputs, t, h, 0.0, step, watch)
+    above = on_curve(equations, inputs, t, h, high, step, watch)
+    side = 0
     for _ in range(60):
-        fill_stages(derivative, t, length, x, u, p, m, table, cursor, held, k, stage)
-        trial[:] = stage[STAGES - 1]
-        value = _violation_at(
-            guards, t + length, trial, u, p, m, table, cursor, held, g, friction_rates
-        )
-        if value > 0.0:
+        if (high - low) * h <= TIME_RESOLUTION or above <= 0.0:
             break
-        length = min(h, length + max(TIME_RESOLUTION, 4.0 * (length - high) + 1e-9 * h))
+        guess = 0.5 * (low + high)
+        if below < 0.0:
+            guess = max(low, min(high, high - above * (high - low) / (above - below)))
+        value = on_curve(equations, inputs, t, h, guess, step, watch)
+        if value > 0.0:
+            high, above = guess, value
+            below *= 0.5 if side > 0 else 1.0
+            side = 1
+        else:
+            low, below = guess, value
+            above *= 0.5 if side < 0 else 1.0
+            side = -1
+    return high
+
+
+@kernel
+def locate_event(method, equations, inputs, t, h, fraction, x, step, watch):
+    """Length of the step that lands just past the first event; the attempt is left at that step.
+
+    The root on the curve is only as good as the curve: the step itself is repeated until it ends
+    past the event and no more than LANDING after it. A bracket that fails at the full step is an
+    event that only the curve has; then the step ends where it is.
+    """
+    length = root_on_curve(equations, inputs, t, h, fraction, step, watch) * h
+    low, high = 0.0, h
+    before, last = 0.0, -1.0
+    for _ in range(60):
+        attempt(method, equations, inputs, t, length, x, watch.m, step)
+        value = violation_at(equations, inputs, t + length, step.end, watch)
+        rate = (value - before) / (length - last) if last >= 0.0 and length != last else 0.0
+        before, last = value, length
+        if value > 0.0:
+            high = length
+            if high - low <= LANDING or (rate > 0.0 and value <= LANDING * rate):
+                break
+        else:
+            low = length
+            if h - low <= TIME_RESOLUTION:
+                break
+        ahead = LANDING if value <= 0.0 else -LANDING
+        if rate > 0.0:
+            ahead = 0.5 * LANDING - value / rate
+        length += ahead
+        if not low < length < high:
+            length = 0.5 * (low + high)
+    fill_dense(method, length, x, step)
     return length

@@ -7,12 +7,13 @@ holding torque, breakaway forward and backward; per contact separation, half gap
 the upper and lower face.
 """
 
-from numba import njit
+from ptp_symbolic.simulation.emitted import call
+from ptp_symbolic.simulation.kernels import inlined, kernel
 
 REVERSAL_DEAD_BAND = 1e-13
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def violation(element, x, m, g, friction_rates):
     """How far `element` is past the end of its mode (> 0: the mode has ended)."""
     frictions = len(friction_rates)
@@ -33,7 +34,7 @@ def violation(element, x, m, g, friction_rates):
     return max(pushing, g[at + 1] - side * g[at])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def largest_violation(x, m, g, friction_rates):
     """The largest violation over all elements; negative when every mode holds."""
     worst = -1e300
@@ -43,44 +44,50 @@ def largest_violation(x, m, g, friction_rates):
     return worst
 
 
-@njit(cache=True, nogil=True)
-def violation_gradient(element, m, g, gx, gp, friction_rates, x, by_x, by_p):
-    """Write the derivatives of `violation` by state and parameter, on its active branch."""
-    frictions = len(friction_rates)
-    by_x[:] = 0.0
-    by_p[:] = 0.0
+@inlined
+def _fill_difference(sign, row, limit_sign, limit, derivatives, out):
+    """Write sign times one row plus limit_sign times another into out."""
+    for i in range(len(out)):
+        out[i] = sign * derivatives[row, i] + limit_sign * derivatives[limit, i]
+
+
+@inlined
+def _active_guards(element, m, g, frictions):
+    """Sign and row of the two guards whose sum is the violation of a rest or a contact."""
     if element < frictions:
-        direction = m[element]
-        if direction != 0.0:
-            by_x[friction_rates[element]] = -direction
-            return
-        hold = g[3 * element]
-        forward = hold - g[3 * element + 1] >= -hold - g[3 * element + 2]
-        sign, limit = (1.0, 3 * element + 1) if forward else (-1.0, 3 * element + 2)
-        by_x[:] = sign * gx[3 * element] - gx[limit]
-        by_p[:] = sign * gp[3 * element] - gp[limit]
-        return
+        at, hold = 3 * element, g[3 * element]
+        if hold - g[at + 1] >= -hold - g[at + 2]:
+            return 1.0, at, -1.0, at + 1
+        return -1.0, at, -1.0, at + 2
     contact = element - frictions
     at = 3 * frictions + 4 * contact
     side, active = m[frictions + 2 * contact], m[frictions + 2 * contact + 1]
     if side == 0.0:
-        sign = 1.0 if g[at] >= 0.0 else -1.0
-        by_x[:] = sign * gx[at] - gx[at + 1]
-        by_p[:] = sign * gp[at] - gp[at + 1]
-        return
+        return 1.0 if g[at] >= 0.0 else -1.0, at, -1.0, at + 1
     face = at + 2 if side > 0.0 else at + 3
     if active > 0.0:
-        by_x[:] = -side * gx[face]
-        by_p[:] = -side * gp[face]
-    elif side * g[face] >= g[at + 1] - side * g[at]:
-        by_x[:] = side * gx[face]
-        by_p[:] = side * gp[face]
-    else:
-        by_x[:] = gx[at + 1] - side * gx[at]
-        by_p[:] = gp[at + 1] - side * gp[at]
+        return -side, face, 0.0, face
+    if side * g[face] >= g[at + 1] - side * g[at]:
+        return side, face, 0.0, face
+    return -side, at, 1.0, at + 1
 
 
-@njit(cache=True, nogil=True)
+@kernel
+def violation_gradient(element, m, g, gx, gp, friction_rates, by_x, by_p):
+    """Write the derivatives of `violation` by state and parameter, on its active branch."""
+    if element < len(friction_rates) and m[element] != 0.0:
+        for i in range(len(by_x)):
+            by_x[i] = 0.0
+        for i in range(len(by_p)):
+            by_p[i] = 0.0
+        by_x[friction_rates[element]] = -m[element]
+        return
+    sign, row, limit_sign, limit = _active_guards(element, m, g, len(friction_rates))
+    _fill_difference(sign, row, limit_sign, limit, gx, by_x)
+    _fill_difference(sign, row, limit_sign, limit, gp, by_p)
+
+
+@kernel
 def switch_contacts(m, g, friction_rates):
     """Move every violated contact to its next mode."""
     frictions = len(friction_rates)
@@ -105,7 +112,7 @@ def switch_contacts(m, g, friction_rates):
             m[where + 1] = 1.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def settle(guards, t, x, u, p, m, g, friction_rates, zero_at_rest):
     """Resolve all violated modes at one instant; returns False when that does not end.
 
@@ -121,16 +128,16 @@ def settle(guards, t, x, u, p, m, g, friction_rates, zero_at_rest):
                 for a in range(len(x)):
                     if zero_at_rest[a] == k:
                         x[a] = 0.0
-        guards(t, x, u, p, m, g)
+        call(guards, t, x, u, p, m, g)
         switch_contacts(m, g, friction_rates)
-        guards(t, x, u, p, m, g)
+        call(guards, t, x, u, p, m, g)
         for k in range(frictions):
             if m[k] == 0.0:
                 if g[3 * k] > g[3 * k + 1]:
                     m[k] = 1.0
                 elif -g[3 * k] > g[3 * k + 2]:
                     m[k] = -1.0
-        guards(t, x, u, p, m, g)
+        call(guards, t, x, u, p, m, g)
         if largest_violation(x, m, g, friction_rates) <= 0.0:
             return True
     return False

@@ -9,8 +9,15 @@ from numpy.typing import ArrayLike, NDArray
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation import hybrid
-from ptp_symbolic.simulation.delays import delay_columns, delayed, delays_of
+from ptp_symbolic.simulation.delays import delayed, delays_of
 from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
+from ptp_symbolic.simulation.passage import (
+    METHODS,
+    Accuracy,
+    default_method,
+    pass_through,
+    tolerance_weights,
+)
 
 FloatArray = NDArray[np.float64]
 
@@ -64,41 +71,43 @@ def simulate(
     parameters: Mapping[str, float] | None = None,
     initial: Mapping[str, float] | None = None,
     rtol: float = 1e-8,
-    atol: float = 1e-10,
+    atol: float = 1e-9,
     largest_step: float = 0.1,
+    method: str | None = None,
 ) -> Trajectory:
     """Simulate `model` from 0 to a duration in s (output every ms) or at given `times` [k].
 
-    Inputs that are not given are zero. Raises InputError for unknown names or times that do not
+    Inputs that are not given are zero. rtol and atol bound the error of a step, atol in rad for
+    angles (see `tolerance_weights`); `method` is "rosenbrock" for stiff machines, "runge_kutta"
+    for smooth ones, None to let the model choose. Raises InputError for unknown names or times that do not
     increase, SimulationError when the state diverges or modes switch without end.
     """
     t = output_times(times)
-    table = stack([_signal(model, inputs or {}, name) for name in model.input_names])
     _refuse_unknown("input", inputs or {}, model.input_names)
-    x = start_of(model, initial or {})
-    p = checked_parameters(model, parameters or {})
-    table = delayed(table, delays_of(model, p))
-    m = np.zeros(len(model.mode_names))
-    u = np.zeros(len(model.input_names))
-    hybrid.evaluate_inputs(t[0], 1, *table.arrays, table.new_cursor(), u)
-    module = model.module
-    module.initial_modes(t[0], x, u, p, m)
+    x, p = start_of(model, initial or {}), checked_parameters(model, parameters or {})
+    table = delayed(
+        stack([_signal(model, inputs or {}, n) for n in model.input_names]), delays_of(model, p)
+    )
     inner = table.stops[(table.stops > t[0]) & (table.stops < t[-1])]
-    stops = np.unique(np.concatenate([[t[0]], inner, [t[-1]]]))
-    out_x, n = np.zeros((len(t), len(x))), len(x)
-    none = np.zeros(0, dtype=np.int64)
-    ledger, events = np.zeros((len(t), 3)), np.zeros((EVENT_CAPACITY, 3))
-    status, reached, count, steps = hybrid.integrate(
-        module.mode_derivative, module.jacobian, module.guards, module.guard_jacobian,
-        module.energy, x, m, p, model.friction_rates, model.zero_at_rest, table.arrays, len(u),
-        False, stops, t, out_x, none, delay_columns(model, none), np.zeros((n, 0)),
-        np.zeros((len(t), n, 0)), ledger, rtol, np.full(n, atol), largest_step, events,
+    found = pass_through(
+        model, chosen_method(model, method), p, x, table, table.held,
+        np.concatenate([t[:1], inner, t[-1:]]), t,
+        Accuracy(rtol, atol * tolerance_weights(model), largest_step), ledger=True, event_room=EVENT_CAPACITY,
     )  # fmt: skip
-    refuse_failure(model, status, reached, x)
+    refuse_failure(model, found.status, found.reached, found.state)
     return Trajectory(
-        t, out_x, model.state_names, _named(model, events[: min(count, EVENT_CAPACITY)]),
-        ledger[:, 0], ledger[:, 1], ledger[:, 2], steps,
+        t, found.x, model.state_names, _named(model, found.events), found.ledger[:, 0],
+        found.ledger[:, 1], found.ledger[:, 2], found.steps,
     )  # fmt: skip
+
+
+def chosen_method(model: Model, method: str | None) -> str:
+    """`method`, or the one that suits `model` (None). Raises InputError for an unknown one."""
+    if method is None:
+        return default_method(model)
+    if method not in METHODS:
+        raise InputError(f"Unknown method '{method}'. Choose from: {', '.join(METHODS)}.")
+    return method
 
 
 def output_times(times: float | ArrayLike) -> FloatArray:

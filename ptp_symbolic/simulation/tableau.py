@@ -5,7 +5,6 @@ assumption, Computers and Mathematics with Applications 62 (2011) 770-775, Table
 """
 
 import numpy as np
-from numba import njit
 
 STAGES = 7
 ORDER = 5
@@ -43,20 +42,18 @@ ERROR = np.array(
     ]
 )
 
-
-@njit(cache=True, inline="always")
-def interpolation_weights(s, weights):
-    """Write the weights of the seven stages at the fraction s in [0, 1] of a step."""
-    s2 = s * s
-    weights[0] = (
-        -1.0530884977290216
-        * s
-        * (s - 1.3299890189751412)
-        * (s2 - 1.4364028541716351 * s + 0.7139816917074209)
-    )
-    weights[1] = 0.1017 * s2 * (s2 - 2.1966568338249754 * s + 1.2949852507374631)
-    weights[2] = 2.490627285651252793 * s2 * (s2 - 2.38535645472061657 * s + 1.57803468208092486)
-    weights[3] = -16.54810288924490272 * (s - 1.21712927295533244) * (s - 0.61620406037800089) * s2
-    weights[4] = 47.37952196281928122 * (s - 1.203071208372362603) * (s - 0.658047292653547382) * s2
-    weights[5] = -34.87065786149660974 * (s - 1.2) * (s - 0.666666666666666667) * s2
-    weights[6] = 2.5 * (s - 1.0) * (s - 0.6) * s2
+# Weight of every stage in the powers 1 to 4 of the fraction of a step: the free interpolant.
+INTERPOLANT = np.zeros((4, STAGES))
+for _stage, _factor, _roots, _square in (
+    (0, -1.0530884977290216, (0.0, 1.3299890189751412), (1.4364028541716351, 0.7139816917074209)),
+    (1, 0.1017, (0.0, 0.0), (2.1966568338249754, 1.2949852507374631)),
+    (2, 2.490627285651252793, (0.0, 0.0), (2.38535645472061657, 1.57803468208092486)),
+    (3, -16.54810288924490272, (0.0, 0.0, 1.21712927295533244, 0.61620406037800089), None),
+    (4, 47.37952196281928122, (0.0, 0.0, 1.203071208372362603, 0.658047292653547382), None),
+    (5, -34.87065786149660974, (0.0, 0.0, 1.2, 0.666666666666666667), None),
+    (6, 2.5, (0.0, 0.0, 1.0, 0.6), None),
+):
+    _polynomial = _factor * np.poly(_roots)
+    if _square is not None:
+        _polynomial = np.convolve(_polynomial, [1.0, -_square[0], _square[1]])
+    INTERPOLANT[:, _stage] = _polynomial[3::-1]

@@ -13,11 +13,11 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import chirp
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.inputs import (
     InputSignal,
     constant,
     cubic_transition,
-    evaluate_inputs,
     multisine,
     ramp,
     sine_sweep,

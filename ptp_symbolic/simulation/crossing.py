@@ -1,0 +1,102 @@
+"""Cross an event: settle the modes, and let the tangents jump (Aizerman and Gantmacher, 1958)."""
+
+from ptp_symbolic.simulation.emitted import call
+from ptp_symbolic.simulation.input_values import evaluate_inputs
+from ptp_symbolic.simulation.kernels import copy, inlined, kernel
+from ptp_symbolic.simulation.modes import settle, violation, violation_gradient
+from ptp_symbolic.simulation.outputs import note_switches
+
+GRAZING = 1e-9  # a guard that is only touched has no event time to differentiate
+AHEAD = 1e-7  # s
+
+
+@kernel
+def cross(equations, inputs, t, x, watch, tangents, record):
+    """Settle the modes at t, where one has ended; watch.before holds dx/dt before the event.
+
+    Returns False when the modes switch without end.
+    """
+    m, frictions, ns = watch.m, len(equations.friction_rates), tangents.s.shape[1]
+    elements = len(watch.at_end)
+    evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)
+    copy(m, watch.m_before)
+    by_time = 0.0
+    if ns > 0:
+        by_time = differentiate_guard(equations, inputs, t, x, watch)
+    if not settle(
+        equations.guards, t, x, inputs.u, equations.p, m, watch.g, equations.friction_rates,
+        equations.zero_at_rest,
+    ):  # fmt: skip
+        return False
+    note_switches(t, watch, frictions, elements, record)
+    if ns == 0:
+        return True
+    call(equations.derivative, t, x, inputs.u, equations.p, m, watch.after)
+    for a in range(len(x)):
+        friction = equations.zero_at_rest[a]
+        if friction >= 0 and m[friction] == 0.0 and watch.m_before[friction] != 0.0:
+            tangents.s[a] = 0.0
+            watch.before[a] = 0.0
+    jump_tangents(by_time, watch, tangents)
+    for f in range(frictions):
+        if m[f] == 0.0:
+            tangents.s[equations.friction_rates[f]] = 0.0
+    return True
+
+
+@inlined
+def differentiate_guard(equations, inputs, t, x, watch):
+    """Write the gradient of the guard that ended its mode; returns its derivative by time."""
+    m, p, rates = watch.m, equations.p, equations.friction_rates
+    call(equations.guards, t, x, inputs.u, p, m, watch.g)
+    worst, element = -1e300, 0
+    for candidate in range(len(watch.at_end)):
+        value = violation(candidate, x, m, watch.g, rates)
+        if value > worst:
+            worst, element = value, candidate
+    call(equations.guard_jacobian, t, x, inputs.u, p, m, watch.gx, watch.gp)
+    violation_gradient(element, m, watch.g, watch.gx, watch.gp, rates, watch.by_x, watch.by_p)
+    if inputs.held:
+        return 0.0
+    evaluate_inputs(t + AHEAD, 1, *inputs.table, inputs.cursor, inputs.ahead)
+    call(equations.guards, t, x, inputs.ahead, p, m, watch.g)
+    later = violation(element, x, m, watch.g, rates)
+    call(equations.guards, t, x, inputs.u, p, m, watch.g)
+    return (later - violation(element, x, m, watch.g, rates)) / AHEAD
+
+
+@inlined
+def jump_tangents(by_time, watch, tangents):
+    """Add (f- - f+) dt/dp to the tangents, dt/dp from the guard that ended the mode."""
+    s, columns = tangents.s, tangents.columns
+    n, ns = s.shape
+    slope, size = by_time, abs(by_time)
+    for a in range(n):
+        slope += watch.by_x[a] * watch.before[a]
+        size += abs(watch.by_x[a] * watch.before[a])
+    if abs(slope) <= GRAZING * size:
+        return
+    for c in range(ns):
+        shift = watch.by_p[columns[c]] if c < len(columns) else 0.0
+        for a in range(n):
+            shift += watch.by_x[a] * s[a, c]
+        shift /= -slope
+        for a in range(n):
+            s[a, c] += (watch.before[a] - watch.after[a]) * shift
+
+
+@kernel
+def jump_by_delay(equations, inputs, t, x, u_before, watch, tangents):
+    """Add (f- - f+) to the tangent of every delay whose held input has just changed."""
+    u, s = inputs.u, tangents.s
+    for j in range(len(u)):
+        column = tangents.delay_column[j]
+        if column < 0 or u[j] == u_before[j]:
+            continue
+        now = u[j]
+        call(equations.derivative, t, x, u, equations.p, watch.m, watch.after)
+        u[j] = u_before[j]
+        call(equations.derivative, t, x, u, equations.p, watch.m, watch.before)
+        u[j] = now
+        for a in range(len(x)):
+            s[a, column] += watch.before[a] - watch.after[a]

@@ -1,0 +1,57 @@
+"""Call the functions of an emitted module by address, so that one runner serves every model.
+
+numba passes functions as arguments too, but looks each of them up at every call of the runner,
+which takes longer than a short simulation.
+"""
+
+from functools import lru_cache
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+from numpy.typing import NDArray
+
+_AT = (types.float64, *[types.float64[::1]] * 4)  # t, x, u, p, m
+_VECTOR, _MATRIX = types.float64[::1], types.float64[:, ::1]
+SIGNATURES = {
+    "mode_derivative": types.void(*_AT, _VECTOR),
+    "jacobian": types.void(*_AT, _MATRIX, _MATRIX, _MATRIX),
+    "guards": types.void(*_AT, _VECTOR),
+    "guard_jacobian": types.void(*_AT, _MATRIX, _MATRIX),
+    "energy": types.void(*_AT, _VECTOR),
+}
+DERIVATIVE, JACOBIAN, GUARDS, GUARD_JACOBIAN, ENERGY = range(5)
+
+
+@lru_cache(maxsize=256)
+def addresses(module: ModuleType) -> NDArray[np.int64]:
+    """Addresses [5] of the compiled functions of an emitted module, in the order above.
+
+    The module keeps the functions alive, and the cache keeps the module.
+    """
+    found = []
+    for name, signature in SIGNATURES.items():
+        compiled = getattr(module, name).get_compile_result(signature)
+        name_there = compiled.fndesc.llvm_func_name
+        found.append(compiled.library.get_pointer_to_function(name_there))
+    return np.array(found, dtype=np.int64)
+
+
+@intrinsic
+def call(typing_context: Any, address: Any, *arguments: Any) -> Any:
+    """Call the compiled function at `address` with (t, x, u, p, m, outputs...)."""
+    signature = types.void(*arguments)
+    if signature not in SIGNATURES.values():
+        raise TypeError(f"no emitted function takes {signature}")
+
+    def generate(context: Any, builder: Any, _: Any, values: Any) -> Any:
+        pointer_type = context.call_conv.get_function_type(types.void, arguments).as_pointer()
+        function = builder.inttoptr(values[0], pointer_type)
+        given = cgutils.unpack_tuple(builder, values[1])
+        context.call_conv.call_function(builder, function, types.void, arguments, given)
+        return context.get_dummy_value()
+
+    return types.void(address, types.StarArgTuple(arguments)), generate

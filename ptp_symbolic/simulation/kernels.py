@@ -1,0 +1,159 @@
+"""What the compiled kernels share: their options, and the records that travel between them.
+
+Kernels allocate nothing, so that numba need not count references: counting costs more than the
+arithmetic of a step. They are inlined, so that a record costs nothing either.
+"""
+
+from typing import Any, NamedTuple
+
+from numba import njit, types
+
+KERNEL: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+kernel = njit(**KERNEL)
+inlined = njit(forceinline=True, **KERNEL)
+
+SMALLEST = 1e-60
+TIME, LENGTH = 0, 1
+OUTPUT, EVENTS, STEPS, INSTANT = 0, 1, 2, 3
+
+VECTOR, MATRIX = types.float64[::1], types.float64[:, ::1]
+CUBE, INTEGERS = types.float64[:, :, ::1], types.int64[::1]
+TABLE = types.Tuple((VECTOR, MATRIX, INTEGERS, MATRIX, INTEGERS, MATRIX, INTEGERS))
+
+
+class Equations(NamedTuple):
+    """The emitted functions of a model, its parameters p [np], and where its frictions act.
+
+    friction_rates: state index of the rate of every friction; zero_at_rest [n]: per state the
+    friction that sets it to zero when it comes to rest, or -1.
+    """
+
+    derivative: Any
+    jacobian: Any
+    guards: Any
+    guard_jacobian: Any
+    energy: Any
+    p: Any
+    friction_rates: Any
+    zero_at_rest: Any
+
+
+class Inputs(NamedTuple):
+    """Inputs as an InputTable; `held`: they change at stops only.
+
+    u [nu]: the values asked for last; ahead [nu]: values or slopes at another time.
+    """
+
+    table: Any
+    cursor: Any
+    held: Any
+    u: Any
+    ahead: Any
+
+
+class Step(NamedTuple):
+    """What is known at the start of a step, what an attempt found, and the curve between.
+
+    slope, by_time [n]: dx/dt at the start and its derivative by time alone; stage, k [8, n];
+    end [n]; dense [5, n]: the state as a polynomial in the fraction of the step; fx [n, n],
+    fu [n, nu], fp [n, np] at the start; inverse [n, n] of the matrix of the implicit stages and
+    its row exchanges `order` [n]; point, right [n]: scratch.
+    """
+
+    slope: Any
+    by_time: Any
+    stage: Any
+    k: Any
+    end: Any
+    dense: Any
+    fx: Any
+    fu: Any
+    fp: Any
+    inverse: Any
+    order: Any
+    point: Any
+    right: Any
+
+
+class Watch(NamedTuple):
+    """Guards g, modes m and m_before, and how far every element is past the end of its mode.
+
+    at_start, at_middle, at_end [elements] belong to the step; gx, gp, by_x [n], by_p [np]: the
+    derivatives of guards and of a violation.
+    """
+
+    g: Any
+    m: Any
+    m_before: Any
+    at_start: Any
+    at_middle: Any
+    at_end: Any
+    gx: Any
+    gp: Any
+    by_x: Any
+    by_p: Any
+    before: Any
+    after: Any
+
+
+class Tangents(NamedTuple):
+    """Derivatives s [n, ns] of the state: first by the parameters `columns`, then by others.
+
+    delay_column [nu]: per input the column of its delay, or -1; k [8, n, ns], point, right,
+    along [n, ns]: stages; fx [3, n, n], by [3, n, ns], matrix [n, n], fu, fp: the variational
+    equation along the step.
+    """
+
+    s: Any
+    columns: Any
+    delay_column: Any
+    k: Any
+    point: Any
+    right: Any
+    along: Any
+    fx: Any
+    by: Any
+    matrix: Any
+    fu: Any
+    fp: Any
+
+
+class Record(NamedTuple):
+    """Output at `times` [k]: x [k, n], s [k, n, ns], ledger [k, 3] (or no rows), events [c, 3].
+
+    totals [3]: work so far; powers [4, 3]: stored energy, power in and dissipated power over the
+    step; clock [2]: time, next step length; counts [4]: outputs, events, steps, instant events.
+    """
+
+    times: Any
+    x: Any
+    s: Any
+    ledger: Any
+    events: Any
+    totals: Any
+    powers: Any
+    clock: Any
+    counts: Any
+
+
+@inlined
+def copy(source, target):
+    """Copy a vector."""
+    for i in range(len(target)):
+        target[i] = source[i]
+
+
+@inlined
+def copy_matrix(source, target):
+    """Copy a matrix."""
+    for i in range(target.shape[0]):
+        for j in range(target.shape[1]):
+            target[i, j] = source[i, j]
+
+
+@inlined
+def flush(values):
+    """Set denormal numbers of a vector to zero: they slow every loop."""
+    for i in range(len(values)):
+        if abs(values[i]) < SMALLEST:
+            values[i] = 0.0

@@ -1,0 +1,112 @@
+"""What a run leaves behind: states at the output times, the energy ledger, events."""
+
+from ptp_symbolic.simulation.emitted import call
+from ptp_symbolic.simulation.input_values import evaluate_inputs
+from ptp_symbolic.simulation.kernels import EVENTS, OUTPUT, copy, copy_matrix, inlined, kernel
+from ptp_symbolic.simulation.location import TIME_RESOLUTION
+from ptp_symbolic.simulation.steps import curve
+
+NODES = 0.5 * (1.0 - 0.2**0.5), 0.5 * (1.0 + 0.2**0.5)  # Lobatto, with both ends: order 6
+
+
+@kernel
+def fill_powers(equations, inputs, t, h, m, step, record):
+    """Write stored energy and both powers at the four nodes of the step, then as a cubic."""
+    for node in range(4):
+        fraction = 0.0 if node == 0 else 1.0 if node == 3 else NODES[node - 1]
+        curve(fraction, step, step.point)
+        if not inputs.held:
+            side = -1 if node == 3 else 1
+            evaluate_inputs(t + fraction * h, side, *inputs.table, inputs.cursor, inputs.u)
+        call(
+            equations.energy,
+            t + fraction * h,
+            step.point,
+            inputs.u,
+            equations.p,
+            m,
+            record.powers[node],
+        )
+    for c in range(1, 3):
+        _cubic_through_nodes(record.powers, c)
+
+
+@inlined
+def _cubic_through_nodes(powers, c):
+    """Replace the values of column c at the nodes by the coefficients of the cubic through them."""
+    at, a, b, end = powers[0, c], powers[1, c] - powers[0, c], powers[2, c] - powers[0, c], 0.0
+    end = powers[3, c] - powers[0, c]
+    x, y = NODES
+    # Newton's divided differences through 0, x, y and 1.
+    first = a / x
+    second = ((b - a) / (y - x) - first) / y
+    third = (((end - b) / (1.0 - y) - (b - a) / (y - x)) / (1.0 - x) - second) / 1.0
+    powers[0, c] = at
+    powers[1, c] = first - x * second + x * y * third
+    powers[2, c] = second - (x + y) * third
+    powers[3, c] = third
+
+
+@inlined
+def work_done(fraction, h, powers, c):
+    """Work in J of column c from the start of the step to a fraction of it."""
+    cubic = powers[2, c] / 3.0 + fraction * powers[3, c] / 4.0
+    return h * fraction * (powers[0, c] + fraction * (powers[1, c] / 2.0 + fraction * cubic))
+
+
+@kernel
+def write_inside(equations, inputs, t, h, t_new, m, step, record):
+    """Write the outputs that lie inside the step from t to t_new."""
+    output = record.counts[OUTPUT]
+    while output < len(record.times) and record.times[output] < t_new - TIME_RESOLUTION:
+        time = record.times[output]
+        fraction = (time - t) / h
+        curve(fraction, step, record.x[output])
+        if len(record.ledger) > 0:
+            if not inputs.held:
+                evaluate_inputs(time, 1, *inputs.table, inputs.cursor, inputs.u)
+            _write_ledger(equations, inputs, time, m, output, record)
+            for c in range(1, 3):
+                record.ledger[output, c] += work_done(fraction, h, record.powers, c)
+        output += 1
+    record.counts[OUTPUT] = output
+
+
+@kernel
+def write_here(equations, inputs, t, x, m, tangents, record):
+    """Write the outputs that lie at time t, a stop, with their tangents."""
+    output = record.counts[OUTPUT]
+    while output < len(record.times) and record.times[output] <= t + TIME_RESOLUTION:
+        copy(x, record.x[output])
+        copy_matrix(tangents.s, record.s[output])
+        if len(record.ledger) > 0:
+            _write_ledger(equations, inputs, t, m, output, record)
+        output += 1
+    record.counts[OUTPUT] = output
+
+
+@inlined
+def _write_ledger(equations, inputs, t, m, output, record):
+    call(equations.energy, t, record.x[output], inputs.u, equations.p, m, record.ledger[output])
+    record.ledger[output, 1] = record.totals[1]
+    record.ledger[output, 2] = record.totals[2]
+
+
+@inlined
+def note_switches(t, watch, frictions, elements, record):
+    """Note every element whose mode changed; the count goes on past the room for events."""
+    m, before, events = watch.m, watch.m_before, record.events
+    for element in range(elements):
+        where = element if element < frictions else 2 * element - frictions
+        changed = m[where] != before[where]
+        mode = m[where]
+        if element >= frictions:
+            changed = changed or m[where + 1] != before[where + 1]
+            mode = m[where] * (2.0 - m[where + 1])
+        if changed:
+            count = record.counts[EVENTS]
+            if count < len(events):
+                events[count, 0] = t
+                events[count, 1] = element
+                events[count, 2] = mode
+            record.counts[EVENTS] = count + 1

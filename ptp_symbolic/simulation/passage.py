@@ -1,0 +1,147 @@
+"""Run a model through the compiled runner: room for its records, and what came out."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.simulation import hybrid
+from ptp_symbolic.simulation.emitted import addresses
+from ptp_symbolic.simulation.inputs import InputTable
+from ptp_symbolic.simulation.kernels import EVENTS, STEPS, TIME, Record, Step, Tangents, Watch
+from ptp_symbolic.simulation.rodas5p import STAGES
+from ptp_symbolic.simulation.steps import ROSENBROCK, RUNGE_KUTTA
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+METHODS = {"runge_kutta": RUNGE_KUTTA, "rosenbrock": ROSENBROCK}
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """What a run left: status, time reached in s, state [n] there, and outputs at the times asked.
+
+    x [k, n], s [k, n, ns], ledger [k, 3] (stored, supplied, dissipated in J; no rows if not asked
+    for), events [e, 3] (time, element, mode entered), steps tried.
+    """
+
+    status: int
+    reached: float
+    state: FloatArray
+    x: FloatArray
+    s: FloatArray
+    ledger: FloatArray
+    events: FloatArray
+    steps: int
+
+
+@dataclass(frozen=True, eq=False)
+class Accuracy:
+    """Tolerances of a step, relative and absolute per state [n], and the largest step in s."""
+
+    relative: float
+    absolute: FloatArray
+    largest_step: float
+
+
+def default_method(model: Model) -> str:
+    """`runge_kutta` for rigid bodies alone, `rosenbrock` where drives, friction or contact are.
+
+    A winding or a shaft is a hundred times faster than the motion: an explicit method is held to
+    its pace, an implicit one is not.
+    """
+    bodies = {f"{kind}_{axis}" for kind in ("theta", "omega") for axis in model.module.AXES}
+    smooth = not model.mode_names and set(model.state_names) <= bodies
+    return "runge_kutta" if smooth else "rosenbrock"
+
+
+def tolerance_weights(model: Model) -> FloatArray:
+    """Weight [n] of an absolute tolerance in rad for every state.
+
+    In a geared machine an error of a rate (rad/s) counts a hundredth and any other, such as a
+    current, a thousandth: friction forgets it before it reaches an angle. Free bodies do not.
+    """
+    if default_method(model) == "runge_kutta":
+        return np.ones(len(model.state_names))
+    factors = {"theta": 1.0, "omega": 100.0}
+    return np.array([factors.get(name.partition("_")[0], 1000.0) for name in model.state_names])
+
+
+def pass_through(
+    model: Model,
+    method: str,
+    p: FloatArray,
+    x: FloatArray,
+    inputs: InputTable,
+    held: bool,
+    stops: FloatArray,
+    times: FloatArray,
+    accuracy: Accuracy,
+    s: FloatArray | None = None,
+    columns: IntArray | None = None,
+    delay_column: IntArray | None = None,
+    ledger: bool = False,
+    event_room: int = 0,
+) -> Passage:
+    """Run `model` from the first to the last of `stops`, starting at x [n] with tangents s [n, ns].
+
+    `held` says that inputs change at stops only. With tangents, output times must be stops. The
+    first tangents belong to the parameters `columns`; `delay_column` is per input the tangent of
+    its delay, or -1.
+    """
+    n, nu, module = len(x), len(model.input_names), model.module
+    none = np.zeros(0, dtype=np.int64)
+    s = np.zeros((n, 0)) if s is None else s.copy()
+    tangents = _tangents(
+        s, none if columns is None else columns,
+        np.full(nu, -1) if delay_column is None else delay_column, len(p), nu,
+    )  # fmt: skip
+    x, u, cursor = x.copy(), np.zeros((3, nu)), inputs.new_cursor()
+    watch = _watch(model, n, len(p))
+    hybrid.evaluate_inputs(stops[0], 1, *inputs.arrays, cursor, u[0])
+    module.initial_modes(stops[0], x, u[0], p, watch.m)
+    record = Record(
+        times, np.zeros((len(times), n)), np.zeros((len(times), *s.shape)),
+        np.zeros((len(times) if ledger else 0, 3)), np.zeros((event_room, 3)), np.zeros(3),
+        np.zeros((4, 3)), np.zeros(2), np.zeros(4, dtype=np.int64),
+    )  # fmt: skip
+    status = hybrid.run(
+        METHODS[method], addresses(module), p, model.friction_rates, model.zero_at_rest,
+        inputs.arrays, cursor, held, u, x, stops,
+        np.array([accuracy.relative, accuracy.largest_step]), accuracy.absolute,
+        tuple(_step(n, nu, len(p))), tuple(watch), tuple(tangents), tuple(record),
+    )  # fmt: skip
+    return Passage(
+        status, float(record.clock[TIME]), x, record.x, record.s, record.ledger,
+        record.events[: record.counts[EVENTS]], int(record.counts[STEPS]),
+    )  # fmt: skip
+
+
+def _step(n: int, nu: int, parameters: int) -> Step:
+    z = np.zeros
+    return Step(
+        z(n), z(n), z((STAGES, n)), z((STAGES, n)), z(n), z((5, n)), z((n, n)), z((n, nu)),
+        z((n, parameters)), z((n, n)), z(n, dtype=np.int64), z(n), z(n),
+    )  # fmt: skip
+
+
+def _watch(model: Model, n: int, parameters: int) -> Watch:
+    frictions, modes = len(model.friction_rates), len(model.mode_names)
+    elements = frictions + (modes - frictions) // 2
+    guards, z = 3 * frictions + 4 * (elements - frictions), np.zeros
+    return Watch(
+        z(guards), z(modes), z(modes), z(elements), z(elements), z(elements), z((guards, n)),
+        z((guards, parameters)), z(n), z(parameters), z(n), z(n),
+    )  # fmt: skip
+
+
+def _tangents(
+    s: FloatArray, columns: IntArray, delay_column: IntArray, parameters: int, nu: int
+) -> Tangents:
+    (n, ns), z = s.shape, np.zeros
+    return Tangents(
+        s, columns, delay_column, z((STAGES, n, ns)), z((n, ns)), z((n, ns)), z((n, ns)),
+        z((3, n, n)), z((3, n, ns)), z((n, n)), z((n, nu)), z((n, parameters)),
+    )  # fmt: skip

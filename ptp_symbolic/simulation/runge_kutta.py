@@ -1,0 +1,111 @@
+"""The explicit method: Tsitouras's Runge-Kutta pair, its interpolant and its exact tangents."""
+
+from ptp_symbolic.simulation.emitted import call
+from ptp_symbolic.simulation.input_values import evaluate_input_slopes, evaluate_inputs
+from ptp_symbolic.simulation.kernels import copy, copy_matrix, inlined, kernel
+from ptp_symbolic.simulation.tableau import ERROR, INTERPOLANT, STAGES, A, C
+
+
+@kernel
+def attempt(equations, inputs, t, h, x, m, step):
+    """Try a step of length h in s: fill stages, slopes k and the end point."""
+    n = len(x)
+    copy(x, step.stage[0])
+    copy(step.slope, step.k[0])
+    for i in range(1, STAGES):
+        for a in range(n):
+            total = 0.0
+            for j in range(i):
+                total += A[i, j] * step.k[j, a]
+            step.stage[i, a] = x[a] + h * total
+        if not inputs.held:
+            side = -1 if C[i] == 1.0 else 1
+            evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
+        call(equations.derivative, t + C[i] * h, step.stage[i], inputs.u, equations.p, m, step.k[i])
+    copy(step.stage[STAGES - 1], step.end)
+
+
+@inlined
+def error_of(h, a, step):
+    """Estimated error of state a."""
+    e = 0.0
+    for i in range(STAGES):
+        e += ERROR[i] * step.k[i, a]
+    return h * e
+
+
+@inlined
+def fill_dense(h, x, step):
+    """Write the interpolant of the step as a polynomial in the fraction of the step."""
+    for a in range(len(x)):
+        step.dense[0, a] = x[a]
+        for power in range(4):
+            total = 0.0
+            for i in range(STAGES):
+                total += INTERPOLANT[power, i] * step.k[i, a]
+            step.dense[power + 1, a] = h * total
+
+
+@kernel
+def push_tangents(equations, inputs, t, h, m, step, tangents):
+    """Carry the tangents over an accepted step: the derivative of the step itself."""
+    n, ns = tangents.s.shape
+    for i in range(STAGES - 1):
+        copy_matrix(tangents.s, tangents.point)
+        for j in range(i):
+            factor = h * A[i, j]
+            for a in range(n):
+                for c in range(ns):
+                    tangents.point[a, c] += factor * tangents.k[j, a, c]
+        if not inputs.held:
+            side = -1 if C[i] == 1.0 else 1
+            evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
+            evaluate_input_slopes(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.ahead)
+        call(
+            equations.jacobian,
+            t + C[i] * h,
+            step.stage[i],
+            inputs.u,
+            equations.p,
+            m,
+            step.fx,
+            tangents.fu,
+            tangents.fp,
+        )
+        fill_drive(inputs, tangents, tangents.k[i])
+        add_product(step.fx, tangents.point, tangents.k[i])
+    for a in range(n):
+        for i in range(STAGES - 1):
+            factor = h * A[STAGES - 1, i]
+            for c in range(ns):
+                tangents.s[a, c] += factor * tangents.k[i, a, c]
+
+
+@inlined
+def fill_drive(inputs, tangents, out):
+    """Write what drives the tangents apart from themselves: parameters, and delays of inputs."""
+    n, ns = tangents.s.shape
+    for a in range(n):
+        for c in range(len(tangents.columns)):
+            out[a, c] = tangents.fp[a, tangents.columns[c]]
+        for c in range(len(tangents.columns), ns):
+            out[a, c] = 0.0
+    if inputs.held:
+        return
+    for c in range(len(inputs.u)):
+        column = tangents.delay_column[c]
+        if column >= 0:
+            for a in range(n):
+                out[a, column] -= tangents.fu[a, c] * inputs.ahead[c]
+
+
+@inlined
+def add_product(matrix, vectors, out):
+    """Add matrix [n, n] times vectors [n, ns] to out [n, ns]."""
+    n, ns = vectors.shape
+    for a in range(n):
+        for b in range(n):
+            factor = matrix[a, b]
+            if factor != 0.0:
+                for c in range(ns):
+                    out[a, c] += factor * vectors[b, c]
