@@ -17,8 +17,8 @@ from ptp_symbolic.diagnose.trial import (
 )
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, run_counts
 
-MENDED, ROUNDS = Effort(8, 1e-3, FINE, secants=True), 3
-UNEVEN, NEAR, FAR = 1.12, 3.0, 30.0
+AGAIN, ROUNDS = Effort(8, 1e-3, FINE, secants=True), 3
+UNEVEN, NEAR, FAR = 1.2, 3.0, 30.0
 
 
 def escape(task: Task, trial: Trial) -> Trial:
@@ -28,7 +28,7 @@ def escape(task: Task, trial: Trial) -> Trial:
         if not _is_uneven(best.train):
             break
         before = best.train.cost
-        best = continue_fits(task, [best], MENDED)[0]
+        best = continue_fits(task, [best], AGAIN)[0]
         task.progress(f"leaving a local minimum: {best.train.rms_counts():.3f} counts rms")
         if best.train.cost > 0.998 * before:
             break

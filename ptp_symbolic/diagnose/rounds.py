@@ -9,10 +9,10 @@ from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.scores import Score
 from ptp_symbolic.diagnose.search import (
     BEAM,
-    VISIBLE_SHARE,
     fit_declared,
     scores,
     try_candidates,
+    visible_candidates,
     without_idle,
 )
 from ptp_symbolic.diagnose.trial import Task, Trial, held_out_cost
@@ -34,7 +34,7 @@ def diagnose(task: Task, candidates: Sequence[Candidate]) -> Diagnosis:
     """Find what the declared model lacks; at most two effects at once."""
     base = fit_declared(task)
     scored = scores(task, base, candidates)
-    visible = [c for c in candidates if scored[c.key].share_left >= VISIBLE_SHARE]
+    visible = visible_candidates(task, base, candidates, scored)
     invisible = tuple(c for c in candidates if c not in visible)
     trials = try_candidates(task, [base], visible)
     verdict = decide(task, base, trials)

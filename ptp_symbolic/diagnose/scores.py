@@ -45,16 +45,33 @@ def score(fit: Fit, extra: Sequence[FloatArray]) -> Score:
     if not seen.any():
         return Score(0.0, 1.0, 0.0)
     d = d[:, seen] / np.linalg.norm(d[:, seen], axis=0)
-    scaled = n / np.maximum(np.linalg.norm(n, axis=0), 1e-300)
-    outside = d - scaled @ np.linalg.lstsq(scaled, d, rcond=1e-12)[0] if n.shape[1] else d
-    whole = np.linalg.norm(d, axis=0)
-    left = float(np.max(np.linalg.norm(outside, axis=0) / whole))
+    outside = _outside(d, n)
+    left = float(np.max(np.linalg.norm(outside, axis=0)))
     order, label = np.unique(np.concatenate(labels), return_inverse=True)
     sums = np.zeros((len(order), outside.shape[1]))
     np.add.at(sums, label, outside * r[:, None])
     gradient, middle = sums.sum(axis=0), sums.T @ sums
     statistic = float(gradient @ np.linalg.pinv(middle, hermitian=True) @ gradient)
     return Score(statistic, float(stats.chi2.sf(statistic, outside.shape[1])), left)
+
+
+def share_left(fit: Fit, residuals: Sequence[FloatArray]) -> float:
+    """Share of a change to `residuals` [k * ny] per run that the free parameters cannot absorb."""
+    changes, nuisance = [], []
+    for (_, e), residual in zip(fit.pairs(), residuals, strict=True):
+        changes.append(project_out((residual - e.residual)[:, None], e.by_start))
+        nuisance.append(project_out(e.by_parameter, e.by_start))
+    change = np.vstack(changes)
+    size = float(np.linalg.norm(change))
+    return float(np.linalg.norm(_outside(change, np.vstack(nuisance)))) / size if size else 0.0
+
+
+def _outside(columns: FloatArray, nuisance: FloatArray) -> FloatArray:
+    """The part of `columns` [k, nc] that the columns of `nuisance` [k, nn] do not span."""
+    if not nuisance.shape[1]:
+        return columns
+    scaled = nuisance / np.maximum(np.linalg.norm(nuisance, axis=0), 1e-300)
+    return columns - scaled @ np.linalg.lstsq(scaled, columns, rcond=1e-12)[0]
 
 
 def mean_square(pairs: Pairs) -> float:

@@ -5,7 +5,7 @@ Poor candidates are dropped after a few iterations, in rounds that do not depend
 faster.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.escape import escape
-from ptp_symbolic.diagnose.scores import Score, score
+from ptp_symbolic.diagnose.scores import Score, score, share_left
 from ptp_symbolic.diagnose.starts import first_round
 from ptp_symbolic.diagnose.trial import (
     COARSE,
@@ -29,16 +29,17 @@ from ptp_symbolic.diagnose.trial import (
 )
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.evaluate import evaluate
-from ptp_symbolic.identify.fit import Effort, fit_parameters
+from ptp_symbolic.identify.fit import Effort, all_values_at_start, fit_parameters
 from ptp_symbolic.identify.run import Run
 
 FloatArray = NDArray[np.float64]
 
 FIRST = Effort(5, 3e-3, COARSE, 0.3)
 DECLARED = Effort(8, 1e-2, COARSE, 0.3)
+MENDED = Effort(10, 2e-3, COARSE, secants=True)
 HELD_OUT = Effort(10, 1e-4, FINE)
-DROP_FACTOR, CLOSE_FACTOR = 25.0, 9.0
-KEPT_AFTER_FIRST, POLISHED, BEAM = 6, 4, 3
+DROP_FACTOR, CLOSE_FACTOR = 25.0, 4.0
+KEPT_AFTER_FIRST, POLISHED, FINISHED, BEAM = 6, 4, 3, 3
 VISIBLE_SHARE = 0.03
 
 
@@ -49,11 +50,11 @@ def fit_declared(task: Task) -> Trial:
         fit_parameters(task.model, task.train, free, task.fixed, None, DECLARED, task.executor)
         for free in (task.free, tuple(_shifted(f) for f in task.free))
     ]
-    best = min(fits, key=lambda fit: fit.cost)
-    last = fit_parameters(
-        task.model, task.train, restarted(best), task.fixed, best.z, LAST, task.executor
-    )
-    return judge(task, escape(task, Trial((), min(best, last, key=lambda fit: fit.cost))))
+    trial = Trial((), min(fits, key=lambda fit: fit.cost))
+    for effort in (MENDED, LAST):
+        trial = continue_fits(task, [trial], effort)[0]
+        task.progress(f"fitting the declared model: {trial.train.rms_counts():.3f} counts rms")
+    return judge(task, escape(task, trial))
 
 
 def _shifted(free: FreeParameter) -> FreeParameter:
@@ -78,9 +79,12 @@ def try_candidates(
     second = continue_fits(task, _best(first, KEPT_AFTER_FIRST, DROP_FACTOR), FIRST)
     third = continue_fits(task, _best(second, POLISHED, DROP_FACTOR), NEXT)
     task.progress("polishing the best candidates")
-    polished = continue_fits(task, _best(third, POLISHED, CLOSE_FACTOR), LAST)
+    polished = continue_fits(task, _best(third, FINISHED, CLOSE_FACTOR), LAST)
     polished = [escape(task, t) if t is polished[0] else t for t in polished]
     judged = [judge(task, trial) for trial in polished]
+    for trial in sorted(judged, key=held_out_cost):
+        error = np.sqrt(held_out_cost(trial))
+        task.progress(f"{' + '.join(trial.keys)}: {error:.3f} counts rms on held-out runs")
     dropped = [t for t in (*third, *second, *first) if t.keys not in {j.keys for j in judged}]
     unique = {t.keys: t for t in reversed(dropped)}
     ordered = sorted(unique.values(), key=lambda t: t.train.cost)
@@ -103,6 +107,33 @@ def scores(task: Task, base: Trial, candidates: Sequence[Candidate]) -> dict[str
         c.key: score(base.train, [d[:, [wanted.index(n) for n in c.parameters]] for d in by_run])
         for c in candidates
     }
+
+
+def visible_candidates(
+    task: Task, base: Trial, candidates: Sequence[Candidate], scored: Mapping[str, Score]
+) -> list[Candidate]:
+    """Candidates that the declared parameters cannot absorb.
+
+    Where the score says absorbed, the response to a start of finite size decides: the derivative of
+    an effect that only moves breakaways or bounces tells nothing where the effect vanishes.
+    """
+
+    def is_visible(candidate: Candidate) -> bool:
+        if scored[candidate.key].share_left >= VISIBLE_SHARE:
+            return True
+        values = {**base.train.values, **all_values_at_start(candidate.starts[0])}
+        p = task.model.parameter_vector(values)
+        none = np.zeros(0, dtype=np.int64)
+        changed = [
+            evaluate(task.model, run, p, z, none, False, COARSE)
+            for run, z in zip(base.train.runs, base.train.z, strict=True)
+        ]
+        if any(e.failed for e in changed):
+            return True
+        return share_left(base.train, [e.residual for e in changed]) >= VISIBLE_SHARE
+
+    seen = list(task.executor.map(is_visible, candidates))
+    return [c for c, visible in zip(candidates, seen, strict=True) if visible]
 
 
 def _best(trials: Sequence[Trial], count: int, factor: float) -> list[Trial]:

@@ -17,8 +17,8 @@ from ptp_symbolic.runtime.model import Model
 Progress = Callable[[str], None]
 
 COARSE, FINE = Tolerance(1e-4, 1e-6), Tolerance(1e-5, 1e-7)
-NEXT = Effort(14, 1e-3, COARSE, 0.5, secants=True)
-LAST = Effort(20, 1e-4, FINE)
+NEXT = Effort(10, 2e-3, COARSE, 0.5, secants=True)
+LAST = Effort(10, 3e-4, FINE, secants=True)
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,7 +29,8 @@ GAP_PLACES = (-0.9, -0.45, 0.45, 0.9)
 
 @dataclass(frozen=True)
 class Effort:
-    """How hard to search: iterations, relative gain at which to stop, simulation tolerance.
+    """How hard to search: iterations, relative gain at which to stop, simulation tolerance, and
+    how many steps in a row may be rejected.
 
     `prior_sigma` holds parameters with a table value (see `FreeParameter.table`) near it, as a
     natural logarithm. `secants` mends derivatives that mislead (see `identify.secants`).
@@ -40,6 +41,7 @@ class Effort:
     tolerance: Tolerance = DEFAULT_TOLERANCE
     prior_sigma: float | None = None
     secants: bool = False
+    rejections: int = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +95,7 @@ def fit_parameters(
         return _fit_starts(model, runs, fixed, start_z, effort, executor)
     problem = _problem(model, runs, free, fixed, effort, executor)
     phi = to_search(free, {f.name: f.start for f in free})
-    best = minimise(problem, phi, start_z, effort.iterations, effort.gain)
+    best = minimise(problem, phi, start_z, effort.iterations, effort.gain, effort.rejections)
     values = {**fixed, **all_values(free, best.phi)}
     return Fit(
         model, tuple(runs), tuple(free), values, tuple(best.z), best.cost,

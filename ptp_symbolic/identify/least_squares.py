@@ -19,7 +19,6 @@ Evaluate = Callable[[FloatArray, Sequence[FloatArray], bool], list[Evaluation]]
 
 LARGEST_STEP = 1.0
 FIRST_DAMPING = 1e-3
-LARGEST_REJECTIONS = 5
 TOO_STEEP = 1e15
 MANY_RUNS, BEND, NEARBY = 20, 2.5, 8.0
 
@@ -105,8 +104,10 @@ def minimise(
     z: Sequence[FloatArray],
     iterations: int = 30,
     gain: float = 1e-5,
+    rejections: int = 5,
 ) -> Optimum:
-    """Minimise from (phi, z); stops when two steps in a row gain less than the share `gain`.
+    """Minimise from (phi, z) until two steps in a row gain less than the share `gain`, or until
+    `rejections` ever shorter steps in a row gain nothing.
 
     Priors of phi and z are weighed by the mean square residual: strong while the model is far off,
     so that declared parameters and starts do not bend to stand in for an effect, and weak at the
@@ -127,7 +128,7 @@ def minimise(
         mean_square = sum(_loss(e, bend) for e in now) / size
         weight, scale = problem.prior_precision * mean_square, max(1.0, mean_square)
         cost = cost_of(problem, now, z, bend, scale)
-        for _rejection in range(LARGEST_REJECTIONS):
+        for _rejection in range(rejections):
             step, steps_z = _step(problem, now, phi, z, damping, weight, bend, scale)
             trial = np.clip(phi + step, problem.lower, problem.upper)
             trial_z = [

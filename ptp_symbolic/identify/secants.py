@@ -36,16 +36,20 @@ def secants(
     """
     chosen: list[Shift] | None = None
 
+    def shifted(
+        phi: FloatArray, z: Sequence[FloatArray], shift: Shift, step: float
+    ) -> tuple[float, FloatArray | None]:
+        run, column = shift
+        moved = phi.copy()
+        moved[column] = np.clip(phi[column] + step, lower[column], upper[column])
+        return moved[column], residual(run, moved, z[run])
+
     def difference(
         phi: FloatArray, z: Sequence[FloatArray], evaluations: Sequence[Evaluation], shift: Shift
     ) -> FloatArray:
         run, column = shift
-        ends = []
-        for sign in (1.0, -1.0):
-            moved = phi.copy()
-            moved[column] = np.clip(phi[column] + sign * STEP, lower[column], upper[column])
-            ends.append((moved[column], residual(run, moved, z[run])))
-        (high, above), (low, below) = ends
+        high, above = shifted(phi, z, shift, STEP)
+        low, below = shifted(phi, z, shift, -STEP)
         if above is None or below is None or high <= low:
             return evaluations[run].by_parameter[:, column]
         return (above - below) / (high - low)
