@@ -17,7 +17,6 @@ def cross(equations, inputs, t, x, watch, tangents, record):
     Returns False when the modes switch without end.
     """
     m, frictions, ns = watch.m, len(equations.friction_rates), tangents.s.shape[1]
-    elements = len(watch.at_end)
     evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)
     copy(m, watch.m_before)
     by_time = 0.0
@@ -28,7 +27,7 @@ def cross(equations, inputs, t, x, watch, tangents, record):
         equations.zero_at_rest,
     ):  # fmt: skip
         return False
-    note_switches(t, watch, frictions, elements, record)
+    note_switches(t, m, watch.m_before, frictions, record)
     if ns == 0:
         return True
     call(equations.derivative, t, x, inputs.u, equations.p, m, watch.after)

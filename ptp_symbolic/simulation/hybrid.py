@@ -12,10 +12,14 @@ from numba import njit, types
 from ptp_symbolic.simulation.crossing import cross, jump_by_delay
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.kernels import (
+    CHATTERING,
     CUBE,
+    DIVERGED,
+    DONE,
     INSTANT,
     INTEGERS,
     KERNEL,
+    LARGEST_STATE,
     LENGTH,
     MATRIX,
     STEPS,
@@ -57,11 +61,9 @@ from ptp_symbolic.simulation.steps import (
     push_tangents,
 )
 
-DONE, DIVERGED, CHATTERING = 0, 1, 2
 MAX_INSTANT_EVENTS = 100
 SHORTEST = 1e-11  # s
 INSTANT_STEP = 1e-10  # s
-LARGEST_STATE = 1e12
 
 _V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
 _STEP = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _I, _V, _V))
@@ -82,7 +84,7 @@ def enter(equations, inputs, t, x, watch, record):
         equations.zero_at_rest,
     ):  # fmt: skip
         return False
-    note_switches(t, watch, len(equations.friction_rates), elements, record)
+    note_switches(t, watch.m, watch.m_before, len(equations.friction_rates), record)
     fill_violations(equations, inputs, t, x, watch, watch.at_start)
     return True
 

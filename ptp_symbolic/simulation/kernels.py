@@ -13,6 +13,8 @@ kernel = njit(**KERNEL)
 inlined = njit(forceinline=True, **KERNEL)
 
 SMALLEST = 1e-60
+DONE, DIVERGED, CHATTERING, UNDECIDED = 0, 1, 2, 3
+LARGEST_STATE = 1e12
 TIME, LENGTH = 0, 1
 OUTPUT, EVENTS, STEPS, INSTANT = 0, 1, 2, 3
 

@@ -3,6 +3,7 @@
 from ptp_symbolic.simulation.emitted import call
 from ptp_symbolic.simulation.input_values import evaluate_input_slopes, evaluate_inputs
 from ptp_symbolic.simulation.kernels import copy, copy_matrix, inlined, kernel
+from ptp_symbolic.simulation.linear import invert
 from ptp_symbolic.simulation.rodas5p import COUPLING, GAMMA, STAGES, A, C, D, H
 from ptp_symbolic.simulation.runge_kutta import add_product, fill_drive
 
@@ -29,53 +30,6 @@ def begin(equations, inputs, t, x, m, step):
         for a in range(n):
             for c in range(len(inputs.ahead)):
                 step.by_time[a] += step.fu[a, c] * inputs.ahead[c]
-
-
-@inlined
-def _is_coupled(a, row):
-    """Whether a row has more than its diagonal: one that rests must not be touched by rounding."""
-    coupled = False
-    for j in range(a.shape[0]):
-        coupled = coupled or (j != row and a[row, j] != 0.0)
-    return coupled
-
-
-@kernel
-def invert(fx, rate, a, order):
-    """Write the inverse of rate I - fx into a [n, n]; rows are exchanged as `order` [n] records.
-
-    Eight products follow with every inverse: for a dozen states they cost less than
-    substitutions, which wait for one division after the other.
-    """
-    n = a.shape[0]
-    for i in range(n):
-        for j in range(n):
-            a[i, j] = -fx[i, j]
-        a[i, i] += rate
-    for c in range(n):
-        pivot = c
-        if _is_coupled(a, c):
-            for i in range(c + 1, n):
-                if abs(a[i, c]) > abs(a[pivot, c]):
-                    pivot = i
-        order[c] = pivot
-        if pivot != c:
-            for j in range(n):
-                a[c, j], a[pivot, j] = a[pivot, j], a[c, j]
-        scale = 1.0 / a[c, c]
-        a[c, c] = 1.0
-        for j in range(n):
-            a[c, j] *= scale
-        for i in range(n):
-            factor = a[i, c]
-            if i != c and factor != 0.0:
-                a[i, c] = 0.0
-                for j in range(n):
-                    a[i, j] -= factor * a[c, j]
-    for c in range(n - 1, -1, -1):
-        if order[c] != c:
-            for i in range(n):
-                a[i, c], a[i, order[c]] = a[i, order[c]], a[i, c]
 
 
 @kernel
