@@ -8,6 +8,61 @@ from ptp_symbolic.simulation.kernels import inlined, kernel
 
 
 @inlined
+def add_stages(i, weights, scale, k, out):
+    """Add the stages k [8, length] before i with their weights [8, 8] to out [length].
+
+    Four at a time: weights past the diagonal are zero.
+    """
+    for j in range(0, i, 4):
+        a, b = scale * weights[i, j], scale * weights[i, j + 1]
+        c, d = scale * weights[i, j + 2], scale * weights[i, j + 3]
+        ka, kb, kc, kd = k[j], k[j + 1], k[j + 2], k[j + 3]
+        for e in range(len(out)):
+            out[e] += (a * ka[e] + b * kb[e]) + (c * kc[e] + d * kd[e])
+
+
+@inlined
+def add_columns(matrix, vector, out):
+    """Add the columns of a matrix, given as rows [m, n], weighted by vector [m], to out [n]."""
+    count = len(vector)
+    for j in range(0, count - 3, 4):
+        a, b, c, d = vector[j], vector[j + 1], vector[j + 2], vector[j + 3]
+        ma, mb, mc, md = matrix[j], matrix[j + 1], matrix[j + 2], matrix[j + 3]
+        for e in range(len(out)):
+            out[e] += (a * ma[e] + b * mb[e]) + (c * mc[e] + d * md[e])
+    for j in range(count - count % 4, count):
+        a, ma = vector[j], matrix[j]
+        if a != 0.0:
+            for e in range(len(out)):
+                out[e] += a * ma[e]
+
+
+@inlined
+def add_product(matrix, vectors, out):
+    """Add matrix [n, n] times vectors to out, both [n * columns] row by row."""
+    n = matrix.shape[0]
+    width = len(out) // n
+    rows = vectors.reshape(n, width)
+    for a in range(n):
+        add_columns(rows, matrix[a], out[a * width : (a + 1) * width])
+
+
+@inlined
+def add_sparse_product(matrix, vectors, out):
+    """Add matrix [n, n], most of whose entries are zero, times vectors [n * columns] to out."""
+    n = matrix.shape[0]
+    width = len(out) // n
+    for a in range(n):
+        row = out[a * width : (a + 1) * width]
+        for b in range(n):
+            factor = matrix[a, b]
+            if factor != 0.0:
+                column = vectors[b * width : (b + 1) * width]
+                for c in range(width):
+                    row[c] += factor * column[c]
+
+
+@inlined
 def _is_coupled(a, row):
     """Whether a row has more than its diagonal."""
     coupled = False
@@ -17,8 +72,8 @@ def _is_coupled(a, row):
 
 
 @kernel
-def invert(fx, rate, a, order):
-    """Write the inverse of rate I - fx into a [n, n]; rows are exchanged as `order` [n] records.
+def invert(fx, rate, a, order, transposed):
+    """Write the inverse of rate I - fx into a [n, n] and, by columns, into transposed [n, n].
 
     Eight products follow with every inverse: for a dozen states they cost less than
     substitutions, which wait for one division after the other.
@@ -52,6 +107,9 @@ def invert(fx, rate, a, order):
         if order[c] != c:
             for i in range(n):
                 a[i, c], a[i, order[c]] = a[i, order[c]], a[i, c]
+    for i in range(n):
+        for j in range(n):
+            transposed[j, i] = a[i, j]
 
 
 @kernel
