@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation import hybrid
 from ptp_symbolic.simulation.delays import delay_columns, delayed, delays_of
+from ptp_symbolic.simulation.kernels import DONE
 from ptp_symbolic.simulation.passage import Accuracy, default_method, pass_through
 
 FloatArray = NDArray[np.float64]
@@ -127,9 +127,7 @@ def evaluate(
     steps, ns, module = len(run.time), found.s.shape[2], model.module
     y = np.zeros((steps, len(model.output_names)))
     r, j = np.zeros(run.size), np.zeros((run.size, ns))
-    failed = (
-        None if found.status == hybrid.DONE else f"{run.name}: stopped at {found.reached:.4f} s"
-    )
+    failed = None if found.status == DONE else f"{run.name}: stopped at {found.reached:.4f} s"
     if failed is None:
         _compare(
             module.outputs, module.output_jacobian, run.time, found.x, found.s, run.held_inputs, p,

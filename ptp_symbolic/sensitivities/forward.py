@@ -1,7 +1,7 @@
 """Forward sensitivities of states and measured signals, through located events.
 
-The tangents follow the variational equation with the method of the run itself; at an event they jump
-by the change of the vector field times the shift of the event (Aizerman and Gantmacher, 1958).
+The tangents follow the variational equation with the method of the run itself; at an event they
+jump by the change of the vector field times the shift of the event (Aizerman and Gantmacher, 1958).
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.delays import delay_columns, delayed, delays_of
 from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
-from ptp_symbolic.simulation.passage import Accuracy, pass_through, tolerance_weights
+from ptp_symbolic.simulation.passage import METHODS, Accuracy, pass_through, tolerance_weights
 from ptp_symbolic.simulation.run import (
     checked_parameters,
     chosen_method,
@@ -57,7 +57,8 @@ def sensitivity(
 ) -> Sensitivities:
     """Derivatives by parameters (None: all) and by initial states, at `times` as in `simulate`.
 
-    Tolerances and `method` are as in `simulate` too. Raises InputError for unknown names and SimulationError when the simulation cannot go on.
+    Tolerances and `method` are as in `simulate` too. Raises InputError for unknown names and
+    SimulationError when the simulation cannot go on.
     """
     t = output_times(times)
     given = inputs or {}
@@ -75,7 +76,7 @@ def sensitivity(
         np.concatenate([t, table.stops[(table.stops > t[0]) & (table.stops < t[-1])]])
     )
     found = pass_through(
-        model, chosen_method(model, method), p, x, table, table.held, stops, t,
+        model, chosen_method(model, method, tuple(METHODS)), p, x, table, table.held, stops, t,
         Accuracy(rtol, atol * tolerance_weights(model), largest_step), s, columns,
         delay_columns(model, columns),
     )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from ptp_symbolic.simulation.emitted import call
 from ptp_symbolic.simulation.input_values import evaluate_inputs
-from ptp_symbolic.simulation.kernels import copy, inlined, kernel
+from ptp_symbolic.simulation.kernels import clear, copy, inlined, kernel
 from ptp_symbolic.simulation.modes import settle, violation, violation_gradient
 from ptp_symbolic.simulation.outputs import note_switches
 
@@ -16,8 +16,7 @@ def cross(equations, inputs, t, x, watch, tangents, record):
 
     Returns False when the modes switch without end.
     """
-    m, frictions, ns = watch.m, len(equations.friction_rates), tangents.s.shape[1]
-    elements = len(watch.at_end)
+    m, frictions, ns = watch.m, len(equations.friction_rates), tangents.table.shape[1]
     evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)
     copy(m, watch.m_before)
     by_time = 0.0
@@ -28,19 +27,19 @@ def cross(equations, inputs, t, x, watch, tangents, record):
         equations.zero_at_rest,
     ):  # fmt: skip
         return False
-    note_switches(t, watch, frictions, elements, record)
+    note_switches(t, m, watch.m_before, frictions, record)
     if ns == 0:
         return True
     call(equations.derivative, t, x, inputs.u, equations.p, m, watch.after)
     for a in range(len(x)):
         friction = equations.zero_at_rest[a]
         if friction >= 0 and m[friction] == 0.0 and watch.m_before[friction] != 0.0:
-            tangents.s[a] = 0.0
+            clear(tangents.table[a])
             watch.before[a] = 0.0
     jump_tangents(by_time, watch, tangents)
     for f in range(frictions):
         if m[f] == 0.0:
-            tangents.s[equations.friction_rates[f]] = 0.0
+            clear(tangents.table[equations.friction_rates[f]])
     return True
 
 
@@ -68,7 +67,7 @@ def differentiate_guard(equations, inputs, t, x, watch):
 @inlined
 def jump_tangents(by_time, watch, tangents):
     """Add (f- - f+) dt/dp to the tangents, dt/dp from the guard that ended the mode."""
-    s, columns = tangents.s, tangents.columns
+    s, columns = tangents.table, tangents.columns
     n, ns = s.shape
     slope, size = by_time, abs(by_time)
     for a in range(n):
@@ -88,7 +87,7 @@ def jump_tangents(by_time, watch, tangents):
 @kernel
 def jump_by_delay(equations, inputs, t, x, u_before, watch, tangents):
     """Add (f- - f+) to the tangent of every delay whose held input has just changed."""
-    u, s = inputs.u, tangents.s
+    u, s = inputs.u, tangents.table
     for j in range(len(u)):
         column = tangents.delay_column[j]
         if column < 0 or u[j] == u_before[j]:

@@ -18,8 +18,10 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation import signatures
+from ptp_symbolic.simulation.emitted import addresses, call
 from ptp_symbolic.simulation.implicit_step import (
+    StepWork,
+    allow_all,
     choose_start_modes,
     correct_a_mode,
     fixed_mode_step,
@@ -27,149 +29,202 @@ from ptp_symbolic.simulation.implicit_step import (
 )
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.inputs import InputTable
+from ptp_symbolic.simulation.kernels import (
+    CUBE,
+    DIVERGED,
+    DONE,
+    EVENTS,
+    INSTANT,
+    INTEGERS,
+    KERNEL,
+    LARGEST_STATE,
+    MATRIX,
+    OUTPUT,
+    SMALLEST,
+    STEPS,
+    TABLE,
+    TIME,
+    UNDECIDED,
+    VECTOR,
+    Equations,
+    Inputs,
+    Record,
+    copy,
+    inlined,
+    kernel,
+)
+from ptp_symbolic.simulation.outputs import note_switches
 
 FloatArray = NDArray[np.float64]
 
-DONE, DIVERGED, UNDECIDED = 0, 1, 2
 MOST_STEPS = 1e9
-NEGLIGIBLE = 1e-60  # flushed to zero, as denormal numbers are slow
 
-_V, _M, _I = types.float64[::1], types.float64[:, ::1], types.int64[::1]
+_V, _M, _I = VECTOR, MATRIX, INTEGERS
+_WORK = types.Tuple((_M, _M, _M, _M, _I, _V, _V, _V, _V, _V, types.int64[:, ::1]))
+_RECORD = types.Tuple((_V, _M, CUBE, _M, _M, _V, _M, _V, _I))
+
+
+@kernel
+def take_step(equations, inputs, t, t_end, x, m, work, record):
+    """Step from t to t_end in s; inputs.ahead holds the inputs at t. Returns a status."""
+    h, rates, u = t_end - t, equations.friction_rates, inputs.u
+    if not inputs.held:
+        evaluate_inputs(t_end, -1, *inputs.table, inputs.cursor, u)
+    fixed_mode_step(equations, t, h, x, inputs.ahead, u, m, work)
+    if len(m) > 0:
+        call(equations.guards, t_end, work.end, u, equations.p, m, work.g)
+        copy(m, work.was)
+        allow_all(work.refused)
+        if correct_a_mode(work.end, m, work.g, rates, work.refused):
+            copy(work.was, m)
+            sweeps = mode_finding_step(equations, t, h, x, u, m, work)
+            if sweeps == 0:
+                return UNDECIDED
+            record.counts[INSTANT] = max(record.counts[INSTANT], sweeps)
+            note_switches(t_end, m, work.was, len(rates), record)
+    if len(record.ledger) > 0:
+        add_work(equations, t, t_end, x, inputs.ahead, u, m, work.end, record)
+    for i in range(len(x)):
+        if not abs(work.end[i]) < LARGEST_STATE:
+            return DIVERGED
+        x[i] = work.end[i] if abs(work.end[i]) > SMALLEST else 0.0
+    copy(u, inputs.ahead)
+    record.counts[STEPS] += 1
+    return DONE
+
+
+@inlined
+def add_work(equations, t, t_end, x, u, u_end, m, end, record):
+    """Add the work of the step, by the trapezoidal rule over the powers at its ends."""
+    call(equations.energy, t, x, u, equations.p, m, record.powers[0])
+    call(equations.energy, t_end, end, u_end, equations.p, m, record.powers[1])
+    for c in range(1, 3):
+        record.totals[c] += 0.5 * (t_end - t) * (record.powers[0, c] + record.powers[1, c])
+
+
+@inlined
+def write_output(equations, t, x, u, m, record):
+    """Write state and ledger at t."""
+    output = record.counts[OUTPUT]
+    copy(x, record.x[output])
+    if len(record.ledger) > 0:
+        call(equations.energy, t, x, u, equations.p, m, record.ledger[output])
+        record.ledger[output, 1] = record.totals[1]
+        record.ledger[output, 2] = record.totals[2]
+    record.counts[OUTPUT] = output + 1
 
 
 @njit(
-    types.Tuple((types.int64, types.float64, types.int64, types.int64))(
-        signatures.MODE_DERIVATIVE,
-        signatures.JACOBIAN,
-        signatures.GUARDS,
-        _V,  # x, changed in place
-        _V,  # modes, written
+    types.int64(
+        _I,  # addresses of the emitted functions
         _V,  # parameters
         _I,  # state index of the rate of every friction
         _I,  # per state the friction that sets it to zero when it comes to rest, or -1
-        types.Tuple((_V, _M, _I, _M, _I, _M, _I)),  # the input table
-        types.int64,  # number of inputs
+        TABLE,
+        _I,  # cursor [nu]
         types.boolean,  # inputs are held between times
-        _V,  # times, increasing; inputs jump at no other time
+        _M,  # inputs: at the end and at the start of a step [2, nu]
+        _V,  # x, changed in place
+        _V,  # modes, changed in place
         types.float64,  # step in s: every interval is cut into equal steps of at most this length
-        _M,  # out: states [times, n]
-        _M,  # out: modes [times, modes]
+        _WORK,
+        _RECORD,
     ),
     cache=True,
-    nogil=True,
-    error_model="numpy",
+    **KERNEL,
 )
-def integrate_fixed(
-    derivative, jacobian, guards, x, m, p, friction_rates, zero_at_rest, table, input_count, held,
-    times, step, out_x, out_m,
-):  # fmt: skip
-    """Integrate from the first to the last time.
-
-    Returns (status, time reached in s, steps, most mode sets tried in one step).
-    """
-    n, frictions = len(x), len(friction_rates)
-    contacts = (len(m) - frictions) // 2
-    fx, fu, fp = np.zeros((n, n)), np.zeros((n, input_count)), np.zeros((n, len(p)))
-    work = (fx, fu, fp, np.zeros((n, n)), np.zeros(n, dtype=np.int64))
-    k1, k2, end, was = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(len(m))
-    g = np.zeros(3 * frictions + 4 * contacts)
-    refused = np.zeros((frictions, 2), dtype=np.bool_)
-    u_start, u_end = np.zeros(input_count), np.zeros(input_count)
-    cursor = np.zeros(input_count, dtype=np.int64)
-    steps, most_sweeps = 0, 0
-    evaluate_inputs(times[0], 1, *table, cursor, u_start)
-    if not choose_start_modes(guards, times[0], x, u_start, p, m, g, friction_rates, refused):
-        return UNDECIDED, times[0], steps, most_sweeps
-    out_x[0] = x
-    out_m[0] = m
-    for interval in range(1, len(times)):
-        begin, length = times[interval - 1], times[interval] - times[interval - 1]
+def run_fixed(
+    functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, m, step, work, record
+):
+    """Integrate from the first to the last output time; inputs jump at no other time."""
+    equations = Equations(
+        functions[0], functions[1], functions[2], functions[3], functions[4], p, friction_rates,
+        zero_at_rest,
+    )  # fmt: skip
+    inputs, work, record = (
+        Inputs(table, cursor, held, u[0], u[1]), StepWork(*work), Record(*record),
+    )  # fmt: skip
+    times = record.times
+    for interval in range(len(times)):
+        begin = times[interval]
+        evaluate_inputs(begin, 1, *inputs.table, inputs.cursor, inputs.ahead)
+        if interval == 0 and not choose_start_modes(equations, begin, x, inputs.ahead, m, work):
+            return UNDECIDED
+        write_output(equations, begin, x, inputs.ahead, m, record)
+        if interval + 1 == len(times):
+            break
+        copy(inputs.ahead, inputs.u)
+        length = times[interval + 1] - begin
         count = max(1, int(np.ceil(length / step - 1e-9)))
         h = length / count
-        evaluate_inputs(begin, 1, *table, cursor, u_start)
-        u_end[:] = u_start
         for index in range(count):
-            t = begin + index * h
-            t_end = begin + (index + 1) * h if index + 1 < count else times[interval]
-            if not held:
-                evaluate_inputs(t_end, -1, *table, cursor, u_end)
-            fixed_mode_step(
-                derivative, jacobian, t, h, x, u_start, u_end, p, m, friction_rates, work, k1, k2,
-                end,
-            )  # fmt: skip
-            if len(g) > 0:
-                guards(t_end, end, u_end, p, m, g)
-                was[:] = m
-                refused[:] = False
-                if correct_a_mode(end, m, g, friction_rates, refused):
-                    m[:] = was
-                    sweeps = mode_finding_step(
-                        derivative, jacobian, guards, t, h, x, u_end, p, m, friction_rates,
-                        zero_at_rest, work, k1, g, was, refused, end,
-                    )  # fmt: skip
-                    if sweeps == 0:
-                        return UNDECIDED, t, steps, most_sweeps
-                    most_sweeps = max(most_sweeps, sweeps)
-            for i in range(n):
-                if not abs(end[i]) < 1e12:
-                    return DIVERGED, t, steps, most_sweeps
-                x[i] = end[i] if abs(end[i]) > NEGLIGIBLE else 0.0
-            u_start[:] = u_end
-            steps += 1
-        out_x[interval] = x
-        out_m[interval] = m
-    return DONE, times[-1], steps, most_sweeps
+            t, last = begin + index * h, index + 1 == count
+            t_end = times[interval + 1] if last else begin + (index + 1) * h
+            status = take_step(equations, inputs, t, t_end, x, m, work, record)
+            if status != DONE:
+                record.clock[TIME] = t
+                return status
+    record.clock[TIME] = times[-1]
+    return DONE
 
 
 @dataclass(frozen=True, eq=False)
-class FixedStepTrajectory:
-    """States x [k, n] and modes [k, modes] at times t [k] in s.
+class FixedPassage:
+    """What steps of fixed length left: status, time reached in s and state [n] there.
 
-    steps: how many were taken; most_sweeps: the most mode sets that one of them tried.
+    x [k, n], ledger [k, 3] (stored, supplied, dissipated in J), events [e, 3] (time, element, mode
+    entered), steps taken, and the most mode sets that one of them tried.
     """
 
-    t: FloatArray
+    status: int
+    reached: float
+    state: FloatArray
     x: FloatArray
-    modes: FloatArray
+    ledger: FloatArray
+    events: FloatArray
     steps: int
     most_sweeps: int
 
 
-def simulate_fixed_step(
+def pass_in_steps(
     model: Model,
-    times: FloatArray,
+    p: FloatArray,
+    x: FloatArray,
     inputs: InputTable,
-    start: FloatArray,
-    parameters: FloatArray,
+    times: FloatArray,
     step: float,
-) -> FixedStepTrajectory:
-    """Simulate `model` in steps of at most `step` s; the result is at the given times [k] in s.
+    event_room: int = 0,
+) -> FixedPassage:
+    """Simulate `model` from x [n] in steps of at most `step` s; outputs at `times` [k] in s.
 
-    start [n] and parameters [np] are in the order of the model. Every output time and every jump
-    of an input is the end of a step, so the steps between two of them are equal and at most `step`
-    long. Raises InputError for a step that is no positive time, when the state diverges, and when
-    no set of modes fits a step.
+    Every output time and every jump of an input is the end of a step. Raises InputError for a step
+    that is no positive time or makes too many steps.
     """
-    if not 0.0 < step < np.inf or (times[-1] - times[0]) / step > MOST_STEPS:
+    duration = times[-1] - times[0]
+    if not 0.0 < step < np.inf or duration / step > MOST_STEPS:
         raise InputError(
-            f"Step {step:g} s for {times[-1] - times[0]:g} s; give a positive number of seconds"
-            f" that makes at most {MOST_STEPS:g} steps."
+            f"Step {step:g} s for {duration:g} s; give a positive number of seconds that makes at"
+            f" most {MOST_STEPS:g} steps."
         )
     inner = inputs.stops[(inputs.stops > times[0]) & (inputs.stops < times[-1])]
     grid = np.unique(np.concatenate([times, inner]))
-    x, m = np.array(start, dtype=np.float64), np.zeros(len(model.mode_names))
-    out_x, out_m = np.zeros((len(grid), len(x))), np.zeros((len(grid), len(m)))
-    status, reached, steps, most_sweeps = integrate_fixed(
-        model.module.mode_derivative, model.module.jacobian, model.module.guards, x, m, parameters,
-        model.friction_rates, model.zero_at_rest, inputs.arrays, len(model.input_names), False,
-        grid, float(step), out_x, out_m,
+    n, nu, modes, z = len(x), len(model.input_names), len(model.mode_names), np.zeros
+    frictions = len(model.friction_rates)
+    x, m = x.copy(), z(modes)
+    work = StepWork(
+        z((n, n)), z((n, nu)), z((n, len(p))), z((n, n)), z(n, np.int64), z(n), z(n), z(n),
+        z(modes), z(3 * frictions + 2 * (modes - frictions)), z((frictions, 2), np.int64),
     )  # fmt: skip
-    if status != DONE:
-        state = ", ".join(f"{n} {v:.3g}" for n, v in zip(model.state_names, x, strict=True))
-        why = {
-            DIVERGED: "the state diverges; check inputs and parameters or take a smaller step",
-            UNDECIDED: "no set of modes fits the end of the step; take a smaller step",
-        }[status]
-        raise InputError(f"Stopped at {reached:.6g} s with {state}: {why}.")
-    kept = np.searchsorted(grid, times)
-    return FixedStepTrajectory(times, out_x[kept], out_m[kept], steps, most_sweeps)
+    record = Record(
+        grid, z((len(grid), n)), z((0, n, 0)), z((len(grid), 3)), z((event_room, 3)), z(3),
+        z((4, 3)), z(2), z(4, np.int64),
+    )  # fmt: skip
+    status = run_fixed(
+        addresses(model.module), p, model.friction_rates, model.zero_at_rest, inputs.arrays,
+        inputs.new_cursor(), inputs.held, z((2, nu)), x, m, float(step), tuple(work), tuple(record),
+    )  # fmt: skip
+    kept, counts = np.searchsorted(grid, times), record.counts
+    return FixedPassage(
+        status, float(record.clock[TIME]), x, record.x[kept], record.ledger[kept],
+        record.events[: counts[EVENTS]], int(counts[STEPS]), int(counts[INSTANT]),
+    )  # fmt: skip

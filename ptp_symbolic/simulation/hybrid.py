@@ -12,10 +12,14 @@ from numba import njit, types
 from ptp_symbolic.simulation.crossing import cross, jump_by_delay
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.kernels import (
+    CHATTERING,
     CUBE,
+    DIVERGED,
+    DONE,
     INSTANT,
     INTEGERS,
     KERNEL,
+    LARGEST_STATE,
     LENGTH,
     MATRIX,
     STEPS,
@@ -57,16 +61,14 @@ from ptp_symbolic.simulation.steps import (
     push_tangents,
 )
 
-DONE, DIVERGED, CHATTERING = 0, 1, 2
 MAX_INSTANT_EVENTS = 100
 SHORTEST = 1e-11  # s
 INSTANT_STEP = 1e-10  # s
-LARGEST_STATE = 1e12
 
 _V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
-_STEP = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _I, _V, _V))
+_STEP = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V))
 _WATCH = types.Tuple((_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V))
-_TANGENTS = types.Tuple((_M, _I, _I, _C, _M, _M, _M, _C, _C, _M, _M, _M))
+_TANGENTS = types.Tuple((_V, _M, _I, _I, _M, _V, _V, _V, _C, _M, _M, _M, _M))
 _RECORD = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
 
 
@@ -82,7 +84,7 @@ def enter(equations, inputs, t, x, watch, record):
         equations.zero_at_rest,
     ):  # fmt: skip
         return False
-    note_switches(t, watch, len(equations.friction_rates), elements, record)
+    note_switches(t, watch.m, watch.m_before, len(equations.friction_rates), record)
     fill_violations(equations, inputs, t, x, watch, watch.at_start)
     return True
 
@@ -165,10 +167,9 @@ def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents,
     if len(record.ledger) > 0:
         for c in range(1, 3):
             record.totals[c] += work_done(1.0, length, record.powers, c)
-    if tangents.s.shape[1] > 0:
+    if tangents.table.shape[1] > 0:
         push_tangents(method, equations, inputs, t, length, watch.m, step, tangents)
-        for a in range(len(x)):
-            flush(tangents.s[a])
+        flush(tangents.s)
     copy(step.end, x)
     flush(x)
     record.clock[TIME] = t_new
@@ -220,7 +221,7 @@ def run(
     for index in range(1, len(stops)):
         copy(inputs.u, u[2])
         evaluate_inputs(stops[index - 1], 1, *inputs.table, inputs.cursor, inputs.u)
-        if tangents.s.shape[1] > 0 and index > 1:
+        if tangents.table.shape[1] > 0 and index > 1:
             jump_by_delay(equations, inputs, stops[index - 1], x, u[2], watch, tangents)
         if not enter(equations, inputs, stops[index - 1], x, watch, record):
             return CHATTERING

@@ -5,141 +5,134 @@ that system, so that it ends at exactly zero.
 """
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
+
+from ptp_symbolic.simulation.emitted import call
+from ptp_symbolic.simulation.kernels import copy, inlined, kernel
+from ptp_symbolic.simulation.linear import factor, solve
 
 MOST_SWEEPS = 30
 GAMMA = 1.0 - math.sqrt(0.5)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def factor(a, order):
-    """Replace a [n, n] by its triangular factors, rows swapped as `order` [n] records."""
-    n = a.shape[0]
-    for k in range(n):
-        pivot = k
-        for i in range(k + 1, n):
-            if abs(a[i, k]) > abs(a[pivot, k]):
-                pivot = i
-        order[k] = pivot
-        if pivot != k:
-            for j in range(n):
-                a[k, j], a[pivot, j] = a[pivot, j], a[k, j]
-        inverse = 1.0 / a[k, k]
-        for i in range(k + 1, n):
-            if a[i, k] != 0.0:
-                a[i, k] *= inverse
-                for j in range(k + 1, n):
-                    a[i, j] -= a[i, k] * a[k, j]
+class StepWork(NamedTuple):
+    """Room for one step: Jacobians fx [n, n], fu [n, nu], fp [n, np]; the factored matrix [n, n]
+    and its row exchanges; slopes k1, k2 and state end [n]; modes was; guards g; refused [f, 2].
+    """
+
+    fx: Any
+    fu: Any
+    fp: Any
+    matrix: Any
+    order: Any
+    k1: Any
+    k2: Any
+    end: Any
+    was: Any
+    g: Any
+    refused: Any
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def solve(a, order, b):
-    """Replace the right-hand side b [n] by the solution, with the factors from `factor`."""
-    n = len(b)
-    for k in range(n):
-        pivot = order[k]
-        b[k], b[pivot] = b[pivot], b[k]
-    for i in range(1, n):
-        for j in range(i):
-            b[i] -= a[i, j] * b[j]
-    for i in range(n - 1, -1, -1):
-        for j in range(i + 1, n):
-            b[i] -= a[i, j] * b[j]
-        b[i] /= a[i, i]
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def factor_step(jacobian, reach, t, x, u, p, m, friction_rates, work):
+@kernel
+def factor_step(equations, reach, t, x, u, m, work):
     """Factor the matrix of an implicit step of length `reach` in s; sticking rates are pinned."""
-    fx, fu, fp, a, order = work
-    n = len(x)
-    jacobian(t, x, u, p, m, fx, fu, fp)
+    n, a = len(x), work.matrix
+    call(equations.jacobian, t, x, u, equations.p, m, work.fx, work.fu, work.fp)
     for i in range(n):
         for j in range(n):
-            a[i, j] = -reach * fx[i, j]
+            a[i, j] = -reach * work.fx[i, j]
         a[i, i] += 1.0
-    for f in range(len(friction_rates)):
+    for f in range(len(equations.friction_rates)):
         if m[f] == 0.0:
-            a[friction_rates[f], :] = 0.0
-            a[friction_rates[f], friction_rates[f]] = 1.0
-    factor(a, order)
+            rate = equations.friction_rates[f]
+            for j in range(n):
+                a[rate, j] = 0.0
+            a[rate, rate] = 1.0
+    factor(a, work.order)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def fixed_mode_step(
-    derivative, jacobian, t, h, x, u_start, u_end, p, m, friction_rates, work, k1, k2, end
-):
-    """Write the state after a step of order 2 in the modes m into `end` [n]."""
-    n, a, order = len(x), work[3], work[4]
-    factor_step(jacobian, GAMMA * h, t, x, u_start, p, m, friction_rates, work)
-    derivative(t, x, u_start, p, m, k1)
-    for f in range(len(friction_rates)):
+@inlined
+def rest(equations, m, k):
+    """Set the slope of every sticking rate to zero."""
+    for f in range(len(equations.friction_rates)):
         if m[f] == 0.0:
-            k1[friction_rates[f]] = 0.0
-    solve(a, order, k1)
+            k[equations.friction_rates[f]] = 0.0
+
+
+@kernel
+def fixed_mode_step(equations, t, h, x, u_start, u_end, m, work):
+    """Write the state after a step of order 2 in the modes m into `work.end` [n]."""
+    n, k1, k2, end = len(x), work.k1, work.k2, work.end
+    factor_step(equations, GAMMA * h, t, x, u_start, m, work)
+    call(equations.derivative, t, x, u_start, equations.p, m, k1)
+    rest(equations, m, k1)
+    solve(work.matrix, work.order, k1)
     for i in range(n):
         end[i] = x[i] + h * k1[i]
-    derivative(t + h, end, u_end, p, m, k2)
+    call(equations.derivative, t + h, end, u_end, equations.p, m, k2)
     for i in range(n):
         k2[i] -= 2.0 * k1[i]
-    for f in range(len(friction_rates)):
-        if m[f] == 0.0:
-            k2[friction_rates[f]] = 0.0
-    solve(a, order, k2)
+    rest(equations, m, k2)
+    solve(work.matrix, work.order, k2)
     for i in range(n):
         end[i] = x[i] + h * (1.5 * k1[i] + 0.5 * k2[i])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def mode_finding_step(
-    derivative, jacobian, guards, t, h, x, u, p, m, friction_rates, zero_at_rest, work, k, g, was,
-    refused, end,
-):  # fmt: skip
-    """Write the state after an implicit Euler step into `end` [n] and its modes into m.
+@kernel
+def mode_finding_step(equations, t, h, x, u, m, work):
+    """Write the state after an implicit Euler step into `work.end` [n] and its modes into m.
 
     Returns the number of mode sets tried, or 0 when none of MOST_SWEEPS sets is consistent.
     """
-    was[:] = m
-    refused[:] = False
+    rates, k, end = equations.friction_rates, work.k1, work.end
+    copy(m, work.was)
+    allow_all(work.refused)
     for sweep in range(1, MOST_SWEEPS + 1):
-        factor_step(jacobian, h, t + h, x, u, p, m, friction_rates, work)
-        derivative(t + h, x, u, p, m, k)
+        factor_step(equations, h, t + h, x, u, m, work)
+        call(equations.derivative, t + h, x, u, equations.p, m, k)
         for i in range(len(x)):
             k[i] *= h
-        for f in range(len(friction_rates)):
+        for f in range(len(rates)):
             if m[f] == 0.0:
-                k[friction_rates[f]] = -x[friction_rates[f]]
-        solve(work[3], work[4], k)
+                k[rates[f]] = -x[rates[f]]
+        solve(work.matrix, work.order, k)
         for i in range(len(x)):
             end[i] = x[i] + k[i]
-            friction = zero_at_rest[i]
-            if friction >= 0 and m[friction] == 0.0 and was[friction] != 0.0:
+            friction = equations.zero_at_rest[i]
+            if friction >= 0 and m[friction] == 0.0 and work.was[friction] != 0.0:
                 end[i] = 0.0
-        guards(t + h, end, u, p, m, g)
-        if not correct_a_mode(end, m, g, friction_rates, refused):
+        call(equations.guards, t + h, end, u, equations.p, m, work.g)
+        if not correct_a_mode(end, m, work.g, rates, work.refused):
             return sweep
     return 0
 
 
-@njit(cache=True, nogil=True)
+@inlined
+def allow_all(refused):
+    """Forget which directions of which friction have failed."""
+    for f in range(len(refused)):
+        refused[f, 0], refused[f, 1] = 0, 0
+
+
+@kernel
 def correct_a_mode(x, m, g, friction_rates, refused):
     """Change the first mode that does not fit state and guards; False when all of them fit."""
     for f in range(len(friction_rates)):
         if correct_friction(f, x[friction_rates[f]], m, g, refused):
             for other in range(len(friction_rates)):
                 if other != f:
-                    refused[other, :] = False
+                    refused[other, 0], refused[other, 1] = 0, 0
             return True
     for contact in range((len(m) - len(friction_rates)) // 2):
         if correct_contact(contact, len(friction_rates), m, g):
-            refused[:] = False
+            allow_all(refused)
             return True
     return False
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def correct_friction(f, rate, m, g, refused):
     """Stop sliding against its direction; start it where the holding torque exceeds breakaway.
 
@@ -149,7 +142,7 @@ def correct_friction(f, rate, m, g, refused):
     if m[f] != 0.0:
         if m[f] * rate >= 0.0:
             return False
-        refused[f, 0 if m[f] > 0.0 else 1] = True
+        refused[f, 0 if m[f] > 0.0 else 1] = 1
         m[f] = 0.0
         return True
     if g[3 * f] > g[3 * f + 1] and not refused[f, 0]:
@@ -159,7 +152,7 @@ def correct_friction(f, rate, m, g, refused):
     return m[f] != 0.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def correct_contact(contact, frictions, m, g):
     """Let a face push only from beyond the gap and never pull; True when its torque changed.
 
@@ -179,14 +172,16 @@ def correct_contact(contact, frictions, m, g):
     return m[where + 1] != active
 
 
-@njit(cache=True, nogil=True)
-def choose_start_modes(guards, t, x, u, p, m, g, friction_rates, refused):
+@kernel
+def choose_start_modes(equations, t, x, u, m, work):
     """Write the modes that fit the state at the start into m; False when none do."""
-    m[:] = 0.0
-    for f in range(len(friction_rates)):
-        m[f] = np.sign(x[friction_rates[f]])
+    for i in range(len(m)):
+        m[i] = 0.0
+    for f in range(len(equations.friction_rates)):
+        m[f] = np.sign(x[equations.friction_rates[f]])
+    allow_all(work.refused)
     for _ in range(MOST_SWEEPS):
-        guards(t, x, u, p, m, g)
-        if not correct_a_mode(x, m, g, friction_rates, refused):
+        call(equations.guards, t, x, u, equations.p, m, work.g)
+        if not correct_a_mode(x, m, work.g, equations.friction_rates, work.refused):
             return True
     return False

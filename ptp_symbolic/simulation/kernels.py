@@ -13,6 +13,8 @@ kernel = njit(**KERNEL)
 inlined = njit(forceinline=True, **KERNEL)
 
 SMALLEST = 1e-60
+DONE, DIVERGED, CHATTERING, UNDECIDED = 0, 1, 2, 3
+LARGEST_STATE = 1e12
 TIME, LENGTH = 0, 1
 OUTPUT, EVENTS, STEPS, INSTANT = 0, 1, 2, 3
 
@@ -56,8 +58,8 @@ class Step(NamedTuple):
 
     slope, by_time [n]: dx/dt at the start and its derivative by time alone; stage, k [8, n];
     end [n]; dense [5, n]: the state as a polynomial in the fraction of the step; fx [n, n],
-    fu [n, nu], fp [n, np] at the start; inverse [n, n] of the matrix of the implicit stages and
-    its row exchanges `order` [n]; point, right [n]: scratch.
+    fu [n, nu], fp [n, np] at the start; inverse [n, n] of the matrix of the implicit stages, also
+    by columns, and its row exchanges `order` [n]; point, right [n]: scratch.
     """
 
     slope: Any
@@ -70,6 +72,7 @@ class Step(NamedTuple):
     fu: Any
     fp: Any
     inverse: Any
+    columns: Any
     order: Any
     point: Any
     right: Any
@@ -97,14 +100,15 @@ class Watch(NamedTuple):
 
 
 class Tangents(NamedTuple):
-    """Derivatives s [n, ns] of the state: first by the parameters `columns`, then by others.
+    """Derivatives of the state: first by the parameters `columns`, then by others.
 
-    delay_column [nu]: per input the column of its delay, or -1; k [8, n, ns], point, right,
-    along [n, ns]: stages; fx [3, n, n], by [3, n, ns], matrix [n, n], fu, fp: the variational
-    equation along the step.
+    s [n * ns] row by row, and the same as `table` [n, ns]; delay_column [nu]: per input the column
+    of its delay, or -1; k [8, n * ns], point, right, along [n * ns]: stages; fx [3, n, n],
+    by [3, n * ns], matrix [n, n], fu, fp: the variational equation along the step.
     """
 
     s: Any
+    table: Any
     columns: Any
     delay_column: Any
     k: Any
@@ -144,6 +148,13 @@ def copy(source, target):
 
 
 @inlined
+def clear(target):
+    """Set a vector to zero."""
+    for i in range(len(target)):
+        target[i] = 0.0
+
+
+@inlined
 def copy_matrix(source, target):
     """Copy a matrix."""
     for i in range(target.shape[0]):
@@ -155,5 +166,4 @@ def copy_matrix(source, target):
 def flush(values):
     """Set denormal numbers of a vector to zero: they slow every loop."""
     for i in range(len(values)):
-        if abs(values[i]) < SMALLEST:
-            values[i] = 0.0
+        values[i] = values[i] if abs(values[i]) >= SMALLEST else 0.0

@@ -7,7 +7,7 @@ from ptp_symbolic.simulation.modes import largest_violation, violation
 from ptp_symbolic.simulation.steps import attempt, curve, fill_dense
 
 TIME_RESOLUTION = 1e-12  # s
-LANDING = 1e-11  # s; how far past an event a step may end
+LANDING = 2e-12  # s; how far past an event a step may end
 NEARLY = 0.25
 
 

@@ -34,13 +34,13 @@ def fill_powers(equations, inputs, t, h, m, step, record):
 @inlined
 def _cubic_through_nodes(powers, c):
     """Replace the values of column c at the nodes by the coefficients of the cubic through them."""
-    at, a, b, end = powers[0, c], powers[1, c] - powers[0, c], powers[2, c] - powers[0, c], 0.0
-    end = powers[3, c] - powers[0, c]
+    at, a, b = powers[0, c], powers[1, c] - powers[0, c], powers[2, c] - powers[0, c]
+    end = powers[3, c] - at
     x, y = NODES
     # Newton's divided differences through 0, x, y and 1.
     first = a / x
     second = ((b - a) / (y - x) - first) / y
-    third = (((end - b) / (1.0 - y) - (b - a) / (y - x)) / (1.0 - x) - second) / 1.0
+    third = ((end - b) / (1.0 - y) - (b - a) / (y - x)) / (1.0 - x) - second
     powers[0, c] = at
     powers[1, c] = first - x * second + x * y * third
     powers[2, c] = second - (x + y) * third
@@ -78,7 +78,7 @@ def write_here(equations, inputs, t, x, m, tangents, record):
     output = record.counts[OUTPUT]
     while output < len(record.times) and record.times[output] <= t + TIME_RESOLUTION:
         copy(x, record.x[output])
-        copy_matrix(tangents.s, record.s[output])
+        copy_matrix(tangents.table, record.s[output])
         if len(record.ledger) > 0:
             _write_ledger(equations, inputs, t, m, output, record)
         output += 1
@@ -93,15 +93,15 @@ def _write_ledger(equations, inputs, t, m, output, record):
 
 
 @inlined
-def note_switches(t, watch, frictions, elements, record):
+def note_switches(t, m, m_before, frictions, record):
     """Note every element whose mode changed; the count goes on past the room for events."""
-    m, before, events = watch.m, watch.m_before, record.events
-    for element in range(elements):
+    events = record.events
+    for element in range(frictions + (len(m) - frictions) // 2):
         where = element if element < frictions else 2 * element - frictions
-        changed = m[where] != before[where]
+        changed = m[where] != m_before[where]
         mode = m[where]
         if element >= frictions:
-            changed = changed or m[where + 1] != before[where + 1]
+            changed = changed or m[where + 1] != m_before[where + 1]
             mode = m[where] * (2.0 - m[where + 1])
         if changed:
             count = record.counts[EVENTS]

@@ -123,7 +123,7 @@ def _step(n: int, nu: int, parameters: int) -> Step:
     z = np.zeros
     return Step(
         z(n), z(n), z((STAGES, n)), z((STAGES, n)), z(n), z((5, n)), z((n, n)), z((n, nu)),
-        z((n, parameters)), z((n, n)), z(n, dtype=np.int64), z(n), z(n),
+        z((n, parameters)), z((n, n)), z((n, n)), z(n, dtype=np.int64), z(n), z(n),
     )  # fmt: skip
 
 
@@ -142,6 +142,6 @@ def _tangents(
 ) -> Tangents:
     (n, ns), z = s.shape, np.zeros
     return Tangents(
-        s, columns, delay_column, z((STAGES, n, ns)), z((n, ns)), z((n, ns)), z((n, ns)),
-        z((3, n, n)), z((3, n, ns)), z((n, n)), z((n, nu)), z((n, parameters)),
+        s.reshape(-1), s, columns, delay_column, z((STAGES, n * ns)), z(n * ns), z(n * ns),
+        z(n * ns), z((3, n, n)), z((3, n * ns)), z((n, n)), z((n, nu)), z((n, parameters)),
     )  # fmt: skip

@@ -3,8 +3,15 @@
 from ptp_symbolic.simulation.emitted import call
 from ptp_symbolic.simulation.input_values import evaluate_input_slopes, evaluate_inputs
 from ptp_symbolic.simulation.kernels import copy, copy_matrix, inlined, kernel
+from ptp_symbolic.simulation.linear import (
+    add_columns,
+    add_product,
+    add_sparse_product,
+    add_stages,
+    invert,
+)
 from ptp_symbolic.simulation.rodas5p import COUPLING, GAMMA, STAGES, A, C, D, H
-from ptp_symbolic.simulation.runge_kutta import add_product, fill_drive
+from ptp_symbolic.simulation.runge_kutta import fill_drive
 
 TIME_DIFFERENCE = 1e-5  # s
 
@@ -31,53 +38,6 @@ def begin(equations, inputs, t, x, m, step):
                 step.by_time[a] += step.fu[a, c] * inputs.ahead[c]
 
 
-@inlined
-def _is_coupled(a, row):
-    """Whether a row has more than its diagonal: one that rests must not be touched by rounding."""
-    coupled = False
-    for j in range(a.shape[0]):
-        coupled = coupled or (j != row and a[row, j] != 0.0)
-    return coupled
-
-
-@kernel
-def invert(fx, rate, a, order):
-    """Write the inverse of rate I - fx into a [n, n]; rows are exchanged as `order` [n] records.
-
-    Eight products follow with every inverse: for a dozen states they cost less than
-    substitutions, which wait for one division after the other.
-    """
-    n = a.shape[0]
-    for i in range(n):
-        for j in range(n):
-            a[i, j] = -fx[i, j]
-        a[i, i] += rate
-    for c in range(n):
-        pivot = c
-        if _is_coupled(a, c):
-            for i in range(c + 1, n):
-                if abs(a[i, c]) > abs(a[pivot, c]):
-                    pivot = i
-        order[c] = pivot
-        if pivot != c:
-            for j in range(n):
-                a[c, j], a[pivot, j] = a[pivot, j], a[c, j]
-        scale = 1.0 / a[c, c]
-        a[c, c] = 1.0
-        for j in range(n):
-            a[c, j] *= scale
-        for i in range(n):
-            factor = a[i, c]
-            if i != c and factor != 0.0:
-                a[i, c] = 0.0
-                for j in range(n):
-                    a[i, j] -= factor * a[c, j]
-    for c in range(n - 1, -1, -1):
-        if order[c] != c:
-            for i in range(n):
-                a[i, c], a[i, order[c]] = a[i, order[c]], a[i, c]
-
-
 @kernel
 def attempt(equations, inputs, t, h, x, m, step):
     """Try a step of length h in s: fill the increments k and the end point.
@@ -85,7 +45,7 @@ def attempt(equations, inputs, t, h, x, m, step):
     Resting frictions are copied back, or rounding would make them creep.
     """
     n, point, right = len(x), step.point, step.right
-    invert(step.fx, 1.0 / (h * GAMMA), step.inverse, step.order)
+    invert(step.fx, 1.0 / (h * GAMMA), step.inverse, step.order, step.columns)
     for i in range(STAGES):
         if i == 0:
             copy(step.slope, right)
@@ -97,15 +57,9 @@ def attempt(equations, inputs, t, h, x, m, step):
             call(equations.derivative, t + C[i] * h, point, inputs.u, equations.p, m, right)
         for a in range(n):
             right[a] += h * D[i] * step.by_time[a]
-        for j in range(i):
-            factor = COUPLING[i, j] / h
-            for a in range(n):
-                right[a] += factor * step.k[j, a]
-        for a in range(n):
-            total = 0.0
-            for b in range(n):
-                total += step.inverse[a, b] * right[b]
-            step.k[i, a] = total
+            step.k[i, a] = 0.0
+        add_stages(i, COUPLING, 1.0 / h, step.k, right)
+        add_columns(step.columns, right, step.k[i])
     for a in range(n):
         step.end[a] = point[a] + step.k[STAGES - 1, a]
     for f in range(len(equations.friction_rates)):
@@ -121,10 +75,7 @@ def place_stage(i, x, k, point):
             point[a] += k[i - 1, a]
         return
     copy(x, point)
-    for j in range(i):
-        factor = A[i, j]
-        for a in range(len(x)):
-            point[a] += factor * k[j, a]
+    add_stages(i, A, 1.0, k, point)
 
 
 @inlined
@@ -149,50 +100,37 @@ def push_tangents(equations, inputs, t, h, m, step, tangents):
 
     The variational equation is linear; its coefficients are a parabola in time through start,
     middle and end of the step, so that three Jacobians do where the stages would need sixteen.
+    With W = rate I - fx at the start, inverse(W) fx s = rate inverse(W) s - s: only the change of
+    fx over the step is ever multiplied, and it has few entries.
     """
-    n, ns = tangents.s.shape
+    rate = 1.0 / (h * GAMMA)
+    s, point, right, along = tangents.s, tangents.point, tangents.right, tangents.along
     fit_coefficients(equations, inputs, t, h, m, step, tangents)
-    copy_matrix(tangents.by[1], tangents.along)
-    add_product(tangents.fx[1], tangents.s, tangents.along)
+    copy(tangents.by[1], along)
+    add_sparse_product(tangents.fx[1], s, along)
     for i in range(STAGES):
+        k = tangents.k[i]
         if i > 5:
-            for a in range(n):
-                for c in range(ns):
-                    tangents.point[a, c] += tangents.k[i - 1, a, c]
+            for e in range(len(s)):
+                point[e] += tangents.k[i - 1, e]
         else:
-            copy_matrix(tangents.s, tangents.point)
-            add_weighted(i, A, 1.0, tangents.k, tangents.point)
+            copy(s, point)
+            add_stages(i, A, 1.0, tangents.k, point)
         place_coefficients(C[i], tangents)
-        if D[i] != 0.0:
-            for a in range(n):
-                for c in range(ns):
-                    tangents.right[a, c] += D[i] * tangents.along[a, c]
-        add_product(tangents.matrix, tangents.point, tangents.right)
-        add_weighted(i, COUPLING, 1.0 / h, tangents.k, tangents.right)
-        for a in range(n):
-            for c in range(ns):
-                tangents.k[i, a, c] = 0.0
-        add_product(step.inverse, tangents.right, tangents.k[i])
-    for a in range(n):
-        for c in range(ns):
-            tangents.s[a, c] = tangents.point[a, c] + tangents.k[STAGES - 1, a, c]
-
-
-@inlined
-def add_weighted(i, weights, scale, k, out):
-    """Add the stages before i with their weights to out [n, ns]."""
-    n, ns = out.shape
-    for j in range(i):
-        factor = scale * weights[i, j]
-        for a in range(n):
-            for c in range(ns):
-                out[a, c] += factor * k[j, a, c]
+        for e in range(len(s)):
+            right[e] += D[i] * along[e] + rate * point[e]
+            k[e] = -point[e]
+        add_sparse_product(tangents.matrix, point, right)
+        add_stages(i, COUPLING, 1.0 / h, tangents.k, right)
+        add_product(step.inverse, right, k)
+    for e in range(len(s)):
+        s[e] = point[e] + tangents.k[STAGES - 1, e]
 
 
 @inlined
 def fit_coefficients(equations, inputs, t, h, m, step, tangents):
     """Write the parabolas of the variational equation in the fraction of the step."""
-    n, ns = tangents.s.shape
+    n = len(step.end)
     for node in range(3):
         time, fraction = t + 0.5 * node * h, 0.5 * node
         for a in range(n):
@@ -214,31 +152,27 @@ def fit_coefficients(equations, inputs, t, h, m, step, tangents):
             )  # fmt: skip
         fill_drive(inputs, tangents, tangents.by[node])
     for a in range(n):
-        for b in range(n):
-            start, middle, end = tangents.fx[0, a, b], tangents.fx[1, a, b], tangents.fx[2, a, b]
-            tangents.fx[1, a, b] = 4.0 * middle - 3.0 * start - end
-            tangents.fx[2, a, b] = 2.0 * (start + end) - 4.0 * middle
-        for c in range(ns):
-            start, middle, end = tangents.by[0, a, c], tangents.by[1, a, c], tangents.by[2, a, c]
-            tangents.by[1, a, c] = 4.0 * middle - 3.0 * start - end
-            tangents.by[2, a, c] = 2.0 * (start + end) - 4.0 * middle
+        parabola(tangents.fx[0, a], tangents.fx[1, a], tangents.fx[2, a])
+    parabola(tangents.by[0], tangents.by[1], tangents.by[2])
+
+
+@inlined
+def parabola(start, middle, end):
+    """Replace values at start, middle and end by coefficients in the fraction of the step."""
+    for e in range(len(start)):
+        a, b, c = start[e], middle[e], end[e]
+        middle[e] = 4.0 * b - 3.0 * a - c
+        end[e] = 2.0 * (a + c) - 4.0 * b
 
 
 @inlined
 def place_coefficients(fraction, tangents):
-    """Write the matrix of the variational equation and what drives it at a fraction of the step."""
-    n, ns = tangents.s.shape
+    """Write the change of fx and what drives the tangents at a fraction of the step."""
     square = fraction * fraction
-    for a in range(n):
-        for b in range(n):
-            tangents.matrix[a, b] = (
-                tangents.fx[0, a, b]
-                + fraction * tangents.fx[1, a, b]
-                + square * tangents.fx[2, a, b]
-            )
-        for c in range(ns):
-            tangents.right[a, c] = (
-                tangents.by[0, a, c]
-                + fraction * tangents.by[1, a, c]
-                + square * tangents.by[2, a, c]
-            )
+    start, first, second = tangents.by[0], tangents.by[1], tangents.by[2]
+    for e in range(len(start)):
+        tangents.right[e] = start[e] + fraction * first[e] + square * second[e]
+    for a in range(tangents.matrix.shape[0]):
+        first, second = tangents.fx[1, a], tangents.fx[2, a]
+        for b in range(len(first)):
+            tangents.matrix[a, b] = fraction * first[b] + square * second[b]

@@ -8,12 +8,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation import hybrid
 from ptp_symbolic.simulation.delays import delayed, delays_of
+from ptp_symbolic.simulation.fixed_step import FixedPassage, pass_in_steps
 from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
+from ptp_symbolic.simulation.kernels import CHATTERING, DIVERGED, DONE, UNDECIDED
 from ptp_symbolic.simulation.passage import (
     METHODS,
     Accuracy,
+    Passage,
     default_method,
     pass_through,
     tolerance_weights,
@@ -22,6 +24,7 @@ from ptp_symbolic.simulation.passage import (
 FloatArray = NDArray[np.float64]
 
 OUTPUT_STEP = 1e-3
+FIXED_STEP = "fixed_step"
 EVENT_CAPACITY = 100_000
 SLIDING = {-1.0: "slides backward", 0.0: "sticks", 1.0: "slides forward"}
 TOUCHING = {
@@ -74,13 +77,16 @@ def simulate(
     atol: float = 1e-9,
     largest_step: float = 0.1,
     method: str | None = None,
+    step: float = 1e-4,
 ) -> Trajectory:
     """Simulate `model` from 0 to a duration in s (output every ms) or at given `times` [k].
 
     Inputs that are not given are zero. rtol and atol bound the error of a step, atol in rad for
     angles (see `tolerance_weights`); `method` is "rosenbrock" for stiff machines, "runge_kutta"
-    for smooth ones, None to let the model choose. Raises InputError for unknown names or times that do not
-    increase, SimulationError when the state diverges or modes switch without end.
+    for smooth ones, "fixed_step" for steps of `step` s, None to let the model choose.
+
+    Raises InputError for unknown names, times that do not increase and a step that does not fit,
+    SimulationError when the state diverges or modes switch without end.
     """
     t = output_times(times)
     _refuse_unknown("input", inputs or {}, model.input_names)
@@ -88,12 +94,17 @@ def simulate(
     table = delayed(
         stack([_signal(model, inputs or {}, n) for n in model.input_names]), delays_of(model, p)
     )
-    inner = table.stops[(table.stops > t[0]) & (table.stops < t[-1])]
-    found = pass_through(
-        model, chosen_method(model, method), p, x, table, table.held,
-        np.concatenate([t[:1], inner, t[-1:]]), t,
-        Accuracy(rtol, atol * tolerance_weights(model), largest_step), ledger=True, event_room=EVENT_CAPACITY,
-    )  # fmt: skip
+    chosen = chosen_method(model, method)
+    found: Passage | FixedPassage
+    if chosen == FIXED_STEP:
+        found = pass_in_steps(model, p, x, table, t, step, EVENT_CAPACITY)
+    else:
+        inner = table.stops[(table.stops > t[0]) & (table.stops < t[-1])]
+        accuracy = Accuracy(rtol, atol * tolerance_weights(model), largest_step)
+        found = pass_through(
+            model, chosen, p, x, table, table.held, np.concatenate([t[:1], inner, t[-1:]]), t,
+            accuracy, ledger=True, event_room=EVENT_CAPACITY,
+        )  # fmt: skip
     refuse_failure(model, found.status, found.reached, found.state)
     return Trajectory(
         t, found.x, model.state_names, _named(model, found.events), found.ledger[:, 0],
@@ -101,12 +112,14 @@ def simulate(
     )  # fmt: skip
 
 
-def chosen_method(model: Model, method: str | None) -> str:
-    """`method`, or the one that suits `model` (None). Raises InputError for an unknown one."""
+def chosen_method(
+    model: Model, method: str | None, known: Sequence[str] = (*METHODS, FIXED_STEP)
+) -> str:
+    """`method`, or the one that suits `model` (None). Raises InputError for one not `known`."""
     if method is None:
         return default_method(model)
-    if method not in METHODS:
-        raise InputError(f"Unknown method '{method}'. Choose from: {', '.join(METHODS)}.")
+    if method not in known:
+        raise InputError(f"Unknown method '{method}'. Choose from: {', '.join(known)}.")
     return method
 
 
@@ -148,13 +161,14 @@ def start_of(model: Model, initial: Mapping[str, float]) -> FloatArray:
 
 def refuse_failure(model: Model, status: int, reached: float, x: FloatArray) -> None:
     """Raise SimulationError unless `status` says that the simulation reached its end."""
-    if status == hybrid.DONE:
+    if status == DONE:
         return
     state = ", ".join(f"{n} {v:.3g}" for n, v in zip(model.state_names, x, strict=True))
     why = {
-        hybrid.DIVERGED: "the state diverges; check inputs and parameters",
-        hybrid.CHATTERING: "modes switch without end; loosen the tolerance or add damping",
-    }.get(status, "the integrator gave up; loosen the tolerance")
+        DIVERGED: "the state diverges; check inputs and parameters",
+        CHATTERING: "modes switch without end; loosen the tolerance or add damping",
+        UNDECIDED: "no set of modes fits the end of the step; take a smaller step",
+    }[status]
     raise SimulationError(f"Stopped at {reached:.6g} s with {state}: {why}.")
 
 

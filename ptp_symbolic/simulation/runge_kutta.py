@@ -2,8 +2,9 @@
 
 from ptp_symbolic.simulation.emitted import call
 from ptp_symbolic.simulation.input_values import evaluate_input_slopes, evaluate_inputs
-from ptp_symbolic.simulation.kernels import copy, copy_matrix, inlined, kernel
-from ptp_symbolic.simulation.tableau import ERROR, INTERPOLANT, STAGES, A, C
+from ptp_symbolic.simulation.kernels import copy, inlined, kernel
+from ptp_symbolic.simulation.linear import add_sparse_product, add_stages
+from ptp_symbolic.simulation.tableau import ERROR, INTERPOLANT, STAGES, WEIGHTS, A, C
 
 
 @kernel
@@ -49,14 +50,9 @@ def fill_dense(h, x, step):
 @kernel
 def push_tangents(equations, inputs, t, h, m, step, tangents):
     """Carry the tangents over an accepted step: the derivative of the step itself."""
-    n, ns = tangents.s.shape
     for i in range(STAGES - 1):
-        copy_matrix(tangents.s, tangents.point)
-        for j in range(i):
-            factor = h * A[i, j]
-            for a in range(n):
-                for c in range(ns):
-                    tangents.point[a, c] += factor * tangents.k[j, a, c]
+        copy(tangents.s, tangents.point)
+        add_stages(i, WEIGHTS, h, tangents.k, tangents.point)
         if not inputs.held:
             side = -1 if C[i] == 1.0 else 1
             evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
@@ -73,39 +69,24 @@ def push_tangents(equations, inputs, t, h, m, step, tangents):
             tangents.fp,
         )
         fill_drive(inputs, tangents, tangents.k[i])
-        add_product(step.fx, tangents.point, tangents.k[i])
-    for a in range(n):
-        for i in range(STAGES - 1):
-            factor = h * A[STAGES - 1, i]
-            for c in range(ns):
-                tangents.s[a, c] += factor * tangents.k[i, a, c]
+        add_sparse_product(step.fx, tangents.point, tangents.k[i])
+    add_stages(STAGES - 1, WEIGHTS, h, tangents.k, tangents.s)
 
 
 @inlined
 def fill_drive(inputs, tangents, out):
     """Write what drives the tangents apart from themselves: parameters, and delays of inputs."""
-    n, ns = tangents.s.shape
+    n, columns = tangents.fp.shape[0], tangents.columns
+    width = len(out) // n
     for a in range(n):
-        for c in range(len(tangents.columns)):
-            out[a, c] = tangents.fp[a, tangents.columns[c]]
-        for c in range(len(tangents.columns), ns):
-            out[a, c] = 0.0
+        for c in range(len(columns)):
+            out[a * width + c] = tangents.fp[a, columns[c]]
+        for c in range(len(columns), width):
+            out[a * width + c] = 0.0
     if inputs.held:
         return
     for c in range(len(inputs.u)):
         column = tangents.delay_column[c]
         if column >= 0:
             for a in range(n):
-                out[a, column] -= tangents.fu[a, c] * inputs.ahead[c]
-
-
-@inlined
-def add_product(matrix, vectors, out):
-    """Add matrix [n, n] times vectors [n, ns] to out [n, ns]."""
-    n, ns = vectors.shape
-    for a in range(n):
-        for b in range(n):
-            factor = matrix[a, b]
-            if factor != 0.0:
-                for c in range(ns):
-                    out[a, c] += factor * vectors[b, c]
+                out[a * width + column] -= tangents.fu[a, c] * inputs.ahead[c]

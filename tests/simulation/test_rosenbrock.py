@@ -1,0 +1,128 @@
+"""The Rosenbrock method: its coefficients, its order, its defaults."""
+
+import math
+
+import numpy as np
+import pytest
+
+import ptp_symbolic
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.simulation.inputs import constant, multisine, step, table
+from ptp_symbolic.simulation.passage import default_method
+from ptp_symbolic.simulation.rodas5p import COUPLING, GAMMA, STAGES, A, C, D
+from tests.simulation.block import block
+
+
+def test_coefficients_meet_the_order_conditions() -> None:
+    """The 17 conditions up to order 5 (Hairer and Wanner, Solving ODEs II, table IV.7.1)."""
+    gamma = np.linalg.inv(np.eye(STAGES) / GAMMA - COUPLING)
+    alpha, b = A @ gamma, (A[-1] + np.eye(STAGES)[-1]) @ gamma
+    beta = alpha + gamma
+    a, s = alpha.sum(axis=1), beta.sum(axis=1)
+    assert a == pytest.approx(C, abs=1e-13)
+    assert gamma.sum(axis=1) == pytest.approx(D, abs=1e-13)
+    conditions = {
+        1: [(b.sum(), 1)],
+        2: [(b @ s, 2)],
+        3: [(b @ a**2, 3), (b @ beta @ s, 6)],
+        4: [
+            (b @ a**3, 4), (b @ (a * (alpha @ s)), 8), (b @ beta @ a**2, 12),
+            (b @ beta @ beta @ s, 24),
+        ],
+        5: [
+            (b @ a**4, 5), (b @ (a**2 * (alpha @ s)), 10), (b @ (alpha @ s) ** 2, 20),
+            (b @ (a * (alpha @ a**2)), 15), (b @ (a * (alpha @ beta @ s)), 30),
+            (b @ beta @ a**3, 20), (b @ beta @ (a * (alpha @ s)), 40),
+            (b @ beta @ beta @ a**2, 60), (b @ beta @ beta @ beta @ s, 120),
+        ],
+    }  # fmt: skip
+    for found in conditions.values():
+        for value, inverse in found:
+            assert value == pytest.approx(1.0 / inverse, abs=2e-13)
+
+
+def test_fixed_steps_converge_with_order_five() -> None:
+    model, times = ptp_symbolic.load("payload"), [0.0, 1.0]
+    inputs, start = {"tau_tilt": multisine([0.3], [1.0])}, {"theta_tilt": 0.5, "omega_pan": 1.0}
+    exact = ptp_symbolic.simulate(
+        model, times, inputs, initial=start, rtol=1e-13, atol=1e-14, method="runge_kutta"
+    ).x[-1]
+    errors = []
+    for size in (2.5e-3, 1.25e-3):
+        coarse = ptp_symbolic.simulate(
+            model, times, inputs, initial=start, rtol=1e3, atol=1e3, largest_step=size,
+            method="rosenbrock",
+        )  # fmt: skip
+        errors.append(np.abs(coarse.x[-1] - exact).max())
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(5.0, abs=0.1)
+
+
+@pytest.mark.parametrize("method", ["rosenbrock", "runge_kutta"])
+def test_order_five_is_kept_across_located_events(method: str) -> None:
+    """A block on a spring that hardens reverses four times; 5.16 and 4.91 are measured."""
+    body, times = block(), np.linspace(0.0, 31.0, 14)
+    case = {
+        "inputs": {"tau_pan": constant(0.1)}, "parameters": {"k3": 10.0, "J": 50.0},
+        "initial": {"theta_pan": 0.9},
+    }  # fmt: skip
+    exact = ptp_symbolic.simulate(
+        body, times, rtol=1e-13, atol=1e-14, largest_step=0.01, method="runge_kutta", **case
+    )
+    assert len(exact.events) == 4
+    errors = [
+        np.linalg.norm(
+            ptp_symbolic.simulate(
+                body, times, rtol=1e3, atol=1e3, largest_step=size, method=method, **case
+            ).x[:, 0]
+            - exact.x[:, 0]
+        )
+        for size in (0.1, 0.05)
+    ]
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(5.0, abs=0.2)
+
+
+def test_both_methods_see_the_same_events_and_angles() -> None:
+    drive = ptp_symbolic.load("pan_drive")
+    for signal in (step(0.0, 24.0, 0.5), multisine([5.0, 4.0, 3.0], [0.5, 1.7, 4.1])):
+        one, other = (
+            ptp_symbolic.simulate(drive, 3.0, {"u_pan": signal}, method=method)
+            for method in ("rosenbrock", "runge_kutta")
+        )
+        assert [(e.element, e.mode) for e in one.events] == [
+            (e.element, e.mode) for e in other.events
+        ]
+        assert np.abs(one["theta_pan"] - other["theta_pan"]).max() < 1e-8
+        assert one.steps < other.steps
+
+
+def test_a_held_input_may_jump_faster_than_the_winding_reacts() -> None:
+    """Steps as long as the samples, ten times the time constant of the winding, stay stable."""
+    drive = ptp_symbolic.load("pan_drive")
+    time = np.arange(400) * 5e-3
+    signal = table(time, 12.0 * np.sign(np.sin(9.0 * time) + 0.3), "hold")
+    fine, coarse = (
+        ptp_symbolic.simulate(drive, time, {"u_pan": signal}, rtol=rtol, atol=rtol / 10)
+        for rtol in (1e-9, 1e-5)
+    )
+    assert np.abs(fine["theta_pan"] - coarse["theta_pan"]).max() < 1e-5
+    assert coarse.steps < 3 * len(time)
+
+
+def test_the_model_chooses_its_method() -> None:
+    assert default_method(ptp_symbolic.load("payload")) == "runge_kutta"
+    assert default_method(ptp_symbolic.load("pan_drive")) == "rosenbrock"
+    with pytest.raises(
+        InputError, match=r"Unknown method 'euler'\. Choose from: runge_kutta, rosen"
+    ):
+        ptp_symbolic.simulate(ptp_symbolic.load("payload"), 1.0, method="euler")
+    with pytest.raises(InputError, match="Unknown method 'fixed_step'"):
+        ptp_symbolic.sensitivity(ptp_symbolic.load("payload"), 1.0, method="fixed_step")
+
+
+def test_a_state_that_diverges_is_reported_and_never_written() -> None:
+    body = block()
+    for method in ("rosenbrock", "runge_kutta", "fixed_step"):
+        with pytest.raises(InputError, match=r"Stopped at .* s with theta_pan .*: the state div"):
+            ptp_symbolic.simulate(
+                body, 400.0, {"tau_pan": constant(1e9)}, {"k": 0.0}, method=method, step=1e-2
+            )
