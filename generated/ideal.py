@@ -22,7 +22,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "bbecc2784e690c04"
+MODEL_HASH = "02ba34b17cd3b16c"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 AXES = ("pan", "tilt")
@@ -41,12 +41,14 @@ FRICTION_RATES = ()
 ZERO_AT_REST = (-1, -1, -1, -1)
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
+# Limits of the equations: state, meaning; `domain` gives the bounds.
+DOMAIN = ()
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
-    ("J_pan", "kg m^2", 0.00053, 0.0, 10000.0, "inertia of the pan body about z"),
-    ("J_x_tilt", "kg m^2", 0.00041, 0.0, 10000.0, "inertia of the tilt body about x"),
-    ("J_y_tilt", "kg m^2", 0.00065, 0.0, 10000.0, "inertia of the tilt body about y"),
-    ("J_z_tilt", "kg m^2", 0.00027, 0.0, 10000.0, "inertia of the tilt body about z"),
+    ("J_pan", "kg m^2", 0.00053, 1e-12, 10000.0, "inertia of the pan body about z"),
+    ("J_x_tilt", "kg m^2", 0.00041, 1e-12, 10000.0, "inertia of the tilt body about x"),
+    ("J_y_tilt", "kg m^2", 0.00065, 1e-12, 10000.0, "inertia of the tilt body about y"),
+    ("J_z_tilt", "kg m^2", 0.00027, 1e-12, 10000.0, "inertia of the tilt body about z"),
     ("b_pan", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the pan joint"),
     ("b_tilt", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the tilt joint"),
 )
@@ -254,6 +256,12 @@ def energy(t, x, u, p, m, e):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def domain(p, bounds):
+    """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def initial_modes(t, x, u, p, m):
     """Leave m alone: this model has no modes."""
     return
@@ -265,4 +273,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 63b6514cf4637b50efee4246a5f6153b89c14112821ab9d150d4dd06d869bea0
+# END sha256 f20ca47aceabef1977354fae0032b2563c474de237daa1192bca70cd585ebea5

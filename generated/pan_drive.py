@@ -31,7 +31,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "2f767f35930b279b"
+MODEL_HASH = "39184c8a0627fa8e"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 AXES = ("pan",)
@@ -50,14 +50,16 @@ FRICTION_RATES = np.array([3], dtype=np.int64)
 ZERO_AT_REST = (-1, -1, -1, -1, -1)
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ((2, 0),)
+# Limits of the equations: state, meaning; `domain` gives the bounds.
+DOMAIN = ()
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
-    ("J_pan", "kg m^2", 0.05, 0.0, 10000.0, "inertia of the pan body about z"),
+    ("J_pan", "kg m^2", 0.05, 1e-12, 10000.0, "inertia of the pan body about z"),
     ("b_pan", "N m s/rad", 2.0, 0.0, 10000.0, "viscous friction in the pan joint"),
     ("L_pan", "H", 0.0069, 1e-09, 1000.0, "winding inductance"),
     ("R_pan", "ohm", 12.9, 1e-06, 1000000.0, "winding resistance"),
     ("K_t_pan", "N m/A", 0.0724, 1e-09, 10000.0, "torque constant"),
-    ("J_motor_pan", "kg m^2", 1.1e-05, 0.0, 1000.0, "rotor inertia"),
+    ("J_motor_pan", "kg m^2", 1.1e-05, 1e-12, 1000.0, "rotor inertia"),
     ("N_pan", "1", 500.0, 0.001, 1000000.0, "gear ratio"),
     ("k_shaft_pan", "N m/rad", 5000.0, 0.001, 1000000000.0, "shaft stiffness"),
     ("d_shaft_pan", "N m s/rad", 1.0, 0.0, 1000000.0, "shaft damping"),
@@ -552,6 +554,12 @@ def energy(t, x, u, p, m, e):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def domain(p, bounds):
+    """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def initial_modes(t, x, u, p, m):
     """Find the modes of a state: contact from the separation, sticking from the holding torque."""
     frictions = len(FRICTION_RATES)
@@ -584,4 +592,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 c392eb2caa73e5cb6627499a027317032ceec22d81ce23f7c5eaa186ab91a8ce
+# END sha256 11dd65d78aa724d9a4cb2fbe8d209ddc88fd6fb3ad488f8f0997184587360a6d

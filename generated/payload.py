@@ -45,7 +45,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "7956bf39ca6e098e"
+MODEL_HASH = "048c5a02e470e5ff"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 AXES = ("pan", "tilt")
@@ -64,12 +64,14 @@ FRICTION_RATES = ()
 ZERO_AT_REST = (-1, -1, -1, -1)
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
+# Limits of the equations: state, meaning; `domain` gives the bounds.
+DOMAIN = ()
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
-    ("J_pan", "kg m^2", 0.00053, 0.0, 10000.0, "inertia of the pan body about z"),
-    ("J_x_tilt", "kg m^2", 0.00041, 0.0, 10000.0, "inertia of the tilt body about x"),
-    ("J_y_tilt", "kg m^2", 0.00065, 0.0, 10000.0, "inertia of the tilt body about y"),
-    ("J_z_tilt", "kg m^2", 0.00027, 0.0, 10000.0, "inertia of the tilt body about z"),
+    ("J_pan", "kg m^2", 0.00053, 1e-12, 10000.0, "inertia of the pan body about z"),
+    ("J_x_tilt", "kg m^2", 0.00041, 1e-12, 10000.0, "inertia of the tilt body about x"),
+    ("J_y_tilt", "kg m^2", 0.00065, 1e-12, 10000.0, "inertia of the tilt body about y"),
+    ("J_z_tilt", "kg m^2", 0.00027, 1e-12, 10000.0, "inertia of the tilt body about z"),
     ("m_payload", "kg", 4.992, 0.0, 100000.0, "payload mass"),
     ("J_x_payload", "kg m^2", 0.0053, 0.0, 10000.0, "payload inertia about its own x axis"),
     ("J_y_payload", "kg m^2", 0.0068, 0.0, 10000.0, "payload inertia about its own y axis"),
@@ -652,6 +654,12 @@ def energy(t, x, u, p, m, e):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def domain(p, bounds):
+    """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def initial_modes(t, x, u, p, m):
     """Leave m alone: this model has no modes."""
     return
@@ -663,4 +671,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 774b086f0d7693fbe10b79281fce17c1c61b56377afce0583da20338cf7a3ee9
+# END sha256 c60609b77399a4e74a28af30321c4309d9a87178ff8d0597022cc1c4a9d7e585

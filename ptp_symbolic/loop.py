@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ptp_symbolic.atomic import write_text_if_changed
 from ptp_symbolic.codegen.module import module_text
+from ptp_symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.derivation.placement import available_quantities, place_effects
 from ptp_symbolic.effects import EFFECTS
@@ -31,8 +32,13 @@ def cache_folder() -> Path:
 
 
 def emit(platform: Platform) -> Model:
-    """Derive, emit and load the model of `platform`; modules are kept by their content."""
-    text = module_text(assemble(platform))
+    """Derive, emit and load the model of `platform`; modules are kept by their content.
+
+    Raises InputError when no machine with its parameters can exist.
+    """
+    equations = assemble(platform)
+    refuse_impossible(equations)
+    text = module_text(equations)
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     name = f"ptp_model_{digest}"
     folder = cache_folder()

@@ -32,6 +32,16 @@ class Parts:
             expression = expression.subs({symbol: self.values[symbol] for symbol in present})
 
     @property
+    def terms(self) -> dict[sp.Symbol, sp.Expr]:
+        """Named functions of all effects, each followed by its slopes in the angles."""
+        found: dict[sp.Symbol, sp.Expr] = {}
+        for contribution in self.contributions:
+            for symbol, term in contribution.terms.items():
+                found[symbol] = self.resolve(term)
+                found.update(_slopes(symbol, found))
+        return found
+
+    @property
     def frictions(self) -> list[Friction]:
         """Set-valued frictions of all effects."""
         return [f for c in self.contributions for f in c.frictions]
@@ -51,6 +61,24 @@ class Parts:
         if any(shaft.axis == drive.axis for shaft in self.shafts):
             return kinematics.gear_rate(drive.axis)
         return kinematics.rate(drive.axis)
+
+
+def _slopes(term: sp.Symbol, found: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
+    """Derivatives of `term` by the angles, also by way of the functions in it."""
+    slopes: dict[sp.Symbol, sp.Expr] = {}
+    for angle in (q(a) for q in (kinematics.angle, kinematics.gear_angle) for a in kinematics.AXES):
+        slope = sp.diff(found[term], angle)
+        for inner in sorted(found[term].free_symbols & found.keys(), key=str):
+            if slope_symbol(inner, angle) in found:
+                slope += sp.diff(found[term], inner) * slope_symbol(inner, angle)
+        if slope != 0:
+            slopes[slope_symbol(term, angle)] = slope
+    return slopes
+
+
+def slope_symbol(term: sp.Symbol, variable: sp.Symbol) -> sp.Symbol:
+    """Name of the derivative of the named function `term` by `variable`."""
+    return sp.Symbol(f"{term}_by_{variable}", real=True)
 
 
 def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Parts:

@@ -15,6 +15,7 @@ from ptp_symbolic.effects.encoder_eccentricity import ENCODER_ECCENTRICITY
 from ptp_symbolic.effects.encoder_quantization import ENCODER_QUANTIZATION
 from ptp_symbolic.effects.gear_eccentricity import GEAR_ECCENTRICITY
 from ptp_symbolic.effects.input_delay import INPUT_DELAY
+from ptp_symbolic.effects.linear_actuator import LINEAR_ACTUATOR
 from ptp_symbolic.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION
 from ptp_symbolic.effects.lugre_friction import LUGRE_FRICTION
 from ptp_symbolic.effects.payload import PAYLOAD
@@ -50,6 +51,7 @@ EFFECTS: tuple[Effect, ...] = (
     COGGING,
     GEAR_ECCENTRICITY,
     DC_MOTOR,
+    LINEAR_ACTUATOR,
     DRIVE_DEADBAND,
     VOLTAGE_OFFSET,
     VOLTAGE_SATURATION,

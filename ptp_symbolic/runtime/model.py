@@ -138,6 +138,17 @@ class Model:
         return np.array(self.module.INPUT_DELAYS, dtype=np.int64)
 
     @cached_property
+    def limits(self) -> tuple[tuple[str, str], ...]:
+        """States with limits beyond which the equations do not hold, each with its meaning."""
+        return tuple(self.module.DOMAIN)
+
+    def domain(self, p: FloatArray) -> FloatArray:
+        """Lower and upper bound [k, 2] of the states of `limits` at parameters p [np]."""
+        bounds = np.empty((len(self.limits), 2))
+        self.module.domain(p, bounds)
+        return bounds
+
+    @cached_property
     def state_derivative(self) -> Callable[..., None]:
         """The jitted in-place function f(t, x, u, p, dx)."""
         return self.module.state_derivative

@@ -94,6 +94,7 @@ def simulate(
         False, stops, t, out_x, none, delay_columns(model, none), np.zeros((n, 0)),
         np.zeros((len(t), n, 0)), ledger, rtol, np.full(n, atol), largest_step, events,
     )  # fmt: skip
+    refuse_outside(model, p, t[t <= reached], out_x)
     refuse_failure(model, status, reached, x)
     return Trajectory(
         t, out_x, model.state_names, _named(model, events[: min(count, EVENT_CAPACITY)]),
@@ -135,6 +136,20 @@ def start_of(model: Model, initial: Mapping[str, float]) -> FloatArray:
             raise InputError(f"State '{name}' starts at {value}; give a finite number.")
         x[model.state_names.index(name)] = value
     return x
+
+
+def refuse_outside(model: Model, p: FloatArray, t: FloatArray, x: FloatArray) -> None:
+    """Raise SimulationError at the first of times t [k] at which x [k, n] is outside the domain."""
+    for (name, meaning), (lower, upper) in zip(model.limits, model.domain(p), strict=True):
+        values = x[: len(t), model.state_names.index(name)]
+        outside = np.flatnonzero((values < lower) | (values > upper))
+        if len(outside):
+            value, unit = values[outside[0]], model.units[name]
+            raise SimulationError(
+                f"Stopped at {t[outside[0]]:.6g} s with {name} = {value:.6g} {unit}: past the"
+                f" {meaning}, which allows {lower:.6g} to {upper:.6g} {unit}; shorten the input,"
+                " start elsewhere or change the lengths."
+            )
 
 
 def refuse_failure(model: Model, status: int, reached: float, x: FloatArray) -> None:
