@@ -208,9 +208,10 @@ class Place:
         return slide(self.own_axis)
 
     @property
-    def loads(self) -> tuple[sp.Symbol, ...]:
+    def loads(self) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
         """What friction in the drive carries, see `Friction`: torques in N m, inertia in kg m^2."""
-        return tuple(self.quantity(f"{name}_{{axis}}") for name in LOADS)
+        driving, torque, inertia = (self.quantity(f"{name}_{{axis}}") for name in LOADS)
+        return driving, torque, inertia
 
     @property
     def payload_frame(self) -> str:

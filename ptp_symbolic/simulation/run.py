@@ -140,16 +140,20 @@ def start_of(model: Model, initial: Mapping[str, float]) -> FloatArray:
 
 def refuse_outside(model: Model, p: FloatArray, t: FloatArray, x: FloatArray) -> None:
     """Raise SimulationError at the first of times t [k] at which x [k, n] is outside the domain."""
+    found = []
     for (name, meaning), (lower, upper) in zip(model.limits, model.domain(p), strict=True):
         values = x[: len(t), model.state_names.index(name)]
         outside = np.flatnonzero((values < lower) | (values > upper))
         if len(outside):
-            value, unit = values[outside[0]], model.units[name]
-            raise SimulationError(
-                f"Stopped at {t[outside[0]]:.6g} s with {name} = {value:.6g} {unit}: past the"
+            at, unit = outside[0], model.units[name]
+            text = (
+                f"Stopped at {t[at]:.6g} s with {name} = {values[at]:.6g} {unit}: past the"
                 f" {meaning}, which allows {lower:.6g} to {upper:.6g} {unit}; shorten the input,"
                 " start elsewhere or change the lengths."
             )
+            found.append((at, text))
+    if found:
+        raise SimulationError(min(found, key=lambda each: each[0])[1])
 
 
 def refuse_failure(model: Model, status: int, reached: float, x: FloatArray) -> None:

@@ -133,11 +133,18 @@ def margin(drive: TiltDrive, x: np.ndarray) -> tuple[float, float]:
     return own - forward, backward - own
 
 
+def way_out(drive: TiltDrive, x: np.ndarray) -> float:
+    """Direction in which the motor leaves rest, or zero."""
+    forward, backward = margin(drive, x)
+    return 1.0 if forward > -1e-12 else -1.0 if backward > -1e-12 else 0.0
+
+
 def simulate(
     drive: TiltDrive, volts: Callable[[float], float], times: np.ndarray, kinks: tuple[float, ...]
 ) -> np.ndarray:
     """States [k, 3] at `times` from rest at tilt zero; `kinks` are the corners of the voltage."""
-    x, t, direction = np.zeros(3), float(times[0]), 0.0
+    x, t = np.zeros(3), float(times[0])
+    direction = way_out(drive, x)
     found = [x]
     ends = sorted({*(k for k in kinks if times[0] < k < times[-1]), float(times[-1])})
     while ends:
@@ -163,8 +170,7 @@ def simulate(
         found += list(np.reshape(step.y, (3, -1)).T[:done])
         if step.status == 1:
             t, x = float(step.t_events[0][0]), step.y_events[0][0].copy()
-            forward, backward = margin(drive, x)
-            direction = 1.0 if forward > -1e-12 else -1.0 if backward > -1e-12 else 0.0
+            direction = way_out(drive, x)
             continue
         t, x = ends.pop(0), step.y[:, -1].copy()
     return np.array(found)
