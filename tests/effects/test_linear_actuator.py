@@ -10,7 +10,7 @@ import sympy as sp
 import ptp_symbolic
 from ptp_symbolic import loop
 from ptp_symbolic.linkage import Linkage
-from ptp_symbolic.platform import EffectDeclaration, read_platform
+from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, read_platform
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.screw import Screw
 from ptp_symbolic.simulation.inputs import constant, table
@@ -145,6 +145,20 @@ def test_trapezoid_against_a_simulation_in_motor_coordinates(
 ) -> None:
     found, truth = trajectory(ptp_symbolic.load("tilt_drive"), TiltDrive(**changes), factor)
     assert np.abs(truth[:, 0]).max() > 0.05
+    assert np.abs(found - truth).max(axis=0) == pytest.approx(0.0, abs=1e-8)
+
+
+@pytest.mark.parametrize("factor", [1.0, -1.0])
+def test_dry_friction_in_the_joint_is_a_part_of_the_load(factor: float) -> None:
+    """Two frictions on one rate: the screw carries what the joint's friction takes."""
+    platform = read_platform("thesis-tilt-drive")
+    dry = EffectDeclaration("csvs_friction", "tilt", "joint")
+    values = {"F_c_tilt": 2.0, "F_s_tilt": 2.0, "F_v_tilt": 0.0}
+    declared = tuple(ParameterDeclaration(name, None, v) for name, v in values.items())
+    effects, parameters = (*platform.effects, dry), (*platform.parameters, *declared)
+    model = loop.emit(replace(platform, effects=effects, parameters=parameters))
+    drive = TiltDrive(c_x=0.05, c_z=0.02, F_joint=2.0)
+    found, truth = trajectory(model, drive, factor)
     assert np.abs(found - truth).max(axis=0) == pytest.approx(0.0, abs=1e-8)
 
 

@@ -18,7 +18,10 @@ ANGLE, SPEED, CURRENT = range(3)
 
 
 class TiltDrive(NamedTuple):
-    """Tables 5.5 and 5.6; `c_x` and `c_z` place the centre of mass at tilt zero."""
+    """Tables 5.5 and 5.6; `c_x` and `c_z` place the centre of mass at tilt zero.
+
+    `F_joint` is Coulomb friction in the joint, in N m.
+    """
 
     L: float = 9.35e-3
     R: float = 17.0
@@ -38,6 +41,7 @@ class TiltDrive(NamedTuple):
     c_z: float = 0.0876228
     J_own: float = 1.36e-2
     b_joint: float = 10.0
+    F_joint: float = 0.0
 
     @property
     def metres_per_radian(self) -> float:
@@ -85,10 +89,10 @@ def pose(drive: TiltDrive, motor_angle: float) -> Pose:
     )
 
 
-def load_torque(drive: TiltDrive, angle: float, rate: float) -> float:
-    """Gravity and joint friction on the load."""
+def load_torque(drive: TiltDrive, angle: float, rate: float, way: float) -> float:
+    """Gravity and joint friction on the load, which turns or would turn in `way`."""
     level = drive.c_x * math.cos(angle) + drive.c_z * math.sin(angle)
-    return drive.mass * GRAVITY * level - drive.b_joint * rate
+    return drive.mass * GRAVITY * level - drive.b_joint * rate - drive.F_joint * way
 
 
 def joint(drive: TiltDrive, x: np.ndarray) -> tuple[float, float]:
@@ -115,7 +119,7 @@ def motion(drive: TiltDrive, x: np.ndarray, direction: float) -> tuple[float, fl
                 [-drive.load_inertia * per / where.distance, where.distance],
             ]
         )
-        right = [own, load_torque(drive, angle, rate) - drive.load_inertia * bent]
+        right = [own, load_torque(drive, angle, rate, -direction) - drive.load_inertia * bent]
         acceleration, force = np.linalg.solve(system, right)
         if force * pushes >= 0.0:
             return float(acceleration), float(force)
@@ -125,12 +129,13 @@ def motion(drive: TiltDrive, x: np.ndarray, direction: float) -> tuple[float, fl
 def margin(drive: TiltDrive, x: np.ndarray) -> tuple[float, float]:
     """How far the motor torque at rest is above what starts it forward, and below backward."""
     where = pose(drive, x[ANGLE])
-    force = load_torque(drive, where.angle, 0.0) / where.distance
     up, down = drive.raise_lower()
-    forward = up * force if force > 0.0 else -down * force
-    backward = -down * force if force > 0.0 else up * force
+    needed = []
+    for direction in (1.0, -1.0):
+        force = load_torque(drive, where.angle, 0.0, -direction) / where.distance
+        needed.append((up if force * direction > 0.0 else -down) * force)
     own = drive.N * drive.K_t * x[CURRENT]
-    return own - forward, backward - own
+    return own - needed[0], needed[1] - own
 
 
 def way_out(drive: TiltDrive, x: np.ndarray) -> float:
