@@ -68,6 +68,35 @@ def with_candidates(platform: Platform) -> Platform:
     return replace(platform, effects=(*platform.effects, *candidate_effects(platform)))
 
 
+def torque_driven(platform: Platform) -> Platform:
+    """`platform` with torques on its joints: without motors, shafts, and what acts on those alone.
+
+    Friction at the gear output then acts on the joint.
+    """
+    placed = zip(place_effects(platform), platform.effects, strict=True)
+    kept = []
+    for (effect, place), declaration in placed:
+        added = effect.contribute(place)
+        if not (added.drives or added.shafts or added.prescribed):
+            kept.append((effect, replace(place, shafts=frozenset()), declaration))
+    while True:
+        available = available_quantities([(effect, place) for effect, place, _ in kept])
+        usable = [
+            (effect, place, declaration)
+            for effect, place, declaration in kept
+            if all(need.format(axis=place.axis) in available for need in effect.needs)
+        ]
+        if len(usable) == len(kept):
+            break
+        kept = usable
+    own = {p.name for effect, place, _ in kept for p in effect.parameters(place)}
+    return replace(
+        platform,
+        effects=tuple(declaration for _, _, declaration in kept),
+        parameters=tuple(p for p in platform.parameters if p.name in own),
+    )
+
+
 def free_parameters(platform: Platform, model: Model) -> tuple[FreeParameter, ...]:
     """The parameters that `platform` leaves to be fitted, as far as `model` has them."""
     own = {p.name: p for p in model.parameters}

@@ -13,6 +13,7 @@ from ptp_symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.derivation.ledger import energy_ledger
 from ptp_symbolic.derivation.parts import BASE_ACCELERATION, GRAVITY_QUANTITIES, Parts, collect
 from ptp_symbolic.derivation.placement import place_effects, resolved_parameters
+from ptp_symbolic.derivation.prescribed import constraint_power, reduced, released
 from ptp_symbolic.derivation.transmission import Transmission, transmission
 from ptp_symbolic.effects.effect import Input, Limit, State
 from ptp_symbolic.effects.effect import quantity as quantity_symbol
@@ -27,7 +28,7 @@ def assemble(platform: Platform) -> Equations:
     a value outside the bounds of its effect.
     """
     placed = place_effects(platform)
-    parts = collect(platform.axes, placed)
+    parts = released(collect(platform.axes, placed))
     transmissions = [transmission(shaft, parts) for shaft in parts.shafts]
     shaft_torques = {
         quantity_symbol(f"shaft_torque_{s.axis}"): t.transmitted
@@ -36,9 +37,14 @@ def assemble(platform: Platform) -> Equations:
     parts = replace(parts, values={**parts.values, **shaft_torques})
     rigid = _rigid_configuration(platform, parts)
     rigid_equations = lagrange(rigid)
-    mechanics = _mechanics(platform, parts, transmissions, rigid_equations)
+    full = _mechanics(platform, parts, transmissions, rigid_equations)
+    mechanics, rigid_equations = reduced(full, rigid_equations, parts.prescribed)
     frictions, loads = resolved_frictions(parts, mechanics)
     inputs = _inputs(platform, parts)
+    ledger = energy_ledger(
+        platform.axes, parts, frictions, [t.ledger for t in transmissions], rigid_equations
+    )
+    power = constraint_power(full, mechanics, frictions, parts.prescribed)
     equations = Equations(
         name=platform.name,
         title=platform.title,
@@ -61,9 +67,7 @@ def assemble(platform: Platform) -> Equations:
             for own in contribution.limits
         ),
         requirements=tuple(r for effect, place in placed for r in effect.requires(place)),
-        ledger=energy_ledger(
-            platform.axes, parts, frictions, [t.ledger for t in transmissions], rigid_equations
-        ),
+        ledger=replace(ledger, power_in=ledger.power_in + power),
         effects=tuple(
             PlacedEffect(e, p.axis, tuple(q.name for q in e.parameters(p))) for e, p in placed
         ),
@@ -86,8 +90,8 @@ def _mechanics(
     mass = sp.diag(rigid.mass_matrix, sp.zeros(len(gears)))
     forcing = sp.Matrix([*rigid.forcing, *([0] * len(gears))])
     row = {symbol: index for index, symbol in enumerate(rates)}
-    driven = {drive.axis for drive in parts.drives}
-    torques = [(kinematics.rate(a), kinematics.torque(a)) for a in joints if a not in driven]
+    free = [axis for axis in joints if axis not in parts.driven]
+    torques = [(kinematics.rate(axis), kinematics.torque(axis)) for axis in free]
     torques += [torque for t in transmissions for torque in t.torques]
     torques += [torque for c in parts.contributions for torque in c.torques.items()]
     for drive in parts.drives:
@@ -129,8 +133,9 @@ def _rigid_configuration(platform: Platform, parts: Parts) -> RigidConfiguration
 
 
 def _inputs(platform: Platform, parts: Parts) -> list[tuple[Input, str]]:
-    """The inputs, each with its axis: those of the drive, else the torque on the joint."""
+    """The inputs, each with its axis: of a drive, a prescribed motion, else the joint's torque."""
     drives = {drive.axis: drive.inputs for drive in parts.drives}
+    drives |= {str(w).removeprefix("omega_"): (given,) for w, given in parts.prescribed.items()}
     inputs = []
     for axis in platform.axes:
         own = Input(str(kinematics.torque(axis)), "N m", f"torque on the {axis} joint")
@@ -180,6 +185,8 @@ def _with_parameters(equations: Equations, declared: dict[str, Parameter]) -> Eq
         used |= expression.free_symbols
     for limit in equations.limits:
         used |= limit.lower.free_symbols | limit.upper.free_symbols
+    for power in (equations.ledger.stored, equations.ledger.power_in, equations.ledger.dissipated):
+        used |= power.free_symbols
     used |= {delay for delay in equations.delays if delay is not None}
     names = {str(symbol) for symbol in used}
     parameters = tuple(p for name, p in declared.items() if name in names)

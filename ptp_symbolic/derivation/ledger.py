@@ -25,9 +25,8 @@ def energy_ledger(
     A potential that depends on time (a base that moves) takes in its partial derivative by time.
     """
     stored, power_in, dissipated = rigid.kinetic + rigid.potential, ZERO, ZERO
-    driven = {drive.axis for drive in parts.drives}
     power_in += sum(
-        (kinematics.torque(a) * kinematics.rate(a) for a in axes if a not in driven), ZERO
+        (kinematics.torque(a) * kinematics.rate(a) for a in axes if a not in parts.driven), ZERO
     )
     for drive in parts.drives:
         stored += drive.stored + drive.inertia * parts.drive_rate(drive) ** 2 / 2

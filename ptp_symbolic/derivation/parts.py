@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic import kinematics
-from ptp_symbolic.effects.effect import Contribution, Drive, Effect, Friction, Place, Shaft
+from ptp_symbolic.effects.effect import Contribution, Drive, Effect, Friction, Input, Place, Shaft
 from ptp_symbolic.effects.effect import quantity as quantity_symbol
 
 GRAVITY_QUANTITIES = ("gravity_tilt", "gravity_azimuth")
@@ -55,6 +55,17 @@ class Parts:
     def drives(self) -> list[Drive]:
         """Drives of all effects."""
         return [d for c in self.contributions for d in c.drives]
+
+    @property
+    def prescribed(self) -> dict[sp.Symbol, Input]:
+        """Acceleration inputs of joint rates whose motion is prescribed."""
+        return {rate: i for c in self.contributions for rate, i in c.prescribed.items()}
+
+    @property
+    def driven(self) -> set[str]:
+        """Axes that take no torque as input: with a drive, or with a prescribed motion."""
+        moved = {str(rate).removeprefix("omega_") for rate in self.prescribed}
+        return moved | {drive.axis for drive in self.drives}
 
     def drive_rate(self, drive: Drive) -> sp.Symbol:
         """The rate that `drive` works on: at the gear output behind a shaft, else at the joint."""

@@ -21,6 +21,7 @@ from ptp_symbolic.effects.lugre_friction import LUGRE_FRICTION
 from ptp_symbolic.effects.payload import PAYLOAD
 from ptp_symbolic.effects.payload_com_offset import PAYLOAD_COM_OFFSET
 from ptp_symbolic.effects.position_dependent_friction import POSITION_DEPENDENT_FRICTION
+from ptp_symbolic.effects.prescribed_motion import PRESCRIBED_MOTION
 from ptp_symbolic.effects.product_of_inertia import PRODUCT_OF_INERTIA
 from ptp_symbolic.effects.quadratic_drag import QUADRATIC_DRAG
 from ptp_symbolic.effects.rate_dependent_breakaway import RATE_DEPENDENT_BREAKAWAY
@@ -52,6 +53,7 @@ EFFECTS: tuple[Effect, ...] = (
     GEAR_ECCENTRICITY,
     DC_MOTOR,
     LINEAR_ACTUATOR,
+    PRESCRIBED_MOTION,
     DRIVE_DEADBAND,
     VOLTAGE_OFFSET,
     VOLTAGE_SATURATION,

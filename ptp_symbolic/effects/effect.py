@@ -131,7 +131,8 @@ class Contribution:
     `terms` are functions that the equations keep under their names, each of those before it.
     `potential` is an energy of the coordinates, whose gradient acts as torques; `stored` an energy
     of the effect's own states, which its `torques` charge and discharge. `measured` is added to
-    the reading of a signal, `delays` hold back the inputs of an axis.
+    the reading of a signal, `delays` hold back the inputs of an axis. `prescribed` gives joint
+    rates an acceleration as input, in place of the torque on the joint.
     """
 
     quantities: Mapping[str, sp.Expr] = field(default_factory=dict)
@@ -148,6 +149,7 @@ class Contribution:
     measured: Mapping[str, sp.Expr] = field(default_factory=dict)
     delays: Mapping[str, sp.Symbol] = field(default_factory=dict)
     limits: tuple[Limit, ...] = ()
+    prescribed: Mapping[sp.Symbol, Input] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
