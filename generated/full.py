@@ -127,7 +127,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "75ed4eaa213d1e52"
+MODEL_HASH = "77602c671e6cc439"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 AXES = ("pan", "tilt")
@@ -159,6 +159,21 @@ CONTACT_ANGLES = ((4, 0),)
 DOMAIN = (
     ("theta_tilt", "dead centre of the tilt linkage"),
     ("theta_tilt", "stroke end of the tilt actuator"),
+)
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = (
+    (("F_c_pan", "F_s_pan"), "F_s is at least F_c; raise F_s or lower F_c", False),
+    (
+        ("l_ground_tilt", "l_min_tilt", "r_arm_tilt", "s_start_tilt"),
+        "the linkage closes, off its dead centres; change a length",
+        True,
+    ),
+    (("s_start_tilt", "s_max_tilt"), "s_start is at most s_max; change one of them", False),
+    (
+        ("lead_tilt", "d_screw_tilt", "f_screw_tilt"),
+        "the screw wedges unless f < pi d / lead; lower f_screw",
+        True,
+    ),
 )
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
@@ -4642,6 +4657,29 @@ def domain(p, bounds):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def margins(p, margin):
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    F_c_pan = p[20]
+    F_s_pan = p[21]
+    lead_tilt = p[35]
+    d_screw_tilt = p[36]
+    f_screw_tilt = p[37]
+    l_ground_tilt = p[38]
+    l_min_tilt = p[39]
+    r_arm_tilt = p[40]
+    s_start_tilt = p[41]
+    s_max_tilt = p[42]
+    margin[0] = -F_c_pan + F_s_pan
+    margin[1] = 2.0 * l_ground_tilt * r_arm_tilt - abs(
+        (l_ground_tilt * l_ground_tilt)
+        + (r_arm_tilt * r_arm_tilt)
+        - ((l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt))
+    )
+    margin[2] = s_max_tilt - s_start_tilt
+    margin[3] = math.pi * d_screw_tilt - f_screw_tilt * lead_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def initial_modes(t, x, u, p, m):
     """Find the modes of a state: contact from the separation, sticking from the holding torque."""
     frictions = len(FRICTION_RATES)
@@ -4674,4 +4712,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 a597ca60893742241da1d63144a8a395cae32f0e1eb568c95ccfaa99dcf83bb7
+# END sha256 5096cd94499a409e34029ea843b273b3c4d3c4fdc6e812dda08483687500a1df

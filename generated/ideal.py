@@ -22,7 +22,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "02ba34b17cd3b16c"
+MODEL_HASH = "8a4173243cefdb23"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 AXES = ("pan", "tilt")
@@ -43,6 +43,8 @@ ZERO_AT_REST = (-1, -1, -1, -1)
 CONTACT_ANGLES = ()
 # Limits of the equations: state, meaning; `domain` gives the bounds.
 DOMAIN = ()
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = ()
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
     ("J_pan", "kg m^2", 0.00053, 1e-12, 10000.0, "inertia of the pan body about z"),
@@ -262,6 +264,12 @@ def domain(p, bounds):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def margins(p, margin):
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def initial_modes(t, x, u, p, m):
     """Leave m alone: this model has no modes."""
     return
@@ -273,4 +281,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 f20ca47aceabef1977354fae0032b2563c474de237daa1192bca70cd585ebea5
+# END sha256 d377eff6b1c543363ffd5ba95116bf07b8d203902d1aa734b35282a29290d9ec

@@ -31,7 +31,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "39184c8a0627fa8e"
+MODEL_HASH = "cedc0d5bc2d05bfe"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 AXES = ("pan",)
@@ -52,6 +52,8 @@ ZERO_AT_REST = (-1, -1, -1, -1, -1)
 CONTACT_ANGLES = ((2, 0),)
 # Limits of the equations: state, meaning; `domain` gives the bounds.
 DOMAIN = ()
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = ((("F_c_pan", "F_s_pan"), "F_s is at least F_c; raise F_s or lower F_c", False),)
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
     ("J_pan", "kg m^2", 0.05, 1e-12, 10000.0, "inertia of the pan body about z"),
@@ -560,6 +562,14 @@ def domain(p, bounds):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def margins(p, margin):
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    F_c_pan = p[10]
+    F_s_pan = p[11]
+    margin[0] = -F_c_pan + F_s_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def initial_modes(t, x, u, p, m):
     """Find the modes of a state: contact from the separation, sticking from the holding torque."""
     frictions = len(FRICTION_RATES)
@@ -592,4 +602,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 11dd65d78aa724d9a4cb2fbe8d209ddc88fd6fb3ad488f8f0997184587360a6d
+# END sha256 7569428431b1b974307654817f3cf83eef371a175307ba224bc6f9f34446a1ac

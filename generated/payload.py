@@ -45,7 +45,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "048c5a02e470e5ff"
+MODEL_HASH = "4823f3cd808e5cdf"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 AXES = ("pan", "tilt")
@@ -66,6 +66,8 @@ ZERO_AT_REST = (-1, -1, -1, -1)
 CONTACT_ANGLES = ()
 # Limits of the equations: state, meaning; `domain` gives the bounds.
 DOMAIN = ()
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = ()
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
     ("J_pan", "kg m^2", 0.00053, 1e-12, 10000.0, "inertia of the pan body about z"),
@@ -660,6 +662,12 @@ def domain(p, bounds):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def margins(p, margin):
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def initial_modes(t, x, u, p, m):
     """Leave m alone: this model has no modes."""
     return
@@ -671,4 +679,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 c60609b77399a4e74a28af30321c4309d9a87178ff8d0597022cc1c4a9d7e585
+# END sha256 915a83bf96088bc43c801c5da2c567a85421852c6dccbf54a6dd9768de195dc3

@@ -54,7 +54,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "f2519fb5a2fb78d4"
+MODEL_HASH = "0dda1db00dd1b465"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
 AXES = ("tilt",)
@@ -77,6 +77,20 @@ CONTACT_ANGLES = ()
 DOMAIN = (
     ("theta_tilt", "dead centre of the tilt linkage"),
     ("theta_tilt", "stroke end of the tilt actuator"),
+)
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = (
+    (
+        ("l_ground_tilt", "l_min_tilt", "r_arm_tilt", "s_start_tilt"),
+        "the linkage closes, off its dead centres; change a length",
+        True,
+    ),
+    (("s_start_tilt", "s_max_tilt"), "s_start is at most s_max; change one of them", False),
+    (
+        ("lead_tilt", "d_screw_tilt", "f_screw_tilt"),
+        "the screw wedges unless f < pi d / lead; lower f_screw",
+        True,
+    ),
 )
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
@@ -1802,6 +1816,26 @@ def domain(p, bounds):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def margins(p, margin):
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    lead_tilt = p[11]
+    d_screw_tilt = p[12]
+    f_screw_tilt = p[13]
+    l_ground_tilt = p[14]
+    l_min_tilt = p[15]
+    r_arm_tilt = p[16]
+    s_start_tilt = p[17]
+    s_max_tilt = p[18]
+    margin[0] = 2.0 * l_ground_tilt * r_arm_tilt - abs(
+        (l_ground_tilt * l_ground_tilt)
+        + (r_arm_tilt * r_arm_tilt)
+        - ((l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt))
+    )
+    margin[1] = s_max_tilt - s_start_tilt
+    margin[2] = math.pi * d_screw_tilt - f_screw_tilt * lead_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def initial_modes(t, x, u, p, m):
     """Find the modes of a state: contact from the separation, sticking from the holding torque."""
     frictions = len(FRICTION_RATES)
@@ -1834,4 +1868,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 30eafe86f9da30079e6026ecfbb08244109e97e9d231179b4655200cf621ebc6
+# END sha256 b60e5d0fd2d6dbd9a6a1df4d7d8b7079fa3ee6f0ae972b2ba0e61052f811fe95

@@ -162,6 +162,7 @@ def test_friction_of_the_free_joint_still_sticks() -> None:
     platform = driven(f"{PLATFORMS}/fieldlog_two_axis.toml", "pan")
     model = loop.emit(platform)
     assert model.mode_names == ("slide_tilt",)
+    assert "F_c_pan" not in model.parameter_names
     held = {"F_c_tilt": 5.0, "F_s_tilt": 5.0}
     found = ptp_symbolic.simulate(model, 1.0, {"alpha_pan": constant(0.2)}, held)
     assert np.all(found["theta_tilt"] == 0.0)

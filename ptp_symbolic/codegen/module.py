@@ -63,6 +63,7 @@ def module_text(equations: Equations) -> str:
             _output_jacobian(equations, vectors),
             _energy(equations, vectors),
             _domain(equations, vectors),
+            _margins(equations, vectors),
             STATE_DERIVATIVE_HYBRID if vectors.m else STATE_DERIVATIVE_SMOOTH,
         ]
     )
@@ -223,3 +224,12 @@ def _domain(equations: Equations, vectors: Vectors) -> str:
     ]
     doc = "Write lower and upper bound of the state of every row of DOMAIN into bounds."
     return _kernel("domain", "p, bounds", doc, vectors, share((), outputs))
+
+
+def _margins(equations: Equations, vectors: Vectors) -> str:
+    outputs = [
+        (f"margin[{k}]", own.holds.gts - own.holds.lts)
+        for k, own in enumerate(equations.requirements)
+    ]
+    doc = "Write by how much the parameters meet every row of REQUIREMENTS into margin."
+    return _kernel("margins", "p, margin", doc, vectors, share((), outputs))

@@ -190,4 +190,5 @@ def _with_parameters(equations: Equations, declared: dict[str, Parameter]) -> Eq
     used |= {delay for delay in equations.delays if delay is not None}
     names = {str(symbol) for symbol in used}
     parameters = tuple(p for name, p in declared.items() if name in names)
-    return replace(equations, parameters=parameters)
+    requirements = tuple(r for r in equations.requirements if r.holds.free_symbols <= used)
+    return replace(equations, parameters=parameters, requirements=requirements)

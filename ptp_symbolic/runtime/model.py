@@ -8,6 +8,8 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.errors import InputError
+
 FloatArray = NDArray[np.float64]
 
 
@@ -147,6 +149,16 @@ class Model:
         bounds = np.empty((len(self.limits), 2))
         self.module.domain(p, bounds)
         return bounds
+
+    def refuse_impossible(self, p: FloatArray) -> None:
+        """Raise InputError when parameters p [np] break a relation that the machine needs."""
+        margin = np.zeros(len(self.module.REQUIREMENTS))
+        self.module.margins(p, margin)
+        values = dict(zip(self.parameter_names, p, strict=True))
+        for (names, rule, strict), by in zip(self.module.REQUIREMENTS, margin, strict=True):
+            if not (by > 0.0 if strict else by >= 0.0):
+                given = ", ".join(f"{n} = {values[n]:g} {self.units[n]}" for n in names)
+                raise InputError(f"Impossible {given}: {rule}.")
 
     @cached_property
     def state_derivative(self) -> Callable[..., None]:

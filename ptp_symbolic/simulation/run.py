@@ -115,7 +115,10 @@ def output_times(times: float | ArrayLike) -> FloatArray:
 
 
 def checked_parameters(model: Model, parameters: Mapping[str, float]) -> FloatArray:
-    """Parameter vector [np]. Raises InputError for unknown names and values outside bounds."""
+    """Parameter vector [np].
+
+    Raises InputError for unknown names, values outside bounds, values that do not fit each other.
+    """
     _refuse_unknown("parameter", parameters, model.parameter_names)
     for p in model.parameters:
         value = parameters.get(p.name, p.default)
@@ -124,7 +127,9 @@ def checked_parameters(model: Model, parameters: Mapping[str, float]) -> FloatAr
                 f"Parameter '{p.name}' = {value:g} {p.unit} lies outside its bounds"
                 f" [{p.lower:g}, {p.upper:g}]; change the value."
             )
-    return model.parameter_vector(dict(parameters))
+    vector = model.parameter_vector(dict(parameters))
+    model.refuse_impossible(vector)
+    return vector
 
 
 def start_of(model: Model, initial: Mapping[str, float]) -> FloatArray:

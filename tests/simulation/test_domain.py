@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import ptp_symbolic
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.simulation.inputs import constant
 from ptp_symbolic.simulation.run import SimulationError
 
@@ -44,6 +45,25 @@ def test_a_start_outside_is_refused_at_once() -> None:
     text = message(0.0, 1.0, initial={"theta_tilt": 1.0})
     assert text.startswith("Stopped at 0 s with theta_tilt = 1 rad: past the stroke end")
     assert "allows -1.04329 to 0.796883 rad" in text
+
+
+@pytest.mark.parametrize(
+    ("model", "values", "text"),
+    [
+        ("tilt_drive", {"s_start_tilt": 0.13, "s_max_tilt": 0.2}, "closes, off its dead centres"),
+        ("tilt_drive", {"s_max_tilt": 0.04}, "s_start is at most s_max"),
+        (
+            "pan_drive",
+            {"F_s_pan": 0.1},
+            r"F_c_pan = 0\.2401 N m, F_s_pan = 0\.1 N m: F_s is at least",
+        ),
+    ],
+)
+def test_changed_parameters_must_fit_each_other(
+    model: str, values: dict[str, float], text: str
+) -> None:
+    with pytest.raises(InputError, match=text):
+        ptp_symbolic.simulate(ptp_symbolic.load(model), 1.0, None, values)
 
 
 def test_models_without_limits_have_none() -> None:
