@@ -210,6 +210,50 @@ def test_force_and_screw_torque_obey_eq_3_12_on_the_coupled_machine() -> None:
     assert seen == {True, False}
 
 
+@pytest.mark.parametrize(("preset", "above"), [*((name, True) for name in STROKES), (None, False)])
+def test_erratum_24_the_force_reverses_with_the_mass_above_the_axis(
+    preset: str | None, above: bool
+) -> None:
+    """Section 5.3: the rod first pushes, then holds the load back, and still does at the end."""
+    model = ptp_symbolic.load(preset or "thesis-tilt-drive")
+    below = {} if above else {"c_z_payload": -0.0876228}
+    times, volts = np.linspace(0.0, 4.0, 401), table(CORNERS, VOLTS, "linear")
+    found = ptp_symbolic.simulate(model, times, {"u_tilt": volts}, below)
+    p = model.parameter_vector(below)
+    applied = np.interp(times, CORNERS, VOLTS)
+    rows = zip(times, found.x, applied, strict=True)
+    change = np.array([model.rhs(t, x, np.array([u]), p)[1] for t, x, u in rows])
+    motion = (found.x[:, :1], found.x[:, 1:2], change[:, None])
+    torque = ptp_symbolic.inverse_dynamics(preset or "thesis-tilt-drive", motion, below)[:, 0]
+    lever = [by_coordinates(STROKES[preset or "thesis-tilt-drive"], q)[1] for q in found.x[:, 0]]
+    force = torque / np.array(lever)
+    assert found["theta_tilt"][-1] < 0.0
+    assert force[60] > 1.0
+    assert bool(force[-1] < -1.0) is above
+
+
+def test_sensitivities_against_differences() -> None:
+    """Through sticking and reversal of the load, by parameters of linkage, screw and motor."""
+    model, times = ptp_symbolic.load("tilt_drive"), np.linspace(0.0, 4.0, 9)
+    inputs = {"u_tilt": table(CORNERS, VOLTS, "linear")}
+    base = {"c_x_payload": 0.05, "f_screw_tilt": 0.2, "r_arm_tilt": 0.06, "J_motor_tilt": 2e-6}
+    names = ("f_screw_tilt", "r_arm_tilt", "J_motor_tilt")
+    found = ptp_symbolic.sensitivity(model, times, inputs, base, by_parameters=names, rtol=1e-9)
+    for column, name in enumerate(names):
+        step = 1e-5 * base[name]
+        ends = [
+            ptp_symbolic.simulate(
+                model, times, inputs, {**base, name: base[name] + side}, rtol=1e-10, atol=1e-12
+            ).x
+            for side in (step, -step)
+        ]
+        difference = (ends[0] - ends[1]) / (2.0 * step)
+        scale = np.abs(difference).max(axis=0)
+        assert np.abs(found.states[:, :, column] - difference).max(axis=0) / scale == (
+            pytest.approx(0.0, abs=1e-4)
+        )
+
+
 def test_behind_a_stiff_shaft_it_moves_as_without() -> None:
     platform = read_platform("thesis-tilt-drive")
     shaft = EffectDeclaration("shaft_compliance", "tilt", None)
