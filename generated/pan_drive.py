@@ -31,7 +31,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "68b424ebfd87ac21"
+MODEL_HASH = "1595a986c09bfc10"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 AXES = ("pan",)
@@ -50,9 +50,13 @@ FRICTION_RATES = np.array([3], dtype=np.int64)
 ZERO_AT_REST = (-1, -1, -1, -1, -1)
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ((2, 0),)
+# Limits of the equations: state, meaning; `domain` gives the bounds.
+DOMAIN = ()
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = ((("F_c_pan", "F_s_pan"), "F_s is at least F_c; raise F_s or lower F_c", False),)
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
-    ("J_pan", "kg m^2", 0.05, 0.0, 10000.0, "inertia of the pan body about z"),
+    ("J_pan", "kg m^2", 0.05, 1e-12, 10000.0, "inertia of the pan body about z"),
     ("b_pan", "N m s/rad", 2.0, 0.0, 10000.0, "viscous friction in the pan joint"),
     ("F_c_pan", "N m", 0.2401, 0.0, 10000.0, "Coulomb friction torque"),
     ("F_s_pan", "N m", 0.675, 0.0, 10000.0, "static (breakaway) friction torque"),
@@ -96,7 +100,7 @@ PARAMETERS = (
     ("L_pan", "H", 0.0069, 1e-09, 1000.0, "winding inductance"),
     ("R_pan", "ohm", 12.9, 1e-06, 1000000.0, "winding resistance"),
     ("K_t_pan", "N m/A", 0.0724, 1e-09, 10000.0, "torque constant"),
-    ("J_motor_pan", "kg m^2", 1.1e-05, 0.0, 1000.0, "rotor inertia"),
+    ("J_motor_pan", "kg m^2", 1.1e-05, 1e-12, 1000.0, "rotor inertia"),
     ("N_pan", "1", 500.0, 0.001, 1000000.0, "gear ratio"),
 )
 # Searching them: name, value at which the effect vanishes (None: any), starts,
@@ -599,6 +603,20 @@ def energy(t, x, u, p, m, e):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def domain(p, bounds):
+    """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def margins(p, margin):
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    F_c_pan = p[2]
+    F_s_pan = p[3]
+    margin[0] = -F_c_pan + F_s_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def initial_modes(t, x, u, p, m):
     """Find the modes of a state: contact from the separation, sticking from the holding torque."""
     frictions = len(FRICTION_RATES)
@@ -631,4 +649,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 1080de6f010f4edb2497da0e8f6eb772f94d37a9d7727bee68afc80a1412fd58
+# END sha256 7fbb373919306c5cc2b01c343ecb5c0d39a698d035a197bd4f5cb5b9e966184e

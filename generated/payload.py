@@ -45,7 +45,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "ebfe6eb35abc93c6"
+MODEL_HASH = "0b68859c0dc49e03"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 AXES = ("pan", "tilt")
@@ -64,12 +64,16 @@ FRICTION_RATES = ()
 ZERO_AT_REST = (-1, -1, -1, -1)
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
+# Limits of the equations: state, meaning; `domain` gives the bounds.
+DOMAIN = ()
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = ()
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
-    ("J_pan", "kg m^2", 0.00053, 0.0, 10000.0, "inertia of the pan body about z"),
-    ("J_x_tilt", "kg m^2", 0.00041, 0.0, 10000.0, "inertia of the tilt body about x"),
-    ("J_y_tilt", "kg m^2", 0.00065, 0.0, 10000.0, "inertia of the tilt body about y"),
-    ("J_z_tilt", "kg m^2", 0.00027, 0.0, 10000.0, "inertia of the tilt body about z"),
+    ("J_pan", "kg m^2", 0.00053, 1e-12, 10000.0, "inertia of the pan body about z"),
+    ("J_x_tilt", "kg m^2", 0.00041, 1e-12, 10000.0, "inertia of the tilt body about x"),
+    ("J_y_tilt", "kg m^2", 0.00065, 1e-12, 10000.0, "inertia of the tilt body about y"),
+    ("J_z_tilt", "kg m^2", 0.00027, 1e-12, 10000.0, "inertia of the tilt body about z"),
     ("m_payload", "kg", 4.992, 0.0, 100000.0, "payload mass"),
     ("J_x_payload", "kg m^2", 0.0053, 0.0, 10000.0, "payload inertia about its own x axis"),
     ("J_y_payload", "kg m^2", 0.0068, 0.0, 10000.0, "payload inertia about its own y axis"),
@@ -671,6 +675,18 @@ def energy(t, x, u, p, m, e):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def domain(p, bounds):
+    """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def margins(p, margin):
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    return
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def initial_modes(t, x, u, p, m):
     """Leave m alone: this model has no modes."""
     return
@@ -682,4 +698,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 f18df0dbb418d389f4c52bb829ddc498c117f5423c1a2ccef17ce21a60922af8
+# END sha256 93ea6c978a3447323cae253f918c2f914c7da85f023ccd1de343266b2dd99a44

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from ptp_symbolic.runtime.model import Model
 
 __version__ = "0.1.0"
-__all__ = ["__version__", "load", "sensitivity", "simulate"]
+__all__ = ["__version__", "inverse_dynamics", "load", "sensitivity", "simulate"]
 
 
 def load(source: str | Path) -> Model:
@@ -44,4 +44,11 @@ def sensitivity(model: Model, *args: Any, **kwargs: Any) -> Any:
     """Forward sensitivities of `model`; see `ptp_symbolic.sensitivities.forward.sensitivity`."""
     return importlib.import_module("ptp_symbolic.sensitivities.forward").sensitivity(
         model, *args, **kwargs
+    )
+
+
+def inverse_dynamics(machine: Any, *args: Any, **kwargs: Any) -> Any:
+    """Torques that a motion takes; see `ptp_symbolic.joint_torques.inverse_dynamics`."""
+    return importlib.import_module("ptp_symbolic.joint_torques").inverse_dynamics(
+        machine, *args, **kwargs
     )

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ptp_symbolic.atomic import write_text_if_changed
 from ptp_symbolic.codegen.module import module_text
+from ptp_symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.derivation.placement import available_quantities, place_effects
 from ptp_symbolic.effects import EFFECTS
@@ -31,8 +32,13 @@ def cache_folder() -> Path:
 
 
 def emit(platform: Platform) -> Model:
-    """Derive, emit and load the model of `platform`; modules are kept by their content."""
-    text = module_text(assemble(platform))
+    """Derive, emit and load the model of `platform`; modules are kept by their content.
+
+    Raises InputError when no machine with its parameters can exist.
+    """
+    equations = assemble(platform)
+    refuse_impossible(equations)
+    text = module_text(equations)
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     name = f"ptp_model_{digest}"
     folder = cache_folder()
@@ -60,6 +66,35 @@ def candidate_effects(platform: Platform) -> tuple[EffectDeclaration, ...]:
 def with_candidates(platform: Platform) -> Platform:
     """`platform` with every candidate effect added."""
     return replace(platform, effects=(*platform.effects, *candidate_effects(platform)))
+
+
+def torque_driven(platform: Platform) -> Platform:
+    """`platform` with torques on its joints: without motors, shafts, and what acts on those alone.
+
+    Friction at the gear output then acts on the joint.
+    """
+    placed = zip(place_effects(platform), platform.effects, strict=True)
+    kept = []
+    for (effect, place), declaration in placed:
+        added = effect.contribute(place)
+        if not (added.drives or added.shafts or added.prescribed):
+            kept.append((effect, replace(place, shafts=frozenset()), declaration))
+    while True:
+        available = available_quantities([(effect, place) for effect, place, _ in kept])
+        usable = [
+            (effect, place, declaration)
+            for effect, place, declaration in kept
+            if all(need.format(axis=place.axis) in available for need in effect.needs)
+        ]
+        if len(usable) == len(kept):
+            break
+        kept = usable
+    own = {p.name for effect, place, _ in kept for p in effect.parameters(place)}
+    return replace(
+        platform,
+        effects=tuple(declaration for _, _, declaration in kept),
+        parameters=tuple(p for p in platform.parameters if p.name in own),
+    )
 
 
 def free_parameters(platform: Platform, model: Model) -> tuple[FreeParameter, ...]:

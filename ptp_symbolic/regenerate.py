@@ -13,7 +13,13 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.runtime.loader import generated_folder
 
-COMMITTED = {"ideal": "thesis-ideal", "payload": "thesis-payload", "pan_drive": "thesis-pan-drive"}
+COMMITTED = {
+    "ideal": "thesis-ideal",
+    "payload": "thesis-payload",
+    "pan_drive": "thesis-pan-drive",
+    "tilt_drive": "thesis-tilt-drive",
+    "full": "thesis-full",
+}
 LINE_LENGTH = 100
 
 

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import click
 
+from ptp_symbolic.cli.report_thesis import thesis
+
 
 @click.group()
 def report() -> None:
@@ -28,3 +30,6 @@ def derivation(source: str, out: Path) -> None:
     write_files_atomically(out, files)
     for name in files:
         click.echo(out / name)
+
+
+report.add_command(thesis)

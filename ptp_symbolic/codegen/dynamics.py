@@ -5,10 +5,11 @@ and derivatives of accelerations are taken implicitly from M a = F.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from ptp_symbolic.codegen.chain import ChainRule, chain_rule
 from ptp_symbolic.codegen.sharing import Line
 from ptp_symbolic.derivation.equations import Equations
 
@@ -17,7 +18,10 @@ ZERO = sp.Integer(0)
 
 @dataclass(frozen=True)
 class Solve:
-    """Accelerations of a model, solved row by row or pairwise where two joints are coupled."""
+    """Accelerations of a model, solved row by row or pairwise where two joints are coupled.
+
+    `definitions` start with the named functions of the equations; `chain` differentiates them.
+    """
 
     definitions: tuple[Line, ...]
     accelerations: tuple[sp.Expr, ...]
@@ -25,6 +29,7 @@ class Solve:
     force: sp.Matrix
     free: tuple[sp.Expr, ...]
     inverses: tuple[sp.Expr, ...]
+    chain: ChainRule
 
     def solve(self, right: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Return a in M a = `right` for the rows that are free to move."""
@@ -50,7 +55,8 @@ def solve_accelerations(equations: Equations) -> Solve:
     places = [str(symbol).removeprefix("theta_") for symbol in equations.coordinates]
     n = len(places)
     slides = {friction.rate: friction for friction in equations.frictions}
-    definitions: list[Line] = []
+    definitions: list[Line] = [(str(symbol), term) for symbol, term in equations.terms]
+    chain = chain_rule(equations)
     mass, force = sp.zeros(n, n), sp.zeros(n, 1)
     free: list[sp.Expr] = []
     for i, rate in enumerate(equations.rates):
@@ -69,11 +75,11 @@ def solve_accelerations(equations: Equations) -> Solve:
         definitions.append((f"force_{places[i]}", total))
         force[i] = sp.Symbol(f"force_{places[i]}", real=True)
     inverses = _inverses(mass, free, places, definitions)
-    solve = Solve(tuple(definitions), (ZERO,) * n, mass, force, tuple(free), tuple(inverses))
+    solve = Solve(tuple(definitions), (ZERO,) * n, mass, force, tuple(free), tuple(inverses), chain)
     accelerations = solve.solve(list(force))
     names = [sp.Symbol(f"accel_{place}", real=True) for place in places]
     lines = [(str(name), a) for name, a in zip(names, accelerations, strict=True)]
-    return Solve((*definitions, *lines), tuple(names), mass, force, tuple(free), tuple(inverses))
+    return replace(solve, definitions=(*definitions, *lines), accelerations=tuple(names))
 
 
 def _inverses(
@@ -116,9 +122,9 @@ def acceleration_derivative(
     values = dict(solve.definitions)
     right = []
     for i in range(len(equations.rates)):
-        term = sp.diff(values[str(solve.force[i])], variable)
+        term = solve.chain.derivative(values[str(solve.force[i])], variable)
         for j, acceleration in enumerate(solve.accelerations):
-            term -= sp.diff(equations.mass_matrix[i, j], variable) * acceleration
+            term -= solve.chain.derivative(equations.mass_matrix[i, j], variable) * acceleration
         right.append(term)
     return solve.solve(right)
 
@@ -132,12 +138,13 @@ def derivative_of(
 ) -> sp.Expr:
     """Total derivative of an expression that may hold accelerations and mass matrix entries."""
     values = dict(solve.definitions)
-    result = sp.diff(expression, variable)
+    result = solve.chain.derivative(expression, variable)
     for acceleration, by in zip(solve.accelerations, acceleration_by, strict=True):
         result += sp.diff(expression, acceleration) * by
     for symbol in sorted(expression.free_symbols, key=str):
         if str(symbol).startswith("mass_"):
-            result += sp.diff(expression, symbol) * sp.diff(values[str(symbol)], variable)
+            slope = solve.chain.derivative(values[str(symbol)], variable)
+            result += sp.diff(expression, symbol) * slope
     return result
 
 

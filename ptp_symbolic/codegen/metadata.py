@@ -39,6 +39,10 @@ def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]
                 _tuple("ZERO_AT_REST", map(str, _zero_at_rest(equations))),
                 "# Per contact: state index of the angle at the gear output and at the joint.",
                 _tuple("CONTACT_ANGLES", _contact_states(equations)),
+                "# Limits of the equations: state, meaning; `domain` gives the bounds.",
+                _tuple("DOMAIN", _domain(equations)),
+                "# Relations: parameters, rule, strict; `margins` gives what is at least zero.",
+                _tuple("REQUIREMENTS", _requirements(equations)),
                 "# Parameters: name, unit, default, lower and upper bound, meaning.",
                 _tuple("PARAMETERS", map(_parameter, parameters)),
                 "# Searching them: name, value at which the effect vanishes (None: any), starts,",
@@ -80,6 +84,8 @@ def _docstring(equations: Equations, operations: tuple[int, int]) -> str:
                 lines += _wrapped(f"M[{i}, {j}]", entry)
     for i, rate in enumerate(equations.rates):
         lines += _wrapped(f"forcing[{rate}]", equations.forcing[i])
+    for symbol, term in equations.terms:
+        lines += _wrapped(str(symbol), term)
     for friction in equations.frictions:
         lines += _wrapped(f"sliding friction[{friction.rate}]", friction.level)
     for state in equations.extra_states:
@@ -155,6 +161,21 @@ def _contact_states(equations: Equations) -> list[str]:
         )
         pairs.append(f"({gear}, {joint})")
     return pairs
+
+
+def _domain(equations: Equations) -> list[str]:
+    return [f"({repr_text(str(own.state))}, {repr_text(own.meaning)})" for own in equations.limits]
+
+
+def _requirements(equations: Equations) -> list[str]:
+    rows = []
+    for own in equations.requirements:
+        symbols = {str(symbol) for symbol in own.holds.free_symbols}
+        names = [repr_text(p.name) for p in equations.parameters if p.name in symbols]
+        inner = f"({', '.join(names)}{',' if len(names) == 1 else ''})"
+        strict = isinstance(own.holds, sp.StrictGreaterThan | sp.StrictLessThan)
+        rows.append(f"({inner}, {repr_text(own.rule)}, {strict})")
+    return rows
 
 
 def _friction_rates(equations: Equations) -> list[str]:

@@ -63,6 +63,8 @@ def module_text(equations: Equations) -> str:
             _outputs(equations, vectors),
             _output_jacobian(equations, vectors),
             _energy(equations, vectors),
+            _domain(equations, vectors),
+            _margins(equations, vectors),
             STATE_DERIVATIVE_HYBRID if vectors.m else STATE_DERIVATIVE_SMOOTH,
         ]
     )
@@ -129,9 +131,11 @@ def _mode_derivative(equations: Equations, vectors: Vectors) -> str:
 
 def _state_lines(equations: Equations) -> list[Line]:
     """The state derivative in base parameters, which need the fewest operations."""
-    form = base_form(equations.rigid_equations, equations.mass_matrix, equations.forcing)
+    varying = equations.varying_inertia
+    constant = equations.mass_matrix - varying
+    form = base_form(equations.rigid_equations, constant, equations.forcing)
     regrouped = dynamics.solve_accelerations(
-        replace(equations, mass_matrix=form.mass_matrix, forcing=form.forcing)
+        replace(equations, mass_matrix=form.mass_matrix + varying, forcing=form.forcing)
     )
     rates = dynamics.state_rates(equations, regrouped)
     outputs = [(f"dx[{i}]", sp.sympify(rate, strict=True)) for i, rate in enumerate(rates)]
@@ -154,13 +158,13 @@ def _jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> 
         for j, variable in enumerate(symbols):
             by = dynamics.acceleration_derivative(equations, solve, variable)
             rows = dict(zip(equations.rates, by, strict=True))
-            rows.update({s: sp.diff(e, variable) for s, e in extra.items()})
+            rows.update({s: solve.chain.derivative(e, variable) for s, e in extra.items()})
             rate_of = zip(equations.coordinates, equations.rates, strict=True)
             rows.update({q: sp.Integer(int(w == variable)) for q, w in rate_of})
             for i, state in enumerate(equations.state_symbols):
                 outputs.append((f"f{letter}[{i}, {j}]", rows[state]))
     doc = "Write the non-zero derivatives of mode_derivative by state, input and parameter."
-    lines = _shared(equations, solve.definitions, outputs)
+    lines = _shared(equations, (*solve.definitions, *solve.chain.lines), outputs)
     return _kernel("jacobian", f"{MODE_ARGUMENTS}, fx, fu, fp", doc, vectors, lines)
 
 
@@ -186,7 +190,7 @@ def _guard_jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vector
                 value = dynamics.derivative_of(equations, solve, expression, variable, by)
                 outputs.append((f"g{letter}[{i}, {j}]", value))
     doc = "Write the non-zero derivatives of guards by state and parameter."
-    lines = _shared(equations, solve.definitions, outputs)
+    lines = _shared(equations, (*solve.definitions, *solve.chain.lines), outputs)
     return _kernel("guard_jacobian", f"{MODE_ARGUMENTS}, gx, gp", doc, vectors, lines)
 
 
@@ -213,5 +217,25 @@ def _energy(equations: Equations, vectors: Vectors) -> str:
     ledger = equations.ledger
     outputs = [("e[0]", ledger.stored), ("e[1]", ledger.power_in), ("e[2]", ledger.dissipated)]
     doc = "Write stored energy in J, power in and dissipated power in W into e."
-    lines = share((), outputs, words_of(equations))
+    terms = [(str(symbol), term) for symbol, term in equations.terms]
+    lines = share(terms, outputs, words_of(equations))
     return _kernel("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, lines)
+
+
+def _domain(equations: Equations, vectors: Vectors) -> str:
+    outputs = [
+        (f"bounds[{k}, {side}]", bound)
+        for k, own in enumerate(equations.limits)
+        for side, bound in enumerate((own.lower, own.upper))
+    ]
+    doc = "Write lower and upper bound of the state of every row of DOMAIN into bounds."
+    return _kernel("domain", "p, bounds", doc, vectors, share((), outputs, words_of(equations)))
+
+
+def _margins(equations: Equations, vectors: Vectors) -> str:
+    outputs = [
+        (f"margin[{k}]", own.holds.gts - own.holds.lts)
+        for k, own in enumerate(equations.requirements)
+    ]
+    doc = "Write by how much the parameters meet every row of REQUIREMENTS into margin."
+    return _kernel("margins", "p, margin", doc, vectors, share((), outputs, words_of(equations)))

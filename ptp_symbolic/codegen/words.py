@@ -6,7 +6,7 @@ from ptp_symbolic.derivation.equations import Equations
 
 
 def words_of(equations: Equations) -> dict[str, str]:
-    """Words by target: ``accel_pan`` for ``dx[2]``, ``accel_pan_by_theta_tilt`` for ``fx[2, 1]``."""
+    """Words by target: ``accel_pan`` for ``dx[2]``, ``accel_pan_by_b_pan`` for ``fp[2, 4]``."""
     rates = _numbered("dx", [_rate(str(s)) for s in equations.state_symbols])
     guards = _numbered("g", _guards(equations))
     readings = _numbered("y", [f"reading_{name}" for name, _, _ in equations.outputs])
@@ -16,7 +16,13 @@ def words_of(equations: Equations) -> dict[str, str]:
         "u": [i.name for i in equations.inputs],
         "p": [p.name for p in equations.parameters],
     }
-    words = {**rates, **guards, **readings, **energy}
+    margins = _numbered("margin", [f"requirement_{k}" for k in range(len(equations.requirements))])
+    bounds = {
+        f"bounds[{k}, {side}]": f"{word}_{limit.state}"
+        for k, limit in enumerate(equations.limits)
+        for side, word in enumerate(("lowest", "highest"))
+    }
+    words = {**rates, **guards, **readings, **energy, **margins, **bounds}
     for letter, names in columns.items():
         words |= _derivatives("f", letter, rates, names)
         words |= _derivatives("g", letter, guards, names)

@@ -1,32 +1,24 @@
 """Assemble a declared platform: place its effects, resolve quantities, derive the equations."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import sympy as sp
 
 from ptp_symbolic import kinematics
 from ptp_symbolic.bodies import RigidConfiguration, RigidEquations
 from ptp_symbolic.derivation.equations import Equations, PlacedEffect
+from ptp_symbolic.derivation.friction import Mechanics, driving_torque, resolved_frictions
 from ptp_symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.derivation.ledger import energy_ledger
 from ptp_symbolic.derivation.parts import BASE_ACCELERATION, GRAVITY_QUANTITIES, Parts, collect
 from ptp_symbolic.derivation.placement import place_effects, resolved_parameters
+from ptp_symbolic.derivation.prescribed import constraint_power, reduced, released
 from ptp_symbolic.derivation.transmission import Transmission, transmission
-from ptp_symbolic.effects.effect import Friction, Input, State
+from ptp_symbolic.effects.effect import Input, Limit, State
 from ptp_symbolic.effects.effect import quantity as quantity_symbol
 from ptp_symbolic.parameters import Parameter
 from ptp_symbolic.platform import Platform
-
-
-@dataclass(frozen=True)
-class _Mechanics:
-    """Mass matrix and forcing over joints and gear outputs."""
-
-    coordinates: tuple[sp.Symbol, ...]
-    rates: tuple[sp.Symbol, ...]
-    mass: sp.ImmutableMatrix
-    forcing: sp.ImmutableMatrix
 
 
 def assemble(platform: Platform) -> Equations:
@@ -36,7 +28,7 @@ def assemble(platform: Platform) -> Equations:
     a value outside the bounds of its effect.
     """
     placed = place_effects(platform)
-    parts = collect(platform.axes, placed)
+    parts = released(collect(platform.axes, placed))
     transmissions = [transmission(shaft, parts) for shaft in parts.shafts]
     shaft_torques = {
         quantity_symbol(f"shaft_torque_{s.axis}"): t.transmitted
@@ -45,8 +37,14 @@ def assemble(platform: Platform) -> Equations:
     parts = replace(parts, values={**parts.values, **shaft_torques})
     rigid = _rigid_configuration(platform, parts)
     rigid_equations = lagrange(rigid)
-    mechanics = _mechanics(platform, parts, transmissions, rigid_equations)
+    full = _mechanics(platform, parts, transmissions, rigid_equations)
+    mechanics, rigid_equations = reduced(full, rigid_equations, parts.prescribed)
+    frictions, loads = resolved_frictions(parts, mechanics)
     inputs = _inputs(platform, parts)
+    ledger = energy_ledger(
+        platform.axes, parts, frictions, [t.ledger for t in transmissions], rigid_equations
+    )
+    power = constraint_power(full, mechanics, frictions, parts.prescribed)
     equations = Equations(
         name=platform.name,
         title=platform.title,
@@ -55,19 +53,21 @@ def assemble(platform: Platform) -> Equations:
         rates=mechanics.rates,
         mass_matrix=mechanics.mass,
         forcing=mechanics.forcing,
+        terms=(*parts.terms.items(), *loads),
         extra_states=_extra_states(parts),
         inputs=tuple(given for given, _ in inputs),
         delays=tuple(_delay_of(axis, parts) for _, axis in inputs),
         parameters=(),
-        frictions=tuple(
-            Friction(f.axis, f.rate, parts.resolve(f.level), parts.resolve(f.breakaway))
-            for f in parts.frictions
-        ),
+        frictions=frictions,
         contacts=tuple(t.contact for t in transmissions if t.contact is not None),
         outputs=_outputs(platform, parts),
-        ledger=energy_ledger(
-            platform.axes, parts, [t.ledger for t in transmissions], rigid_equations
+        limits=tuple(
+            Limit(own.state, parts.resolve(own.lower), parts.resolve(own.upper), own.meaning)
+            for contribution in parts.contributions
+            for own in contribution.limits
         ),
+        requirements=tuple(r for effect, place in placed for r in effect.requires(place)),
+        ledger=replace(ledger, power_in=ledger.power_in + power),
         effects=tuple(
             PlacedEffect(e, p.axis, tuple(q.name for q in e.parameters(p))) for e, p in placed
         ),
@@ -82,7 +82,7 @@ def _mechanics(
     parts: Parts,
     transmissions: Sequence[Transmission],
     rigid: RigidEquations,
-) -> _Mechanics:
+) -> Mechanics:
     """Add drives, shafts, torques and potentials of the effects to the rigid equations."""
     joints, gears = platform.axes, [shaft.axis for shaft in parts.shafts]
     coordinates = (*map(kinematics.angle, joints), *map(kinematics.gear_angle, gears))
@@ -90,23 +90,22 @@ def _mechanics(
     mass = sp.diag(rigid.mass_matrix, sp.zeros(len(gears)))
     forcing = sp.Matrix([*rigid.forcing, *([0] * len(gears))])
     row = {symbol: index for index, symbol in enumerate(rates)}
-    driven = {drive.axis for drive in parts.drives}
-    torques = [(kinematics.rate(a), kinematics.torque(a)) for a in joints if a not in driven]
+    free = [axis for axis in joints if axis not in parts.driven]
+    torques = [(kinematics.rate(axis), kinematics.torque(axis)) for axis in free]
     torques += [torque for t in transmissions for torque in t.torques]
     torques += [torque for c in parts.contributions for torque in c.torques.items()]
     for drive in parts.drives:
         rate = parts.drive_rate(drive)
         inertia = parts.resolve(drive.inertia)
         mass[row[rate], row[rate]] += inertia
-        varying = sp.diff(inertia, coordinates[row[rate]]) * rate**2 / 2
-        torques.append((rate, drive.torque - varying))
+        torques.append((rate, driving_torque(drive, parts, coordinates[row[rate]])))
     for symbol, torque in torques:
         forcing[row[symbol]] += parts.resolve(torque)
     potential = parts.resolve(sum((c.potential for c in parts.contributions), sp.Integer(0)))
     for index, coordinate in enumerate(coordinates):
         forcing[index] -= sp.diff(potential, coordinate)
     mass = mass.applyfunc(parts.resolve)
-    return _Mechanics(coordinates, rates, sp.ImmutableMatrix(mass), sp.ImmutableMatrix(forcing))
+    return Mechanics(coordinates, rates, sp.ImmutableMatrix(mass), sp.ImmutableMatrix(forcing))
 
 
 def _rigid_configuration(platform: Platform, parts: Parts) -> RigidConfiguration:
@@ -134,8 +133,9 @@ def _rigid_configuration(platform: Platform, parts: Parts) -> RigidConfiguration
 
 
 def _inputs(platform: Platform, parts: Parts) -> list[tuple[Input, str]]:
-    """The inputs, each with its axis: those of the drive, else the torque on the joint."""
+    """The inputs, each with its axis: of a drive, a prescribed motion, else the joint's torque."""
     drives = {drive.axis: drive.inputs for drive in parts.drives}
+    drives |= {str(w).removeprefix("omega_"): (given,) for w, given in parts.prescribed.items()}
     inputs = []
     for axis in platform.axes:
         own = Input(str(kinematics.torque(axis)), "N m", f"torque on the {axis} joint")
@@ -169,6 +169,8 @@ def _outputs(platform: Platform, parts: Parts) -> tuple[tuple[str, str, sp.Expr]
 def _with_parameters(equations: Equations, declared: dict[str, Parameter]) -> Equations:
     """Attach the parameters that the equations use, in the order of the effects."""
     used: set[sp.Symbol] = set(equations.mass_matrix.free_symbols | equations.forcing.free_symbols)
+    for _, expression in equations.terms:
+        used |= expression.free_symbols
     for friction in equations.frictions:
         used |= friction.level.free_symbols | friction.breakaway.free_symbols
     for contact in equations.contacts:
@@ -177,7 +179,12 @@ def _with_parameters(equations: Equations, declared: dict[str, Parameter]) -> Eq
         used |= state.derivative.free_symbols
     for _, _, expression in equations.outputs:
         used |= expression.free_symbols
+    for limit in equations.limits:
+        used |= limit.lower.free_symbols | limit.upper.free_symbols
+    for power in (equations.ledger.stored, equations.ledger.power_in, equations.ledger.dissipated):
+        used |= power.free_symbols
     used |= {delay for delay in equations.delays if delay is not None}
     names = {str(symbol) for symbol in used}
     parameters = tuple(p for name, p in declared.items() if name in names)
-    return replace(equations, parameters=parameters)
+    requirements = tuple(r for r in equations.requirements if r.holds.free_symbols <= used)
+    return replace(equations, parameters=parameters, requirements=requirements)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic.bodies import RigidConfiguration, RigidEquations
-from ptp_symbolic.effects.effect import Effect, Friction, Input, State
+from ptp_symbolic.effects.effect import Effect, Friction, Input, Limit, Requirement, State
 from ptp_symbolic.parameters import Parameter
 
 
@@ -48,8 +48,10 @@ class Equations:
     """M(q) q'' = forcing, sliding friction apart, and the states of drives and effects.
 
     Set-valued friction and contact enter through mode symbols, so that the equations are smooth
-    in every mode. `forcing` holds everything but the friction torques. `delays` gives for every
-    input the time by which it is late, if it can be.
+    in every mode. `forcing` holds everything but the friction torques. `terms` are named functions
+    in which they are written, each of those before it. `delays` gives for every input the time by
+    which it is late, if it can be. The equations hold within `limits`, for parameters that meet
+    the `requirements`.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Equations:
     rates: tuple[sp.Symbol, ...]
     mass_matrix: sp.ImmutableMatrix
     forcing: sp.ImmutableMatrix
+    terms: tuple[tuple[sp.Symbol, sp.Expr], ...]
     extra_states: tuple[State, ...]
     inputs: tuple[Input, ...]
     delays: tuple[sp.Symbol | None, ...]
@@ -66,6 +69,8 @@ class Equations:
     frictions: tuple[Friction, ...]
     contacts: tuple[Contact, ...]
     outputs: tuple[tuple[str, str, sp.Expr], ...]
+    limits: tuple[Limit, ...]
+    requirements: tuple[Requirement, ...]
     ledger: Ledger
     effects: tuple[PlacedEffect, ...]
     rigid: RigidConfiguration
@@ -82,6 +87,20 @@ class Equations:
         ]
         extra = [sp.Symbol(state.name, real=True) for state in self.extra_states]
         return (*self.coordinates[:joints], *self.rates[:joints], *gears, *extra)
+
+    def written_out(self, expression: sp.Expr) -> sp.Expr:
+        """Return `expression` with the named functions put in."""
+        for symbol, term in reversed(self.terms):
+            expression = expression.xreplace({symbol: term})
+        return expression
+
+    @property
+    def varying_inertia(self) -> sp.ImmutableMatrix:
+        """What drives behind a varying transmission add to the mass matrix [n, n], in kg m^2."""
+        named = {symbol for symbol, _ in self.terms}
+        return self.mass_matrix.applyfunc(
+            lambda entry: sp.Add(*(a for a in sp.Add.make_args(entry) if a.free_symbols & named))
+        )
 
     @property
     def mode_symbols(self) -> tuple[sp.Symbol, ...]:

@@ -8,22 +8,25 @@ from ptp_symbolic import kinematics
 from ptp_symbolic.bodies import RigidEquations
 from ptp_symbolic.derivation.equations import Ledger
 from ptp_symbolic.derivation.parts import Parts
-from ptp_symbolic.effects.effect import Contribution, slide
+from ptp_symbolic.effects.effect import Contribution, Friction, slide
 
 ZERO = sp.Integer(0)
 
 
 def energy_ledger(
-    axes: Iterable[str], parts: Parts, shafts: Iterable[Ledger], rigid: RigidEquations
+    axes: Iterable[str],
+    parts: Parts,
+    frictions: Iterable[Friction],
+    shafts: Iterable[Ledger],
+    rigid: RigidEquations,
 ) -> Ledger:
-    """Sum the ledgers of bodies, drives, shafts, frictions and effects.
+    """Sum the ledgers of bodies, drives, shafts, `frictions` and effects.
 
     A potential that depends on time (a base that moves) takes in its partial derivative by time.
     """
     stored, power_in, dissipated = rigid.kinetic + rigid.potential, ZERO, ZERO
-    driven = {drive.axis for drive in parts.drives}
     power_in += sum(
-        (kinematics.torque(a) * kinematics.rate(a) for a in axes if a not in driven), ZERO
+        (kinematics.torque(a) * kinematics.rate(a) for a in axes if a not in parts.driven), ZERO
     )
     for drive in parts.drives:
         stored += drive.stored + drive.inertia * parts.drive_rate(drive) ** 2 / 2
@@ -36,7 +39,7 @@ def energy_ledger(
         power_in, dissipated = (
             (power_in, dissipated - power) if is_loss else (power_in + power, dissipated)
         )
-    for friction in parts.frictions:
+    for friction in frictions:
         dissipated += slide(friction.axis) * friction.level * friction.rate
     for shaft in shafts:
         stored, dissipated = stored + shaft.stored, dissipated + shaft.dissipated

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic import kinematics
-from ptp_symbolic.effects.effect import Contribution, Drive, Effect, Friction, Place, Shaft
+from ptp_symbolic.effects.effect import Contribution, Drive, Effect, Friction, Input, Place, Shaft
 from ptp_symbolic.effects.effect import quantity as quantity_symbol
 
 GRAVITY_QUANTITIES = ("gravity_tilt", "gravity_azimuth")
@@ -32,6 +32,16 @@ class Parts:
             expression = expression.subs({symbol: self.values[symbol] for symbol in present})
 
     @property
+    def terms(self) -> dict[sp.Symbol, sp.Expr]:
+        """Named functions of all effects, each followed by its slopes in the angles."""
+        found: dict[sp.Symbol, sp.Expr] = {}
+        for contribution in self.contributions:
+            for symbol, term in contribution.terms.items():
+                found[symbol] = self.resolve(term)
+                found.update(_slopes(symbol, found))
+        return found
+
+    @property
     def frictions(self) -> list[Friction]:
         """Set-valued frictions of all effects."""
         return [f for c in self.contributions for f in c.frictions]
@@ -46,11 +56,40 @@ class Parts:
         """Drives of all effects."""
         return [d for c in self.contributions for d in c.drives]
 
+    @property
+    def prescribed(self) -> dict[sp.Symbol, Input]:
+        """Acceleration inputs of joint rates whose motion is prescribed."""
+        return {rate: i for c in self.contributions for rate, i in c.prescribed.items()}
+
+    @property
+    def driven(self) -> set[str]:
+        """Axes that take no torque as input: with a drive, or with a prescribed motion."""
+        moved = {str(rate).removeprefix("omega_") for rate in self.prescribed}
+        return moved | {drive.axis for drive in self.drives}
+
     def drive_rate(self, drive: Drive) -> sp.Symbol:
         """The rate that `drive` works on: at the gear output behind a shaft, else at the joint."""
         if any(shaft.axis == drive.axis for shaft in self.shafts):
             return kinematics.gear_rate(drive.axis)
         return kinematics.rate(drive.axis)
+
+
+def _slopes(term: sp.Symbol, found: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
+    """Derivatives of `term` by the angles, also by way of the functions in it."""
+    slopes: dict[sp.Symbol, sp.Expr] = {}
+    for angle in (q(a) for q in (kinematics.angle, kinematics.gear_angle) for a in kinematics.AXES):
+        slope = sp.diff(found[term], angle)
+        for inner in sorted(found[term].free_symbols & found.keys(), key=str):
+            if slope_symbol(inner, angle) in found:
+                slope += sp.diff(found[term], inner) * slope_symbol(inner, angle)
+        if slope != 0:
+            slopes[slope_symbol(term, angle)] = slope
+    return slopes
+
+
+def slope_symbol(term: sp.Symbol, variable: sp.Symbol) -> sp.Symbol:
+    """Name of the derivative of the named function `term` by `variable`."""
+    return sp.Symbol(f"{term}_by_{variable}", real=True)
 
 
 def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Parts:

@@ -115,7 +115,7 @@ def _check_parameters(platform: Platform, placed: list[tuple[Effect, Place]]) ->
                 f" give it in '{parameter.unit}'."
             )
         value = declaration.value
-        if declaration.same_as is None and not parameter.lower <= value <= parameter.upper:
+        if not parameter.lower <= value <= parameter.upper:
             raise InputError(
                 f"Parameter '{declaration.name}' = {value:g} {parameter.unit} lies outside its"
                 f" bounds [{parameter.lower:g}, {parameter.upper:g}]; change the value."

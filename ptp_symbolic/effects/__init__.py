@@ -15,11 +15,13 @@ from ptp_symbolic.effects.encoder_eccentricity import ENCODER_ECCENTRICITY
 from ptp_symbolic.effects.encoder_quantization import ENCODER_QUANTIZATION
 from ptp_symbolic.effects.gear_eccentricity import GEAR_ECCENTRICITY
 from ptp_symbolic.effects.input_delay import INPUT_DELAY
+from ptp_symbolic.effects.linear_actuator import LINEAR_ACTUATOR
 from ptp_symbolic.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION
 from ptp_symbolic.effects.lugre_friction import LUGRE_FRICTION
 from ptp_symbolic.effects.payload import PAYLOAD
 from ptp_symbolic.effects.payload_com_offset import PAYLOAD_COM_OFFSET
 from ptp_symbolic.effects.position_dependent_friction import POSITION_DEPENDENT_FRICTION
+from ptp_symbolic.effects.prescribed_motion import PRESCRIBED_MOTION
 from ptp_symbolic.effects.product_of_inertia import PRODUCT_OF_INERTIA
 from ptp_symbolic.effects.quadratic_drag import QUADRATIC_DRAG
 from ptp_symbolic.effects.rate_dependent_breakaway import RATE_DEPENDENT_BREAKAWAY
@@ -50,6 +52,8 @@ EFFECTS: tuple[Effect, ...] = (
     COGGING,
     GEAR_ECCENTRICITY,
     DC_MOTOR,
+    LINEAR_ACTUATOR,
+    PRESCRIBED_MOTION,
     DRIVE_DEADBAND,
     VOLTAGE_OFFSET,
     VOLTAGE_SATURATION,

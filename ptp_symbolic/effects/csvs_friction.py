@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from ptp_symbolic.effects.effect import Contribution, Effect, Friction, Place
+from ptp_symbolic.effects.effect import Contribution, Effect, Friction, Place, Requirement
 from ptp_symbolic.parameters import Parameter
 
 PARAMETERS = (
@@ -39,6 +39,11 @@ def _contribute(place: Place) -> Contribution:
     )
 
 
+def _requires(place: Place) -> tuple[Requirement, ...]:
+    coulomb, static = (place.parameter(p.name) for p in PARAMETERS[:2])
+    return (Requirement(static >= coulomb, "F_s is at least F_c; raise F_s or lower F_c"),)
+
+
 CSVS_FRICTION = Effect(
     id="csvs_friction",
     title="Coulomb, static, viscous and Stribeck friction",
@@ -46,5 +51,6 @@ CSVS_FRICTION = Effect(
     parameters=_parameters,
     contribute=_contribute,
     dissipative=True,
+    requires=_requires,
     separating_experiment="Crawl through standstill in both directions at several slow speeds.",
 )

@@ -14,6 +14,8 @@ from ptp_symbolic import kinematics
 from ptp_symbolic.bodies import Body
 from ptp_symbolic.parameters import Parameter
 
+LOADS = ("driving_torque", "load_torque", "load_inertia")
+
 
 def _unchanged(value: sp.Expr) -> sp.Expr:
     return value
@@ -60,13 +62,18 @@ class Friction:
     """Set-valued dry friction that acts on one rate.
 
     `level` > 0 is the friction torque in N m while sliding, `breakaway` the torque that holds at
-    rest; both may depend on the direction symbol ``slide_<axis>`` (-1, 0 or 1).
+    rest; both may depend on the direction symbol ``slide_<axis>`` (-1, 0 or 1) and, where a drive
+    works on `rate`, on the quantities ``driving_torque_<axis>`` of the drive, less what its own
+    inertia takes as it changes, and ``load_torque_<axis>`` and ``load_inertia_<axis>`` of the rest
+    of the machine, other joints free to follow. `terms` are functions of those that the equations
+    keep under their names, each of those before it.
     """
 
     axis: str
     rate: sp.Symbol
     level: sp.Expr
     breakaway: sp.Expr
+    terms: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -97,16 +104,40 @@ class Drive:
 
 
 @dataclass(frozen=True)
+class Limit:
+    """Bounds of a state, functions of parameters, outside of which the equations do not hold."""
+
+    state: sp.Symbol
+    lower: sp.Expr
+    upper: sp.Expr
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """A relation between parameters without which the effect cannot exist.
+
+    `rule` says what is allowed and what to do, as the end of a message that starts with the values.
+    """
+
+    holds: sp.Rel
+    rule: str
+
+
+@dataclass(frozen=True)
 class Contribution:
     """Everything that an effect may add to the machine.
 
+    `terms` are functions that the equations keep under their names, each of those before it.
     `potential` is an energy of the coordinates, whose gradient acts as torques; `stored` an energy
     of the effect's own states, which its `torques` charge and discharge. `delays` hold back the
-    inputs of an axis. What a sensor shows is the quantity ``reading_<state>``.
+    inputs of an axis. `prescribed` gives joint rates an acceleration as input, in place of the
+    torque on the joint. What a sensor shows is the quantity ``reading_<state>``.
     """
 
     quantities: Mapping[str, sp.Expr] = field(default_factory=dict)
     changes: Mapping[str, Change] = field(default_factory=dict)
+    terms: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     bodies: tuple[Body, ...] = ()
     potential: sp.Expr = sp.Integer(0)
     stored: sp.Expr = sp.Integer(0)
@@ -116,6 +147,8 @@ class Contribution:
     drives: tuple[Drive, ...] = ()
     states: tuple[State, ...] = ()
     delays: Mapping[str, sp.Symbol] = field(default_factory=dict)
+    limits: tuple[Limit, ...] = ()
+    prescribed: Mapping[sp.Symbol, Input] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -126,6 +159,10 @@ class Place:
     axis: str | None
     site: str | None
     shafts: frozenset[str]
+
+    def named(self, parameters: tuple[Parameter, ...]) -> tuple[Parameter, ...]:
+        """The `parameters` of an effect with the name of its axis filled in."""
+        return tuple(p.at_axis(self.axis) for p in parameters)
 
     def parameter(self, template: str) -> sp.Symbol:
         """Symbol of the effect's parameter, e.g. ``k_shaft_{axis}``."""
@@ -172,6 +209,12 @@ class Place:
         return slide(self.own_axis)
 
     @property
+    def loads(self) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+        """What friction in the drive carries, see `Friction`: torques in N m, inertia in kg m^2."""
+        driving, torque, inertia = (self.quantity(f"{name}_{{axis}}") for name in LOADS)
+        return driving, torque, inertia
+
+    @property
     def payload_frame(self) -> str:
         """Frame that carries a payload: the tilt body, or the pan body where there is no tilt."""
         return "tilt" if "tilt" in self.axes else "pan"
@@ -187,12 +230,17 @@ def slide(axis: str) -> sp.Symbol:
     return sp.Symbol(f"slide_{axis}", real=True)
 
 
+def _without_conditions(place: Place) -> tuple[Requirement, ...]:
+    return ()
+
+
 @dataclass(frozen=True)
 class Effect:
     """A physical effect, complete in one file.
 
     `on_axis` tells whether it sits on an axis or on the whole platform; `needs` names the
-    quantities without which it has nothing to act on. `dissipative` is a claim that tests verify:
+    quantities without which it has nothing to act on, `requires` what its parameters must fulfil
+    among each other. `dissipative` is a claim that tests verify:
     its torques can only take energy out. `structural` effects have no parameter value at which
     they vanish (a motor, a shaft, a body): they are declared, never searched for.
     """
@@ -207,4 +255,5 @@ class Effect:
     structural: bool = False
     splits_axis: bool = False
     needs: tuple[str, ...] = ()
+    requires: Callable[[Place], tuple[Requirement, ...]] = _without_conditions
     separating_experiment: str = ""

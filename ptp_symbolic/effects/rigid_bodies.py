@@ -8,11 +8,11 @@ from ptp_symbolic.parameters import Parameter
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:
-    pan = (Parameter("J_pan", "kg m^2", 5.3e-4, 0.0, 1e4, "inertia of the pan body about z"),)
+    pan = (Parameter("J_pan", "kg m^2", 5.3e-4, 1e-12, 1e4, "inertia of the pan body about z"),)
     tilt = (
-        Parameter("J_x_tilt", "kg m^2", 4.1e-4, 0.0, 1e4, "inertia of the tilt body about x"),
-        Parameter("J_y_tilt", "kg m^2", 6.5e-4, 0.0, 1e4, "inertia of the tilt body about y"),
-        Parameter("J_z_tilt", "kg m^2", 2.7e-4, 0.0, 1e4, "inertia of the tilt body about z"),
+        Parameter("J_x_tilt", "kg m^2", 4.1e-4, 1e-12, 1e4, "inertia of the tilt body about x"),
+        Parameter("J_y_tilt", "kg m^2", 6.5e-4, 1e-12, 1e4, "inertia of the tilt body about y"),
+        Parameter("J_z_tilt", "kg m^2", 2.7e-4, 1e-12, 1e4, "inertia of the tilt body about z"),
     )
     if place.axes == ("pan",):
         return pan

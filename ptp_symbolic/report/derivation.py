@@ -10,6 +10,7 @@ from pathlib import Path
 import sympy as sp
 
 from ptp_symbolic.codegen.latex import latex_of, symbol_latex
+from ptp_symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.derivation.equations import Equations
 from ptp_symbolic.derivation.kane import kane
@@ -27,6 +28,7 @@ ROUTES = (("Newton--Euler", newton_euler), ("Kane", kane), ("Lagrange", lagrange
 def render_derivation(platform: Platform) -> dict[str, str | bytes]:
     """Return the document as ``derivation.tex``; it needs no other file."""
     equations = assemble(platform)
+    refuse_impossible(equations)
     parts = [
         PREAMBLE,
         rf"\title{{{escaped(platform.title)}\\\large Derivation of the equations of motion}}",
@@ -152,6 +154,8 @@ def _results(equations: Equations) -> str:
                 parts.append(formula("", entry, f"M_{{{i + 1}{j + 1}}}"))
     for i, rate in enumerate(equations.rates):
         parts.append(formula("", equations.forcing[i], rf"f[{symbol_latex(str(rate))}]"))
+    for symbol, term in equations.terms:
+        parts.append(formula("", term, symbol_latex(str(symbol))))
     for friction in equations.frictions:
         name = symbol_latex(str(friction.rate))
         parts.append(
@@ -173,7 +177,8 @@ def _results(equations: Equations) -> str:
 
 
 def _simplification(equations: Equations) -> str:
-    found = simplify_rigid(equations.rigid_equations, equations.mass_matrix, equations.forcing)
+    constant = equations.mass_matrix - equations.varying_inertia
+    found = simplify_rigid(equations.rigid_equations, constant, equations.forcing)
     rows = [
         [escaped(s.name), str(s.operations_before), str(s.operations_after),
          "yes" if s.proved else "no"]

@@ -1,5 +1,6 @@
 """LaTeX building blocks: escaped text, tables, formulas that break over lines."""
 
+import re
 from collections.abc import Sequence
 
 import sympy as sp
@@ -23,6 +24,7 @@ SPECIAL = {
     "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}",
 }  # fmt: skip
 LINE_WIDTH = 92
+SHORT_NAME = 12
 
 
 def escaped(text: str) -> str:
@@ -49,20 +51,21 @@ def formula(text: str, expression: sp.Expr | None = None, name: str = "") -> str
         return f"\\[\n{text}\n\\]\n"
     if isinstance(expression, sp.MatrixBase):
         return f"\\[\n{name} = {latex_of(expression)}\n\\]\n"
-    lines = _lines(sp.expand(expression))
+    printed = re.sub(r"\\[a-z]+|[{}_\\]", "", name)
+    lines = _lines(sp.expand(expression), LINE_WIDTH - max(0, len(printed) - SHORT_NAME))
     rows = [rf"{name} ={{}}& {lines[0]}", *(rf"& {line}" for line in lines[1:])]
     return "\\begin{align*}\n" + " \\\\\n".join(rows) + "\n\\end{align*}\n"
 
 
-def _lines(expression: sp.Expr) -> list[str]:
-    """Terms of a sum, as many on a line as fit."""
+def _lines(expression: sp.Expr, room: int) -> list[str]:
+    """Terms of a sum, as many on a line as fit into `room`."""
     lines: list[str] = []
     width = 0
     for number, term in enumerate(expression.as_ordered_terms(order="lex")):
         text = latex_of(term)
         signed = text if number == 0 or text.startswith("-") else f"+ {text}"
         size = _width(term)
-        if lines and width + size <= LINE_WIDTH:
+        if lines and width + size <= room:
             lines[-1] += f" {signed}"
             width += size
         else:

@@ -8,6 +8,8 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.errors import InputError
+
 FloatArray = NDArray[np.float64]
 
 
@@ -136,6 +138,27 @@ class Model:
     def input_delays(self) -> NDArray[np.int64]:
         """Per input the index of the parameter by which it is late, or -1."""
         return np.array(self.module.INPUT_DELAYS, dtype=np.int64)
+
+    @cached_property
+    def limits(self) -> tuple[tuple[str, str], ...]:
+        """States with limits beyond which the equations do not hold, each with its meaning."""
+        return tuple(self.module.DOMAIN)
+
+    def domain(self, p: FloatArray) -> FloatArray:
+        """Lower and upper bound [k, 2] of the states of `limits` at parameters p [np]."""
+        bounds = np.empty((len(self.limits), 2))
+        self.module.domain(p, bounds)
+        return bounds
+
+    def refuse_impossible(self, p: FloatArray) -> None:
+        """Raise InputError when parameters p [np] break a relation that the machine needs."""
+        margin = np.zeros(len(self.module.REQUIREMENTS))
+        self.module.margins(p, margin)
+        values = dict(zip(self.parameter_names, p, strict=True))
+        for (names, rule, strict), by in zip(self.module.REQUIREMENTS, margin, strict=True):
+            if not (by > 0.0 if strict else by >= 0.0):
+                given = ", ".join(f"{n} = {values[n]:g} {self.units[n]}" for n in names)
+                raise InputError(f"Impossible {given}: {rule}.")
 
     @cached_property
     def state_derivative(self) -> Callable[..., None]:

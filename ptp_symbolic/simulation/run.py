@@ -105,6 +105,7 @@ def simulate(
             model, chosen, p, x, table, table.held, np.concatenate([t[:1], inner, t[-1:]]), t,
             accuracy, ledger=True, event_room=EVENT_CAPACITY,
         )  # fmt: skip
+    refuse_outside(model, p, t[t <= found.reached], found.x)
     refuse_failure(model, found.status, found.reached, found.state)
     return Trajectory(
         t, found.x, model.state_names, _named(model, found.events), found.ledger[:, 0],
@@ -136,7 +137,10 @@ def output_times(times: float | ArrayLike) -> FloatArray:
 
 
 def checked_parameters(model: Model, parameters: Mapping[str, float]) -> FloatArray:
-    """Parameter vector [np]. Raises InputError for unknown names and values outside bounds."""
+    """Parameter vector [np].
+
+    Raises InputError for unknown names, values outside bounds, values that do not fit each other.
+    """
     _refuse_unknown("parameter", parameters, model.parameter_names)
     for p in model.parameters:
         value = parameters.get(p.name, p.default)
@@ -145,7 +149,9 @@ def checked_parameters(model: Model, parameters: Mapping[str, float]) -> FloatAr
                 f"Parameter '{p.name}' = {value:g} {p.unit} lies outside its bounds"
                 f" [{p.lower:g}, {p.upper:g}]; change the value."
             )
-    return model.parameter_vector(dict(parameters))
+    vector = model.parameter_vector(dict(parameters))
+    model.refuse_impossible(vector)
+    return vector
 
 
 def start_of(model: Model, initial: Mapping[str, float]) -> FloatArray:
@@ -157,6 +163,24 @@ def start_of(model: Model, initial: Mapping[str, float]) -> FloatArray:
             raise InputError(f"State '{name}' starts at {value}; give a finite number.")
         x[model.state_names.index(name)] = value
     return x
+
+
+def refuse_outside(model: Model, p: FloatArray, t: FloatArray, x: FloatArray) -> None:
+    """Raise SimulationError at the first of times t [k] at which x [k, n] is outside the domain."""
+    found = []
+    for (name, meaning), (lower, upper) in zip(model.limits, model.domain(p), strict=True):
+        values = x[: len(t), model.state_names.index(name)]
+        outside = np.flatnonzero((values < lower) | (values > upper))
+        if len(outside):
+            at, unit = outside[0], model.units[name]
+            text = (
+                f"Stopped at {t[at]:.6g} s with {name} = {values[at]:.6g} {unit}: past the"
+                f" {meaning}, which allows {lower:.6g} to {upper:.6g} {unit}; shorten the input,"
+                " start elsewhere or change the lengths."
+            )
+            found.append((at, text))
+    if found:
+        raise SimulationError(min(found, key=lambda each: each[0])[1])
 
 
 def refuse_failure(model: Model, status: int, reached: float, x: FloatArray) -> None:

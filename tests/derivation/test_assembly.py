@@ -110,7 +110,7 @@ def test_a_tied_parameter_takes_the_value_of_the_other() -> None:
         ),
         (
             with_parameter(ParameterDeclaration("J_pan", "kg m^2", 1e5)),
-            r"'J_pan' = 100000 kg m\^2 lies outside its bounds \[0, 10000\]",
+            r"'J_pan' = 100000 kg m\^2 lies outside its bounds \[1e-12, 10000\]",
         ),
     ],
 )

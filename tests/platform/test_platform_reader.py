@@ -269,7 +269,7 @@ def test_a_file_that_is_no_platform_text_is_refused(
 def test_missing_files_and_folders_are_refused_with_the_presets(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"'thesis-idael' is no preset .* thesis-ideal, "):
         read_platform("thesis-idael")
-    with pytest.raises(InputError, match=r"no such file; .* one of the presets thesis-ideal"):
+    with pytest.raises(InputError, match=r"no such file; .* one of the presets thesis-full"):
         read_platform(tmp_path / "bench.toml")
     with pytest.raises(InputError, match="is a folder; give a platform TOML"):
         read_platform(tmp_path)

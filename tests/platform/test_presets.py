@@ -15,9 +15,11 @@ def values(platform: Platform) -> dict[str, float]:
 
 
 def test_the_presets_are_named_after_their_files() -> None:
-    assert preset_names() == ("thesis-ideal", "thesis-pan-drive", "thesis-payload")
-    names = [read_platform(preset).name for preset in preset_names()]
-    assert names == ["ideal", "pan_drive", "payload"]
+    named = [name.removeprefix("thesis-").replace("-", "_") for name in preset_names()]
+    assert named == [
+        "full", "ideal", "pan_drive", "payload", "tilt_drive", "tilt_drive_stroke_48",
+    ]  # fmt: skip
+    assert [read_platform(preset).name for preset in preset_names()] == named
 
 
 @pytest.mark.parametrize("preset", preset_names())
@@ -60,6 +62,29 @@ def test_the_pan_drive_is_table_5_7() -> None:
         "gap_pan": math.radians(1.49),
     }
     assert drive.items() >= table.items()
+
+
+def test_the_tilt_drive_is_tables_5_5_and_5_6_with_either_initial_stroke() -> None:
+    table = {
+        "L_tilt": 9.35e-3, "R_tilt": 17.0, "K_t_tilt": 0.044, "J_motor_tilt": 1.62e-6,
+        "b_motor_tilt": 1.1696e-4, "N_tilt": 93.0, "lead_tilt": 4e-3, "d_screw_tilt": 8e-3,
+        "f_screw_tilt": 0.15, "l_ground_tilt": 0.19755, "l_min_tilt": 0.139,
+        "r_arm_tilt": 0.0634133, "m_payload": 6.3785, "c_z_payload": 0.0876228, "b_tilt": 10.0,
+        "J_y_payload": 1.36e-2, "s_start_tilt": 0.0405022,
+    }  # fmt: skip
+    for name in table:
+        drive = values(read_platform("thesis-tilt-drive"))
+        assert drive[name] == pytest.approx(table[name], rel=1e-12)
+    other = values(read_platform("thesis-tilt-drive-stroke-48"))
+    assert other == {**drive, "s_start_tilt": 0.0485}
+
+
+def test_the_whole_machine_has_both_drives() -> None:
+    full = values(read_platform("thesis-full"))
+    pan, tilt = (values(read_platform(f"thesis-{axis}-drive")) for axis in ("pan", "tilt"))
+    assert full.items() >= {k: v for k, v in pan.items() if k != "J_pan"}.items()
+    assert full.items() >= tilt.items()
+    assert full["J_pan"] + full["J_z_tilt"] + full["J_z_payload"] == pytest.approx(pan["J_pan"])
 
 
 def test_the_friction_of_the_pan_drive_is_table_4_1_in_either_direction() -> None:

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.platform import read_platform
+from ptp_symbolic.platform import preset_names, read_platform
 from ptp_symbolic.report.derivation import has_warning, render_derivation
 
 
-@pytest.mark.parametrize("name", ["thesis-ideal", "thesis-payload", "thesis-pan-drive"])
+@pytest.mark.parametrize("name", preset_names())
 def test_compiles_without_a_warning(name: str, tmp_path: Path) -> None:
     files = render_derivation(read_platform(name))
     text = files["derivation.tex"]

@@ -1,0 +1,4802 @@
+"""Both axes of the thesis, all drives: equations of motion, emitted; do not edit.
+
+M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
+
+  M[0, 0] = J_pan + J_x_payload*sin(theta_tilt)**2 + J_x_tilt*sin(theta_tilt)**2 +
+      J_z_payload*cos(theta_tilt)**2 + J_z_tilt*cos(theta_tilt)**2 +
+      c_x_payload**2*m_payload*cos(theta_tilt)**2 +
+      2*c_x_payload*c_z_payload*m_payload*sin(theta_tilt)*cos(theta_tilt) +
+      c_y_payload**2*m_payload*sin(theta_tilt)**2 + c_y_payload**2*m_payload*cos(theta_tilt)**2
+      + c_z_payload**2*m_payload*sin(theta_tilt)**2
+  M[0, 1] = c_x_payload*c_y_payload*m_payload*sin(theta_tilt) -
+      c_y_payload*c_z_payload*m_payload*cos(theta_tilt)
+  M[1, 1] = J_motor_tilt*ratio_tilt**2 + J_y_payload + J_y_tilt + c_x_payload**2*m_payload +
+      c_z_payload**2*m_payload
+  M[2, 2] = J_motor_pan*N_pan**2
+  forcing[omega_pan] = -2*J_x_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) -
+      2*J_x_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
+      2*J_z_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
+      2*J_z_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
+      active_pan*(d_shaft_pan*(omega_gear_pan - omega_pan) + k_shaft_pan*(-gap_pan*side_pan/2 +
+      theta_gear_pan - theta_pan)) - b_pan*omega_pan +
+      2*c_x_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) -
+      c_x_payload*c_y_payload*m_payload*omega_tilt**2*cos(theta_tilt) +
+      2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*sin(theta_tilt)**2 -
+      2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*cos(theta_tilt)**2 -
+      c_y_payload*c_z_payload*m_payload*omega_tilt**2*sin(theta_tilt) -
+      2*c_z_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt)
+  forcing[omega_tilt] = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
+      J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
+      J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
+      J_z_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
+      J_z_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) - b_tilt*omega_tilt -
+      c_x_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
+      c_x_payload*c_z_payload*m_payload*omega_pan**2*sin(theta_tilt)**2 +
+      c_x_payload*c_z_payload*m_payload*omega_pan**2*cos(theta_tilt)**2 +
+      981*c_x_payload*m_payload*cos(theta_tilt)/100 +
+      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
+      981*c_z_payload*m_payload*sin(theta_tilt)/100 + ratio_tilt*(K_t_tilt*i_tilt -
+      b_motor_tilt*omega_tilt*ratio_tilt)
+  forcing[omega_gear_pan] = K_t_pan*N_pan*i_pan - active_pan*(d_shaft_pan*(omega_gear_pan -
+      omega_pan) + k_shaft_pan*(-gap_pan*side_pan/2 + theta_gear_pan - theta_pan))
+  linkage_cos_tilt = l_ground_tilt**2 + r_arm_tilt**2 - (l_min_tilt + s_start_tilt)**2
+  linkage_sin_tilt = sqrt(4*l_ground_tilt**2*r_arm_tilt**2 - linkage_cos_tilt**2)
+  length_tilt = sqrt(l_ground_tilt**2 - linkage_cos_tilt*cos(theta_tilt) -
+      linkage_sin_tilt*sin(theta_tilt) + r_arm_tilt**2)
+  length_tilt_by_theta_tilt = (linkage_cos_tilt*sin(theta_tilt)/2 -
+      linkage_sin_tilt*cos(theta_tilt)/2)/sqrt(l_ground_tilt**2 -
+      linkage_cos_tilt*cos(theta_tilt) - linkage_sin_tilt*sin(theta_tilt) + r_arm_tilt**2)
+  ratio_tilt = pi*N_tilt*(linkage_cos_tilt*sin(theta_tilt) -
+      linkage_sin_tilt*cos(theta_tilt))/(lead_tilt*length_tilt)
+  ratio_tilt_by_theta_tilt = pi*N_tilt*(linkage_cos_tilt*cos(theta_tilt) +
+      linkage_sin_tilt*sin(theta_tilt))/(lead_tilt*length_tilt) -
+      pi*N_tilt*length_tilt_by_theta_tilt*(linkage_cos_tilt*sin(theta_tilt) -
+      linkage_sin_tilt*cos(theta_tilt))/(lead_tilt*length_tilt**2)
+  follower_coupling_tilt = c_x_payload*c_y_payload*m_payload*sin(theta_tilt) -
+      c_y_payload*c_z_payload*m_payload*cos(theta_tilt)
+  follower_inertia_tilt = J_pan + J_x_payload*sin(theta_tilt)**2 + J_x_tilt*sin(theta_tilt)**2 +
+      J_z_payload*cos(theta_tilt)**2 + J_z_tilt*cos(theta_tilt)**2 +
+      c_x_payload**2*m_payload*cos(theta_tilt)**2 +
+      2*c_x_payload*c_z_payload*m_payload*sin(theta_tilt)*cos(theta_tilt) +
+      c_y_payload**2*m_payload*sin(theta_tilt)**2 + c_y_payload**2*m_payload*cos(theta_tilt)**2
+      + c_z_payload**2*m_payload*sin(theta_tilt)**2
+  follower_torque_tilt = -2*J_x_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) -
+      2*J_x_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
+      2*J_z_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
+      2*J_z_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
+      active_pan*(d_shaft_pan*(omega_gear_pan - omega_pan) + k_shaft_pan*(-gap_pan*side_pan/2 +
+      theta_gear_pan - theta_pan)) - b_pan*omega_pan +
+      2*c_x_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) -
+      c_x_payload*c_y_payload*m_payload*omega_tilt**2*cos(theta_tilt) +
+      2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*sin(theta_tilt)**2 -
+      2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*cos(theta_tilt)**2 -
+      c_y_payload*c_z_payload*m_payload*omega_tilt**2*sin(theta_tilt) -
+      2*c_z_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt)
+  driving_torque_tilt = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
+      ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
+  load_torque_tilt = J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
+      J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
+      J_z_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
+      J_z_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) - b_tilt*omega_tilt -
+      c_x_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
+      c_x_payload*c_z_payload*m_payload*omega_pan**2*sin(theta_tilt)**2 +
+      c_x_payload*c_z_payload*m_payload*omega_pan**2*cos(theta_tilt)**2 +
+      981*c_x_payload*m_payload*cos(theta_tilt)/100 +
+      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
+      981*c_z_payload*m_payload*sin(theta_tilt)/100 -
+      follower_coupling_tilt*follower_torque_tilt/follower_inertia_tilt
+  load_inertia_tilt = J_y_payload + J_y_tilt + c_x_payload**2*m_payload +
+      c_z_payload**2*m_payload - follower_coupling_tilt**2/follower_inertia_tilt
+  raised_tilt = pi*d_screw_tilt*(pi*d_screw_tilt*f_screw_tilt +
+      lead_tilt)/(lead_tilt*(pi*d_screw_tilt - f_screw_tilt*lead_tilt))
+  lowered_tilt = -pi*d_screw_tilt*(pi*d_screw_tilt*f_screw_tilt -
+      lead_tilt)/(lead_tilt*(pi*d_screw_tilt + f_screw_tilt*lead_tilt))
+  carried_tilt = -J_motor_tilt*load_torque_tilt*ratio_tilt**2 +
+      driving_torque_tilt*load_inertia_tilt
+  lost_raising_tilt = (raised_tilt - 1)/(J_motor_tilt*ratio_tilt**2 +
+      load_inertia_tilt*raised_tilt)
+  lost_lowering_tilt = (-lowered_tilt + 1)/Abs(J_motor_tilt*ratio_tilt**2 +
+      load_inertia_tilt*lowered_tilt)
+  sliding friction[omega_gear_pan] = F_c_pan*(a_F_c_pan*slide_pan + 1) +
+      F_v_pan*omega_gear_pan*slide_pan*(a_F_v_pan*slide_pan + 1) +
+      (-F_c_pan*(a_F_c_pan*slide_pan + 1) + F_s_pan*(a_F_s_pan*slide_pan +
+      1))*exp(-omega_gear_pan**2/(v_s_pan**2*(a_v_s_pan*slide_pan + 1)**2))
+  sliding friction[omega_tilt] = carried_tilt*slide_tilt*(-lost_lowering_tilt +
+      lost_raising_tilt)/2 + (lost_lowering_tilt +
+      lost_raising_tilt)*Abs(carried_tilt*slide_tilt)/2
+  i_pan' = (-K_t_pan*N_pan*omega_gear_pan - R_pan*i_pan + u_pan)/L_pan
+  i_tilt' = (-K_t_tilt*omega_tilt*ratio_tilt - R_tilt*i_tilt + u_tilt)/L_tilt
+
+Operations of the state derivative: 701 as derived, 323 as written.
+
+Effects:
+- rigid_bodies: thesis Eq. 3.8, Table 5.1
+- payload: thesis section 3.2.2, Table 5.3 with erratum 18
+- viscous_friction (pan): thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)
+- viscous_friction (tilt): thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)
+- csvs_friction (pan): thesis Eq. 2.10, 2.11 with errata 2 and 3, Eq. 4.1, exponent 2
+- direction_dependent_friction (pan): thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)
+- backlash (pan): thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull
+- shaft_compliance (pan): thesis Eq. 2.15 with erratum 4, Table 5.7
+- dc_motor (pan): thesis Eq. 3.10, Eq. 3.11 with erratum 8
+- linear_actuator (tilt): thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+MODEL_HASH = "dff45a372b0f0a18"
+NAME = "full"
+TITLE = "Both axes of the thesis, all drives"
+AXES = ("pan", "tilt")
+STATE_NAMES = (
+    "theta_pan",
+    "theta_tilt",
+    "omega_pan",
+    "omega_tilt",
+    "theta_gear_pan",
+    "omega_gear_pan",
+    "i_pan",
+    "i_tilt",
+)
+STATE_UNITS = ("rad", "rad", "rad/s", "rad/s", "rad", "rad/s", "A", "A")
+STATE_INITIAL = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+INPUT_NAMES = ("u_pan", "u_tilt")
+INPUT_UNITS = ("V", "V")
+# Per input: index of the parameter by which it is late, or -1.
+INPUT_DELAYS = (-1, -1)
+OUTPUT_NAMES = ("theta_pan", "theta_tilt", "i_pan", "i_tilt")
+OUTPUT_UNITS = ("rad", "rad", "A", "A")
+MODE_NAMES = ("slide_pan", "slide_tilt", "side_pan", "active_pan")
+FRICTION_RATES = np.array([5, 3], dtype=np.int64)
+# Per state: the friction that sets it to zero when it comes to rest, or -1.
+ZERO_AT_REST = (-1, -1, -1, -1, -1, -1, -1, -1)
+# Per contact: state index of the angle at the gear output and at the joint.
+CONTACT_ANGLES = ((4, 0),)
+# Limits of the equations: state, meaning; `domain` gives the bounds.
+DOMAIN = (
+    ("theta_tilt", "dead centre of the tilt linkage"),
+    ("theta_tilt", "stroke end of the tilt actuator"),
+)
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = (
+    (("F_c_pan", "F_s_pan"), "F_s is at least F_c; raise F_s or lower F_c", False),
+    (
+        ("l_ground_tilt", "l_min_tilt", "r_arm_tilt", "s_start_tilt"),
+        "the linkage closes, off its dead centres; change a length",
+        True,
+    ),
+    (("s_start_tilt", "s_max_tilt"), "s_start is at most s_max; change one of them", False),
+    (
+        ("lead_tilt", "d_screw_tilt", "f_screw_tilt"),
+        "the screw wedges unless f < pi d / lead; lower f_screw",
+        True,
+    ),
+)
+# Parameters: name, unit, default, lower and upper bound, meaning.
+PARAMETERS = (
+    ("J_pan", "kg m^2", 0.01083, 1e-12, 10000.0, "inertia of the pan body about z"),
+    ("J_x_tilt", "kg m^2", 0.00041, 1e-12, 10000.0, "inertia of the tilt body about x"),
+    ("J_y_tilt", "kg m^2", 0.00065, 1e-12, 10000.0, "inertia of the tilt body about y"),
+    ("J_z_tilt", "kg m^2", 0.00027, 1e-12, 10000.0, "inertia of the tilt body about z"),
+    ("m_payload", "kg", 6.3785, 0.0, 100000.0, "payload mass"),
+    ("J_x_payload", "kg m^2", 0.038, 0.0, 10000.0, "payload inertia about its own x axis"),
+    ("J_y_payload", "kg m^2", 0.0136, 0.0, 10000.0, "payload inertia about its own y axis"),
+    ("J_z_payload", "kg m^2", 0.0389, 0.0, 10000.0, "payload inertia about its own z axis"),
+    ("c_x_payload", "m", 0.0, -10.0, 10.0, "x of the payload's centre of mass"),
+    ("c_y_payload", "m", 0.0, -10.0, 10.0, "y of the payload's centre of mass"),
+    ("c_z_payload", "m", 0.0876228, -10.0, 10.0, "z of the payload's centre of mass"),
+    ("b_pan", "N m s/rad", 2.0, 0.0, 10000.0, "viscous friction in the pan joint"),
+    ("b_tilt", "N m s/rad", 10.0, 0.0, 10000.0, "viscous friction in the tilt joint"),
+    ("F_c_pan", "N m", 0.2401, 0.0, 10000.0, "Coulomb friction torque"),
+    ("F_s_pan", "N m", 0.675, 0.0, 10000.0, "static (breakaway) friction torque"),
+    ("v_s_pan", "rad/s", 0.016, 1e-06, 1000.0, "Stribeck speed"),
+    ("F_v_pan", "N m s/rad", 13.9424, 0.0, 10000.0, "viscous part"),
+    (
+        "a_F_c_pan",
+        "1",
+        -0.05581007913369427,
+        -0.95,
+        0.95,
+        "relative half difference of Coulomb friction",
+    ),
+    (
+        "a_F_s_pan",
+        "1",
+        -0.17362962962962966,
+        -0.95,
+        0.95,
+        "relative half difference of static friction",
+    ),
+    (
+        "a_v_s_pan",
+        "1",
+        -0.006249999999999962,
+        -0.95,
+        0.95,
+        "relative half difference of Stribeck speed",
+    ),
+    (
+        "a_F_v_pan",
+        "1",
+        -0.025677071379389464,
+        -0.95,
+        0.95,
+        "relative half difference of viscous friction",
+    ),
+    ("gap_pan", "rad", 0.02600540585471551, 0.0, 1.0, "whole gap between the two faces"),
+    ("k_shaft_pan", "N m/rad", 5000.0, 0.001, 1000000000.0, "shaft stiffness"),
+    ("d_shaft_pan", "N m s/rad", 1.0, 0.0, 1000000.0, "shaft damping"),
+    ("L_pan", "H", 0.0069, 1e-09, 1000.0, "winding inductance"),
+    ("R_pan", "ohm", 12.9, 1e-06, 1000000.0, "winding resistance"),
+    ("K_t_pan", "N m/A", 0.0724, 1e-09, 10000.0, "torque constant"),
+    ("J_motor_pan", "kg m^2", 1.1e-05, 1e-12, 1000.0, "rotor inertia"),
+    ("N_pan", "1", 500.0, 0.001, 1000000.0, "gear ratio"),
+    ("L_tilt", "H", 0.00935, 1e-09, 1000.0, "winding inductance"),
+    ("R_tilt", "ohm", 17.0, 1e-06, 1000000.0, "winding resistance"),
+    ("K_t_tilt", "N m/A", 0.044, 1e-09, 10000.0, "torque constant"),
+    ("J_motor_tilt", "kg m^2", 1.62e-06, 1e-12, 1000.0, "rotor inertia"),
+    ("b_motor_tilt", "N m s/rad", 0.00011696, 0.0, 100.0, "viscous friction of the rotor"),
+    ("N_tilt", "1", 93.0, 0.001, 1000000.0, "gear ratio"),
+    ("lead_tilt", "m", 0.004, 1e-06, 1.0, "lead of the screw per turn"),
+    ("d_screw_tilt", "m", 0.008, 1e-06, 1.0, "mean diameter of the screw"),
+    ("f_screw_tilt", "1", 0.15, 0.0, 10.0, "friction coefficient of the screw"),
+    ("l_ground_tilt", "m", 0.19755, 1e-06, 100.0, "joint to foot of the actuator"),
+    ("l_min_tilt", "m", 0.139, 1e-06, 100.0, "length of the actuator drawn in"),
+    ("r_arm_tilt", "m", 0.0634133, 1e-06, 100.0, "joint to pin of the actuator"),
+    ("s_start_tilt", "m", 0.0405022, 0.0, 100.0, "stroke at tilt angle zero"),
+    ("s_max_tilt", "m", 0.1, 1e-06, 100.0, "longest stroke"),
+)
+# Searching them: name, value at which the effect vanishes (None: any), starts,
+# period, what a frequency is locked to.
+SEARCH = (
+    ("b_pan", 0.0, (0.1,), None, None),
+    ("b_tilt", 0.0, (0.1,), None, None),
+    ("F_c_pan", 0.0, (0.05,), None, None),
+    ("F_s_pan", 0.0, (0.05,), None, None),
+    ("v_s_pan", None, (0.05,), None, None),
+    ("F_v_pan", 0.0, (0.0,), None, None),
+    ("a_F_c_pan", 0.0, (-0.1, 0.1), None, None),
+    ("a_F_s_pan", 0.0, (0.0,), None, None),
+    ("a_v_s_pan", 0.0, (0.0,), None, None),
+    ("a_F_v_pan", 0.0, (0.0,), None, None),
+    ("gap_pan", 0.0, (0.005, 0.02), None, None),
+)
+# Effects: id, axis, parameters, title, reference, separating experiment.
+EFFECTS = (
+    (
+        "rigid_bodies",
+        None,
+        ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"),
+        "pan body and tilt body",
+        "thesis Eq. 3.8, Table 5.1",
+        "",
+    ),
+    (
+        "payload",
+        None,
+        (
+            "m_payload",
+            "J_x_payload",
+            "J_y_payload",
+            "J_z_payload",
+            "c_x_payload",
+            "c_y_payload",
+            "c_z_payload",
+        ),
+        "payload",
+        "thesis section 3.2.2, Table 5.3 with erratum 18",
+        "",
+    ),
+    (
+        "viscous_friction",
+        "pan",
+        ("b_pan",),
+        "viscous friction in the joint",
+        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+    ),
+    (
+        "viscous_friction",
+        "tilt",
+        ("b_tilt",),
+        "viscous friction in the joint",
+        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+    ),
+    (
+        "csvs_friction",
+        "pan",
+        ("F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan"),
+        "Coulomb, static, viscous and Stribeck friction",
+        "thesis Eq. 2.10, 2.11 with errata 2 and 3, Eq. 4.1, exponent 2",
+        "Crawl through standstill in both directions at several slow speeds.",
+    ),
+    (
+        "direction_dependent_friction",
+        "pan",
+        ("a_F_c_pan", "a_F_s_pan", "a_v_s_pan", "a_F_v_pan"),
+        "friction that differs by direction",
+        "thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)",
+        "Run the same speeds both ways at two supply polarities, or back-drive the joint "
+        "without power: friction follows the motion, an offset does not.",
+    ),
+    (
+        "backlash",
+        "pan",
+        ("gap_pan",),
+        "backlash",
+        "thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
+        "Reverse slowly with and without a known preload torque on the joint: backlash "
+        "disappears under preload, presliding does not.",
+    ),
+    (
+        "shaft_compliance",
+        "pan",
+        ("k_shaft_pan", "d_shaft_pan"),
+        "flexible shaft",
+        "thesis Eq. 2.15 with erratum 4, Table 5.7",
+        "",
+    ),
+    (
+        "dc_motor",
+        "pan",
+        ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"),
+        "geared DC motor",
+        "thesis Eq. 3.10, Eq. 3.11 with erratum 8",
+        "",
+    ),
+    (
+        "linear_actuator",
+        "tilt",
+        (
+            "L_tilt",
+            "R_tilt",
+            "K_t_tilt",
+            "J_motor_tilt",
+            "b_motor_tilt",
+            "N_tilt",
+            "lead_tilt",
+            "d_screw_tilt",
+            "f_screw_tilt",
+            "l_ground_tilt",
+            "l_min_tilt",
+            "r_arm_tilt",
+            "s_start_tilt",
+            "s_max_tilt",
+        ),
+        "linear actuator with lead screw and linkage",
+        "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6",
+        "",
+    ),
+)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def mode_derivative(t, x, u, p, m, dx):
+    """Write the time derivative of the state into dx in the modes m."""
+    theta_pan = x[0]
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    theta_gear_pan = x[4]
+    omega_gear_pan = x[5]
+    i_pan = x[6]
+    i_tilt = x[7]
+    u_pan = u[0]
+    u_tilt = u[1]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    m_payload = p[4]
+    J_x_payload = p[5]
+    J_y_payload = p[6]
+    J_z_payload = p[7]
+    c_x_payload = p[8]
+    c_y_payload = p[9]
+    c_z_payload = p[10]
+    b_pan = p[11]
+    b_tilt = p[12]
+    F_c_pan = p[13]
+    F_s_pan = p[14]
+    v_s_pan = p[15]
+    F_v_pan = p[16]
+    a_F_c_pan = p[17]
+    a_F_s_pan = p[18]
+    a_v_s_pan = p[19]
+    a_F_v_pan = p[20]
+    gap_pan = p[21]
+    k_shaft_pan = p[22]
+    d_shaft_pan = p[23]
+    L_pan = p[24]
+    R_pan = p[25]
+    K_t_pan = p[26]
+    J_motor_pan = p[27]
+    N_pan = p[28]
+    L_tilt = p[29]
+    R_tilt = p[30]
+    K_t_tilt = p[31]
+    J_motor_tilt = p[32]
+    b_motor_tilt = p[33]
+    N_tilt = p[34]
+    lead_tilt = p[35]
+    d_screw_tilt = p[36]
+    f_screw_tilt = p[37]
+    l_ground_tilt = p[38]
+    l_min_tilt = p[39]
+    r_arm_tilt = p[40]
+    s_start_tilt = p[41]
+    slide_pan = m[0]
+    slide_tilt = m[1]
+    side_pan = m[2]
+    active_pan = m[3]
+    dx[0] = omega_pan
+    dx[1] = omega_tilt
+    c_x_payload_c_z_payload_m_payload = c_x_payload * c_z_payload * m_payload
+    twice_c_x_payload_c_z_payload_m_payload = 2.0 * c_x_payload_c_z_payload_m_payload
+    inertia_pan_sin_cos_tilt = twice_c_x_payload_c_z_payload_m_payload
+    c_x_payload_sq = c_x_payload * c_x_payload
+    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
+    inertia_pan_sin_sq_tilt_term = (c_z_payload * c_z_payload) * m_payload
+    inertia_pan_sin_sq_tilt = (
+        J_x_payload
+        + J_x_tilt
+        - J_z_payload
+        - J_z_tilt
+        - c_x_payload_sq_m_payload
+        + inertia_pan_sin_sq_tilt_term
+    )
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = (
+        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
+    )
+    twice_cos_tilt = 2.0 * cos_tilt
+    coriolis = omega_pan * (inertia_pan_per_sin_tilt * twice_cos_tilt - inertia_pan_sin_cos_tilt)
+    c_y_payload_m_payload = c_y_payload * m_payload
+    c_y_payload_m_payload_c_z_payload = c_y_payload_m_payload * c_z_payload
+    coupling_cos_tilt = c_y_payload_m_payload_c_z_payload
+    c_x_payload_c_y_payload_m_payload = c_x_payload * c_y_payload_m_payload
+    coupling_sin_tilt = c_x_payload_c_y_payload_m_payload
+    force_pan_term = active_pan * (
+        d_shaft_pan * (omega_gear_pan - omega_pan)
+        + k_shaft_pan * (-0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan)
+    )
+    force_pan_term_2 = b_pan * omega_pan - force_pan_term
+    force_pan = -force_pan_term_2 - omega_tilt * (
+        coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)
+    )
+    gravity_cos_tilt_term = 9.81 * m_payload
+    c_x_payload_gravity_cos_tilt_term = c_x_payload * gravity_cos_tilt_term
+    gravity_cos_tilt = c_x_payload_gravity_cos_tilt_term
+    c_z_payload_gravity_cos_tilt_term = c_z_payload * gravity_cos_tilt_term
+    gravity_sin_tilt = c_z_payload_gravity_cos_tilt_term
+    follower_coupling_tilt = (
+        c_x_payload_c_y_payload_m_payload * sin_tilt - c_y_payload_m_payload_c_z_payload * cos_tilt
+    )
+    load_inertia_tilt_term = (
+        J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + inertia_pan_sin_sq_tilt_term
+    )
+    follower_inertia_tilt_term = (c_y_payload * c_y_payload) * m_payload
+    sin_tilt_sq = sin_tilt * sin_tilt
+    cos_tilt_sq = cos_tilt * cos_tilt
+    sin_tilt_twice_cos_tilt = sin_tilt * twice_cos_tilt
+    follower_inertia_tilt = (
+        J_pan
+        + J_x_payload * sin_tilt_sq
+        + J_x_tilt * sin_tilt_sq
+        + J_z_payload * cos_tilt_sq
+        + J_z_tilt * cos_tilt_sq
+        + c_x_payload_c_z_payload_m_payload * sin_tilt_twice_cos_tilt
+        + c_x_payload_sq_m_payload * cos_tilt_sq
+        + cos_tilt_sq * follower_inertia_tilt_term
+        + follower_inertia_tilt_term * sin_tilt_sq
+        + inertia_pan_sin_sq_tilt_term * sin_tilt_sq
+    )
+    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
+    load_inertia_tilt = (
+        -(follower_coupling_tilt * follower_coupling_tilt) * follower_inertia_tilt_inverse
+        + load_inertia_tilt_term
+    )
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lead_tilt_inverse = 1.0 / lead_tilt
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    lowered_tilt = (
+        (-1.0)
+        * lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+    )
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    linkage_sin_tilt = math.sqrt(
+        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt_term = math.sqrt(
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    length_tilt = length_tilt_term
+    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
+    lost_lowering_tilt = (
+        (1.0 - lowered_tilt)
+        * 1.0
+        / (abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term))
+    )
+    raised_tilt = (
+        lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+    )
+    lost_raising_tilt = (
+        (raised_tilt - 1.0) * 1.0 / (load_inertia_tilt * raised_tilt + lost_lowering_tilt_term)
+    )
+    length_tilt_by_theta_tilt = (
+        1.0
+        / length_tilt_term
+        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
+    )
+    ratio_tilt_by_theta_tilt = (
+        -math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_term
+        / (length_tilt * length_tilt)
+        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
+    )
+    omega_tilt_sq = omega_tilt * omega_tilt
+    driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
+    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
+    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    minus_b_tilt_omega_tilt = -b_tilt * omega_tilt
+    driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
+    J_x_payload_sin_tilt = J_x_payload * sin_tilt
+    omega_pan_omega_tilt = omega_pan * omega_tilt
+    follower_torque_tilt_term = omega_pan_omega_tilt * sin_tilt_twice_cos_tilt
+    follower_torque_tilt = (
+        -J_x_payload_sin_tilt * omega_pan_omega_tilt * twice_cos_tilt
+        - J_x_tilt * follower_torque_tilt_term
+        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        - c_x_payload_c_y_payload_m_payload * cos_tilt * omega_tilt_sq
+        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+        - c_y_payload_m_payload_c_z_payload * omega_tilt_sq * sin_tilt
+        - cos_tilt_sq * omega_pan_omega_tilt * twice_c_x_payload_c_z_payload_m_payload
+        - follower_torque_tilt_term * inertia_pan_sin_sq_tilt_term
+        - force_pan_term_2
+    )
+    omega_pan_sq = omega_pan * omega_pan
+    cos_tilt_omega_pan_sq = cos_tilt * omega_pan_sq
+    cos_tilt_omega_pan_sq_sin_tilt = cos_tilt_omega_pan_sq * sin_tilt
+    load_torque_tilt_term = c_x_payload_c_z_payload_m_payload * omega_pan_sq
+    load_torque_tilt = (
+        J_x_payload_sin_tilt * cos_tilt_omega_pan_sq
+        + J_x_tilt * cos_tilt_omega_pan_sq_sin_tilt
+        - J_z_payload * cos_tilt_omega_pan_sq_sin_tilt
+        - J_z_tilt * cos_tilt_omega_pan_sq_sin_tilt
+        + c_x_payload_gravity_cos_tilt_term * cos_tilt
+        - c_x_payload_sq_m_payload * cos_tilt_omega_pan_sq_sin_tilt
+        + c_z_payload_gravity_cos_tilt_term * sin_tilt
+        + cos_tilt_omega_pan_sq_sin_tilt * inertia_pan_sin_sq_tilt_term
+        + cos_tilt_sq * load_torque_tilt_term
+        - follower_coupling_tilt * follower_inertia_tilt_inverse * follower_torque_tilt
+        - load_torque_tilt_term * sin_tilt_sq
+        + minus_b_tilt_omega_tilt
+    )
+    carried_tilt = (
+        driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
+    )
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    force_tilt = (
+        0.5 * coriolis * omega_pan
+        + cos_tilt * gravity_cos_tilt
+        - driving_torque_tilt_term
+        + driving_torque_tilt_term_2 * ratio_tilt
+        + gravity_sin_tilt * sin_tilt
+        + minus_b_tilt_omega_tilt
+        - slide_tilt
+        * (
+            0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
+            + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
+        )
+    )
+    inertia_pan = (
+        J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + follower_inertia_tilt_term
+    )
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
+    inertia_tilt = load_inertia_tilt_term
+    mass_tilt = inertia_tilt + lost_lowering_tilt_term
+    inverse_determinant = 1.0 / (
+        mass_pan * mass_tilt
+        - (mass_pan_tilt * mass_pan_tilt) * (slide_tilt * slide_tilt * slide_tilt * slide_tilt)
+    )
+    slide_tilt_sq = slide_tilt * slide_tilt
+    mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
+    accel_pan = inverse_determinant * (
+        force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
+    )
+    dx[2] = accel_pan
+    accel_tilt = (
+        inverse_determinant
+        * slide_tilt_sq
+        * (-force_pan * mass_pan_tilt_slide_tilt_sq + force_tilt * mass_pan)
+    )
+    dx[3] = accel_tilt
+    dx[4] = omega_gear_pan
+    force_gear_pan_term = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    force_gear_pan = (
+        K_t_pan * N_pan * i_pan
+        - force_pan_term
+        - slide_pan
+        * (
+            F_v_pan * omega_gear_pan * slide_pan * (a_F_v_pan * slide_pan + 1.0)
+            + force_gear_pan_term
+            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - force_gear_pan_term)
+            * math.exp(
+                -(omega_gear_pan * omega_gear_pan)
+                / (
+                    (v_s_pan * v_s_pan)
+                    * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
+                )
+            )
+        )
+    )
+    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
+    inverse_mass_gear_pan = 1.0 / mass_gear_pan
+    accel_gear_pan = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
+    dx[5] = accel_gear_pan
+    dx[6] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
+    dx[7] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def jacobian(t, x, u, p, m, fx, fu, fp):
+    """Write the non-zero derivatives of mode_derivative by state, input and parameter."""
+    theta_pan = x[0]
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    theta_gear_pan = x[4]
+    omega_gear_pan = x[5]
+    i_pan = x[6]
+    i_tilt = x[7]
+    u_pan = u[0]
+    u_tilt = u[1]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    m_payload = p[4]
+    J_x_payload = p[5]
+    J_y_payload = p[6]
+    J_z_payload = p[7]
+    c_x_payload = p[8]
+    c_y_payload = p[9]
+    c_z_payload = p[10]
+    b_pan = p[11]
+    b_tilt = p[12]
+    F_c_pan = p[13]
+    F_s_pan = p[14]
+    v_s_pan = p[15]
+    F_v_pan = p[16]
+    a_F_c_pan = p[17]
+    a_F_s_pan = p[18]
+    a_v_s_pan = p[19]
+    a_F_v_pan = p[20]
+    gap_pan = p[21]
+    k_shaft_pan = p[22]
+    d_shaft_pan = p[23]
+    L_pan = p[24]
+    R_pan = p[25]
+    K_t_pan = p[26]
+    J_motor_pan = p[27]
+    N_pan = p[28]
+    L_tilt = p[29]
+    R_tilt = p[30]
+    K_t_tilt = p[31]
+    J_motor_tilt = p[32]
+    b_motor_tilt = p[33]
+    N_tilt = p[34]
+    lead_tilt = p[35]
+    d_screw_tilt = p[36]
+    f_screw_tilt = p[37]
+    l_ground_tilt = p[38]
+    l_min_tilt = p[39]
+    r_arm_tilt = p[40]
+    s_start_tilt = p[41]
+    slide_pan = m[0]
+    slide_tilt = m[1]
+    side_pan = m[2]
+    active_pan = m[3]
+    active_pan_k_shaft_pan = active_pan * k_shaft_pan
+    follower_torque_tilt_by_theta_pan = -active_pan_k_shaft_pan
+    sin_tilt = math.sin(theta_tilt)
+    c_y_payload_sin_tilt = c_y_payload * sin_tilt
+    c_x_payload_c_y_payload_sin_tilt = c_x_payload * c_y_payload_sin_tilt
+    follower_coupling_tilt_term = c_x_payload_c_y_payload_sin_tilt * m_payload
+    cos_tilt = math.cos(theta_tilt)
+    c_z_payload_cos_tilt = c_z_payload * cos_tilt
+    c_y_payload_c_z_payload_cos_tilt = c_y_payload * c_z_payload_cos_tilt
+    follower_coupling_tilt_term_2 = c_y_payload_c_z_payload_cos_tilt * m_payload
+    follower_coupling_tilt_term_3 = follower_coupling_tilt_term - follower_coupling_tilt_term_2
+    follower_coupling_tilt = follower_coupling_tilt_term_3
+    sin_tilt_sq = sin_tilt * sin_tilt
+    J_x_payload_sin_tilt_sq = J_x_payload * sin_tilt_sq
+    J_x_tilt_sin_tilt_sq = J_x_tilt * sin_tilt_sq
+    cos_tilt_sq = cos_tilt * cos_tilt
+    J_z_payload_cos_tilt_sq = J_z_payload * cos_tilt_sq
+    J_z_tilt_cos_tilt_sq = J_z_tilt * cos_tilt_sq
+    c_x_payload_sq = c_x_payload * c_x_payload
+    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
+    c_x_payload_sq_m_payload_cos_tilt_sq = c_x_payload_sq_m_payload * cos_tilt_sq
+    c_y_payload_sq = c_y_payload * c_y_payload
+    c_y_payload_sq_sin_tilt_sq = c_y_payload_sq * sin_tilt_sq
+    c_y_payload_sq_cos_tilt_sq = c_y_payload_sq * cos_tilt_sq
+    c_z_payload_sq = c_z_payload * c_z_payload
+    c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
+    c_z_payload_sq_m_payload_sin_tilt_sq = c_z_payload_sq_m_payload * sin_tilt_sq
+    m_payload_sin_tilt = m_payload * sin_tilt
+    c_x_payload_m_payload_sin_tilt = c_x_payload * m_payload_sin_tilt
+    twice_c_z_payload_cos_tilt = 2.0 * c_z_payload_cos_tilt
+    follower_inertia_tilt_term = (
+        J_pan
+        + J_x_payload_sin_tilt_sq
+        + J_x_tilt_sin_tilt_sq
+        + J_z_payload_cos_tilt_sq
+        + J_z_tilt_cos_tilt_sq
+        + c_x_payload_m_payload_sin_tilt * twice_c_z_payload_cos_tilt
+        + c_x_payload_sq_m_payload_cos_tilt_sq
+        + c_y_payload_sq_cos_tilt_sq * m_payload
+        + c_y_payload_sq_sin_tilt_sq * m_payload
+        + c_z_payload_sq_m_payload_sin_tilt_sq
+    )
+    follower_inertia_tilt = follower_inertia_tilt_term
+    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
+    load_torque_tilt_by_theta_pan_term = follower_coupling_tilt * follower_inertia_tilt_inverse
+    load_torque_tilt_by_theta_pan = (
+        (-1.0) * follower_torque_tilt_by_theta_pan * load_torque_tilt_by_theta_pan_term
+    )
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
+    linkage_sin_tilt_term_2 = math.sqrt(
+        l_ground_tilt_sq * linkage_sin_tilt_term - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    linkage_sin_tilt = linkage_sin_tilt_term_2
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt_term = (
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    length_tilt_term_2 = math.sqrt(length_tilt_term)
+    length_tilt = length_tilt_term_2
+    length_tilt_inverse = 1.0 / length_tilt
+    lead_tilt_inverse = 1.0 / lead_tilt
+    ratio_tilt_term_2 = math.pi * lead_tilt_inverse
+    length_tilt_inverse_ratio_tilt_term_2 = length_tilt_inverse * ratio_tilt_term_2
+    ratio_tilt_term_3 = length_tilt_inverse_ratio_tilt_term_2 * ratio_tilt_term
+    ratio_tilt = N_tilt * ratio_tilt_term_3
+    ratio_tilt_sq = ratio_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
+    carried_tilt_by_theta_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_pan
+    mass_pan = follower_inertia_tilt_term
+    mass_pan_tilt = follower_coupling_tilt_term_3
+    mass_tilt_term = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
+    mass_tilt = J_motor_tilt_ratio_tilt_sq + mass_tilt_term
+    inverse_determinant = 1.0 / (
+        mass_pan * mass_tilt
+        - (mass_pan_tilt * mass_pan_tilt) * (slide_tilt * slide_tilt * slide_tilt * slide_tilt)
+    )
+    active_pan_k_shaft_pan_mass_tilt = active_pan_k_shaft_pan * mass_tilt
+    slide_tilt_cubed = slide_tilt * slide_tilt * slide_tilt
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lowered_tilt_term_2 = f_screw_tilt_lowered_tilt_term - lead_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    lowered_tilt_term_3 = f_screw_tilt_lead_tilt + lowered_tilt_term
+    lowered_tilt_term_3_inverse = 1.0 / lowered_tilt_term_3
+    lowered_tilt_term_4 = lead_tilt_inverse * lowered_tilt_term_3_inverse
+    lowered_tilt_term_lowered_tilt_term_4 = lowered_tilt_term * lowered_tilt_term_4
+    lowered_tilt = -lowered_tilt_term_2 * lowered_tilt_term_lowered_tilt_term_4
+    lost_lowering_tilt_term = 1.0 - lowered_tilt
+    follower_coupling_tilt_sq = follower_coupling_tilt * follower_coupling_tilt
+    load_inertia_tilt = -follower_coupling_tilt_sq * follower_inertia_tilt_inverse + mass_tilt_term
+    lost_lowering_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
+    lost_lowering_tilt_term_3 = 1.0 / (abs(lost_lowering_tilt_term_2))
+    lost_lowering_tilt = lost_lowering_tilt_term * lost_lowering_tilt_term_3
+    raised_tilt_term = f_screw_tilt_lowered_tilt_term + lead_tilt
+    raised_tilt_term_2 = -f_screw_tilt_lead_tilt + lowered_tilt_term
+    raised_tilt_term_2_inverse = 1.0 / raised_tilt_term_2
+    raised_tilt_term_3 = lead_tilt_inverse * raised_tilt_term_2_inverse
+    lowered_tilt_term_raised_tilt_term_3 = lowered_tilt_term * raised_tilt_term_3
+    raised_tilt = lowered_tilt_term_raised_tilt_term_3 * raised_tilt_term
+    lost_raising_tilt_term = raised_tilt - 1.0
+    lost_raising_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
+    lost_raising_tilt_term_2_inverse = 1.0 / lost_raising_tilt_term_2
+    lost_raising_tilt = lost_raising_tilt_term * lost_raising_tilt_term_2_inverse
+    accel_pan_by_theta_pan_term = lost_lowering_tilt + lost_raising_tilt
+    ratio_tilt_by_theta_tilt_term = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
+    ratio_tilt_by_theta_tilt_term_2 = (
+        length_tilt_inverse_ratio_tilt_term_2 * ratio_tilt_by_theta_tilt_term
+    )
+    N_tilt_ratio_tilt_term = N_tilt * ratio_tilt_term
+    length_tilt_by_theta_tilt_term = (
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    )
+    length_tilt_term_2_inverse = 1.0 / length_tilt_term_2
+    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_term_2_inverse
+    ratio_tilt_by_theta_tilt_term_3 = 1.0 / (length_tilt * length_tilt)
+    ratio_tilt_by_theta_tilt_term_4 = ratio_tilt_by_theta_tilt_term_3 * ratio_tilt_term_2
+    ratio_tilt_by_theta_tilt_term_5 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_4
+    ratio_tilt_by_theta_tilt = (
+        N_tilt * ratio_tilt_by_theta_tilt_term_2
+        - N_tilt_ratio_tilt_term * ratio_tilt_by_theta_tilt_term_5
+    )
+    omega_tilt_sq = omega_tilt * omega_tilt
+    omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
+    driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq_ratio_tilt_by_theta_tilt
+    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
+    b_motor_tilt_omega_tilt_ratio_tilt = b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt_term_2 = driving_torque_tilt_term * ratio_tilt - ratio_tilt * (
+        K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
+    )
+    driving_torque_tilt = -driving_torque_tilt_term_2
+    cos_tilt_sin_tilt = cos_tilt * sin_tilt
+    twice_cos_tilt_sin_tilt = 2.0 * cos_tilt_sin_tilt
+    J_x_payload_twice_cos_tilt_sin_tilt = J_x_payload * twice_cos_tilt_sin_tilt
+    omega_pan_omega_tilt = omega_pan * omega_tilt
+    J_x_tilt_twice_cos_tilt_sin_tilt = J_x_tilt * twice_cos_tilt_sin_tilt
+    cos_tilt_m_payload = cos_tilt * m_payload
+    c_y_payload_cos_tilt_m_payload = c_y_payload * cos_tilt_m_payload
+    follower_torque_tilt_term = c_x_payload * c_y_payload_cos_tilt_m_payload
+    c_y_payload_sin_tilt_m_payload = c_y_payload_sin_tilt * m_payload
+    follower_torque_tilt_term_2 = c_y_payload_sin_tilt_m_payload * c_z_payload
+    twice_m_payload = 2.0 * m_payload
+    c_x_payload_twice_m_payload = c_x_payload * twice_m_payload
+    c_x_payload_twice_m_payload_cos_tilt_sq = c_x_payload_twice_m_payload * cos_tilt_sq
+    follower_torque_tilt_term_3 = c_x_payload_twice_m_payload_cos_tilt_sq * c_z_payload
+    follower_torque_tilt_term_4 = c_z_payload_sq_m_payload * twice_cos_tilt_sin_tilt
+    minus_omega_pan = -omega_pan
+    minus_omega_pan_plus_omega_gear_pan = minus_omega_pan + omega_gear_pan
+    half_side_pan = 0.5 * side_pan
+    follower_torque_tilt_term_5 = -gap_pan * half_side_pan + theta_gear_pan - theta_pan
+    follower_torque_tilt_term_6 = active_pan * (
+        d_shaft_pan * minus_omega_pan_plus_omega_gear_pan
+        + follower_torque_tilt_term_5 * k_shaft_pan
+    )
+    follower_torque_tilt_term_7 = (
+        -J_x_payload_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
+        - J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
+        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        - b_pan * omega_pan
+        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+        - follower_torque_tilt_term * omega_tilt_sq
+        - follower_torque_tilt_term_2 * omega_tilt_sq
+        - follower_torque_tilt_term_3 * omega_pan_omega_tilt
+        - follower_torque_tilt_term_4 * omega_pan_omega_tilt
+        + follower_torque_tilt_term_6
+    )
+    follower_torque_tilt = follower_torque_tilt_term_7
+    b_tilt_omega_tilt = b_tilt * omega_tilt
+    load_torque_tilt_term = 9.81 * c_x_payload
+    load_torque_tilt_term_2 = 9.81 * c_z_payload
+    omega_pan_sq = omega_pan * omega_pan
+    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
+    load_torque_tilt_term_3 = J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
+    J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq = J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
+    cos_tilt_sq_omega_pan_sq = cos_tilt_sq * omega_pan_sq
+    c_x_payload_c_z_payload = c_x_payload * c_z_payload
+    load_torque_tilt_term_4 = c_x_payload_c_z_payload * cos_tilt_sq_omega_pan_sq
+    omega_pan_sq_sin_tilt_sq = omega_pan_sq * sin_tilt_sq
+    load_torque_tilt_term_5 = c_x_payload_c_z_payload * omega_pan_sq_sin_tilt_sq
+    load_torque_tilt_term_5_m_payload = load_torque_tilt_term_5 * m_payload
+    load_torque_tilt_term_6 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+    load_torque_tilt = (
+        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
+        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
+        - b_tilt_omega_tilt
+        + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + cos_tilt_m_payload * load_torque_tilt_term
+        - follower_torque_tilt * load_torque_tilt_by_theta_pan_term
+        + load_torque_tilt_term_2 * m_payload_sin_tilt
+        - load_torque_tilt_term_3
+        + load_torque_tilt_term_4 * m_payload
+        - load_torque_tilt_term_5_m_payload
+        - load_torque_tilt_term_6
+    )
+    carried_tilt = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
+    )
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    accel_pan_by_theta_pan_term_2 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
+    accel_pan_by_theta_pan_term_3 = (
+        0.5
+        * accel_pan_by_theta_pan_term
+        * slide_tilt
+        * (0.0 if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))
+        + accel_pan_by_theta_pan_term_2 * slide_tilt
+    )
+    fx[2, 0] = inverse_determinant * (
+        accel_pan_by_theta_pan_term_3 * carried_tilt_by_theta_pan * mass_pan_tilt * slide_tilt_cubed
+        - active_pan_k_shaft_pan_mass_tilt
+    )
+    slide_tilt_sq = slide_tilt * slide_tilt
+    inverse_determinant_slide_tilt_sq = inverse_determinant * slide_tilt_sq
+    mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
+    accel_tilt_by_theta_pan_term = active_pan_k_shaft_pan * mass_pan_tilt_slide_tilt_sq
+    accel_pan_by_theta_pan_term_3_slide_tilt = accel_pan_by_theta_pan_term_3 * slide_tilt
+    accel_tilt_by_theta_pan_term_2 = accel_pan_by_theta_pan_term_3_slide_tilt * mass_pan
+    fx[3, 0] = inverse_determinant_slide_tilt_sq * (
+        accel_tilt_by_theta_pan_term - accel_tilt_by_theta_pan_term_2 * carried_tilt_by_theta_pan
+    )
+    N_pan_sq = N_pan * N_pan
+    mass_gear_pan = J_motor_pan * N_pan_sq
+    inverse_mass_gear_pan = 1.0 / mass_gear_pan
+    accel_gear_pan_by_theta_pan_term = inverse_mass_gear_pan * (slide_pan * slide_pan)
+    accel_gear_pan_by_theta_pan_term_2 = accel_gear_pan_by_theta_pan_term * active_pan_k_shaft_pan
+    fx[5, 0] = accel_gear_pan_by_theta_pan_term_2
+    force_pan = follower_torque_tilt_term_7
+    force_tilt_term = abs(carried_tilt_slide_tilt)
+    half_force_tilt_term = 0.5 * force_tilt_term
+    force_tilt = (
+        J_x_payload * cos_tilt * omega_pan_sq * sin_tilt
+        + J_x_tilt * cos_tilt * omega_pan_sq * sin_tilt
+        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
+        - b_tilt_omega_tilt
+        + c_x_payload * c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
+        + 9.81 * c_x_payload * cos_tilt * m_payload
+        + 9.81 * c_z_payload * m_payload * sin_tilt
+        + c_z_payload_sq * cos_tilt * m_payload * omega_pan_sq * sin_tilt
+        - driving_torque_tilt_term_2
+        - load_torque_tilt_term_3
+        - load_torque_tilt_term_5_m_payload
+        - load_torque_tilt_term_6
+        - slide_tilt
+        * (
+            accel_pan_by_theta_pan_term * half_force_tilt_term
+            + accel_pan_by_theta_pan_term_2 * carried_tilt_slide_tilt
+        )
+    )
+    accel_pan = inverse_determinant * (
+        force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
+    )
+    accel_tilt = inverse_determinant_slide_tilt_sq * (
+        -force_pan * mass_pan_tilt_slide_tilt_sq + force_tilt * mass_pan
+    )
+    accel_pan_by_theta_tilt_term = follower_torque_tilt_term + follower_torque_tilt_term_2
+    J_z_payload_twice_cos_tilt_sin_tilt = J_z_payload * twice_cos_tilt_sin_tilt
+    J_z_tilt_twice_cos_tilt_sin_tilt = J_z_tilt * twice_cos_tilt_sin_tilt
+    accel_pan_by_theta_tilt_term_2 = c_x_payload_twice_m_payload * c_z_payload * sin_tilt_sq
+    accel_pan_by_theta_tilt_term_3 = c_x_payload_sq_m_payload * twice_cos_tilt_sin_tilt
+    accel_pan_by_theta_tilt_term_4 = (
+        J_x_payload_twice_cos_tilt_sin_tilt
+        + J_x_tilt_twice_cos_tilt_sin_tilt
+        - J_z_payload_twice_cos_tilt_sin_tilt
+        - J_z_tilt_twice_cos_tilt_sin_tilt
+        - accel_pan_by_theta_tilt_term_2
+        - accel_pan_by_theta_tilt_term_3
+        + follower_torque_tilt_term_3
+        + follower_torque_tilt_term_4
+    )
+    twice_omega_pan_omega_tilt = 2.0 * omega_pan_omega_tilt
+    cos_tilt_sq_twice_omega_pan_omega_tilt = cos_tilt_sq * twice_omega_pan_omega_tilt
+    accel_pan_by_theta_tilt_term_5 = J_x_payload * cos_tilt_sq_twice_omega_pan_omega_tilt
+    accel_pan_by_theta_tilt_term_6 = J_x_tilt * cos_tilt_sq_twice_omega_pan_omega_tilt
+    sin_tilt_sq_twice_omega_pan_omega_tilt = sin_tilt_sq * twice_omega_pan_omega_tilt
+    accel_pan_by_theta_tilt_term_7 = J_z_payload * sin_tilt_sq_twice_omega_pan_omega_tilt
+    accel_pan_by_theta_tilt_term_8 = J_z_tilt * sin_tilt_sq_twice_omega_pan_omega_tilt
+    accel_pan_by_theta_tilt_term_9 = follower_coupling_tilt_term_2 * omega_tilt_sq
+    accel_pan_by_theta_tilt_term_10 = (
+        c_x_payload_sq_m_payload * sin_tilt_sq_twice_omega_pan_omega_tilt
+    )
+    accel_pan_by_theta_tilt_term_11 = (
+        c_z_payload_sq_m_payload * cos_tilt_sq_twice_omega_pan_omega_tilt
+    )
+    accel_pan_by_theta_tilt_term_12 = (
+        2.0 * J_x_payload * omega_pan * omega_tilt * sin_tilt_sq
+        + 2.0 * J_x_tilt * omega_pan * omega_tilt * sin_tilt_sq
+        + 2.0 * J_z_payload * cos_tilt_sq * omega_pan * omega_tilt
+        + 2.0 * J_z_tilt * cos_tilt_sq * omega_pan * omega_tilt
+        - accel_pan * accel_pan_by_theta_tilt_term_4
+        - accel_pan_by_theta_tilt_term * accel_tilt
+        - accel_pan_by_theta_tilt_term_10
+        - accel_pan_by_theta_tilt_term_11
+        - accel_pan_by_theta_tilt_term_5
+        - accel_pan_by_theta_tilt_term_6
+        - accel_pan_by_theta_tilt_term_7
+        - accel_pan_by_theta_tilt_term_8
+        - accel_pan_by_theta_tilt_term_9
+        + c_x_payload * c_y_payload * m_payload * omega_tilt_sq * sin_tilt
+        + 8.0 * c_x_payload * c_z_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+        + 2.0 * c_x_payload_sq * cos_tilt_sq * m_payload * omega_pan * omega_tilt
+        + 2.0 * c_z_payload_sq * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+    )
+    length_tilt_by_theta_tilt_by_theta_tilt_term = (
+        length_tilt_by_theta_tilt_term * length_tilt_term ** (-1.5)
+    )
+    length_tilt_by_theta_tilt_by_theta_tilt = (
+        -length_tilt_by_theta_tilt_by_theta_tilt_term * length_tilt_by_theta_tilt_term
+        + length_tilt_term_2_inverse
+        * (0.5 * cos_tilt_linkage_cos_tilt + 0.5 * linkage_sin_tilt_sin_tilt)
+    )
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term = N_tilt * length_tilt_inverse_ratio_tilt_term_2
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_2 = (
+        N_tilt_ratio_tilt_term * ratio_tilt_by_theta_tilt_term_4
+    )
+    N_tilt_ratio_tilt_by_theta_tilt_term = N_tilt * ratio_tilt_by_theta_tilt_term
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_3 = (
+        N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt_term_4
+    )
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_4 = (
+        2.0
+        * math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_term
+        / (length_tilt * length_tilt * length_tilt)
+        - ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+    )
+    ratio_tilt_by_theta_tilt_by_theta_tilt = (
+        -length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        + length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
+        - length_tilt_by_theta_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - ratio_tilt_by_theta_tilt_by_theta_tilt_term * ratio_tilt_term
+    )
+    J_motor_tilt_ratio_tilt = J_motor_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_omega_tilt_sq = J_motor_tilt_ratio_tilt * omega_tilt_sq
+    driving_torque_tilt_by_theta_tilt_term = (
+        K_t_tilt * i_tilt - 2.0 * b_motor_tilt_omega_tilt_ratio_tilt - driving_torque_tilt_term
+    )
+    driving_torque_tilt_by_theta_tilt_term_2 = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt
+    )
+    driving_torque_tilt_by_theta_tilt = -driving_torque_tilt_by_theta_tilt_term_2
+    follower_coupling_tilt_by_theta_tilt = accel_pan_by_theta_tilt_term
+    follower_inertia_tilt_by_theta_tilt = accel_pan_by_theta_tilt_term_4
+    twice_load_torque_tilt_by_theta_pan_term = 2.0 * load_torque_tilt_by_theta_pan_term
+    load_inertia_tilt_by_theta_tilt_term = 1.0 / (follower_inertia_tilt * follower_inertia_tilt)
+    load_inertia_tilt_by_theta_tilt_term_2 = (
+        follower_coupling_tilt_sq * load_inertia_tilt_by_theta_tilt_term
+    )
+    load_inertia_tilt_by_theta_tilt = (
+        -follower_coupling_tilt_by_theta_tilt * twice_load_torque_tilt_by_theta_pan_term
+        + follower_inertia_tilt_by_theta_tilt * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_theta_tilt_term = c_x_payload_m_payload_sin_tilt * c_z_payload_cos_tilt
+    follower_torque_tilt_by_theta_tilt = (
+        J_x_payload_sin_tilt_sq * twice_omega_pan_omega_tilt
+        + J_x_tilt_sin_tilt_sq * twice_omega_pan_omega_tilt
+        + J_z_payload_cos_tilt_sq * twice_omega_pan_omega_tilt
+        + J_z_tilt_cos_tilt_sq * twice_omega_pan_omega_tilt
+        - accel_pan_by_theta_tilt_term_10
+        - accel_pan_by_theta_tilt_term_11
+        - accel_pan_by_theta_tilt_term_5
+        - accel_pan_by_theta_tilt_term_6
+        - accel_pan_by_theta_tilt_term_7
+        - accel_pan_by_theta_tilt_term_8
+        - accel_pan_by_theta_tilt_term_9
+        + c_x_payload_sq_m_payload_cos_tilt_sq * twice_omega_pan_omega_tilt
+        + c_z_payload_sq_m_payload_sin_tilt_sq * twice_omega_pan_omega_tilt
+        + follower_coupling_tilt_term * omega_tilt_sq
+        + 8.0 * follower_torque_tilt_by_theta_tilt_term * omega_pan_omega_tilt
+    )
+    load_torque_tilt_by_theta_tilt_term = follower_inertia_tilt_inverse * follower_torque_tilt
+    load_torque_tilt_by_theta_tilt_term_2 = (
+        -J_x_payload * cos_tilt_sq * omega_pan_sq
+        + J_x_payload_sin_tilt_sq * omega_pan_sq
+        - J_x_tilt * cos_tilt_sq * omega_pan_sq
+        + J_x_tilt_sin_tilt_sq * omega_pan_sq
+        - J_z_payload * omega_pan_sq * sin_tilt_sq
+        + J_z_payload_cos_tilt_sq * omega_pan_sq
+        - J_z_tilt * omega_pan_sq * sin_tilt_sq
+        + J_z_tilt_cos_tilt_sq * omega_pan_sq
+        + 9.81 * c_x_payload_m_payload_sin_tilt
+        - c_x_payload_sq * m_payload * omega_pan_sq * sin_tilt_sq
+        + c_x_payload_sq_m_payload_cos_tilt_sq * omega_pan_sq
+        - 9.81 * c_z_payload * cos_tilt * m_payload
+        - c_z_payload_sq * cos_tilt_sq * m_payload * omega_pan_sq
+        + c_z_payload_sq_m_payload_sin_tilt_sq * omega_pan_sq
+        + 4.0 * follower_torque_tilt_by_theta_tilt_term * omega_pan_sq
+    )
+    load_torque_tilt_by_theta_tilt = (
+        follower_coupling_tilt
+        * follower_inertia_tilt_by_theta_tilt
+        * follower_torque_tilt
+        * load_inertia_tilt_by_theta_tilt_term
+        - follower_coupling_tilt_by_theta_tilt * load_torque_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_theta_tilt * load_torque_tilt_by_theta_pan_term
+        - load_torque_tilt_by_theta_tilt_term_2
+    )
+    twice_ratio_tilt_by_theta_tilt = 2.0 * ratio_tilt_by_theta_tilt
+    J_motor_tilt_ratio_tilt_load_torque_tilt = J_motor_tilt_ratio_tilt * load_torque_tilt
+    carried_tilt_by_theta_tilt = (
+        -J_motor_tilt_ratio_tilt_load_torque_tilt * twice_ratio_tilt_by_theta_tilt
+        - J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_tilt
+        + driving_torque_tilt * load_inertia_tilt_by_theta_tilt
+        + driving_torque_tilt_by_theta_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_theta_tilt_term = (
+        lost_lowering_tilt_term
+        * 1.0
+        / (lost_lowering_tilt_term_2 * lost_lowering_tilt_term_2)
+        * (0.0 if lost_lowering_tilt_term_2 == 0 else math.copysign(1, lost_lowering_tilt_term_2))
+    )
+    lost_lowering_tilt_by_theta_tilt_term_2 = lost_lowering_tilt_by_theta_tilt_term * lowered_tilt
+    lost_lowering_tilt_by_theta_tilt_term_3 = (
+        J_motor_tilt_ratio_tilt * lost_lowering_tilt_by_theta_tilt_term
+    )
+    lost_lowering_tilt_by_theta_tilt = (
+        -load_inertia_tilt_by_theta_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+        - lost_lowering_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
+    )
+    lost_raising_tilt_by_theta_tilt_term = (
+        lost_raising_tilt_term * 1.0 / (lost_raising_tilt_term_2 * lost_raising_tilt_term_2)
+    )
+    lost_raising_tilt_by_theta_tilt_term_2 = lost_raising_tilt_by_theta_tilt_term * raised_tilt
+    lost_raising_tilt_by_theta_tilt_term_3 = (
+        J_motor_tilt_ratio_tilt * lost_raising_tilt_by_theta_tilt_term
+    )
+    lost_raising_tilt_by_theta_tilt = (
+        -load_inertia_tilt_by_theta_tilt * lost_raising_tilt_by_theta_tilt_term_2
+        - lost_raising_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
+    )
+    half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
+    accel_pan_by_theta_tilt_term_13 = slide_tilt * (
+        0.5 * force_tilt_term - half_carried_tilt_slide_tilt
+    )
+    accel_pan_by_theta_tilt_term_14 = slide_tilt * (
+        half_carried_tilt_slide_tilt + half_force_tilt_term
+    )
+    J_motor_tilt_ratio_tilt_accel_tilt = J_motor_tilt_ratio_tilt * accel_tilt
+    accel_pan_by_theta_tilt_term_15 = (
+        -J_motor_tilt_ratio_tilt_accel_tilt * twice_ratio_tilt_by_theta_tilt
+        - accel_pan * accel_pan_by_theta_tilt_term
+        - accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_theta_tilt
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_theta_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_theta_tilt
+        - driving_torque_tilt_by_theta_tilt_term_2
+        - load_torque_tilt_by_theta_tilt_term_2
+    )
+    fx[2, 1] = inverse_determinant * (
+        accel_pan_by_theta_tilt_term_12 * mass_tilt
+        - accel_pan_by_theta_tilt_term_15 * mass_pan_tilt_slide_tilt_sq
+    )
+    fx[3, 1] = inverse_determinant_slide_tilt_sq * (
+        -accel_pan_by_theta_tilt_term_12 * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_theta_tilt_term_15 * mass_pan
+    )
+    L_tilt_inverse = 1.0 / L_tilt
+    K_t_tilt_L_tilt_inverse_omega_tilt = K_t_tilt * L_tilt_inverse * omega_tilt
+    fx[7, 1] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_theta_tilt
+    fx[0, 2] = 1.0
+    active_pan_d_shaft_pan = active_pan * d_shaft_pan
+    follower_torque_tilt_by_omega_pan_term = (
+        -J_x_payload_twice_cos_tilt_sin_tilt * omega_tilt
+        - J_x_tilt_twice_cos_tilt_sin_tilt * omega_tilt
+        + 2.0 * J_z_payload * cos_tilt * omega_tilt * sin_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_tilt * sin_tilt
+        - active_pan_d_shaft_pan
+        - b_pan
+        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_tilt * sin_tilt_sq
+        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_tilt * sin_tilt
+        - follower_torque_tilt_term_3 * omega_tilt
+        - follower_torque_tilt_term_4 * omega_tilt
+    )
+    follower_torque_tilt_by_omega_pan = follower_torque_tilt_by_omega_pan_term
+    load_torque_tilt_by_omega_pan_term = J_x_payload_twice_cos_tilt_sin_tilt * omega_pan
+    load_torque_tilt_by_omega_pan_term_2 = J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan
+    load_torque_tilt_by_omega_pan_term_3 = J_z_payload_twice_cos_tilt_sin_tilt * omega_pan
+    load_torque_tilt_by_omega_pan_term_4 = J_z_tilt_twice_cos_tilt_sin_tilt * omega_pan
+    accel_pan_by_theta_tilt_term_2_omega_pan = accel_pan_by_theta_tilt_term_2 * omega_pan
+    follower_torque_tilt_term_3_omega_pan = follower_torque_tilt_term_3 * omega_pan
+    accel_pan_by_theta_tilt_term_3_omega_pan = accel_pan_by_theta_tilt_term_3 * omega_pan
+    follower_torque_tilt_term_4_omega_pan = follower_torque_tilt_term_4 * omega_pan
+    load_torque_tilt_by_omega_pan_term_5 = (
+        accel_pan_by_theta_tilt_term_2_omega_pan
+        + accel_pan_by_theta_tilt_term_3_omega_pan
+        - follower_torque_tilt_term_3_omega_pan
+        - follower_torque_tilt_term_4_omega_pan
+        - load_torque_tilt_by_omega_pan_term
+        - load_torque_tilt_by_omega_pan_term_2
+        + load_torque_tilt_by_omega_pan_term_3
+        + load_torque_tilt_by_omega_pan_term_4
+    )
+    load_torque_tilt_by_omega_pan = (
+        -follower_torque_tilt_by_omega_pan * load_torque_tilt_by_theta_pan_term
+        - load_torque_tilt_by_omega_pan_term_5
+    )
+    carried_tilt_by_omega_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_pan
+    accel_pan_by_omega_pan_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_omega_pan
+        - load_torque_tilt_by_omega_pan_term_5
+    )
+    fx[2, 2] = inverse_determinant * (
+        -accel_pan_by_omega_pan_term * mass_pan_tilt_slide_tilt_sq
+        + follower_torque_tilt_by_omega_pan_term * mass_tilt
+    )
+    fx[3, 2] = inverse_determinant_slide_tilt_sq * (
+        accel_pan_by_omega_pan_term * mass_pan
+        - follower_torque_tilt_by_omega_pan_term * mass_pan_tilt_slide_tilt_sq
+    )
+    fx[5, 2] = accel_gear_pan_by_theta_pan_term * active_pan_d_shaft_pan
+    fx[1, 3] = 1.0
+    twice_omega_tilt = 2.0 * omega_tilt
+    follower_torque_tilt_by_omega_tilt_term = (
+        accel_pan_by_theta_tilt_term_2_omega_pan
+        + accel_pan_by_theta_tilt_term_3_omega_pan
+        - follower_torque_tilt_term * twice_omega_tilt
+        - follower_torque_tilt_term_2 * twice_omega_tilt
+        - follower_torque_tilt_term_3_omega_pan
+        - follower_torque_tilt_term_4_omega_pan
+        - load_torque_tilt_by_omega_pan_term
+        - load_torque_tilt_by_omega_pan_term_2
+        + load_torque_tilt_by_omega_pan_term_3
+        + load_torque_tilt_by_omega_pan_term_4
+    )
+    driving_torque_tilt_by_omega_tilt_term = (
+        J_motor_tilt * omega_tilt_ratio_tilt * twice_ratio_tilt_by_theta_tilt
+        + b_motor_tilt * ratio_tilt_sq
+    )
+    driving_torque_tilt_by_omega_tilt = -driving_torque_tilt_by_omega_tilt_term
+    follower_torque_tilt_by_omega_tilt = follower_torque_tilt_by_omega_tilt_term
+    load_torque_tilt_by_omega_tilt = (
+        -b_tilt - follower_torque_tilt_by_omega_tilt * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_omega_tilt = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_tilt
+        + driving_torque_tilt_by_omega_tilt * load_inertia_tilt
+    )
+    accel_pan_by_omega_tilt_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_omega_tilt
+        - b_tilt
+        - driving_torque_tilt_by_omega_tilt_term
+    )
+    fx[2, 3] = inverse_determinant * (
+        -accel_pan_by_omega_tilt_term * mass_pan_tilt_slide_tilt_sq
+        + follower_torque_tilt_by_omega_tilt_term * mass_tilt
+    )
+    fx[3, 3] = inverse_determinant_slide_tilt_sq * (
+        accel_pan_by_omega_tilt_term * mass_pan
+        - follower_torque_tilt_by_omega_tilt_term * mass_pan_tilt_slide_tilt_sq
+    )
+    K_t_tilt_ratio_tilt = K_t_tilt * ratio_tilt
+    fx[7, 3] = -K_t_tilt_ratio_tilt * L_tilt_inverse
+    follower_torque_tilt_by_theta_gear_pan = active_pan_k_shaft_pan
+    load_torque_tilt_by_theta_gear_pan = (
+        (-1.0) * follower_torque_tilt_by_theta_gear_pan * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_theta_gear_pan = (
+        (-1.0) * J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_gear_pan
+    )
+    accel_pan_by_theta_gear_pan_term = (
+        accel_pan_by_theta_pan_term_3 * mass_pan_tilt * slide_tilt_cubed
+    )
+    fx[2, 4] = inverse_determinant * (
+        accel_pan_by_theta_gear_pan_term * carried_tilt_by_theta_gear_pan
+        + active_pan_k_shaft_pan_mass_tilt
+    )
+    fx[3, 4] = inverse_determinant_slide_tilt_sq * (
+        -accel_tilt_by_theta_pan_term
+        - accel_tilt_by_theta_pan_term_2 * carried_tilt_by_theta_gear_pan
+    )
+    fx[5, 4] = -accel_gear_pan_by_theta_pan_term_2
+    follower_torque_tilt_by_omega_gear_pan = active_pan_d_shaft_pan
+    load_torque_tilt_by_omega_gear_pan = (
+        (-1.0) * follower_torque_tilt_by_omega_gear_pan * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_omega_gear_pan = (
+        (-1.0) * J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_gear_pan
+    )
+    fx[2, 5] = inverse_determinant * (
+        accel_pan_by_theta_gear_pan_term * carried_tilt_by_omega_gear_pan
+        + active_pan_d_shaft_pan * mass_tilt
+    )
+    fx[3, 5] = inverse_determinant_slide_tilt_sq * (
+        -accel_tilt_by_theta_pan_term_2 * carried_tilt_by_omega_gear_pan
+        - active_pan_d_shaft_pan * mass_pan_tilt_slide_tilt_sq
+    )
+    fx[4, 5] = 1.0
+    accel_gear_pan_by_omega_gear_pan_term = a_F_v_pan * slide_pan + 1.0
+    accel_gear_pan_by_omega_gear_pan_term_2 = (
+        F_v_pan * accel_gear_pan_by_omega_gear_pan_term * slide_pan
+    )
+    accel_gear_pan_by_omega_gear_pan_term_3 = 1.0 / (v_s_pan * v_s_pan)
+    accel_gear_pan_by_omega_gear_pan_term_4 = a_v_s_pan * slide_pan + 1.0
+    accel_gear_pan_by_omega_gear_pan_term_5 = 1.0 / (
+        accel_gear_pan_by_omega_gear_pan_term_4 * accel_gear_pan_by_omega_gear_pan_term_4
+    )
+    accel_gear_pan_by_omega_gear_pan_term_6 = (
+        accel_gear_pan_by_omega_gear_pan_term_3 * accel_gear_pan_by_omega_gear_pan_term_5
+    )
+    accel_gear_pan_by_omega_gear_pan_term_7 = a_F_c_pan * slide_pan + 1.0
+    accel_gear_pan_by_omega_gear_pan_term_8 = F_c_pan * accel_gear_pan_by_omega_gear_pan_term_7
+    accel_gear_pan_by_omega_gear_pan_term_9 = a_F_s_pan * slide_pan + 1.0
+    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
+    accel_gear_pan_by_omega_gear_pan_term_10 = math.exp(
+        -accel_gear_pan_by_omega_gear_pan_term_6 * omega_gear_pan_sq
+    )
+    accel_gear_pan_by_omega_gear_pan_term_11 = accel_gear_pan_by_omega_gear_pan_term_10 * (
+        F_s_pan * accel_gear_pan_by_omega_gear_pan_term_9 - accel_gear_pan_by_omega_gear_pan_term_8
+    )
+    accel_gear_pan_by_omega_gear_pan_term_12 = 2.0 * accel_gear_pan_by_omega_gear_pan_term_11
+    fx[5, 5] = accel_gear_pan_by_theta_pan_term * (
+        -active_pan_d_shaft_pan
+        - slide_pan
+        * (
+            -accel_gear_pan_by_omega_gear_pan_term_12
+            * accel_gear_pan_by_omega_gear_pan_term_6
+            * omega_gear_pan
+            + accel_gear_pan_by_omega_gear_pan_term_2
+        )
+    )
+    L_pan_inverse = 1.0 / L_pan
+    K_t_pan_N_pan = K_t_pan * N_pan
+    fx[6, 5] = -K_t_pan_N_pan * L_pan_inverse
+    fx[5, 6] = K_t_pan_N_pan * accel_gear_pan_by_theta_pan_term
+    fx[6, 6] = -L_pan_inverse * R_pan
+    driving_torque_tilt_by_i_tilt = K_t_tilt_ratio_tilt
+    carried_tilt_by_i_tilt = driving_torque_tilt_by_i_tilt * load_inertia_tilt
+    accel_pan_by_i_tilt_term = (
+        K_t_tilt_ratio_tilt - accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_i_tilt
+    )
+    accel_pan_by_i_tilt_term_2 = inverse_determinant * mass_pan_tilt_slide_tilt_sq
+    fx[2, 7] = -accel_pan_by_i_tilt_term * accel_pan_by_i_tilt_term_2
+    accel_tilt_by_i_tilt_term = inverse_determinant_slide_tilt_sq * mass_pan
+    fx[3, 7] = accel_pan_by_i_tilt_term * accel_tilt_by_i_tilt_term
+    fx[7, 7] = -L_tilt_inverse * R_tilt
+    fu[6, 0] = L_pan_inverse
+    fu[7, 1] = L_tilt_inverse
+    follower_inertia_tilt_by_J_pan = 1.0
+    load_inertia_tilt_by_J_pan = (
+        follower_inertia_tilt_by_J_pan * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    load_torque_tilt_by_J_pan_term = (
+        follower_coupling_tilt * follower_torque_tilt * load_inertia_tilt_by_theta_tilt_term
+    )
+    load_torque_tilt_by_J_pan = follower_inertia_tilt_by_J_pan * load_torque_tilt_by_J_pan_term
+    carried_tilt_by_J_pan = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_pan
+        + driving_torque_tilt * load_inertia_tilt_by_J_pan
+    )
+    lost_lowering_tilt_by_J_pan = (
+        (-1.0) * load_inertia_tilt_by_J_pan * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_pan = (
+        (-1.0) * load_inertia_tilt_by_J_pan * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    accel_pan_by_J_pan_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_pan
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_pan
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_pan
+    )
+    fp[2, 0] = inverse_determinant * (
+        -accel_pan * mass_tilt - accel_pan_by_J_pan_term * mass_pan_tilt_slide_tilt_sq
+    )
+    fp[3, 0] = inverse_determinant_slide_tilt_sq * (
+        accel_pan * mass_pan_tilt_slide_tilt_sq + accel_pan_by_J_pan_term * mass_pan
+    )
+    accel_pan_by_J_x_tilt_term = omega_pan_omega_tilt * twice_cos_tilt_sin_tilt
+    accel_pan_by_J_x_tilt_term_2 = -accel_pan * sin_tilt_sq - accel_pan_by_J_x_tilt_term
+    accel_pan_by_J_x_tilt_term_3 = -accel_pan_by_J_x_tilt_term_2 * mass_tilt
+    follower_inertia_tilt_by_J_x_tilt = sin_tilt_sq
+    load_inertia_tilt_by_J_x_tilt = (
+        follower_inertia_tilt_by_J_x_tilt * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    minus_accel_pan_by_J_x_tilt_term = -accel_pan_by_J_x_tilt_term
+    follower_torque_tilt_by_J_x_tilt = minus_accel_pan_by_J_x_tilt_term
+    load_torque_tilt_by_J_x_tilt = (
+        cos_tilt_sin_tilt_omega_pan_sq
+        + follower_inertia_tilt_by_J_x_tilt * load_torque_tilt_by_J_pan_term
+        - follower_torque_tilt_by_J_x_tilt * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_J_x_tilt = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_tilt
+        + driving_torque_tilt * load_inertia_tilt_by_J_x_tilt
+    )
+    lost_lowering_tilt_by_J_x_tilt = (
+        (-1.0) * load_inertia_tilt_by_J_x_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_x_tilt = (
+        (-1.0) * load_inertia_tilt_by_J_x_tilt * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    minus_cos_tilt_sin_tilt_omega_pan_sq = -cos_tilt_sin_tilt_omega_pan_sq
+    accel_pan_by_J_x_tilt_term_4 = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_x_tilt
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_x_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_x_tilt
+        - minus_cos_tilt_sin_tilt_omega_pan_sq
+    )
+    fp[2, 1] = inverse_determinant * (
+        -accel_pan_by_J_x_tilt_term_3 - accel_pan_by_J_x_tilt_term_4 * mass_pan_tilt_slide_tilt_sq
+    )
+    accel_tilt_by_J_x_tilt_term = -accel_pan_by_J_x_tilt_term_2 * mass_pan_tilt_slide_tilt_sq
+    fp[3, 1] = inverse_determinant_slide_tilt_sq * (
+        accel_pan_by_J_x_tilt_term_4 * mass_pan + accel_tilt_by_J_x_tilt_term
+    )
+    load_inertia_tilt_by_J_y_tilt = 1.0
+    carried_tilt_by_J_y_tilt = driving_torque_tilt * load_inertia_tilt_by_J_y_tilt
+    lost_lowering_tilt_by_J_y_tilt = (
+        (-1.0) * load_inertia_tilt_by_J_y_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_y_tilt = (
+        (-1.0) * load_inertia_tilt_by_J_y_tilt * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    accel_pan_by_J_y_tilt_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_y_tilt
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_y_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_y_tilt
+        - accel_tilt
+    )
+    fp[2, 2] = -accel_pan_by_J_y_tilt_term * accel_pan_by_i_tilt_term_2
+    fp[3, 2] = accel_pan_by_J_y_tilt_term * accel_tilt_by_i_tilt_term
+    accel_pan_by_J_z_tilt_term = -accel_pan * cos_tilt_sq - minus_accel_pan_by_J_x_tilt_term
+    accel_pan_by_J_z_tilt_term_2 = -accel_pan_by_J_z_tilt_term * mass_tilt
+    follower_inertia_tilt_by_J_z_tilt = cos_tilt_sq
+    load_inertia_tilt_by_J_z_tilt = (
+        follower_inertia_tilt_by_J_z_tilt * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_J_z_tilt = accel_pan_by_J_x_tilt_term
+    load_torque_tilt_by_J_z_tilt = (
+        -cos_tilt_sin_tilt_omega_pan_sq
+        + follower_coupling_tilt
+        * follower_inertia_tilt_by_J_z_tilt
+        * follower_torque_tilt
+        * load_inertia_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_J_z_tilt * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_J_z_tilt = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_tilt
+        + driving_torque_tilt * load_inertia_tilt_by_J_z_tilt
+    )
+    lost_lowering_tilt_by_J_z_tilt = (
+        (-1.0) * load_inertia_tilt_by_J_z_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_z_tilt = (
+        (-1.0) * load_inertia_tilt_by_J_z_tilt * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    accel_pan_by_J_z_tilt_term_3 = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_z_tilt
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_z_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_z_tilt
+        - cos_tilt_sin_tilt_omega_pan_sq
+    )
+    fp[2, 3] = inverse_determinant * (
+        -accel_pan_by_J_z_tilt_term_2 - accel_pan_by_J_z_tilt_term_3 * mass_pan_tilt_slide_tilt_sq
+    )
+    accel_tilt_by_J_z_tilt_term = -accel_pan_by_J_z_tilt_term * mass_pan_tilt_slide_tilt_sq
+    fp[3, 3] = inverse_determinant_slide_tilt_sq * (
+        accel_pan_by_J_z_tilt_term_3 * mass_pan + accel_tilt_by_J_z_tilt_term
+    )
+    accel_pan_by_m_payload_term = (
+        c_x_payload_c_y_payload_sin_tilt - c_y_payload_c_z_payload_cos_tilt
+    )
+    accel_pan_by_m_payload_term_2 = (
+        c_x_payload * sin_tilt * twice_c_z_payload_cos_tilt
+        + c_x_payload_sq * cos_tilt_sq
+        + c_y_payload_sq_cos_tilt_sq
+        + c_y_payload_sq_sin_tilt_sq
+        + c_z_payload_sq * sin_tilt_sq
+    )
+    c_x_payload_omega_tilt_sq = c_x_payload * omega_tilt_sq
+    c_z_payload_omega_tilt_sq = c_z_payload * omega_tilt_sq
+    accel_pan_by_m_payload_term_3 = (
+        accel_pan_by_J_x_tilt_term * c_z_payload_sq
+        - 2.0 * c_x_payload * c_z_payload * omega_pan * omega_tilt * sin_tilt_sq
+        + c_x_payload_c_z_payload * cos_tilt_sq_twice_omega_pan_omega_tilt
+        + c_x_payload_omega_tilt_sq * c_y_payload * cos_tilt
+        - 2.0 * c_x_payload_sq * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        + c_y_payload_sin_tilt * c_z_payload_omega_tilt_sq
+    )
+    accel_pan_by_m_payload_term_4 = (
+        -accel_pan * accel_pan_by_m_payload_term_2
+        - accel_pan_by_m_payload_term * accel_tilt
+        - accel_pan_by_m_payload_term_3
+    )
+    follower_coupling_tilt_by_m_payload = accel_pan_by_m_payload_term
+    follower_inertia_tilt_by_m_payload = accel_pan_by_m_payload_term_2
+    c_x_payload_sq_plus_c_z_payload_sq = c_x_payload_sq + c_z_payload_sq
+    load_inertia_tilt_by_m_payload = (
+        c_x_payload_sq_plus_c_z_payload_sq
+        - follower_coupling_tilt_by_m_payload * twice_load_torque_tilt_by_theta_pan_term
+        + follower_inertia_tilt_by_m_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_m_payload = -accel_pan_by_m_payload_term_3
+    load_torque_tilt_by_m_payload_term = c_x_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
+    load_torque_tilt_by_m_payload = (
+        c_z_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
+        + cos_tilt * load_torque_tilt_term
+        - follower_coupling_tilt_by_m_payload * load_torque_tilt_by_theta_tilt_term
+        + follower_inertia_tilt_by_m_payload * load_torque_tilt_by_J_pan_term
+        - follower_torque_tilt_by_m_payload * load_torque_tilt_by_theta_pan_term
+        - load_torque_tilt_by_m_payload_term
+        + load_torque_tilt_term_2 * sin_tilt
+        + load_torque_tilt_term_4
+        - load_torque_tilt_term_5
+    )
+    carried_tilt_by_m_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_m_payload
+        + driving_torque_tilt * load_inertia_tilt_by_m_payload
+    )
+    lost_lowering_tilt_by_m_payload = (
+        (-1.0) * load_inertia_tilt_by_m_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_m_payload = (
+        (-1.0) * load_inertia_tilt_by_m_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    accel_pan_by_m_payload_term_5 = (
+        -accel_pan * accel_pan_by_m_payload_term
+        - accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_m_payload
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_m_payload
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_m_payload
+        - accel_tilt * c_x_payload_sq_plus_c_z_payload_sq
+        + c_x_payload * c_z_payload * cos_tilt_sq * omega_pan_sq
+        + 9.81 * c_x_payload * cos_tilt
+        + 9.81 * c_z_payload * sin_tilt
+        + c_z_payload_sq * cos_tilt * omega_pan_sq * sin_tilt
+        - load_torque_tilt_by_m_payload_term
+        - load_torque_tilt_term_5
+    )
+    fp[2, 4] = inverse_determinant * (
+        accel_pan_by_m_payload_term_4 * mass_tilt
+        - accel_pan_by_m_payload_term_5 * mass_pan_tilt_slide_tilt_sq
+    )
+    fp[3, 4] = inverse_determinant_slide_tilt_sq * (
+        -accel_pan_by_m_payload_term_4 * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_m_payload_term_5 * mass_pan
+    )
+    follower_inertia_tilt_by_J_x_payload = sin_tilt_sq
+    load_inertia_tilt_by_J_x_payload = (
+        follower_inertia_tilt_by_J_x_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_J_x_payload = minus_accel_pan_by_J_x_tilt_term
+    load_torque_tilt_by_J_x_payload = (
+        cos_tilt_sin_tilt_omega_pan_sq
+        + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_J_pan_term
+        - follower_torque_tilt_by_J_x_payload * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_J_x_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_payload
+        + driving_torque_tilt * load_inertia_tilt_by_J_x_payload
+    )
+    lost_lowering_tilt_by_J_x_payload = (
+        (-1.0) * load_inertia_tilt_by_J_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_x_payload = (
+        (-1.0) * load_inertia_tilt_by_J_x_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    accel_pan_by_J_x_payload_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_x_payload
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_x_payload
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_x_payload
+        - minus_cos_tilt_sin_tilt_omega_pan_sq
+    )
+    fp[2, 5] = inverse_determinant * (
+        -accel_pan_by_J_x_payload_term * mass_pan_tilt_slide_tilt_sq - accel_pan_by_J_x_tilt_term_3
+    )
+    fp[3, 5] = inverse_determinant_slide_tilt_sq * (
+        accel_pan_by_J_x_payload_term * mass_pan + accel_tilt_by_J_x_tilt_term
+    )
+    load_inertia_tilt_by_J_y_payload = 1.0
+    carried_tilt_by_J_y_payload = driving_torque_tilt * load_inertia_tilt_by_J_y_payload
+    lost_lowering_tilt_by_J_y_payload = (
+        (-1.0) * load_inertia_tilt_by_J_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_y_payload = (
+        (-1.0) * load_inertia_tilt_by_J_y_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    accel_pan_by_J_y_payload_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_y_payload
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_y_payload
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_y_payload
+        - accel_tilt
+    )
+    fp[2, 6] = -accel_pan_by_J_y_payload_term * accel_pan_by_i_tilt_term_2
+    fp[3, 6] = accel_pan_by_J_y_payload_term * accel_tilt_by_i_tilt_term
+    follower_inertia_tilt_by_J_z_payload = cos_tilt_sq
+    load_inertia_tilt_by_J_z_payload = (
+        follower_inertia_tilt_by_J_z_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_J_z_payload = accel_pan_by_J_x_tilt_term
+    load_torque_tilt_by_J_z_payload = (
+        -cos_tilt_sin_tilt_omega_pan_sq
+        + follower_coupling_tilt
+        * follower_inertia_tilt_by_J_z_payload
+        * follower_torque_tilt
+        * load_inertia_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_J_z_payload * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_J_z_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_payload
+        + driving_torque_tilt * load_inertia_tilt_by_J_z_payload
+    )
+    lost_lowering_tilt_by_J_z_payload = (
+        (-1.0) * load_inertia_tilt_by_J_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_z_payload = (
+        (-1.0) * load_inertia_tilt_by_J_z_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    accel_pan_by_J_z_payload_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_z_payload
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_z_payload
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_z_payload
+        - cos_tilt_sin_tilt_omega_pan_sq
+    )
+    fp[2, 7] = inverse_determinant * (
+        -accel_pan_by_J_z_payload_term * mass_pan_tilt_slide_tilt_sq - accel_pan_by_J_z_tilt_term_2
+    )
+    fp[3, 7] = inverse_determinant_slide_tilt_sq * (
+        accel_pan_by_J_z_payload_term * mass_pan + accel_tilt_by_J_z_tilt_term
+    )
+    accel_pan_by_c_x_payload_term = m_payload_sin_tilt * twice_c_z_payload_cos_tilt
+    accel_pan_by_c_x_payload_term_2 = (
+        accel_pan_by_c_x_payload_term + c_x_payload_twice_m_payload_cos_tilt_sq
+    )
+    accel_pan_by_c_x_payload_term_3 = c_y_payload_cos_tilt_m_payload * omega_tilt_sq
+    c_z_payload_twice_m_payload = c_z_payload * twice_m_payload
+    accel_pan_by_c_x_payload_term_4 = (
+        c_z_payload_twice_m_payload * cos_tilt_sq * omega_pan_omega_tilt
+    )
+    accel_pan_by_c_x_payload_term_5 = (
+        -accel_pan * accel_pan_by_c_x_payload_term_2
+        - accel_pan_by_c_x_payload_term_3
+        - accel_pan_by_c_x_payload_term_4
+        - accel_tilt * c_y_payload_sin_tilt_m_payload
+        + 4.0 * c_x_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+        + 2.0 * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+    )
+    follower_coupling_tilt_by_c_x_payload = c_y_payload_sin_tilt_m_payload
+    follower_inertia_tilt_by_c_x_payload = accel_pan_by_c_x_payload_term_2
+    load_inertia_tilt_by_c_x_payload = (
+        c_x_payload_twice_m_payload
+        - follower_coupling_tilt_by_c_x_payload * twice_load_torque_tilt_by_theta_pan_term
+        + follower_inertia_tilt_by_c_x_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    c_z_payload_twice_m_payload_sin_tilt_sq = c_z_payload_twice_m_payload * sin_tilt_sq
+    c_x_payload_m_payload_sin_tilt_cos_tilt = c_x_payload_m_payload_sin_tilt * cos_tilt
+    follower_torque_tilt_by_c_x_payload_term = 4.0 * omega_pan_omega_tilt
+    follower_torque_tilt_by_c_x_payload = (
+        -accel_pan_by_c_x_payload_term_3
+        - accel_pan_by_c_x_payload_term_4
+        + c_x_payload_m_payload_sin_tilt_cos_tilt * follower_torque_tilt_by_c_x_payload_term
+        + c_z_payload_twice_m_payload_sin_tilt_sq * omega_pan_omega_tilt
+    )
+    load_torque_tilt_by_c_x_payload_term = 2.0 * c_x_payload_m_payload_sin_tilt_cos_tilt
+    load_torque_tilt_by_c_x_payload_term_2 = (
+        -c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
+        + c_z_payload * m_payload * omega_pan_sq_sin_tilt_sq
+        - 9.81 * cos_tilt * m_payload
+        + load_torque_tilt_by_c_x_payload_term * omega_pan_sq
+    )
+    load_torque_tilt_by_c_x_payload = (
+        follower_coupling_tilt
+        * follower_inertia_tilt_by_c_x_payload
+        * follower_torque_tilt
+        * load_inertia_tilt_by_theta_tilt_term
+        - follower_coupling_tilt_by_c_x_payload * load_torque_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_c_x_payload * load_torque_tilt_by_theta_pan_term
+        - load_torque_tilt_by_c_x_payload_term_2
+    )
+    carried_tilt_by_c_x_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_x_payload
+        + driving_torque_tilt * load_inertia_tilt_by_c_x_payload
+    )
+    lost_lowering_tilt_by_c_x_payload = (
+        (-1.0) * load_inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_c_x_payload = (
+        (-1.0) * load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    accel_pan_by_c_x_payload_term_6 = (
+        -accel_pan * c_y_payload_sin_tilt_m_payload
+        - accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_c_x_payload
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_c_x_payload
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_c_x_payload
+        - accel_tilt * c_x_payload_twice_m_payload
+        - load_torque_tilt_by_c_x_payload_term_2
+    )
+    fp[2, 8] = inverse_determinant * (
+        accel_pan_by_c_x_payload_term_5 * mass_tilt
+        - accel_pan_by_c_x_payload_term_6 * mass_pan_tilt_slide_tilt_sq
+    )
+    fp[3, 8] = inverse_determinant_slide_tilt_sq * (
+        -accel_pan_by_c_x_payload_term_5 * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_c_x_payload_term_6 * mass_pan
+    )
+    accel_pan_by_c_y_payload_term = (
+        c_x_payload_m_payload_sin_tilt - c_z_payload_cos_tilt * m_payload
+    )
+    c_y_payload_twice_m_payload = c_y_payload * twice_m_payload
+    accel_pan_by_c_y_payload_term_2 = (
+        c_y_payload_twice_m_payload * cos_tilt_sq + c_y_payload_twice_m_payload * sin_tilt_sq
+    )
+    accel_pan_by_c_y_payload_term_3 = (
+        c_x_payload_omega_tilt_sq * cos_tilt_m_payload
+        + c_z_payload_omega_tilt_sq * m_payload_sin_tilt
+    )
+    accel_pan_by_c_y_payload_term_4 = (
+        -accel_pan * accel_pan_by_c_y_payload_term_2
+        - accel_pan_by_c_y_payload_term * accel_tilt
+        - accel_pan_by_c_y_payload_term_3
+    )
+    follower_coupling_tilt_by_c_y_payload = accel_pan_by_c_y_payload_term
+    follower_inertia_tilt_by_c_y_payload = accel_pan_by_c_y_payload_term_2
+    load_inertia_tilt_by_c_y_payload = (
+        -follower_coupling_tilt_by_c_y_payload * twice_load_torque_tilt_by_theta_pan_term
+        + follower_inertia_tilt_by_c_y_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_c_y_payload = -accel_pan_by_c_y_payload_term_3
+    load_torque_tilt_by_c_y_payload = (
+        follower_coupling_tilt
+        * follower_inertia_tilt_by_c_y_payload
+        * follower_torque_tilt
+        * load_inertia_tilt_by_theta_tilt_term
+        - follower_coupling_tilt_by_c_y_payload * load_torque_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_c_y_payload * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_c_y_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_y_payload
+        + driving_torque_tilt * load_inertia_tilt_by_c_y_payload
+    )
+    lost_lowering_tilt_by_c_y_payload = (
+        (-1.0) * load_inertia_tilt_by_c_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_c_y_payload = (
+        (-1.0) * load_inertia_tilt_by_c_y_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    accel_pan_by_c_y_payload_term_5 = (
+        -accel_pan * accel_pan_by_c_y_payload_term
+        - accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_c_y_payload
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_c_y_payload
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_c_y_payload
+    )
+    fp[2, 9] = inverse_determinant * (
+        accel_pan_by_c_y_payload_term_4 * mass_tilt
+        - accel_pan_by_c_y_payload_term_5 * mass_pan_tilt_slide_tilt_sq
+    )
+    fp[3, 9] = inverse_determinant_slide_tilt_sq * (
+        -accel_pan_by_c_y_payload_term_4 * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_c_y_payload_term_5 * mass_pan
+    )
+    accel_pan_by_c_z_payload_term = (
+        c_z_payload_twice_m_payload_sin_tilt_sq + load_torque_tilt_by_c_x_payload_term
+    )
+    accel_pan_by_c_z_payload_term_2 = (
+        -2.0 * c_x_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        + c_x_payload_twice_m_payload_cos_tilt_sq * omega_pan_omega_tilt
+        + c_y_payload_sin_tilt_m_payload * omega_tilt_sq
+        + c_z_payload_cos_tilt * follower_torque_tilt_by_c_x_payload_term * m_payload_sin_tilt
+    )
+    accel_pan_by_c_z_payload_term_3 = (
+        -accel_pan * accel_pan_by_c_z_payload_term
+        - accel_pan_by_c_z_payload_term_2
+        + accel_tilt * c_y_payload * cos_tilt * m_payload
+    )
+    follower_coupling_tilt_by_c_z_payload = -c_y_payload_cos_tilt_m_payload
+    follower_inertia_tilt_by_c_z_payload = accel_pan_by_c_z_payload_term
+    load_inertia_tilt_by_c_z_payload = (
+        c_z_payload_twice_m_payload
+        - follower_coupling_tilt_by_c_z_payload * twice_load_torque_tilt_by_theta_pan_term
+        + follower_inertia_tilt_by_c_z_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_c_z_payload = -accel_pan_by_c_z_payload_term_2
+    c_x_payload_m_payload = c_x_payload * m_payload
+    load_torque_tilt_by_c_z_payload_term = c_x_payload_m_payload * omega_pan_sq_sin_tilt_sq
+    load_torque_tilt_by_c_z_payload = (
+        accel_pan_by_c_x_payload_term * omega_pan_sq
+        + c_x_payload_m_payload * cos_tilt_sq_omega_pan_sq
+        - follower_coupling_tilt_by_c_z_payload * load_torque_tilt_by_theta_tilt_term
+        + follower_inertia_tilt_by_c_z_payload * load_torque_tilt_by_J_pan_term
+        - follower_torque_tilt_by_c_z_payload * load_torque_tilt_by_theta_pan_term
+        - load_torque_tilt_by_c_z_payload_term
+        + 9.81 * m_payload_sin_tilt
+    )
+    carried_tilt_by_c_z_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_z_payload
+        + driving_torque_tilt * load_inertia_tilt_by_c_z_payload
+    )
+    lost_lowering_tilt_by_c_z_payload = (
+        (-1.0) * load_inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_c_z_payload = (
+        (-1.0) * load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    accel_pan_by_c_z_payload_term_4 = (
+        accel_pan * c_y_payload * cos_tilt * m_payload
+        - accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_c_z_payload
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_c_z_payload
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_c_z_payload
+        - accel_tilt * c_z_payload_twice_m_payload
+        + c_x_payload * cos_tilt_sq * m_payload * omega_pan_sq
+        + 2.0 * c_z_payload * cos_tilt * m_payload * omega_pan_sq * sin_tilt
+        - load_torque_tilt_by_c_z_payload_term
+        + 9.81 * m_payload * sin_tilt
+    )
+    fp[2, 10] = inverse_determinant * (
+        accel_pan_by_c_z_payload_term_3 * mass_tilt
+        - accel_pan_by_c_z_payload_term_4 * mass_pan_tilt_slide_tilt_sq
+    )
+    fp[3, 10] = inverse_determinant_slide_tilt_sq * (
+        -accel_pan_by_c_z_payload_term_3 * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_c_z_payload_term_4 * mass_pan
+    )
+    follower_torque_tilt_by_b_pan = minus_omega_pan
+    load_torque_tilt_by_b_pan = -follower_torque_tilt_by_b_pan * load_torque_tilt_by_theta_pan_term
+    carried_tilt_by_b_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_pan
+    fp[2, 11] = inverse_determinant * (
+        accel_pan_by_theta_gear_pan_term * carried_tilt_by_b_pan - mass_tilt * omega_pan
+    )
+    fp[3, 11] = inverse_determinant_slide_tilt_sq * (
+        -accel_tilt_by_theta_pan_term_2 * carried_tilt_by_b_pan
+        + mass_pan_tilt * omega_pan * slide_tilt_sq
+    )
+    load_torque_tilt_by_b_tilt = -omega_tilt
+    carried_tilt_by_b_tilt = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_tilt
+    accel_pan_by_b_tilt_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_b_tilt - omega_tilt
+    )
+    fp[2, 12] = -accel_pan_by_b_tilt_term * accel_pan_by_i_tilt_term_2
+    fp[3, 12] = accel_pan_by_b_tilt_term * accel_tilt_by_i_tilt_term
+    accel_gear_pan_by_F_c_pan_term = inverse_mass_gear_pan * (slide_pan * slide_pan * slide_pan)
+    fp[5, 13] = (
+        (-1.0)
+        * accel_gear_pan_by_F_c_pan_term
+        * (
+            -accel_gear_pan_by_omega_gear_pan_term_10 * accel_gear_pan_by_omega_gear_pan_term_7
+            + accel_gear_pan_by_omega_gear_pan_term_7
+        )
+    )
+    fp[5, 14] = (
+        (-1.0)
+        * accel_gear_pan_by_F_c_pan_term
+        * accel_gear_pan_by_omega_gear_pan_term_10
+        * accel_gear_pan_by_omega_gear_pan_term_9
+    )
+    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_12 * omega_gear_pan_sq
+    fp[5, 15] = (
+        (-1.0)
+        * accel_gear_pan_by_F_c_pan_term
+        * accel_gear_pan_by_omega_gear_pan_term_5
+        * accel_gear_pan_by_v_s_pan_term
+        * 1.0
+        / (v_s_pan * v_s_pan * v_s_pan)
+    )
+    accel_gear_pan_by_F_v_pan_term = inverse_mass_gear_pan * (
+        slide_pan * slide_pan * slide_pan * slide_pan
+    )
+    fp[5, 16] = (
+        (-1.0)
+        * accel_gear_pan_by_F_v_pan_term
+        * accel_gear_pan_by_omega_gear_pan_term
+        * omega_gear_pan
+    )
+    F_c_pan_slide_pan = F_c_pan * slide_pan
+    fp[5, 17] = (
+        (-1.0)
+        * accel_gear_pan_by_F_c_pan_term
+        * (-F_c_pan_slide_pan * accel_gear_pan_by_omega_gear_pan_term_10 + F_c_pan_slide_pan)
+    )
+    fp[5, 18] = -F_s_pan * accel_gear_pan_by_F_v_pan_term * accel_gear_pan_by_omega_gear_pan_term_10
+    fp[5, 19] = (
+        (-1.0)
+        * accel_gear_pan_by_F_v_pan_term
+        * accel_gear_pan_by_omega_gear_pan_term_3
+        * 1.0
+        / (
+            accel_gear_pan_by_omega_gear_pan_term_4
+            * accel_gear_pan_by_omega_gear_pan_term_4
+            * accel_gear_pan_by_omega_gear_pan_term_4
+        )
+        * accel_gear_pan_by_v_s_pan_term
+    )
+    fp[5, 20] = -F_v_pan * inverse_mass_gear_pan * omega_gear_pan * slide_pan**5.0
+    active_pan_k_shaft_pan_half_side_pan = active_pan_k_shaft_pan * half_side_pan
+    follower_torque_tilt_by_gap_pan = -active_pan_k_shaft_pan_half_side_pan
+    load_torque_tilt_by_gap_pan = (
+        (-1.0) * follower_torque_tilt_by_gap_pan * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_gap_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_gap_pan
+    fp[2, 21] = inverse_determinant * (
+        accel_pan_by_theta_pan_term_3 * carried_tilt_by_gap_pan * mass_pan_tilt * slide_tilt_cubed
+        - active_pan_k_shaft_pan_mass_tilt * half_side_pan
+    )
+    fp[3, 21] = inverse_determinant_slide_tilt_sq * (
+        -accel_tilt_by_theta_pan_term_2 * carried_tilt_by_gap_pan
+        + active_pan_k_shaft_pan_half_side_pan * mass_pan_tilt_slide_tilt_sq
+    )
+    fp[5, 21] = accel_gear_pan_by_theta_pan_term * active_pan_k_shaft_pan_half_side_pan
+    active_pan_follower_torque_tilt_term_5 = active_pan * follower_torque_tilt_term_5
+    follower_torque_tilt_by_k_shaft_pan = active_pan_follower_torque_tilt_term_5
+    load_torque_tilt_by_k_shaft_pan = (
+        (-1.0) * follower_torque_tilt_by_k_shaft_pan * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_k_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_k_shaft_pan
+    fp[2, 22] = inverse_determinant * (
+        accel_pan_by_theta_gear_pan_term * carried_tilt_by_k_shaft_pan
+        + active_pan_follower_torque_tilt_term_5 * mass_tilt
+    )
+    fp[3, 22] = inverse_determinant_slide_tilt_sq * (
+        -accel_tilt_by_theta_pan_term_2 * carried_tilt_by_k_shaft_pan
+        - active_pan_follower_torque_tilt_term_5 * mass_pan_tilt_slide_tilt_sq
+    )
+    fp[5, 22] = -accel_gear_pan_by_theta_pan_term * active_pan_follower_torque_tilt_term_5
+    follower_torque_tilt_by_d_shaft_pan_term = active_pan * minus_omega_pan_plus_omega_gear_pan
+    follower_torque_tilt_by_d_shaft_pan = follower_torque_tilt_by_d_shaft_pan_term
+    load_torque_tilt_by_d_shaft_pan = (
+        (-1.0) * follower_torque_tilt_by_d_shaft_pan * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_d_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_d_shaft_pan
+    fp[2, 23] = inverse_determinant * (
+        accel_pan_by_theta_gear_pan_term * carried_tilt_by_d_shaft_pan
+        + follower_torque_tilt_by_d_shaft_pan_term * mass_tilt
+    )
+    fp[3, 23] = inverse_determinant_slide_tilt_sq * (
+        -accel_tilt_by_theta_pan_term_2 * carried_tilt_by_d_shaft_pan
+        - follower_torque_tilt_by_d_shaft_pan_term * mass_pan_tilt_slide_tilt_sq
+    )
+    fp[5, 23] = -accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_d_shaft_pan_term
+    fp[6, 24] = -(-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / (L_pan * L_pan)
+    fp[6, 25] = -L_pan_inverse * i_pan
+    fp[5, 26] = N_pan * accel_gear_pan_by_theta_pan_term * i_pan
+    L_pan_inverse_omega_gear_pan = L_pan_inverse * omega_gear_pan
+    fp[6, 26] = -L_pan_inverse_omega_gear_pan * N_pan
+    force_gear_pan = (
+        K_t_pan * N_pan * i_pan
+        - follower_torque_tilt_term_6
+        - slide_pan
+        * (
+            accel_gear_pan_by_omega_gear_pan_term_11
+            + accel_gear_pan_by_omega_gear_pan_term_2 * omega_gear_pan
+            + accel_gear_pan_by_omega_gear_pan_term_8
+        )
+    )
+    accel_gear_pan = accel_gear_pan_by_theta_pan_term * force_gear_pan
+    fp[5, 27] = -N_pan_sq * accel_gear_pan * accel_gear_pan_by_theta_pan_term
+    fp[5, 28] = accel_gear_pan_by_theta_pan_term * (
+        -2.0 * J_motor_pan * N_pan * accel_gear_pan + K_t_pan * i_pan
+    )
+    fp[6, 28] = -K_t_pan * L_pan_inverse_omega_gear_pan
+    fp[7, 29] = (
+        (-1.0)
+        * 1.0
+        / (L_tilt * L_tilt)
+        * (-K_t_tilt_ratio_tilt * omega_tilt - R_tilt * i_tilt + u_tilt)
+    )
+    fp[7, 30] = -L_tilt_inverse * i_tilt
+    driving_torque_tilt_by_K_t_tilt = i_tilt * ratio_tilt
+    carried_tilt_by_K_t_tilt = driving_torque_tilt_by_K_t_tilt * load_inertia_tilt
+    accel_pan_by_K_t_tilt_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_K_t_tilt + i_tilt * ratio_tilt
+    )
+    fp[2, 31] = -accel_pan_by_K_t_tilt_term * accel_pan_by_i_tilt_term_2
+    fp[3, 31] = accel_pan_by_K_t_tilt_term * accel_tilt_by_i_tilt_term
+    fp[7, 31] = -L_tilt_inverse * omega_tilt_ratio_tilt
+    driving_torque_tilt_by_J_motor_tilt_term = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
+    driving_torque_tilt_by_J_motor_tilt = -driving_torque_tilt_by_J_motor_tilt_term
+    carried_tilt_by_J_motor_tilt = (
+        driving_torque_tilt_by_J_motor_tilt * load_inertia_tilt - load_torque_tilt * ratio_tilt_sq
+    )
+    lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_term * ratio_tilt_sq
+    lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term * ratio_tilt_sq
+    accel_pan_by_J_motor_tilt_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_motor_tilt
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_motor_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_motor_tilt
+        - accel_tilt * ratio_tilt_sq
+        - driving_torque_tilt_by_J_motor_tilt_term
+    )
+    fp[2, 32] = -accel_pan_by_J_motor_tilt_term * accel_pan_by_i_tilt_term_2
+    fp[3, 32] = accel_pan_by_J_motor_tilt_term * accel_tilt_by_i_tilt_term
+    omega_tilt_ratio_tilt_sq = omega_tilt * ratio_tilt_sq
+    driving_torque_tilt_by_b_motor_tilt = -omega_tilt_ratio_tilt_sq
+    carried_tilt_by_b_motor_tilt = driving_torque_tilt_by_b_motor_tilt * load_inertia_tilt
+    accel_pan_by_b_motor_tilt_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_b_motor_tilt
+        - omega_tilt_ratio_tilt_sq
+    )
+    fp[2, 33] = -accel_pan_by_b_motor_tilt_term * accel_pan_by_i_tilt_term_2
+    fp[3, 33] = accel_pan_by_b_motor_tilt_term * accel_tilt_by_i_tilt_term
+    ratio_tilt_by_N_tilt = ratio_tilt_term_3
+    ratio_tilt_by_theta_tilt_by_N_tilt = (
+        ratio_tilt_by_theta_tilt_term_2 - ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_term
+    )
+    driving_torque_tilt_by_N_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_N_tilt
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt
+    )
+    driving_torque_tilt_by_N_tilt = -driving_torque_tilt_by_N_tilt_term
+    carried_tilt_by_N_tilt_term = 2.0 * J_motor_tilt_ratio_tilt_load_torque_tilt
+    carried_tilt_by_N_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
+        + driving_torque_tilt_by_N_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_N_tilt_term = 2.0 * lost_lowering_tilt_by_theta_tilt_term_3
+    lost_lowering_tilt_by_N_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
+    lost_raising_tilt_by_N_tilt_term = 2.0 * lost_raising_tilt_by_theta_tilt_term_3
+    lost_raising_tilt_by_N_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
+    twice_J_motor_tilt_ratio_tilt_accel_tilt = 2.0 * J_motor_tilt_ratio_tilt_accel_tilt
+    accel_pan_by_N_tilt_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_N_tilt
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_N_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_N_tilt
+        - driving_torque_tilt_by_N_tilt_term
+        - ratio_tilt_by_N_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+    )
+    fp[2, 34] = -accel_pan_by_N_tilt_term * accel_pan_by_i_tilt_term_2
+    fp[3, 34] = accel_pan_by_N_tilt_term * accel_tilt_by_i_tilt_term
+    fp[7, 34] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_N_tilt
+    ratio_tilt_by_lead_tilt_term = 1.0 / (lead_tilt * lead_tilt)
+    ratio_tilt_by_lead_tilt_term_2 = math.pi * length_tilt_inverse * ratio_tilt_by_lead_tilt_term
+    ratio_tilt_by_lead_tilt = -N_tilt_ratio_tilt_term * ratio_tilt_by_lead_tilt_term_2
+    ratio_tilt_by_theta_tilt_by_lead_tilt = (
+        math.pi
+        * N_tilt
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_by_lead_tilt_term
+        * ratio_tilt_by_theta_tilt_term_3
+        * ratio_tilt_term
+        - N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt_term_2
+    )
+    driving_torque_tilt_by_lead_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_lead_tilt
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt
+    )
+    driving_torque_tilt_by_lead_tilt = -driving_torque_tilt_by_lead_tilt_term
+    carried_tilt_by_lead_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
+        + driving_torque_tilt_by_lead_tilt * load_inertia_tilt
+    )
+    lowered_tilt_by_lead_tilt_term = lowered_tilt_term * ratio_tilt_by_lead_tilt_term
+    lowered_tilt_by_lead_tilt_term_2 = f_screw_tilt_lowered_tilt_term * lead_tilt_inverse
+    lowered_tilt_by_lead_tilt_term_3 = lowered_tilt_term_2 * lowered_tilt_term_3_inverse
+    lowered_tilt_by_lead_tilt_term_4 = 1.0 / (lowered_tilt_term_3 * lowered_tilt_term_3)
+    lowered_tilt_by_lead_tilt = (
+        lowered_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt_term_3
+        + lowered_tilt_by_lead_tilt_term_2 * lowered_tilt_by_lead_tilt_term_4 * lowered_tilt_term_2
+        + lowered_tilt_term_lowered_tilt_term_4
+    )
+    lost_lowering_tilt_by_lead_tilt_term = (
+        -load_inertia_tilt * lost_lowering_tilt_by_theta_tilt_term - lost_lowering_tilt_term_3
+    )
+    lost_lowering_tilt_by_lead_tilt = (
+        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
+        + lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt
+    )
+    raised_tilt_by_lead_tilt_term = raised_tilt_term * raised_tilt_term_2_inverse
+    raised_tilt_by_lead_tilt_term_2 = raised_tilt_term / (raised_tilt_term_2 * raised_tilt_term_2)
+    raised_tilt_by_lead_tilt = (
+        -lowered_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt_term
+        + lowered_tilt_by_lead_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
+        + lowered_tilt_term_raised_tilt_term_3
+    )
+    lost_raising_tilt_by_lead_tilt_term = (
+        -load_inertia_tilt * lost_raising_tilt_by_theta_tilt_term + lost_raising_tilt_term_2_inverse
+    )
+    lost_raising_tilt_by_lead_tilt = (
+        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
+        + lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt
+    )
+    accel_pan_by_lead_tilt_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_lead_tilt
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_lead_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_lead_tilt
+        - driving_torque_tilt_by_lead_tilt_term
+        - ratio_tilt_by_lead_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+    )
+    fp[2, 35] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_lead_tilt_term
+    fp[3, 35] = accel_pan_by_lead_tilt_term * accel_tilt_by_i_tilt_term
+    fp[7, 35] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_lead_tilt
+    lowered_tilt_by_d_screw_tilt_term = math.pi * math.pi
+    lowered_tilt_by_d_screw_tilt_term_2 = d_screw_tilt * lowered_tilt_by_d_screw_tilt_term
+    lowered_tilt_by_d_screw_tilt_term_3 = f_screw_tilt * lowered_tilt_by_d_screw_tilt_term_2
+    lowered_tilt_by_d_screw_tilt = (
+        d_screw_tilt
+        * lead_tilt_inverse
+        * lowered_tilt_by_d_screw_tilt_term
+        * lowered_tilt_by_lead_tilt_term_4
+        * lowered_tilt_term_2
+        - lowered_tilt_by_d_screw_tilt_term_3 * lowered_tilt_term_4
+        - lowered_tilt_by_lead_tilt_term_3 * ratio_tilt_term_2
+    )
+    lost_lowering_tilt_by_d_screw_tilt = (
+        lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_d_screw_tilt
+    )
+    raised_tilt_by_d_screw_tilt = (
+        -lead_tilt_inverse * lowered_tilt_by_d_screw_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
+        + lowered_tilt_by_d_screw_tilt_term_3 * raised_tilt_term_3
+        + raised_tilt_by_lead_tilt_term * ratio_tilt_term_2
+    )
+    lost_raising_tilt_by_d_screw_tilt = (
+        lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_d_screw_tilt
+    )
+    accel_pan_by_d_screw_tilt_term = (
+        -accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_d_screw_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_d_screw_tilt
+    )
+    fp[2, 36] = -accel_pan_by_d_screw_tilt_term * accel_pan_by_i_tilt_term_2
+    fp[3, 36] = accel_pan_by_d_screw_tilt_term * accel_tilt_by_i_tilt_term
+    lowered_tilt_by_f_screw_tilt_term = (
+        d_screw_tilt * d_screw_tilt
+    ) * lowered_tilt_by_d_screw_tilt_term
+    lowered_tilt_by_f_screw_tilt = (
+        math.pi * d_screw_tilt * lowered_tilt_by_lead_tilt_term_4 * lowered_tilt_term_2
+        - lowered_tilt_by_f_screw_tilt_term * lowered_tilt_term_4
+    )
+    lost_lowering_tilt_by_f_screw_tilt = (
+        lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_f_screw_tilt
+    )
+    raised_tilt_by_f_screw_tilt = (
+        lowered_tilt_by_f_screw_tilt_term * raised_tilt_term_3
+        + lowered_tilt_term * raised_tilt_by_lead_tilt_term_2
+    )
+    lost_raising_tilt_by_f_screw_tilt = (
+        lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_f_screw_tilt
+    )
+    accel_pan_by_f_screw_tilt_term = (
+        -accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_f_screw_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_f_screw_tilt
+    )
+    fp[2, 37] = -accel_pan_by_f_screw_tilt_term * accel_pan_by_i_tilt_term_2
+    fp[3, 37] = accel_pan_by_f_screw_tilt_term * accel_tilt_by_i_tilt_term
+    linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
+    linkage_sin_tilt_term_2_inverse = 1.0 / linkage_sin_tilt_term_2
+    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_term_2_inverse
+    linkage_sin_tilt_by_l_ground_tilt = (
+        l_ground_tilt * linkage_sin_tilt_term * linkage_sin_tilt_term_2_inverse
+        - linkage_cos_tilt_by_l_ground_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    half_length_tilt_term_2_inverse = 0.5 * length_tilt_term_2_inverse
+    cos_tilt_half_length_tilt_term_2_inverse = cos_tilt * half_length_tilt_term_2_inverse
+    half_length_tilt_term_2_inverse_sin_tilt = half_length_tilt_term_2_inverse * sin_tilt
+    length_tilt_by_l_ground_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_ground_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
+        + l_ground_tilt * length_tilt_term_2_inverse
+    )
+    ratio_tilt_by_l_ground_tilt_term = cos_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+    ratio_tilt_by_l_ground_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_l_ground_tilt
+        * sin_tilt
+        - length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term = (
+        0.5 * length_tilt_by_theta_tilt_by_theta_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
+        cos_tilt * length_tilt_by_theta_tilt_by_l_ground_tilt_term
+        + half_length_tilt_term_2_inverse_sin_tilt
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 = (
+        -cos_tilt_half_length_tilt_term_2_inverse
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term * sin_tilt
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt = (
+        -l_ground_tilt * length_tilt_by_theta_tilt_by_theta_tilt_term
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_ground_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_ground_tilt
+    )
+    N_tilt_ratio_tilt_by_theta_tilt_term_5 = N_tilt * ratio_tilt_by_theta_tilt_term_5
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt_term = (
+        N_tilt_ratio_tilt_by_theta_tilt_term_5 * cos_tilt
+        + ratio_tilt_by_theta_tilt_by_theta_tilt_term * sin_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
+        -N_tilt_ratio_tilt_by_theta_tilt_term_5 * sin_tilt + ratio_tilt_by_l_ground_tilt_term
+    )
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt = (
+        length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
+        - length_tilt_by_theta_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        + linkage_cos_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    driving_torque_tilt_by_l_ground_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_ground_tilt
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_l_ground_tilt
+    )
+    driving_torque_tilt_by_l_ground_tilt = -driving_torque_tilt_by_l_ground_tilt_term
+    carried_tilt_by_l_ground_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+        + driving_torque_tilt_by_l_ground_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_l_ground_tilt = (
+        (-1.0) * lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+    )
+    lost_raising_tilt_by_l_ground_tilt = (
+        (-1.0) * lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+    )
+    accel_pan_by_l_ground_tilt_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_l_ground_tilt
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_l_ground_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_l_ground_tilt
+        - driving_torque_tilt_by_l_ground_tilt_term
+        - ratio_tilt_by_l_ground_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+    )
+    fp[2, 38] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_l_ground_tilt_term
+    fp[3, 38] = accel_pan_by_l_ground_tilt_term * accel_tilt_by_i_tilt_term
+    fp[7, 38] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_l_ground_tilt
+    linkage_cos_tilt_by_l_min_tilt_term = -2.0 * l_min_tilt - 2.0 * s_start_tilt
+    linkage_cos_tilt_by_l_min_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    linkage_sin_tilt_by_l_min_tilt = (
+        (-1.0) * linkage_cos_tilt_by_l_min_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_l_min_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_min_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_min_tilt
+    )
+    ratio_tilt_by_l_min_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_l_min_tilt
+        * sin_tilt
+        - length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_l_min_tilt = (
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_min_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_min_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_l_min_tilt = (
+        length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
+        - length_tilt_by_theta_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        + linkage_cos_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    driving_torque_tilt_by_l_min_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_min_tilt
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_l_min_tilt
+    )
+    driving_torque_tilt_by_l_min_tilt = -driving_torque_tilt_by_l_min_tilt_term
+    carried_tilt_by_l_min_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
+        + driving_torque_tilt_by_l_min_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_l_min_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
+    lost_raising_tilt_by_l_min_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
+    accel_pan_by_l_min_tilt_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_l_min_tilt
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_l_min_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_l_min_tilt
+        - driving_torque_tilt_by_l_min_tilt_term
+        - ratio_tilt_by_l_min_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+    )
+    fp[2, 39] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_l_min_tilt_term
+    fp[3, 39] = accel_pan_by_l_min_tilt_term * accel_tilt_by_i_tilt_term
+    fp[7, 39] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_l_min_tilt
+    linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
+    linkage_sin_tilt_by_r_arm_tilt = (
+        4.0 * l_ground_tilt_sq * linkage_sin_tilt_term_2_inverse * r_arm_tilt
+        - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_r_arm_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_r_arm_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
+        + length_tilt_term_2_inverse * r_arm_tilt
+    )
+    ratio_tilt_by_r_arm_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_r_arm_tilt
+        * sin_tilt
+        - length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_r_arm_tilt = (
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_r_arm_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_r_arm_tilt
+        - length_tilt_by_theta_tilt_by_theta_tilt_term * r_arm_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_r_arm_tilt = (
+        length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
+        - length_tilt_by_theta_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        + linkage_cos_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    driving_torque_tilt_by_r_arm_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_r_arm_tilt
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_r_arm_tilt
+    )
+    driving_torque_tilt_by_r_arm_tilt = -driving_torque_tilt_by_r_arm_tilt_term
+    carried_tilt_by_r_arm_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
+        + driving_torque_tilt_by_r_arm_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_r_arm_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
+    lost_raising_tilt_by_r_arm_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
+    accel_pan_by_r_arm_tilt_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_r_arm_tilt
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_r_arm_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_r_arm_tilt
+        - driving_torque_tilt_by_r_arm_tilt_term
+        - ratio_tilt_by_r_arm_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+    )
+    fp[2, 40] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_r_arm_tilt_term
+    fp[3, 40] = accel_pan_by_r_arm_tilt_term * accel_tilt_by_i_tilt_term
+    fp[7, 40] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_r_arm_tilt
+    linkage_cos_tilt_by_s_start_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    linkage_sin_tilt_by_s_start_tilt = (
+        (-1.0) * linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_s_start_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_s_start_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_s_start_tilt
+    )
+    ratio_tilt_by_s_start_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_s_start_tilt
+        * sin_tilt
+        - length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_s_start_tilt = (
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_s_start_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_s_start_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_s_start_tilt = (
+        length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
+        - length_tilt_by_theta_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    driving_torque_tilt_by_s_start_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_s_start_tilt
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_s_start_tilt
+    )
+    driving_torque_tilt_by_s_start_tilt = -driving_torque_tilt_by_s_start_tilt_term
+    carried_tilt_by_s_start_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+        + driving_torque_tilt_by_s_start_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_s_start_tilt = (
+        (-1.0) * lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+    )
+    lost_raising_tilt_by_s_start_tilt = (
+        (-1.0) * lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+    )
+    accel_pan_by_s_start_tilt_term = (
+        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_s_start_tilt
+        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_s_start_tilt
+        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_s_start_tilt
+        - driving_torque_tilt_by_s_start_tilt_term
+        - ratio_tilt_by_s_start_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+    )
+    fp[2, 41] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_s_start_tilt_term
+    fp[3, 41] = accel_pan_by_s_start_tilt_term * accel_tilt_by_i_tilt_term
+    fp[7, 41] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_s_start_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def guards(t, x, u, p, m, g):
+    """Write holding and breakaway torques, gap separations and contact torques into g."""
+    theta_pan = x[0]
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    theta_gear_pan = x[4]
+    omega_gear_pan = x[5]
+    i_pan = x[6]
+    i_tilt = x[7]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    m_payload = p[4]
+    J_x_payload = p[5]
+    J_y_payload = p[6]
+    J_z_payload = p[7]
+    c_x_payload = p[8]
+    c_y_payload = p[9]
+    c_z_payload = p[10]
+    b_pan = p[11]
+    b_tilt = p[12]
+    F_s_pan = p[14]
+    a_F_s_pan = p[18]
+    gap_pan = p[21]
+    k_shaft_pan = p[22]
+    d_shaft_pan = p[23]
+    K_t_pan = p[26]
+    N_pan = p[28]
+    K_t_tilt = p[31]
+    J_motor_tilt = p[32]
+    b_motor_tilt = p[33]
+    N_tilt = p[34]
+    lead_tilt = p[35]
+    d_screw_tilt = p[36]
+    f_screw_tilt = p[37]
+    l_ground_tilt = p[38]
+    l_min_tilt = p[39]
+    r_arm_tilt = p[40]
+    s_start_tilt = p[41]
+    slide_tilt = m[1]
+    side_pan = m[2]
+    active_pan = m[3]
+    holding_pan_term = d_shaft_pan * (omega_gear_pan - omega_pan)
+    half_gap_pan = 0.5 * gap_pan
+    holding_pan_term_2 = -theta_gear_pan + theta_pan
+    holding_pan_term_3 = active_pan * (
+        holding_pan_term + k_shaft_pan * (-half_gap_pan * side_pan - holding_pan_term_2)
+    )
+    minus_holding_pan_term_3 = -holding_pan_term_3
+    g[0] = K_t_pan * N_pan * i_pan + minus_holding_pan_term_3
+    g[1] = F_s_pan * (a_F_s_pan + 1.0)
+    g[2] = F_s_pan * (1.0 - a_F_s_pan)
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    c_y_payload_m_payload = c_y_payload * m_payload
+    c_x_payload_c_y_payload_m_payload = c_x_payload * c_y_payload_m_payload
+    c_y_payload_m_payload_c_z_payload = c_y_payload_m_payload * c_z_payload
+    sin_tilt_sq = sin_tilt * sin_tilt
+    cos_tilt_sq = cos_tilt * cos_tilt
+    c_x_payload_sq = c_x_payload * c_x_payload
+    c_z_payload_sq = c_z_payload * c_z_payload
+    c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
+    twice_omega_pan_omega_tilt = 2.0 * omega_pan * omega_tilt
+    cos_tilt_sin_tilt = cos_tilt * sin_tilt
+    force_pan_term = cos_tilt_sin_tilt * twice_omega_pan_omega_tilt
+    omega_tilt_sq = omega_tilt * omega_tilt
+    c_x_payload_c_z_payload_m_payload = c_x_payload * c_z_payload * m_payload
+    force_pan_term_2 = (
+        -J_x_payload * force_pan_term
+        - J_x_tilt * force_pan_term
+        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        - b_pan * omega_pan
+        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        - c_x_payload_c_y_payload_m_payload * cos_tilt * omega_tilt_sq
+        - c_x_payload_c_z_payload_m_payload * cos_tilt_sq * twice_omega_pan_omega_tilt
+        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+        - c_y_payload_m_payload_c_z_payload * omega_tilt_sq * sin_tilt
+        - c_z_payload_sq_m_payload * force_pan_term
+        - minus_holding_pan_term_3
+    )
+    force_pan = force_pan_term_2
+    follower_coupling_tilt_term = (
+        c_x_payload_c_y_payload_m_payload * sin_tilt - c_y_payload_m_payload_c_z_payload * cos_tilt
+    )
+    follower_coupling_tilt = follower_coupling_tilt_term
+    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
+    follower_inertia_tilt_term = (c_y_payload * c_y_payload) * m_payload
+    c_x_payload_cos_tilt = c_x_payload * cos_tilt
+    c_z_payload_sin_tilt = c_z_payload * sin_tilt
+    follower_inertia_tilt_term_2 = (
+        J_pan
+        + J_x_payload * sin_tilt_sq
+        + J_x_tilt * sin_tilt_sq
+        + J_z_payload * cos_tilt_sq
+        + J_z_tilt * cos_tilt_sq
+        + 2.0 * c_x_payload_cos_tilt * c_z_payload_sin_tilt * m_payload
+        + c_x_payload_sq_m_payload * cos_tilt_sq
+        + c_z_payload_sq_m_payload * sin_tilt_sq
+        + cos_tilt_sq * follower_inertia_tilt_term
+        + follower_inertia_tilt_term * sin_tilt_sq
+    )
+    follower_inertia_tilt = follower_inertia_tilt_term_2
+    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
+    load_inertia_tilt_term = (
+        J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
+    )
+    load_inertia_tilt = (
+        -(follower_coupling_tilt * follower_coupling_tilt) * follower_inertia_tilt_inverse
+        + load_inertia_tilt_term
+    )
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lead_tilt_inverse = 1.0 / lead_tilt
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    lowered_tilt = (
+        (-1.0)
+        * lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+    )
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    linkage_sin_tilt = math.sqrt(
+        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt_term = math.sqrt(
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    length_tilt = length_tilt_term
+    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
+    lost_lowering_tilt = (
+        (1.0 - lowered_tilt)
+        * 1.0
+        / (abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term))
+    )
+    raised_tilt = (
+        lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+    )
+    lost_raising_tilt = (
+        (raised_tilt - 1.0) * 1.0 / (load_inertia_tilt * raised_tilt + lost_lowering_tilt_term)
+    )
+    length_tilt_by_theta_tilt = (
+        1.0
+        / length_tilt_term
+        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
+    )
+    ratio_tilt_by_theta_tilt = (
+        -math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_term
+        / (length_tilt * length_tilt)
+        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
+    )
+    driving_torque_tilt_term = (
+        J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
+        - ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt)
+    )
+    driving_torque_tilt = -driving_torque_tilt_term
+    follower_torque_tilt = force_pan_term_2
+    b_tilt_omega_tilt = b_tilt * omega_tilt
+    load_torque_tilt_term = 9.81 * m_payload
+    omega_pan_sq = omega_pan * omega_pan
+    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
+    load_torque_tilt_term_2 = J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
+    J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq = J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
+    load_torque_tilt_term_3 = c_x_payload_c_z_payload_m_payload * omega_pan_sq
+    load_torque_tilt_term_3_sin_tilt_sq = load_torque_tilt_term_3 * sin_tilt_sq
+    load_torque_tilt_term_4 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+    load_torque_tilt = (
+        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
+        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
+        - b_tilt_omega_tilt
+        + c_x_payload_cos_tilt * load_torque_tilt_term
+        + c_z_payload_sin_tilt * load_torque_tilt_term
+        + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + cos_tilt_sq * load_torque_tilt_term_3
+        - follower_coupling_tilt * follower_inertia_tilt_inverse * follower_torque_tilt
+        - load_torque_tilt_term_2
+        - load_torque_tilt_term_3_sin_tilt_sq
+        - load_torque_tilt_term_4
+    )
+    carried_tilt = (
+        driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
+    )
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    force_tilt_term = (
+        -J_x_payload * cos_tilt * omega_pan_sq * sin_tilt
+        - J_x_tilt * cos_tilt * omega_pan_sq * sin_tilt
+        + J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
+        + b_tilt_omega_tilt
+        - c_x_payload * c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
+        - 9.81 * c_x_payload * cos_tilt * m_payload
+        - 9.81 * c_z_payload * m_payload * sin_tilt
+        - c_z_payload_sq * cos_tilt * m_payload * omega_pan_sq * sin_tilt
+        + driving_torque_tilt_term
+        + load_torque_tilt_term_2
+        + load_torque_tilt_term_3_sin_tilt_sq
+        + load_torque_tilt_term_4
+    )
+    force_tilt = -force_tilt_term - slide_tilt * (
+        0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
+        + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
+    )
+    mass_pan = follower_inertia_tilt_term_2
+    mass_pan_tilt = follower_coupling_tilt_term
+    mass_tilt = load_inertia_tilt_term + lost_lowering_tilt_term
+    inverse_determinant = 1.0 / (
+        mass_pan * mass_tilt
+        - (mass_pan_tilt * mass_pan_tilt) * (slide_tilt * slide_tilt * slide_tilt * slide_tilt)
+    )
+    slide_tilt_sq = slide_tilt * slide_tilt
+    mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
+    accel_pan = inverse_determinant * (
+        force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
+    )
+    g[3] = -accel_pan * mass_pan_tilt - force_tilt_term
+    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
+    forward_tilt_term_2 = abs(load_torque_tilt)
+    forward_tilt_term_3 = -lowered_tilt + raised_tilt
+    g[4] = -forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
+    g[5] = forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
+    separation_pan_term = theta_gear_pan - theta_pan
+    g[6] = separation_pan_term
+    g[7] = half_gap_pan
+    g[8] = holding_pan_term + k_shaft_pan * (-half_gap_pan - holding_pan_term_2)
+    g[9] = holding_pan_term + k_shaft_pan * (half_gap_pan + separation_pan_term)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def guard_jacobian(t, x, u, p, m, gx, gp):
+    """Write the non-zero derivatives of guards by state and parameter."""
+    theta_pan = x[0]
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    theta_gear_pan = x[4]
+    omega_gear_pan = x[5]
+    i_pan = x[6]
+    i_tilt = x[7]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    m_payload = p[4]
+    J_x_payload = p[5]
+    J_y_payload = p[6]
+    J_z_payload = p[7]
+    c_x_payload = p[8]
+    c_y_payload = p[9]
+    c_z_payload = p[10]
+    b_pan = p[11]
+    b_tilt = p[12]
+    F_s_pan = p[14]
+    a_F_s_pan = p[18]
+    gap_pan = p[21]
+    k_shaft_pan = p[22]
+    d_shaft_pan = p[23]
+    K_t_pan = p[26]
+    N_pan = p[28]
+    K_t_tilt = p[31]
+    J_motor_tilt = p[32]
+    b_motor_tilt = p[33]
+    N_tilt = p[34]
+    lead_tilt = p[35]
+    d_screw_tilt = p[36]
+    f_screw_tilt = p[37]
+    l_ground_tilt = p[38]
+    l_min_tilt = p[39]
+    r_arm_tilt = p[40]
+    s_start_tilt = p[41]
+    slide_tilt = m[1]
+    side_pan = m[2]
+    active_pan = m[3]
+    active_pan_k_shaft_pan = active_pan * k_shaft_pan
+    gx[0, 0] = active_pan_k_shaft_pan
+    minus_active_pan_k_shaft_pan = -active_pan_k_shaft_pan
+    follower_torque_tilt_by_theta_pan = minus_active_pan_k_shaft_pan
+    sin_tilt = math.sin(theta_tilt)
+    c_y_payload_sin_tilt = c_y_payload * sin_tilt
+    c_x_payload_c_y_payload_sin_tilt = c_x_payload * c_y_payload_sin_tilt
+    follower_coupling_tilt_term = c_x_payload_c_y_payload_sin_tilt * m_payload
+    cos_tilt = math.cos(theta_tilt)
+    c_z_payload_cos_tilt = c_z_payload * cos_tilt
+    c_y_payload_c_z_payload_cos_tilt = c_y_payload * c_z_payload_cos_tilt
+    follower_coupling_tilt_term_2 = c_y_payload_c_z_payload_cos_tilt * m_payload
+    follower_coupling_tilt_term_3 = follower_coupling_tilt_term - follower_coupling_tilt_term_2
+    follower_coupling_tilt = follower_coupling_tilt_term_3
+    sin_tilt_sq = sin_tilt * sin_tilt
+    J_x_payload_sin_tilt_sq = J_x_payload * sin_tilt_sq
+    J_x_tilt_sin_tilt_sq = J_x_tilt * sin_tilt_sq
+    cos_tilt_sq = cos_tilt * cos_tilt
+    J_z_payload_cos_tilt_sq = J_z_payload * cos_tilt_sq
+    J_z_tilt_cos_tilt_sq = J_z_tilt * cos_tilt_sq
+    c_x_payload_sq = c_x_payload * c_x_payload
+    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
+    c_x_payload_sq_m_payload_cos_tilt_sq = c_x_payload_sq_m_payload * cos_tilt_sq
+    c_y_payload_sq = c_y_payload * c_y_payload
+    c_y_payload_sq_sin_tilt_sq = c_y_payload_sq * sin_tilt_sq
+    c_y_payload_sq_cos_tilt_sq = c_y_payload_sq * cos_tilt_sq
+    c_z_payload_sq = c_z_payload * c_z_payload
+    c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
+    c_z_payload_sq_m_payload_sin_tilt_sq = c_z_payload_sq_m_payload * sin_tilt_sq
+    m_payload_sin_tilt = m_payload * sin_tilt
+    c_x_payload_m_payload_sin_tilt = c_x_payload * m_payload_sin_tilt
+    twice_c_z_payload_cos_tilt = 2.0 * c_z_payload_cos_tilt
+    follower_inertia_tilt_term = (
+        J_pan
+        + J_x_payload_sin_tilt_sq
+        + J_x_tilt_sin_tilt_sq
+        + J_z_payload_cos_tilt_sq
+        + J_z_tilt_cos_tilt_sq
+        + c_x_payload_m_payload_sin_tilt * twice_c_z_payload_cos_tilt
+        + c_x_payload_sq_m_payload_cos_tilt_sq
+        + c_y_payload_sq_cos_tilt_sq * m_payload
+        + c_y_payload_sq_sin_tilt_sq * m_payload
+        + c_z_payload_sq_m_payload_sin_tilt_sq
+    )
+    follower_inertia_tilt = follower_inertia_tilt_term
+    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
+    load_torque_tilt_by_theta_pan_term = follower_coupling_tilt * follower_inertia_tilt_inverse
+    load_torque_tilt_by_theta_pan = (
+        (-1.0) * follower_torque_tilt_by_theta_pan * load_torque_tilt_by_theta_pan_term
+    )
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
+    linkage_sin_tilt_term_2 = math.sqrt(
+        l_ground_tilt_sq * linkage_sin_tilt_term - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    linkage_sin_tilt = linkage_sin_tilt_term_2
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt_term = (
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    length_tilt_term_2 = math.sqrt(length_tilt_term)
+    length_tilt = length_tilt_term_2
+    length_tilt_inverse = 1.0 / length_tilt
+    lead_tilt_inverse = 1.0 / lead_tilt
+    ratio_tilt_term_2 = math.pi * lead_tilt_inverse
+    length_tilt_inverse_ratio_tilt_term_2 = length_tilt_inverse * ratio_tilt_term_2
+    ratio_tilt_term_3 = length_tilt_inverse_ratio_tilt_term_2 * ratio_tilt_term
+    ratio_tilt = N_tilt * ratio_tilt_term_3
+    ratio_tilt_sq = ratio_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
+    carried_tilt_by_theta_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_pan
+    mass_pan_tilt = follower_coupling_tilt_term_3
+    mass_tilt_term = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
+    mass_tilt = J_motor_tilt_ratio_tilt_sq + mass_tilt_term
+    active_pan_k_shaft_pan_mass_tilt = active_pan_k_shaft_pan * mass_tilt
+    slide_tilt_cubed = slide_tilt * slide_tilt * slide_tilt
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lowered_tilt_term_2 = f_screw_tilt_lowered_tilt_term - lead_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    lowered_tilt_term_3 = f_screw_tilt_lead_tilt + lowered_tilt_term
+    lowered_tilt_term_3_inverse = 1.0 / lowered_tilt_term_3
+    lowered_tilt_term_4 = lead_tilt_inverse * lowered_tilt_term_3_inverse
+    lowered_tilt_term_lowered_tilt_term_4 = lowered_tilt_term * lowered_tilt_term_4
+    lowered_tilt = -lowered_tilt_term_2 * lowered_tilt_term_lowered_tilt_term_4
+    lost_lowering_tilt_term = 1.0 - lowered_tilt
+    follower_coupling_tilt_sq = follower_coupling_tilt * follower_coupling_tilt
+    load_inertia_tilt = -follower_coupling_tilt_sq * follower_inertia_tilt_inverse + mass_tilt_term
+    lost_lowering_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
+    lost_lowering_tilt_term_3 = 1.0 / (abs(lost_lowering_tilt_term_2))
+    lost_lowering_tilt = lost_lowering_tilt_term * lost_lowering_tilt_term_3
+    raised_tilt_term = f_screw_tilt_lowered_tilt_term + lead_tilt
+    raised_tilt_term_2 = -f_screw_tilt_lead_tilt + lowered_tilt_term
+    raised_tilt_term_2_inverse = 1.0 / raised_tilt_term_2
+    raised_tilt_term_3 = lead_tilt_inverse * raised_tilt_term_2_inverse
+    lowered_tilt_term_raised_tilt_term_3 = lowered_tilt_term * raised_tilt_term_3
+    raised_tilt = lowered_tilt_term_raised_tilt_term_3 * raised_tilt_term
+    lost_raising_tilt_term = raised_tilt - 1.0
+    lost_raising_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
+    lost_raising_tilt_term_2_inverse = 1.0 / lost_raising_tilt_term_2
+    lost_raising_tilt = lost_raising_tilt_term * lost_raising_tilt_term_2_inverse
+    holding_tilt_by_theta_pan_term = lost_lowering_tilt + lost_raising_tilt
+    ratio_tilt_by_theta_tilt_term = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
+    ratio_tilt_by_theta_tilt_term_2 = (
+        length_tilt_inverse_ratio_tilt_term_2 * ratio_tilt_by_theta_tilt_term
+    )
+    N_tilt_ratio_tilt_term = N_tilt * ratio_tilt_term
+    length_tilt_by_theta_tilt_term = (
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    )
+    length_tilt_term_2_inverse = 1.0 / length_tilt_term_2
+    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_term_2_inverse
+    ratio_tilt_by_theta_tilt_term_3 = 1.0 / (length_tilt * length_tilt)
+    ratio_tilt_by_theta_tilt_term_4 = ratio_tilt_by_theta_tilt_term_3 * ratio_tilt_term_2
+    ratio_tilt_by_theta_tilt_term_5 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_4
+    ratio_tilt_by_theta_tilt = (
+        N_tilt * ratio_tilt_by_theta_tilt_term_2
+        - N_tilt_ratio_tilt_term * ratio_tilt_by_theta_tilt_term_5
+    )
+    omega_tilt_sq = omega_tilt * omega_tilt
+    omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
+    driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq_ratio_tilt_by_theta_tilt
+    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
+    b_motor_tilt_omega_tilt_ratio_tilt = b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt_term_2 = driving_torque_tilt_term * ratio_tilt - ratio_tilt * (
+        K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
+    )
+    driving_torque_tilt = -driving_torque_tilt_term_2
+    cos_tilt_sin_tilt = cos_tilt * sin_tilt
+    twice_cos_tilt_sin_tilt = 2.0 * cos_tilt_sin_tilt
+    J_x_payload_twice_cos_tilt_sin_tilt = J_x_payload * twice_cos_tilt_sin_tilt
+    omega_pan_omega_tilt = omega_pan * omega_tilt
+    J_x_tilt_twice_cos_tilt_sin_tilt = J_x_tilt * twice_cos_tilt_sin_tilt
+    cos_tilt_m_payload = cos_tilt * m_payload
+    c_y_payload_cos_tilt_m_payload = c_y_payload * cos_tilt_m_payload
+    follower_torque_tilt_term = c_x_payload * c_y_payload_cos_tilt_m_payload
+    c_y_payload_sin_tilt_m_payload = c_y_payload_sin_tilt * m_payload
+    follower_torque_tilt_term_2 = c_y_payload_sin_tilt_m_payload * c_z_payload
+    twice_m_payload = 2.0 * m_payload
+    c_x_payload_twice_m_payload = c_x_payload * twice_m_payload
+    c_x_payload_twice_m_payload_cos_tilt_sq = c_x_payload_twice_m_payload * cos_tilt_sq
+    follower_torque_tilt_term_3 = c_x_payload_twice_m_payload_cos_tilt_sq * c_z_payload
+    follower_torque_tilt_term_4 = c_z_payload_sq_m_payload * twice_cos_tilt_sin_tilt
+    minus_omega_pan = -omega_pan
+    minus_omega_pan_plus_omega_gear_pan = minus_omega_pan + omega_gear_pan
+    half_gap_pan = 0.5 * gap_pan
+    follower_torque_tilt_term_5 = -theta_gear_pan + theta_pan
+    follower_torque_tilt_term_6 = -follower_torque_tilt_term_5 - half_gap_pan * side_pan
+    follower_torque_tilt_term_7 = active_pan * (
+        d_shaft_pan * minus_omega_pan_plus_omega_gear_pan
+        + follower_torque_tilt_term_6 * k_shaft_pan
+    )
+    follower_torque_tilt_term_8 = (
+        -J_x_payload_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
+        - J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
+        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        - b_pan * omega_pan
+        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+        - follower_torque_tilt_term * omega_tilt_sq
+        - follower_torque_tilt_term_2 * omega_tilt_sq
+        - follower_torque_tilt_term_3 * omega_pan_omega_tilt
+        - follower_torque_tilt_term_4 * omega_pan_omega_tilt
+        + follower_torque_tilt_term_7
+    )
+    follower_torque_tilt = follower_torque_tilt_term_8
+    b_tilt_omega_tilt = b_tilt * omega_tilt
+    load_torque_tilt_term = 9.81 * c_x_payload
+    load_torque_tilt_term_2 = 9.81 * c_z_payload
+    omega_pan_sq = omega_pan * omega_pan
+    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
+    load_torque_tilt_term_3 = J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
+    J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq = J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
+    cos_tilt_sq_omega_pan_sq = cos_tilt_sq * omega_pan_sq
+    c_x_payload_c_z_payload = c_x_payload * c_z_payload
+    load_torque_tilt_term_4 = c_x_payload_c_z_payload * cos_tilt_sq_omega_pan_sq
+    omega_pan_sq_sin_tilt_sq = omega_pan_sq * sin_tilt_sq
+    load_torque_tilt_term_5 = c_x_payload_c_z_payload * omega_pan_sq_sin_tilt_sq
+    load_torque_tilt_term_5_m_payload = load_torque_tilt_term_5 * m_payload
+    load_torque_tilt_term_6 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+    load_torque_tilt = (
+        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
+        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
+        - b_tilt_omega_tilt
+        + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + cos_tilt_m_payload * load_torque_tilt_term
+        - follower_torque_tilt * load_torque_tilt_by_theta_pan_term
+        + load_torque_tilt_term_2 * m_payload_sin_tilt
+        - load_torque_tilt_term_3
+        + load_torque_tilt_term_4 * m_payload
+        - load_torque_tilt_term_5_m_payload
+        - load_torque_tilt_term_6
+    )
+    carried_tilt = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
+    )
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    holding_tilt_by_theta_pan_term_2 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
+    holding_tilt_by_theta_pan_term_3 = (
+        0.5
+        * holding_tilt_by_theta_pan_term
+        * slide_tilt
+        * (0.0 if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))
+        + holding_tilt_by_theta_pan_term_2 * slide_tilt
+    )
+    mass_pan = follower_inertia_tilt_term
+    mass_pan_tilt_sq = mass_pan_tilt * mass_pan_tilt
+    inverse_determinant = 1.0 / (
+        mass_pan * mass_tilt
+        - mass_pan_tilt_sq * (slide_tilt * slide_tilt * slide_tilt * slide_tilt)
+    )
+    inverse_determinant_mass_pan_tilt = inverse_determinant * mass_pan_tilt
+    gx[3, 0] = (
+        (-1.0)
+        * inverse_determinant_mass_pan_tilt
+        * (
+            -active_pan_k_shaft_pan_mass_tilt
+            + carried_tilt_by_theta_pan
+            * holding_tilt_by_theta_pan_term_3
+            * mass_pan_tilt
+            * slide_tilt_cubed
+        )
+    )
+    forward_tilt_by_theta_pan_term = (
+        0.0 if load_torque_tilt == 0 else math.copysign(1, load_torque_tilt)
+    )
+    forward_tilt_by_theta_pan_term_2 = -lowered_tilt + raised_tilt
+    forward_tilt_by_theta_pan_term_3 = 0.5 * lowered_tilt + 0.5 * raised_tilt - 1.0
+    forward_tilt_by_theta_pan_term_4 = (
+        0.5 * forward_tilt_by_theta_pan_term * forward_tilt_by_theta_pan_term_2
+        - forward_tilt_by_theta_pan_term_3
+    )
+    gx[4, 0] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_theta_pan
+    backward_tilt_by_theta_pan_term = (
+        0.5 * forward_tilt_by_theta_pan_term * forward_tilt_by_theta_pan_term_2
+        + forward_tilt_by_theta_pan_term_3
+    )
+    gx[5, 0] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_theta_pan
+    gx[6, 0] = -1.0
+    minus_k_shaft_pan = -k_shaft_pan
+    gx[8, 0] = minus_k_shaft_pan
+    gx[9, 0] = minus_k_shaft_pan
+    force_pan = follower_torque_tilt_term_8
+    force_tilt_term = abs(carried_tilt_slide_tilt)
+    half_force_tilt_term = 0.5 * force_tilt_term
+    force_tilt = (
+        J_x_payload * cos_tilt * omega_pan_sq * sin_tilt
+        + J_x_tilt * cos_tilt * omega_pan_sq * sin_tilt
+        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
+        - b_tilt_omega_tilt
+        + c_x_payload * c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
+        + 9.81 * c_x_payload * cos_tilt * m_payload
+        + 9.81 * c_z_payload * m_payload * sin_tilt
+        + c_z_payload_sq * cos_tilt * m_payload * omega_pan_sq * sin_tilt
+        - driving_torque_tilt_term_2
+        - load_torque_tilt_term_3
+        - load_torque_tilt_term_5_m_payload
+        - load_torque_tilt_term_6
+        - slide_tilt
+        * (
+            carried_tilt_slide_tilt * holding_tilt_by_theta_pan_term_2
+            + half_force_tilt_term * holding_tilt_by_theta_pan_term
+        )
+    )
+    slide_tilt_sq = slide_tilt * slide_tilt
+    mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
+    accel_pan = inverse_determinant * (
+        force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
+    )
+    inverse_determinant_slide_tilt_sq = inverse_determinant * slide_tilt_sq
+    accel_tilt = inverse_determinant_slide_tilt_sq * (
+        -force_pan * mass_pan_tilt_slide_tilt_sq + force_tilt * mass_pan
+    )
+    length_tilt_by_theta_tilt_by_theta_tilt_term = (
+        length_tilt_by_theta_tilt_term * length_tilt_term ** (-1.5)
+    )
+    length_tilt_by_theta_tilt_by_theta_tilt = (
+        -length_tilt_by_theta_tilt_by_theta_tilt_term * length_tilt_by_theta_tilt_term
+        + length_tilt_term_2_inverse
+        * (0.5 * cos_tilt_linkage_cos_tilt + 0.5 * linkage_sin_tilt_sin_tilt)
+    )
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term = N_tilt * length_tilt_inverse_ratio_tilt_term_2
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_2 = (
+        N_tilt_ratio_tilt_term * ratio_tilt_by_theta_tilt_term_4
+    )
+    N_tilt_ratio_tilt_by_theta_tilt_term = N_tilt * ratio_tilt_by_theta_tilt_term
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_3 = (
+        N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt_term_4
+    )
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_4 = (
+        2.0
+        * math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_term
+        / (length_tilt * length_tilt * length_tilt)
+        - ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+    )
+    ratio_tilt_by_theta_tilt_by_theta_tilt = (
+        -length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        + length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
+        - length_tilt_by_theta_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - ratio_tilt_by_theta_tilt_by_theta_tilt_term * ratio_tilt_term
+    )
+    J_motor_tilt_ratio_tilt = J_motor_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_omega_tilt_sq = J_motor_tilt_ratio_tilt * omega_tilt_sq
+    driving_torque_tilt_by_theta_tilt_term = (
+        K_t_tilt * i_tilt - 2.0 * b_motor_tilt_omega_tilt_ratio_tilt - driving_torque_tilt_term
+    )
+    driving_torque_tilt_by_theta_tilt_term_2 = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt
+    )
+    driving_torque_tilt_by_theta_tilt = -driving_torque_tilt_by_theta_tilt_term_2
+    follower_coupling_tilt_by_theta_tilt_term = (
+        follower_torque_tilt_term + follower_torque_tilt_term_2
+    )
+    follower_coupling_tilt_by_theta_tilt = follower_coupling_tilt_by_theta_tilt_term
+    J_z_payload_twice_cos_tilt_sin_tilt = J_z_payload * twice_cos_tilt_sin_tilt
+    J_z_tilt_twice_cos_tilt_sin_tilt = J_z_tilt * twice_cos_tilt_sin_tilt
+    follower_inertia_tilt_by_theta_tilt_term = (
+        c_x_payload_twice_m_payload * c_z_payload * sin_tilt_sq
+    )
+    follower_inertia_tilt_by_theta_tilt_term_2 = c_x_payload_sq_m_payload * twice_cos_tilt_sin_tilt
+    follower_inertia_tilt_by_theta_tilt_term_3 = (
+        J_x_payload_twice_cos_tilt_sin_tilt
+        + J_x_tilt_twice_cos_tilt_sin_tilt
+        - J_z_payload_twice_cos_tilt_sin_tilt
+        - J_z_tilt_twice_cos_tilt_sin_tilt
+        - follower_inertia_tilt_by_theta_tilt_term
+        - follower_inertia_tilt_by_theta_tilt_term_2
+        + follower_torque_tilt_term_3
+        + follower_torque_tilt_term_4
+    )
+    follower_inertia_tilt_by_theta_tilt = follower_inertia_tilt_by_theta_tilt_term_3
+    twice_load_torque_tilt_by_theta_pan_term = 2.0 * load_torque_tilt_by_theta_pan_term
+    load_inertia_tilt_by_theta_tilt_term = 1.0 / (follower_inertia_tilt * follower_inertia_tilt)
+    load_inertia_tilt_by_theta_tilt_term_2 = (
+        follower_coupling_tilt_sq * load_inertia_tilt_by_theta_tilt_term
+    )
+    load_inertia_tilt_by_theta_tilt = (
+        -follower_coupling_tilt_by_theta_tilt * twice_load_torque_tilt_by_theta_pan_term
+        + follower_inertia_tilt_by_theta_tilt * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    twice_omega_pan_omega_tilt = 2.0 * omega_pan_omega_tilt
+    cos_tilt_sq_twice_omega_pan_omega_tilt = cos_tilt_sq * twice_omega_pan_omega_tilt
+    follower_torque_tilt_by_theta_tilt_term = J_x_payload * cos_tilt_sq_twice_omega_pan_omega_tilt
+    follower_torque_tilt_by_theta_tilt_term_2 = J_x_tilt * cos_tilt_sq_twice_omega_pan_omega_tilt
+    sin_tilt_sq_twice_omega_pan_omega_tilt = sin_tilt_sq * twice_omega_pan_omega_tilt
+    follower_torque_tilt_by_theta_tilt_term_3 = J_z_payload * sin_tilt_sq_twice_omega_pan_omega_tilt
+    follower_torque_tilt_by_theta_tilt_term_4 = J_z_tilt * sin_tilt_sq_twice_omega_pan_omega_tilt
+    follower_torque_tilt_by_theta_tilt_term_5 = follower_coupling_tilt_term_2 * omega_tilt_sq
+    follower_torque_tilt_by_theta_tilt_term_6 = (
+        c_x_payload_m_payload_sin_tilt * c_z_payload_cos_tilt
+    )
+    follower_torque_tilt_by_theta_tilt_term_7 = (
+        c_x_payload_sq_m_payload * sin_tilt_sq_twice_omega_pan_omega_tilt
+    )
+    follower_torque_tilt_by_theta_tilt_term_8 = (
+        c_z_payload_sq_m_payload * cos_tilt_sq_twice_omega_pan_omega_tilt
+    )
+    follower_torque_tilt_by_theta_tilt = (
+        J_x_payload_sin_tilt_sq * twice_omega_pan_omega_tilt
+        + J_x_tilt_sin_tilt_sq * twice_omega_pan_omega_tilt
+        + J_z_payload_cos_tilt_sq * twice_omega_pan_omega_tilt
+        + J_z_tilt_cos_tilt_sq * twice_omega_pan_omega_tilt
+        + c_x_payload_sq_m_payload_cos_tilt_sq * twice_omega_pan_omega_tilt
+        + c_z_payload_sq_m_payload_sin_tilt_sq * twice_omega_pan_omega_tilt
+        + follower_coupling_tilt_term * omega_tilt_sq
+        - follower_torque_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_theta_tilt_term_2
+        - follower_torque_tilt_by_theta_tilt_term_3
+        - follower_torque_tilt_by_theta_tilt_term_4
+        - follower_torque_tilt_by_theta_tilt_term_5
+        + 8.0 * follower_torque_tilt_by_theta_tilt_term_6 * omega_pan_omega_tilt
+        - follower_torque_tilt_by_theta_tilt_term_7
+        - follower_torque_tilt_by_theta_tilt_term_8
+    )
+    load_torque_tilt_by_theta_tilt_term = follower_inertia_tilt_inverse * follower_torque_tilt
+    load_torque_tilt_by_theta_tilt_term_2 = (
+        -J_x_payload * cos_tilt_sq * omega_pan_sq
+        + J_x_payload_sin_tilt_sq * omega_pan_sq
+        - J_x_tilt * cos_tilt_sq * omega_pan_sq
+        + J_x_tilt_sin_tilt_sq * omega_pan_sq
+        - J_z_payload * omega_pan_sq * sin_tilt_sq
+        + J_z_payload_cos_tilt_sq * omega_pan_sq
+        - J_z_tilt * omega_pan_sq * sin_tilt_sq
+        + J_z_tilt_cos_tilt_sq * omega_pan_sq
+        + 9.81 * c_x_payload_m_payload_sin_tilt
+        - c_x_payload_sq * m_payload * omega_pan_sq * sin_tilt_sq
+        + c_x_payload_sq_m_payload_cos_tilt_sq * omega_pan_sq
+        - 9.81 * c_z_payload * cos_tilt * m_payload
+        - c_z_payload_sq * cos_tilt_sq * m_payload * omega_pan_sq
+        + c_z_payload_sq_m_payload_sin_tilt_sq * omega_pan_sq
+        + 4.0 * follower_torque_tilt_by_theta_tilt_term_6 * omega_pan_sq
+    )
+    load_torque_tilt_by_theta_tilt = (
+        follower_coupling_tilt
+        * follower_inertia_tilt_by_theta_tilt
+        * follower_torque_tilt
+        * load_inertia_tilt_by_theta_tilt_term
+        - follower_coupling_tilt_by_theta_tilt * load_torque_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_theta_tilt * load_torque_tilt_by_theta_pan_term
+        - load_torque_tilt_by_theta_tilt_term_2
+    )
+    twice_ratio_tilt_by_theta_tilt = 2.0 * ratio_tilt_by_theta_tilt
+    J_motor_tilt_ratio_tilt_load_torque_tilt = J_motor_tilt_ratio_tilt * load_torque_tilt
+    carried_tilt_by_theta_tilt = (
+        -J_motor_tilt_ratio_tilt_load_torque_tilt * twice_ratio_tilt_by_theta_tilt
+        - J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_tilt
+        + driving_torque_tilt * load_inertia_tilt_by_theta_tilt
+        + driving_torque_tilt_by_theta_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_theta_tilt_term = (
+        lost_lowering_tilt_term
+        * 1.0
+        / (lost_lowering_tilt_term_2 * lost_lowering_tilt_term_2)
+        * (0.0 if lost_lowering_tilt_term_2 == 0 else math.copysign(1, lost_lowering_tilt_term_2))
+    )
+    lost_lowering_tilt_by_theta_tilt_term_2 = lost_lowering_tilt_by_theta_tilt_term * lowered_tilt
+    lost_lowering_tilt_by_theta_tilt_term_3 = (
+        J_motor_tilt_ratio_tilt * lost_lowering_tilt_by_theta_tilt_term
+    )
+    lost_lowering_tilt_by_theta_tilt = (
+        -load_inertia_tilt_by_theta_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+        - lost_lowering_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
+    )
+    lost_raising_tilt_by_theta_tilt_term = (
+        lost_raising_tilt_term * 1.0 / (lost_raising_tilt_term_2 * lost_raising_tilt_term_2)
+    )
+    lost_raising_tilt_by_theta_tilt_term_2 = lost_raising_tilt_by_theta_tilt_term * raised_tilt
+    lost_raising_tilt_by_theta_tilt_term_3 = (
+        J_motor_tilt_ratio_tilt * lost_raising_tilt_by_theta_tilt_term
+    )
+    lost_raising_tilt_by_theta_tilt = (
+        -load_inertia_tilt_by_theta_tilt * lost_raising_tilt_by_theta_tilt_term_2
+        - lost_raising_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
+    )
+    holding_tilt_by_theta_tilt_term = holding_tilt_by_theta_pan_term_3 * slide_tilt
+    half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
+    holding_tilt_by_theta_tilt_term_2 = slide_tilt * (
+        0.5 * force_tilt_term - half_carried_tilt_slide_tilt
+    )
+    holding_tilt_by_theta_tilt_term_3 = slide_tilt * (
+        half_carried_tilt_slide_tilt + half_force_tilt_term
+    )
+    J_motor_tilt_ratio_tilt_accel_tilt = J_motor_tilt_ratio_tilt * accel_tilt
+    holding_tilt_by_theta_tilt_term_4 = (
+        accel_pan * follower_coupling_tilt_by_theta_tilt_term
+        + driving_torque_tilt_by_theta_tilt_term_2
+        + load_torque_tilt_by_theta_tilt_term_2
+    )
+    gx[3, 1] = -holding_tilt_by_theta_tilt_term_4 - inverse_determinant_mass_pan_tilt * (
+        -mass_pan_tilt_slide_tilt_sq
+        * (
+            -J_motor_tilt_ratio_tilt_accel_tilt * twice_ratio_tilt_by_theta_tilt
+            - carried_tilt_by_theta_tilt * holding_tilt_by_theta_tilt_term
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_theta_tilt
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_theta_tilt
+            - holding_tilt_by_theta_tilt_term_4
+        )
+        + mass_tilt
+        * (
+            2.0 * J_x_payload * omega_pan * omega_tilt * sin_tilt_sq
+            + 2.0 * J_x_tilt * omega_pan * omega_tilt * sin_tilt_sq
+            + 2.0 * J_z_payload * cos_tilt_sq * omega_pan * omega_tilt
+            + 2.0 * J_z_tilt * cos_tilt_sq * omega_pan * omega_tilt
+            - accel_pan * follower_inertia_tilt_by_theta_tilt_term_3
+            - accel_tilt * follower_coupling_tilt_by_theta_tilt_term
+            + c_x_payload * c_y_payload * m_payload * omega_tilt_sq * sin_tilt
+            + 8.0
+            * c_x_payload
+            * c_z_payload
+            * cos_tilt
+            * m_payload
+            * omega_pan
+            * omega_tilt
+            * sin_tilt
+            + 2.0 * c_x_payload_sq * cos_tilt_sq * m_payload * omega_pan * omega_tilt
+            + 2.0 * c_z_payload_sq * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+            - follower_torque_tilt_by_theta_tilt_term
+            - follower_torque_tilt_by_theta_tilt_term_2
+            - follower_torque_tilt_by_theta_tilt_term_3
+            - follower_torque_tilt_by_theta_tilt_term_4
+            - follower_torque_tilt_by_theta_tilt_term_5
+            - follower_torque_tilt_by_theta_tilt_term_7
+            - follower_torque_tilt_by_theta_tilt_term_8
+        )
+    )
+    gx[4, 1] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_theta_tilt
+    gx[5, 1] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_theta_tilt
+    active_pan_d_shaft_pan = active_pan * d_shaft_pan
+    gx[0, 2] = active_pan_d_shaft_pan
+    follower_torque_tilt_by_omega_pan_term = (
+        -J_x_payload_twice_cos_tilt_sin_tilt * omega_tilt
+        - J_x_tilt_twice_cos_tilt_sin_tilt * omega_tilt
+        + 2.0 * J_z_payload * cos_tilt * omega_tilt * sin_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_tilt * sin_tilt
+        - active_pan_d_shaft_pan
+        - b_pan
+        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_tilt * sin_tilt_sq
+        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_tilt * sin_tilt
+        - follower_torque_tilt_term_3 * omega_tilt
+        - follower_torque_tilt_term_4 * omega_tilt
+    )
+    follower_torque_tilt_by_omega_pan = follower_torque_tilt_by_omega_pan_term
+    load_torque_tilt_by_omega_pan_term = J_x_payload_twice_cos_tilt_sin_tilt * omega_pan
+    load_torque_tilt_by_omega_pan_term_2 = J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan
+    load_torque_tilt_by_omega_pan_term_3 = J_z_payload_twice_cos_tilt_sin_tilt * omega_pan
+    load_torque_tilt_by_omega_pan_term_4 = J_z_tilt_twice_cos_tilt_sin_tilt * omega_pan
+    load_torque_tilt_by_omega_pan_term_5 = follower_inertia_tilt_by_theta_tilt_term * omega_pan
+    follower_torque_tilt_term_3_omega_pan = follower_torque_tilt_term_3 * omega_pan
+    load_torque_tilt_by_omega_pan_term_6 = follower_inertia_tilt_by_theta_tilt_term_2 * omega_pan
+    follower_torque_tilt_term_4_omega_pan = follower_torque_tilt_term_4 * omega_pan
+    load_torque_tilt_by_omega_pan_term_7 = (
+        -follower_torque_tilt_term_3_omega_pan
+        - follower_torque_tilt_term_4_omega_pan
+        - load_torque_tilt_by_omega_pan_term
+        - load_torque_tilt_by_omega_pan_term_2
+        + load_torque_tilt_by_omega_pan_term_3
+        + load_torque_tilt_by_omega_pan_term_4
+        + load_torque_tilt_by_omega_pan_term_5
+        + load_torque_tilt_by_omega_pan_term_6
+    )
+    load_torque_tilt_by_omega_pan = (
+        -follower_torque_tilt_by_omega_pan * load_torque_tilt_by_theta_pan_term
+        - load_torque_tilt_by_omega_pan_term_7
+    )
+    carried_tilt_by_omega_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_pan
+    gx[3, 2] = (
+        -inverse_determinant_mass_pan_tilt
+        * (
+            follower_torque_tilt_by_omega_pan_term * mass_tilt
+            - mass_pan_tilt_slide_tilt_sq
+            * (
+                -carried_tilt_by_omega_pan * holding_tilt_by_theta_tilt_term
+                - load_torque_tilt_by_omega_pan_term_7
+            )
+        )
+        - load_torque_tilt_by_omega_pan_term_7
+    )
+    gx[4, 2] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_omega_pan
+    gx[5, 2] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_pan
+    minus_d_shaft_pan = -d_shaft_pan
+    gx[8, 2] = minus_d_shaft_pan
+    gx[9, 2] = minus_d_shaft_pan
+    driving_torque_tilt_by_omega_tilt_term = (
+        J_motor_tilt * omega_tilt_ratio_tilt * twice_ratio_tilt_by_theta_tilt
+        + b_motor_tilt * ratio_tilt_sq
+    )
+    driving_torque_tilt_by_omega_tilt = -driving_torque_tilt_by_omega_tilt_term
+    twice_omega_tilt = 2.0 * omega_tilt
+    follower_torque_tilt_by_omega_tilt_term = (
+        -follower_torque_tilt_term * twice_omega_tilt
+        - follower_torque_tilt_term_2 * twice_omega_tilt
+        - follower_torque_tilt_term_3_omega_pan
+        - follower_torque_tilt_term_4_omega_pan
+        - load_torque_tilt_by_omega_pan_term
+        - load_torque_tilt_by_omega_pan_term_2
+        + load_torque_tilt_by_omega_pan_term_3
+        + load_torque_tilt_by_omega_pan_term_4
+        + load_torque_tilt_by_omega_pan_term_5
+        + load_torque_tilt_by_omega_pan_term_6
+    )
+    follower_torque_tilt_by_omega_tilt = follower_torque_tilt_by_omega_tilt_term
+    load_torque_tilt_by_omega_tilt = (
+        -b_tilt - follower_torque_tilt_by_omega_tilt * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_omega_tilt = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_tilt
+        + driving_torque_tilt_by_omega_tilt * load_inertia_tilt
+    )
+    holding_tilt_by_omega_tilt_term = b_tilt + driving_torque_tilt_by_omega_tilt_term
+    gx[3, 3] = -holding_tilt_by_omega_tilt_term - inverse_determinant_mass_pan_tilt * (
+        follower_torque_tilt_by_omega_tilt_term * mass_tilt
+        - mass_pan_tilt_slide_tilt_sq
+        * (
+            -carried_tilt_by_omega_tilt * holding_tilt_by_theta_tilt_term
+            - holding_tilt_by_omega_tilt_term
+        )
+    )
+    gx[4, 3] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_omega_tilt
+    gx[5, 3] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_tilt
+    gx[0, 4] = minus_active_pan_k_shaft_pan
+    follower_torque_tilt_by_theta_gear_pan = active_pan_k_shaft_pan
+    load_torque_tilt_by_theta_gear_pan = (
+        (-1.0) * follower_torque_tilt_by_theta_gear_pan * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_theta_gear_pan = (
+        (-1.0) * J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_gear_pan
+    )
+    holding_tilt_by_theta_gear_pan_term = (
+        holding_tilt_by_theta_pan_term_3 * mass_pan_tilt * slide_tilt_cubed
+    )
+    gx[3, 4] = (
+        (-1.0)
+        * inverse_determinant_mass_pan_tilt
+        * (
+            active_pan_k_shaft_pan_mass_tilt
+            + carried_tilt_by_theta_gear_pan * holding_tilt_by_theta_gear_pan_term
+        )
+    )
+    gx[4, 4] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_theta_gear_pan
+    gx[5, 4] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_theta_gear_pan
+    gx[6, 4] = 1.0
+    gx[8, 4] = k_shaft_pan
+    gx[9, 4] = k_shaft_pan
+    gx[0, 5] = -active_pan_d_shaft_pan
+    follower_torque_tilt_by_omega_gear_pan = active_pan_d_shaft_pan
+    load_torque_tilt_by_omega_gear_pan = (
+        (-1.0) * follower_torque_tilt_by_omega_gear_pan * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_omega_gear_pan = (
+        (-1.0) * J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_gear_pan
+    )
+    gx[3, 5] = (
+        (-1.0)
+        * inverse_determinant_mass_pan_tilt
+        * (
+            active_pan_d_shaft_pan * mass_tilt
+            + carried_tilt_by_omega_gear_pan * holding_tilt_by_theta_gear_pan_term
+        )
+    )
+    gx[4, 5] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_omega_gear_pan
+    gx[5, 5] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_gear_pan
+    gx[8, 5] = d_shaft_pan
+    gx[9, 5] = d_shaft_pan
+    gx[0, 6] = K_t_pan * N_pan
+    K_t_tilt_ratio_tilt = K_t_tilt * ratio_tilt
+    driving_torque_tilt_by_i_tilt = K_t_tilt_ratio_tilt
+    carried_tilt_by_i_tilt = driving_torque_tilt_by_i_tilt * load_inertia_tilt
+    holding_tilt_by_i_tilt_term = inverse_determinant_slide_tilt_sq * mass_pan_tilt_sq
+    gx[3, 7] = K_t_tilt_ratio_tilt + holding_tilt_by_i_tilt_term * (
+        K_t_tilt_ratio_tilt - carried_tilt_by_i_tilt * holding_tilt_by_theta_tilt_term
+    )
+    follower_inertia_tilt_by_J_pan = 1.0
+    load_inertia_tilt_by_J_pan = (
+        follower_inertia_tilt_by_J_pan * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    load_torque_tilt_by_J_pan_term = (
+        follower_coupling_tilt * follower_torque_tilt * load_inertia_tilt_by_theta_tilt_term
+    )
+    load_torque_tilt_by_J_pan = follower_inertia_tilt_by_J_pan * load_torque_tilt_by_J_pan_term
+    carried_tilt_by_J_pan = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_pan
+        + driving_torque_tilt * load_inertia_tilt_by_J_pan
+    )
+    lost_lowering_tilt_by_J_pan = (
+        (-1.0) * load_inertia_tilt_by_J_pan * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_pan = (
+        (-1.0) * load_inertia_tilt_by_J_pan * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    gp[3, 0] = (
+        (-1.0)
+        * inverse_determinant_mass_pan_tilt
+        * (
+            -accel_pan * mass_tilt
+            - mass_pan_tilt_slide_tilt_sq
+            * (
+                -carried_tilt_by_J_pan * holding_tilt_by_theta_tilt_term
+                - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_pan
+                - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_pan
+            )
+        )
+    )
+    gp[4, 0] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_pan
+    gp[5, 0] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_pan
+    follower_inertia_tilt_by_J_x_tilt = sin_tilt_sq
+    load_inertia_tilt_by_J_x_tilt = (
+        follower_inertia_tilt_by_J_x_tilt * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_J_x_tilt_term = omega_pan_omega_tilt * twice_cos_tilt_sin_tilt
+    follower_torque_tilt_by_J_x_tilt_term_2 = -follower_torque_tilt_by_J_x_tilt_term
+    follower_torque_tilt_by_J_x_tilt = follower_torque_tilt_by_J_x_tilt_term_2
+    load_torque_tilt_by_J_x_tilt = (
+        cos_tilt_sin_tilt_omega_pan_sq
+        + follower_inertia_tilt_by_J_x_tilt * load_torque_tilt_by_J_pan_term
+        - follower_torque_tilt_by_J_x_tilt * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_J_x_tilt = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_tilt
+        + driving_torque_tilt * load_inertia_tilt_by_J_x_tilt
+    )
+    lost_lowering_tilt_by_J_x_tilt = (
+        (-1.0) * load_inertia_tilt_by_J_x_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_x_tilt = (
+        (-1.0) * load_inertia_tilt_by_J_x_tilt * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    minus_cos_tilt_sin_tilt_omega_pan_sq = -cos_tilt_sin_tilt_omega_pan_sq
+    holding_tilt_by_J_x_tilt_term = (
+        (-1.0) * mass_tilt * (-accel_pan * sin_tilt_sq - follower_torque_tilt_by_J_x_tilt_term)
+    )
+    gp[3, 1] = (
+        -inverse_determinant_mass_pan_tilt
+        * (
+            -holding_tilt_by_J_x_tilt_term
+            - mass_pan_tilt_slide_tilt_sq
+            * (
+                -carried_tilt_by_J_x_tilt * holding_tilt_by_theta_tilt_term
+                - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_x_tilt
+                - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_x_tilt
+                - minus_cos_tilt_sin_tilt_omega_pan_sq
+            )
+        )
+        - minus_cos_tilt_sin_tilt_omega_pan_sq
+    )
+    gp[4, 1] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_x_tilt
+    gp[5, 1] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_x_tilt
+    load_inertia_tilt_by_J_y_tilt = 1.0
+    carried_tilt_by_J_y_tilt = driving_torque_tilt * load_inertia_tilt_by_J_y_tilt
+    lost_lowering_tilt_by_J_y_tilt = (
+        (-1.0) * load_inertia_tilt_by_J_y_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_y_tilt = (
+        (-1.0) * load_inertia_tilt_by_J_y_tilt * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    gp[3, 2] = holding_tilt_by_i_tilt_term * (
+        -accel_tilt
+        - carried_tilt_by_J_y_tilt * holding_tilt_by_theta_tilt_term
+        - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_y_tilt
+        - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_y_tilt
+    )
+    follower_inertia_tilt_by_J_z_tilt = cos_tilt_sq
+    load_inertia_tilt_by_J_z_tilt = (
+        follower_inertia_tilt_by_J_z_tilt * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_J_z_tilt = follower_torque_tilt_by_J_x_tilt_term
+    load_torque_tilt_by_J_z_tilt = (
+        -cos_tilt_sin_tilt_omega_pan_sq
+        + follower_coupling_tilt
+        * follower_inertia_tilt_by_J_z_tilt
+        * follower_torque_tilt
+        * load_inertia_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_J_z_tilt * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_J_z_tilt = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_tilt
+        + driving_torque_tilt * load_inertia_tilt_by_J_z_tilt
+    )
+    lost_lowering_tilt_by_J_z_tilt = (
+        (-1.0) * load_inertia_tilt_by_J_z_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_z_tilt = (
+        (-1.0) * load_inertia_tilt_by_J_z_tilt * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    holding_tilt_by_J_z_tilt_term = (
+        (-1.0) * mass_tilt * (-accel_pan * cos_tilt_sq - follower_torque_tilt_by_J_x_tilt_term_2)
+    )
+    gp[3, 3] = -cos_tilt_sin_tilt_omega_pan_sq - inverse_determinant_mass_pan_tilt * (
+        -holding_tilt_by_J_z_tilt_term
+        - mass_pan_tilt_slide_tilt_sq
+        * (
+            -carried_tilt_by_J_z_tilt * holding_tilt_by_theta_tilt_term
+            - cos_tilt_sin_tilt_omega_pan_sq
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_z_tilt
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_z_tilt
+        )
+    )
+    gp[4, 3] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_z_tilt
+    gp[5, 3] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_z_tilt
+    follower_coupling_tilt_by_m_payload_term = (
+        c_x_payload_c_y_payload_sin_tilt - c_y_payload_c_z_payload_cos_tilt
+    )
+    follower_coupling_tilt_by_m_payload = follower_coupling_tilt_by_m_payload_term
+    follower_inertia_tilt_by_m_payload_term = (
+        c_x_payload * sin_tilt * twice_c_z_payload_cos_tilt
+        + c_x_payload_sq * cos_tilt_sq
+        + c_y_payload_sq_cos_tilt_sq
+        + c_y_payload_sq_sin_tilt_sq
+        + c_z_payload_sq * sin_tilt_sq
+    )
+    follower_inertia_tilt_by_m_payload = follower_inertia_tilt_by_m_payload_term
+    c_x_payload_sq_plus_c_z_payload_sq = c_x_payload_sq + c_z_payload_sq
+    load_inertia_tilt_by_m_payload = (
+        c_x_payload_sq_plus_c_z_payload_sq
+        - follower_coupling_tilt_by_m_payload * twice_load_torque_tilt_by_theta_pan_term
+        + follower_inertia_tilt_by_m_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    c_x_payload_omega_tilt_sq = c_x_payload * omega_tilt_sq
+    c_z_payload_omega_tilt_sq = c_z_payload * omega_tilt_sq
+    follower_torque_tilt_by_m_payload_term = (
+        -2.0 * c_x_payload * c_z_payload * omega_pan * omega_tilt * sin_tilt_sq
+        + c_x_payload_c_z_payload * cos_tilt_sq_twice_omega_pan_omega_tilt
+        + c_x_payload_omega_tilt_sq * c_y_payload * cos_tilt
+        - 2.0 * c_x_payload_sq * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        + c_y_payload_sin_tilt * c_z_payload_omega_tilt_sq
+        + c_z_payload_sq * follower_torque_tilt_by_J_x_tilt_term
+    )
+    follower_torque_tilt_by_m_payload = -follower_torque_tilt_by_m_payload_term
+    load_torque_tilt_by_m_payload_term = c_x_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
+    load_torque_tilt_by_m_payload = (
+        c_z_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
+        + cos_tilt * load_torque_tilt_term
+        - follower_coupling_tilt_by_m_payload * load_torque_tilt_by_theta_tilt_term
+        + follower_inertia_tilt_by_m_payload * load_torque_tilt_by_J_pan_term
+        - follower_torque_tilt_by_m_payload * load_torque_tilt_by_theta_pan_term
+        - load_torque_tilt_by_m_payload_term
+        + load_torque_tilt_term_2 * sin_tilt
+        + load_torque_tilt_term_4
+        - load_torque_tilt_term_5
+    )
+    carried_tilt_by_m_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_m_payload
+        + driving_torque_tilt * load_inertia_tilt_by_m_payload
+    )
+    lost_lowering_tilt_by_m_payload = (
+        (-1.0) * load_inertia_tilt_by_m_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_m_payload = (
+        (-1.0) * load_inertia_tilt_by_m_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    holding_tilt_by_m_payload_term = (
+        accel_pan * follower_coupling_tilt_by_m_payload_term
+        - c_x_payload * c_z_payload * cos_tilt_sq * omega_pan_sq
+        - 9.81 * c_x_payload * cos_tilt
+        - 9.81 * c_z_payload * sin_tilt
+        - c_z_payload_sq * cos_tilt * omega_pan_sq * sin_tilt
+        + load_torque_tilt_by_m_payload_term
+        + load_torque_tilt_term_5
+    )
+    gp[3, 4] = -holding_tilt_by_m_payload_term - inverse_determinant_mass_pan_tilt * (
+        -mass_pan_tilt_slide_tilt_sq
+        * (
+            -accel_tilt * c_x_payload_sq_plus_c_z_payload_sq
+            - carried_tilt_by_m_payload * holding_tilt_by_theta_tilt_term
+            - holding_tilt_by_m_payload_term
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_m_payload
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_m_payload
+        )
+        + mass_tilt
+        * (
+            -accel_pan * follower_inertia_tilt_by_m_payload_term
+            - accel_tilt * follower_coupling_tilt_by_m_payload_term
+            - follower_torque_tilt_by_m_payload_term
+        )
+    )
+    gp[4, 4] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_m_payload
+    gp[5, 4] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_m_payload
+    follower_inertia_tilt_by_J_x_payload = sin_tilt_sq
+    load_inertia_tilt_by_J_x_payload = (
+        follower_inertia_tilt_by_J_x_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_J_x_payload = follower_torque_tilt_by_J_x_tilt_term_2
+    load_torque_tilt_by_J_x_payload = (
+        cos_tilt_sin_tilt_omega_pan_sq
+        + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_J_pan_term
+        - follower_torque_tilt_by_J_x_payload * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_J_x_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_payload
+        + driving_torque_tilt * load_inertia_tilt_by_J_x_payload
+    )
+    lost_lowering_tilt_by_J_x_payload = (
+        (-1.0) * load_inertia_tilt_by_J_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_x_payload = (
+        (-1.0) * load_inertia_tilt_by_J_x_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    gp[3, 5] = (
+        -inverse_determinant_mass_pan_tilt
+        * (
+            -holding_tilt_by_J_x_tilt_term
+            - mass_pan_tilt_slide_tilt_sq
+            * (
+                -carried_tilt_by_J_x_payload * holding_tilt_by_theta_tilt_term
+                - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_x_payload
+                - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_x_payload
+                - minus_cos_tilt_sin_tilt_omega_pan_sq
+            )
+        )
+        - minus_cos_tilt_sin_tilt_omega_pan_sq
+    )
+    gp[4, 5] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_x_payload
+    gp[5, 5] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_x_payload
+    load_inertia_tilt_by_J_y_payload = 1.0
+    carried_tilt_by_J_y_payload = driving_torque_tilt * load_inertia_tilt_by_J_y_payload
+    lost_lowering_tilt_by_J_y_payload = (
+        (-1.0) * load_inertia_tilt_by_J_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_y_payload = (
+        (-1.0) * load_inertia_tilt_by_J_y_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    gp[3, 6] = holding_tilt_by_i_tilt_term * (
+        -accel_tilt
+        - carried_tilt_by_J_y_payload * holding_tilt_by_theta_tilt_term
+        - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_y_payload
+        - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_y_payload
+    )
+    follower_inertia_tilt_by_J_z_payload = cos_tilt_sq
+    load_inertia_tilt_by_J_z_payload = (
+        follower_inertia_tilt_by_J_z_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_J_z_payload = follower_torque_tilt_by_J_x_tilt_term
+    load_torque_tilt_by_J_z_payload = (
+        -cos_tilt_sin_tilt_omega_pan_sq
+        + follower_coupling_tilt
+        * follower_inertia_tilt_by_J_z_payload
+        * follower_torque_tilt
+        * load_inertia_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_J_z_payload * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_J_z_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_payload
+        + driving_torque_tilt * load_inertia_tilt_by_J_z_payload
+    )
+    lost_lowering_tilt_by_J_z_payload = (
+        (-1.0) * load_inertia_tilt_by_J_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_J_z_payload = (
+        (-1.0) * load_inertia_tilt_by_J_z_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    gp[3, 7] = -cos_tilt_sin_tilt_omega_pan_sq - inverse_determinant_mass_pan_tilt * (
+        -holding_tilt_by_J_z_tilt_term
+        - mass_pan_tilt_slide_tilt_sq
+        * (
+            -carried_tilt_by_J_z_payload * holding_tilt_by_theta_tilt_term
+            - cos_tilt_sin_tilt_omega_pan_sq
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_z_payload
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_z_payload
+        )
+    )
+    gp[4, 7] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_z_payload
+    gp[5, 7] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_z_payload
+    follower_coupling_tilt_by_c_x_payload = c_y_payload_sin_tilt_m_payload
+    follower_inertia_tilt_by_c_x_payload_term = m_payload_sin_tilt * twice_c_z_payload_cos_tilt
+    follower_inertia_tilt_by_c_x_payload_term_2 = (
+        c_x_payload_twice_m_payload_cos_tilt_sq + follower_inertia_tilt_by_c_x_payload_term
+    )
+    follower_inertia_tilt_by_c_x_payload = follower_inertia_tilt_by_c_x_payload_term_2
+    load_inertia_tilt_by_c_x_payload = (
+        c_x_payload_twice_m_payload
+        - follower_coupling_tilt_by_c_x_payload * twice_load_torque_tilt_by_theta_pan_term
+        + follower_inertia_tilt_by_c_x_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    c_z_payload_twice_m_payload = c_z_payload * twice_m_payload
+    c_z_payload_twice_m_payload_sin_tilt_sq = c_z_payload_twice_m_payload * sin_tilt_sq
+    c_x_payload_m_payload_sin_tilt_cos_tilt = c_x_payload_m_payload_sin_tilt * cos_tilt
+    follower_torque_tilt_by_c_x_payload_term = c_y_payload_cos_tilt_m_payload * omega_tilt_sq
+    follower_torque_tilt_by_c_x_payload_term_2 = (
+        c_z_payload_twice_m_payload * cos_tilt_sq * omega_pan_omega_tilt
+    )
+    follower_torque_tilt_by_c_x_payload_term_3 = 4.0 * omega_pan_omega_tilt
+    follower_torque_tilt_by_c_x_payload = (
+        c_x_payload_m_payload_sin_tilt_cos_tilt * follower_torque_tilt_by_c_x_payload_term_3
+        + c_z_payload_twice_m_payload_sin_tilt_sq * omega_pan_omega_tilt
+        - follower_torque_tilt_by_c_x_payload_term
+        - follower_torque_tilt_by_c_x_payload_term_2
+    )
+    load_torque_tilt_by_c_x_payload_term = 2.0 * c_x_payload_m_payload_sin_tilt_cos_tilt
+    load_torque_tilt_by_c_x_payload_term_2 = (
+        -c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
+        + c_z_payload * m_payload * omega_pan_sq_sin_tilt_sq
+        - 9.81 * cos_tilt * m_payload
+        + load_torque_tilt_by_c_x_payload_term * omega_pan_sq
+    )
+    load_torque_tilt_by_c_x_payload = (
+        follower_coupling_tilt
+        * follower_inertia_tilt_by_c_x_payload
+        * follower_torque_tilt
+        * load_inertia_tilt_by_theta_tilt_term
+        - follower_coupling_tilt_by_c_x_payload * load_torque_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_c_x_payload * load_torque_tilt_by_theta_pan_term
+        - load_torque_tilt_by_c_x_payload_term_2
+    )
+    carried_tilt_by_c_x_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_x_payload
+        + driving_torque_tilt * load_inertia_tilt_by_c_x_payload
+    )
+    lost_lowering_tilt_by_c_x_payload = (
+        (-1.0) * load_inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_c_x_payload = (
+        (-1.0) * load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    holding_tilt_by_c_x_payload_term = (
+        accel_pan * c_y_payload_sin_tilt_m_payload + load_torque_tilt_by_c_x_payload_term_2
+    )
+    gp[3, 8] = -holding_tilt_by_c_x_payload_term - inverse_determinant_mass_pan_tilt * (
+        -mass_pan_tilt_slide_tilt_sq
+        * (
+            -accel_tilt * c_x_payload_twice_m_payload
+            - carried_tilt_by_c_x_payload * holding_tilt_by_theta_tilt_term
+            - holding_tilt_by_c_x_payload_term
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_c_x_payload
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_c_x_payload
+        )
+        + mass_tilt
+        * (
+            -accel_pan * follower_inertia_tilt_by_c_x_payload_term_2
+            - accel_tilt * c_y_payload_sin_tilt_m_payload
+            + 4.0 * c_x_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+            + 2.0 * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+            - follower_torque_tilt_by_c_x_payload_term
+            - follower_torque_tilt_by_c_x_payload_term_2
+        )
+    )
+    gp[4, 8] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_x_payload
+    gp[5, 8] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_x_payload
+    follower_coupling_tilt_by_c_y_payload_term = (
+        c_x_payload_m_payload_sin_tilt - c_z_payload_cos_tilt * m_payload
+    )
+    follower_coupling_tilt_by_c_y_payload = follower_coupling_tilt_by_c_y_payload_term
+    c_y_payload_twice_m_payload = c_y_payload * twice_m_payload
+    follower_inertia_tilt_by_c_y_payload_term = (
+        c_y_payload_twice_m_payload * cos_tilt_sq + c_y_payload_twice_m_payload * sin_tilt_sq
+    )
+    follower_inertia_tilt_by_c_y_payload = follower_inertia_tilt_by_c_y_payload_term
+    load_inertia_tilt_by_c_y_payload = (
+        -follower_coupling_tilt_by_c_y_payload * twice_load_torque_tilt_by_theta_pan_term
+        + follower_inertia_tilt_by_c_y_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_c_y_payload_term = (
+        c_x_payload_omega_tilt_sq * cos_tilt_m_payload
+        + c_z_payload_omega_tilt_sq * m_payload_sin_tilt
+    )
+    follower_torque_tilt_by_c_y_payload = -follower_torque_tilt_by_c_y_payload_term
+    load_torque_tilt_by_c_y_payload = (
+        follower_coupling_tilt
+        * follower_inertia_tilt_by_c_y_payload
+        * follower_torque_tilt
+        * load_inertia_tilt_by_theta_tilt_term
+        - follower_coupling_tilt_by_c_y_payload * load_torque_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_c_y_payload * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_c_y_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_y_payload
+        + driving_torque_tilt * load_inertia_tilt_by_c_y_payload
+    )
+    lost_lowering_tilt_by_c_y_payload = (
+        (-1.0) * load_inertia_tilt_by_c_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_c_y_payload = (
+        (-1.0) * load_inertia_tilt_by_c_y_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    holding_tilt_by_c_y_payload_term = accel_pan * follower_coupling_tilt_by_c_y_payload_term
+    gp[3, 9] = -holding_tilt_by_c_y_payload_term - inverse_determinant_mass_pan_tilt * (
+        -mass_pan_tilt_slide_tilt_sq
+        * (
+            -carried_tilt_by_c_y_payload * holding_tilt_by_theta_tilt_term
+            - holding_tilt_by_c_y_payload_term
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_c_y_payload
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_c_y_payload
+        )
+        + mass_tilt
+        * (
+            -accel_pan * follower_inertia_tilt_by_c_y_payload_term
+            - accel_tilt * follower_coupling_tilt_by_c_y_payload_term
+            - follower_torque_tilt_by_c_y_payload_term
+        )
+    )
+    gp[4, 9] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_y_payload
+    gp[5, 9] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_y_payload
+    follower_coupling_tilt_by_c_z_payload = -c_y_payload_cos_tilt_m_payload
+    follower_inertia_tilt_by_c_z_payload_term = (
+        c_z_payload_twice_m_payload_sin_tilt_sq + load_torque_tilt_by_c_x_payload_term
+    )
+    follower_inertia_tilt_by_c_z_payload = follower_inertia_tilt_by_c_z_payload_term
+    load_inertia_tilt_by_c_z_payload = (
+        c_z_payload_twice_m_payload
+        - follower_coupling_tilt_by_c_z_payload * twice_load_torque_tilt_by_theta_pan_term
+        + follower_inertia_tilt_by_c_z_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_c_z_payload_term = (
+        -2.0 * c_x_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        + c_x_payload_twice_m_payload_cos_tilt_sq * omega_pan_omega_tilt
+        + c_y_payload_sin_tilt_m_payload * omega_tilt_sq
+        + c_z_payload_cos_tilt * follower_torque_tilt_by_c_x_payload_term_3 * m_payload_sin_tilt
+    )
+    follower_torque_tilt_by_c_z_payload = -follower_torque_tilt_by_c_z_payload_term
+    c_x_payload_m_payload = c_x_payload * m_payload
+    load_torque_tilt_by_c_z_payload_term = c_x_payload_m_payload * omega_pan_sq_sin_tilt_sq
+    load_torque_tilt_by_c_z_payload_term_2 = (
+        c_x_payload_m_payload * cos_tilt_sq_omega_pan_sq
+        + follower_inertia_tilt_by_c_x_payload_term * omega_pan_sq
+        - load_torque_tilt_by_c_z_payload_term
+        + 9.81 * m_payload_sin_tilt
+    )
+    load_torque_tilt_by_c_z_payload = (
+        -follower_coupling_tilt_by_c_z_payload * load_torque_tilt_by_theta_tilt_term
+        + follower_inertia_tilt_by_c_z_payload * load_torque_tilt_by_J_pan_term
+        - follower_torque_tilt_by_c_z_payload * load_torque_tilt_by_theta_pan_term
+        + load_torque_tilt_by_c_z_payload_term_2
+    )
+    carried_tilt_by_c_z_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_z_payload
+        + driving_torque_tilt * load_inertia_tilt_by_c_z_payload
+    )
+    lost_lowering_tilt_by_c_z_payload = (
+        (-1.0) * load_inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
+    )
+    lost_raising_tilt_by_c_z_payload = (
+        (-1.0) * load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_theta_tilt_term_2
+    )
+    gp[3, 10] = (
+        accel_pan * c_y_payload_cos_tilt_m_payload
+        - inverse_determinant_mass_pan_tilt
+        * (
+            -mass_pan_tilt_slide_tilt_sq
+            * (
+                accel_pan * c_y_payload * cos_tilt * m_payload
+                - accel_tilt * c_z_payload_twice_m_payload
+                + c_x_payload * cos_tilt_sq * m_payload * omega_pan_sq
+                + 2.0 * c_z_payload * cos_tilt * m_payload * omega_pan_sq * sin_tilt
+                - carried_tilt_by_c_z_payload * holding_tilt_by_theta_tilt_term
+                - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_c_z_payload
+                - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_c_z_payload
+                - load_torque_tilt_by_c_z_payload_term
+                + 9.81 * m_payload * sin_tilt
+            )
+            + mass_tilt
+            * (
+                -accel_pan * follower_inertia_tilt_by_c_z_payload_term
+                + accel_tilt * c_y_payload * cos_tilt * m_payload
+                - follower_torque_tilt_by_c_z_payload_term
+            )
+        )
+        + load_torque_tilt_by_c_z_payload_term_2
+    )
+    gp[4, 10] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_z_payload
+    gp[5, 10] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_z_payload
+    follower_torque_tilt_by_b_pan = minus_omega_pan
+    load_torque_tilt_by_b_pan = -follower_torque_tilt_by_b_pan * load_torque_tilt_by_theta_pan_term
+    carried_tilt_by_b_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_pan
+    gp[3, 11] = (
+        (-1.0)
+        * inverse_determinant_mass_pan_tilt
+        * (carried_tilt_by_b_pan * holding_tilt_by_theta_gear_pan_term - mass_tilt * omega_pan)
+    )
+    gp[4, 11] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_b_pan
+    gp[5, 11] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_b_pan
+    minus_omega_tilt = -omega_tilt
+    load_torque_tilt_by_b_tilt = minus_omega_tilt
+    carried_tilt_by_b_tilt = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_tilt
+    gp[3, 12] = (
+        holding_tilt_by_i_tilt_term
+        * (-carried_tilt_by_b_tilt * holding_tilt_by_theta_tilt_term - omega_tilt)
+        + minus_omega_tilt
+    )
+    gp[4, 12] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_b_tilt
+    gp[5, 12] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_b_tilt
+    gp[1, 14] = a_F_s_pan + 1.0
+    gp[2, 14] = 1.0 - a_F_s_pan
+    gp[1, 18] = F_s_pan
+    gp[2, 18] = -F_s_pan
+    half_side_pan = 0.5 * side_pan
+    active_pan_k_shaft_pan_half_side_pan = active_pan_k_shaft_pan * half_side_pan
+    gp[0, 21] = active_pan_k_shaft_pan_half_side_pan
+    follower_torque_tilt_by_gap_pan = -active_pan_k_shaft_pan_half_side_pan
+    load_torque_tilt_by_gap_pan = (
+        (-1.0) * follower_torque_tilt_by_gap_pan * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_gap_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_gap_pan
+    gp[3, 21] = (
+        (-1.0)
+        * inverse_determinant_mass_pan_tilt
+        * (
+            -active_pan_k_shaft_pan_mass_tilt * half_side_pan
+            + carried_tilt_by_gap_pan
+            * holding_tilt_by_theta_pan_term_3
+            * mass_pan_tilt
+            * slide_tilt_cubed
+        )
+    )
+    gp[4, 21] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_gap_pan
+    gp[5, 21] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_gap_pan
+    gp[7, 21] = 0.5
+    half_k_shaft_pan = 0.5 * k_shaft_pan
+    gp[8, 21] = -half_k_shaft_pan
+    gp[9, 21] = half_k_shaft_pan
+    active_pan_follower_torque_tilt_term_6 = active_pan * follower_torque_tilt_term_6
+    gp[0, 22] = -active_pan_follower_torque_tilt_term_6
+    follower_torque_tilt_by_k_shaft_pan = active_pan_follower_torque_tilt_term_6
+    load_torque_tilt_by_k_shaft_pan = (
+        (-1.0) * follower_torque_tilt_by_k_shaft_pan * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_k_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_k_shaft_pan
+    gp[3, 22] = (
+        (-1.0)
+        * inverse_determinant_mass_pan_tilt
+        * (
+            active_pan_follower_torque_tilt_term_6 * mass_tilt
+            + carried_tilt_by_k_shaft_pan * holding_tilt_by_theta_gear_pan_term
+        )
+    )
+    gp[4, 22] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_k_shaft_pan
+    gp[5, 22] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_k_shaft_pan
+    gp[8, 22] = -follower_torque_tilt_term_5 - half_gap_pan
+    gp[9, 22] = half_gap_pan + theta_gear_pan - theta_pan
+    holding_pan_by_d_shaft_pan_term = active_pan * minus_omega_pan_plus_omega_gear_pan
+    gp[0, 23] = -holding_pan_by_d_shaft_pan_term
+    follower_torque_tilt_by_d_shaft_pan = holding_pan_by_d_shaft_pan_term
+    load_torque_tilt_by_d_shaft_pan = (
+        (-1.0) * follower_torque_tilt_by_d_shaft_pan * load_torque_tilt_by_theta_pan_term
+    )
+    carried_tilt_by_d_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_d_shaft_pan
+    gp[3, 23] = (
+        (-1.0)
+        * inverse_determinant_mass_pan_tilt
+        * (
+            carried_tilt_by_d_shaft_pan * holding_tilt_by_theta_gear_pan_term
+            + holding_pan_by_d_shaft_pan_term * mass_tilt
+        )
+    )
+    gp[4, 23] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_d_shaft_pan
+    gp[5, 23] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_d_shaft_pan
+    gp[8, 23] = minus_omega_pan_plus_omega_gear_pan
+    gp[9, 23] = minus_omega_pan_plus_omega_gear_pan
+    gp[0, 26] = N_pan * i_pan
+    gp[0, 28] = K_t_pan * i_pan
+    i_tilt_ratio_tilt = i_tilt * ratio_tilt
+    driving_torque_tilt_by_K_t_tilt = i_tilt_ratio_tilt
+    carried_tilt_by_K_t_tilt = driving_torque_tilt_by_K_t_tilt * load_inertia_tilt
+    gp[3, 31] = (
+        holding_tilt_by_i_tilt_term
+        * (-carried_tilt_by_K_t_tilt * holding_tilt_by_theta_tilt_term + i_tilt * ratio_tilt)
+        + i_tilt_ratio_tilt
+    )
+    driving_torque_tilt_by_J_motor_tilt_term = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
+    driving_torque_tilt_by_J_motor_tilt_term_2 = -driving_torque_tilt_by_J_motor_tilt_term
+    driving_torque_tilt_by_J_motor_tilt = driving_torque_tilt_by_J_motor_tilt_term_2
+    carried_tilt_by_J_motor_tilt = (
+        driving_torque_tilt_by_J_motor_tilt * load_inertia_tilt - load_torque_tilt * ratio_tilt_sq
+    )
+    lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_term * ratio_tilt_sq
+    lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term * ratio_tilt_sq
+    gp[3, 32] = driving_torque_tilt_by_J_motor_tilt_term_2 + holding_tilt_by_i_tilt_term * (
+        -accel_tilt * ratio_tilt_sq
+        - carried_tilt_by_J_motor_tilt * holding_tilt_by_theta_tilt_term
+        - driving_torque_tilt_by_J_motor_tilt_term
+        - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_motor_tilt
+        - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_motor_tilt
+    )
+    omega_tilt_ratio_tilt_sq = omega_tilt * ratio_tilt_sq
+    minus_omega_tilt_ratio_tilt_sq = -omega_tilt_ratio_tilt_sq
+    driving_torque_tilt_by_b_motor_tilt = minus_omega_tilt_ratio_tilt_sq
+    carried_tilt_by_b_motor_tilt = driving_torque_tilt_by_b_motor_tilt * load_inertia_tilt
+    gp[3, 33] = (
+        holding_tilt_by_i_tilt_term
+        * (
+            -carried_tilt_by_b_motor_tilt * holding_tilt_by_theta_tilt_term
+            - omega_tilt_ratio_tilt_sq
+        )
+        + minus_omega_tilt_ratio_tilt_sq
+    )
+    ratio_tilt_by_N_tilt = ratio_tilt_term_3
+    ratio_tilt_by_theta_tilt_by_N_tilt = (
+        ratio_tilt_by_theta_tilt_term_2 - ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_term
+    )
+    driving_torque_tilt_by_N_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_N_tilt
+    )
+    driving_torque_tilt_by_N_tilt_term_2 = (
+        driving_torque_tilt_by_N_tilt_term
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt
+    )
+    driving_torque_tilt_by_N_tilt = -driving_torque_tilt_by_N_tilt_term_2
+    carried_tilt_by_N_tilt_term = 2.0 * J_motor_tilt_ratio_tilt_load_torque_tilt
+    carried_tilt_by_N_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
+        + driving_torque_tilt_by_N_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_N_tilt_term = 2.0 * lost_lowering_tilt_by_theta_tilt_term_3
+    lost_lowering_tilt_by_N_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
+    lost_raising_tilt_by_N_tilt_term = 2.0 * lost_raising_tilt_by_theta_tilt_term_3
+    lost_raising_tilt_by_N_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
+    twice_J_motor_tilt_ratio_tilt_accel_tilt = 2.0 * J_motor_tilt_ratio_tilt_accel_tilt
+    gp[3, 34] = (
+        -driving_torque_tilt_by_N_tilt_term
+        + driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_N_tilt
+        + holding_tilt_by_i_tilt_term
+        * (
+            -carried_tilt_by_N_tilt * holding_tilt_by_theta_tilt_term
+            - driving_torque_tilt_by_N_tilt_term_2
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_N_tilt
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_N_tilt
+            - ratio_tilt_by_N_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+        )
+    )
+    ratio_tilt_by_lead_tilt_term = 1.0 / (lead_tilt * lead_tilt)
+    ratio_tilt_by_lead_tilt_term_2 = math.pi * length_tilt_inverse * ratio_tilt_by_lead_tilt_term
+    ratio_tilt_by_lead_tilt = -N_tilt_ratio_tilt_term * ratio_tilt_by_lead_tilt_term_2
+    ratio_tilt_by_theta_tilt_by_lead_tilt = (
+        math.pi
+        * N_tilt
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_by_lead_tilt_term
+        * ratio_tilt_by_theta_tilt_term_3
+        * ratio_tilt_term
+        - N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt_term_2
+    )
+    driving_torque_tilt_by_lead_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_lead_tilt
+    )
+    driving_torque_tilt_by_lead_tilt_term_2 = (
+        driving_torque_tilt_by_lead_tilt_term
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt
+    )
+    driving_torque_tilt_by_lead_tilt = -driving_torque_tilt_by_lead_tilt_term_2
+    carried_tilt_by_lead_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
+        + driving_torque_tilt_by_lead_tilt * load_inertia_tilt
+    )
+    lowered_tilt_by_lead_tilt_term = lowered_tilt_term * ratio_tilt_by_lead_tilt_term
+    lowered_tilt_by_lead_tilt_term_2 = f_screw_tilt_lowered_tilt_term * lead_tilt_inverse
+    lowered_tilt_by_lead_tilt_term_3 = lowered_tilt_term_2 * lowered_tilt_term_3_inverse
+    lowered_tilt_by_lead_tilt_term_4 = 1.0 / (lowered_tilt_term_3 * lowered_tilt_term_3)
+    lowered_tilt_by_lead_tilt = (
+        lowered_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt_term_3
+        + lowered_tilt_by_lead_tilt_term_2 * lowered_tilt_by_lead_tilt_term_4 * lowered_tilt_term_2
+        + lowered_tilt_term_lowered_tilt_term_4
+    )
+    lost_lowering_tilt_by_lead_tilt_term = (
+        -load_inertia_tilt * lost_lowering_tilt_by_theta_tilt_term - lost_lowering_tilt_term_3
+    )
+    lost_lowering_tilt_by_lead_tilt = (
+        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
+        + lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt
+    )
+    raised_tilt_by_lead_tilt_term = raised_tilt_term * raised_tilt_term_2_inverse
+    raised_tilt_by_lead_tilt_term_2 = raised_tilt_term / (raised_tilt_term_2 * raised_tilt_term_2)
+    raised_tilt_by_lead_tilt = (
+        -lowered_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt_term
+        + lowered_tilt_by_lead_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
+        + lowered_tilt_term_raised_tilt_term_3
+    )
+    lost_raising_tilt_by_lead_tilt_term = (
+        -load_inertia_tilt * lost_raising_tilt_by_theta_tilt_term + lost_raising_tilt_term_2_inverse
+    )
+    lost_raising_tilt_by_lead_tilt = (
+        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
+        + lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt
+    )
+    gp[3, 35] = (
+        -driving_torque_tilt_by_lead_tilt_term
+        + driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt
+        + holding_tilt_by_i_tilt_term
+        * (
+            -carried_tilt_by_lead_tilt * holding_tilt_by_theta_tilt_term
+            - driving_torque_tilt_by_lead_tilt_term_2
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_lead_tilt
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_lead_tilt
+            - ratio_tilt_by_lead_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+        )
+    )
+    half_load_torque_tilt = 0.5 * load_torque_tilt
+    forward_tilt_by_lead_tilt_term = 0.5 * abs(load_torque_tilt)
+    forward_tilt_by_lead_tilt_term_2 = forward_tilt_by_lead_tilt_term + half_load_torque_tilt
+    minus_forward_tilt_by_lead_tilt_term_2 = -forward_tilt_by_lead_tilt_term_2
+    forward_tilt_by_lead_tilt_term_3 = -forward_tilt_by_lead_tilt_term + half_load_torque_tilt
+    minus_forward_tilt_by_lead_tilt_term_3 = -forward_tilt_by_lead_tilt_term_3
+    gp[4, 35] = (
+        lowered_tilt_by_lead_tilt * minus_forward_tilt_by_lead_tilt_term_2
+        + minus_forward_tilt_by_lead_tilt_term_3 * raised_tilt_by_lead_tilt
+    )
+    gp[5, 35] = (
+        forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_lead_tilt
+        + forward_tilt_by_lead_tilt_term_3 * lowered_tilt_by_lead_tilt
+    )
+    lowered_tilt_by_d_screw_tilt_term = math.pi * math.pi
+    lowered_tilt_by_d_screw_tilt_term_2 = d_screw_tilt * lowered_tilt_by_d_screw_tilt_term
+    lowered_tilt_by_d_screw_tilt_term_3 = f_screw_tilt * lowered_tilt_by_d_screw_tilt_term_2
+    lowered_tilt_by_d_screw_tilt = (
+        d_screw_tilt
+        * lead_tilt_inverse
+        * lowered_tilt_by_d_screw_tilt_term
+        * lowered_tilt_by_lead_tilt_term_4
+        * lowered_tilt_term_2
+        - lowered_tilt_by_d_screw_tilt_term_3 * lowered_tilt_term_4
+        - lowered_tilt_by_lead_tilt_term_3 * ratio_tilt_term_2
+    )
+    lost_lowering_tilt_by_d_screw_tilt = (
+        lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_d_screw_tilt
+    )
+    raised_tilt_by_d_screw_tilt = (
+        -lead_tilt_inverse * lowered_tilt_by_d_screw_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
+        + lowered_tilt_by_d_screw_tilt_term_3 * raised_tilt_term_3
+        + raised_tilt_by_lead_tilt_term * ratio_tilt_term_2
+    )
+    lost_raising_tilt_by_d_screw_tilt = (
+        lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_d_screw_tilt
+    )
+    gp[3, 36] = holding_tilt_by_i_tilt_term * (
+        -holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_d_screw_tilt
+        - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_d_screw_tilt
+    )
+    gp[4, 36] = (
+        lowered_tilt_by_d_screw_tilt * minus_forward_tilt_by_lead_tilt_term_2
+        + minus_forward_tilt_by_lead_tilt_term_3 * raised_tilt_by_d_screw_tilt
+    )
+    gp[5, 36] = (
+        forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_d_screw_tilt
+        + forward_tilt_by_lead_tilt_term_3 * lowered_tilt_by_d_screw_tilt
+    )
+    lowered_tilt_by_f_screw_tilt_term = (
+        d_screw_tilt * d_screw_tilt
+    ) * lowered_tilt_by_d_screw_tilt_term
+    lowered_tilt_by_f_screw_tilt = (
+        math.pi * d_screw_tilt * lowered_tilt_by_lead_tilt_term_4 * lowered_tilt_term_2
+        - lowered_tilt_by_f_screw_tilt_term * lowered_tilt_term_4
+    )
+    lost_lowering_tilt_by_f_screw_tilt = (
+        lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_f_screw_tilt
+    )
+    raised_tilt_by_f_screw_tilt = (
+        lowered_tilt_by_f_screw_tilt_term * raised_tilt_term_3
+        + lowered_tilt_term * raised_tilt_by_lead_tilt_term_2
+    )
+    lost_raising_tilt_by_f_screw_tilt = (
+        lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_f_screw_tilt
+    )
+    gp[3, 37] = holding_tilt_by_i_tilt_term * (
+        -holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_f_screw_tilt
+        - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_f_screw_tilt
+    )
+    gp[4, 37] = (
+        lowered_tilt_by_f_screw_tilt * minus_forward_tilt_by_lead_tilt_term_2
+        + minus_forward_tilt_by_lead_tilt_term_3 * raised_tilt_by_f_screw_tilt
+    )
+    gp[5, 37] = (
+        forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_f_screw_tilt
+        + forward_tilt_by_lead_tilt_term_3 * lowered_tilt_by_f_screw_tilt
+    )
+    linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
+    linkage_sin_tilt_term_2_inverse = 1.0 / linkage_sin_tilt_term_2
+    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_term_2_inverse
+    linkage_sin_tilt_by_l_ground_tilt = (
+        l_ground_tilt * linkage_sin_tilt_term * linkage_sin_tilt_term_2_inverse
+        - linkage_cos_tilt_by_l_ground_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    half_length_tilt_term_2_inverse = 0.5 * length_tilt_term_2_inverse
+    cos_tilt_half_length_tilt_term_2_inverse = cos_tilt * half_length_tilt_term_2_inverse
+    half_length_tilt_term_2_inverse_sin_tilt = half_length_tilt_term_2_inverse * sin_tilt
+    length_tilt_by_l_ground_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_ground_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
+        + l_ground_tilt * length_tilt_term_2_inverse
+    )
+    ratio_tilt_by_l_ground_tilt_term = cos_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+    ratio_tilt_by_l_ground_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_l_ground_tilt
+        * sin_tilt
+        - length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term = (
+        0.5 * length_tilt_by_theta_tilt_by_theta_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
+        cos_tilt * length_tilt_by_theta_tilt_by_l_ground_tilt_term
+        + half_length_tilt_term_2_inverse_sin_tilt
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 = (
+        -cos_tilt_half_length_tilt_term_2_inverse
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term * sin_tilt
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt = (
+        -l_ground_tilt * length_tilt_by_theta_tilt_by_theta_tilt_term
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_ground_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_ground_tilt
+    )
+    N_tilt_ratio_tilt_by_theta_tilt_term_5 = N_tilt * ratio_tilt_by_theta_tilt_term_5
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt_term = (
+        N_tilt_ratio_tilt_by_theta_tilt_term_5 * cos_tilt
+        + ratio_tilt_by_theta_tilt_by_theta_tilt_term * sin_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
+        -N_tilt_ratio_tilt_by_theta_tilt_term_5 * sin_tilt + ratio_tilt_by_l_ground_tilt_term
+    )
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt = (
+        length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
+        - length_tilt_by_theta_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        + linkage_cos_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    driving_torque_tilt_by_l_ground_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_ground_tilt
+    )
+    driving_torque_tilt_by_l_ground_tilt_term_2 = (
+        driving_torque_tilt_by_l_ground_tilt_term
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_l_ground_tilt
+    )
+    driving_torque_tilt_by_l_ground_tilt = -driving_torque_tilt_by_l_ground_tilt_term_2
+    carried_tilt_by_l_ground_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+        + driving_torque_tilt_by_l_ground_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_l_ground_tilt = (
+        (-1.0) * lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+    )
+    lost_raising_tilt_by_l_ground_tilt = (
+        (-1.0) * lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+    )
+    gp[3, 38] = (
+        -driving_torque_tilt_by_l_ground_tilt_term
+        + driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_l_ground_tilt
+        + holding_tilt_by_i_tilt_term
+        * (
+            -carried_tilt_by_l_ground_tilt * holding_tilt_by_theta_tilt_term
+            - driving_torque_tilt_by_l_ground_tilt_term_2
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_l_ground_tilt
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_l_ground_tilt
+            - ratio_tilt_by_l_ground_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+        )
+    )
+    linkage_cos_tilt_by_l_min_tilt_term = -2.0 * l_min_tilt - 2.0 * s_start_tilt
+    linkage_cos_tilt_by_l_min_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    linkage_sin_tilt_by_l_min_tilt = (
+        (-1.0) * linkage_cos_tilt_by_l_min_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_l_min_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_min_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_min_tilt
+    )
+    ratio_tilt_by_l_min_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_l_min_tilt
+        * sin_tilt
+        - length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_l_min_tilt = (
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_min_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_min_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_l_min_tilt = (
+        length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
+        - length_tilt_by_theta_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        + linkage_cos_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    driving_torque_tilt_by_l_min_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_min_tilt
+    )
+    driving_torque_tilt_by_l_min_tilt_term_2 = (
+        driving_torque_tilt_by_l_min_tilt_term
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_l_min_tilt
+    )
+    driving_torque_tilt_by_l_min_tilt = -driving_torque_tilt_by_l_min_tilt_term_2
+    carried_tilt_by_l_min_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
+        + driving_torque_tilt_by_l_min_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_l_min_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
+    lost_raising_tilt_by_l_min_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
+    gp[3, 39] = (
+        -driving_torque_tilt_by_l_min_tilt_term
+        + driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_l_min_tilt
+        + holding_tilt_by_i_tilt_term
+        * (
+            -carried_tilt_by_l_min_tilt * holding_tilt_by_theta_tilt_term
+            - driving_torque_tilt_by_l_min_tilt_term_2
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_l_min_tilt
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_l_min_tilt
+            - ratio_tilt_by_l_min_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+        )
+    )
+    linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
+    linkage_sin_tilt_by_r_arm_tilt = (
+        4.0 * l_ground_tilt_sq * linkage_sin_tilt_term_2_inverse * r_arm_tilt
+        - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_r_arm_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_r_arm_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
+        + length_tilt_term_2_inverse * r_arm_tilt
+    )
+    ratio_tilt_by_r_arm_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_r_arm_tilt
+        * sin_tilt
+        - length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_r_arm_tilt = (
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_r_arm_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_r_arm_tilt
+        - length_tilt_by_theta_tilt_by_theta_tilt_term * r_arm_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_r_arm_tilt = (
+        length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
+        - length_tilt_by_theta_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        + linkage_cos_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    driving_torque_tilt_by_r_arm_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_r_arm_tilt
+    )
+    driving_torque_tilt_by_r_arm_tilt_term_2 = (
+        driving_torque_tilt_by_r_arm_tilt_term
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_r_arm_tilt
+    )
+    driving_torque_tilt_by_r_arm_tilt = -driving_torque_tilt_by_r_arm_tilt_term_2
+    carried_tilt_by_r_arm_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
+        + driving_torque_tilt_by_r_arm_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_r_arm_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
+    lost_raising_tilt_by_r_arm_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
+    gp[3, 40] = (
+        -driving_torque_tilt_by_r_arm_tilt_term
+        + driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_r_arm_tilt
+        + holding_tilt_by_i_tilt_term
+        * (
+            -carried_tilt_by_r_arm_tilt * holding_tilt_by_theta_tilt_term
+            - driving_torque_tilt_by_r_arm_tilt_term_2
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_r_arm_tilt
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_r_arm_tilt
+            - ratio_tilt_by_r_arm_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+        )
+    )
+    linkage_cos_tilt_by_s_start_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    linkage_sin_tilt_by_s_start_tilt = (
+        (-1.0) * linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_s_start_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_s_start_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_s_start_tilt
+    )
+    ratio_tilt_by_s_start_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_s_start_tilt
+        * sin_tilt
+        - length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_s_start_tilt = (
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_s_start_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_s_start_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_s_start_tilt = (
+        length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
+        - length_tilt_by_theta_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    driving_torque_tilt_by_s_start_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_s_start_tilt
+    )
+    driving_torque_tilt_by_s_start_tilt_term_2 = (
+        driving_torque_tilt_by_s_start_tilt_term
+        - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_s_start_tilt
+    )
+    driving_torque_tilt_by_s_start_tilt = -driving_torque_tilt_by_s_start_tilt_term_2
+    carried_tilt_by_s_start_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+        + driving_torque_tilt_by_s_start_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_s_start_tilt = (
+        (-1.0) * lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+    )
+    lost_raising_tilt_by_s_start_tilt = (
+        (-1.0) * lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+    )
+    gp[3, 41] = (
+        -driving_torque_tilt_by_s_start_tilt_term
+        + driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_s_start_tilt
+        + holding_tilt_by_i_tilt_term
+        * (
+            -carried_tilt_by_s_start_tilt * holding_tilt_by_theta_tilt_term
+            - driving_torque_tilt_by_s_start_tilt_term_2
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_s_start_tilt
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_s_start_tilt
+            - ratio_tilt_by_s_start_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+        )
+    )
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def outputs(t, x, u, p, y):
+    """Write the measured signals into y."""
+    theta_pan = x[0]
+    theta_tilt = x[1]
+    i_pan = x[6]
+    i_tilt = x[7]
+    y[0] = theta_pan
+    y[1] = theta_tilt
+    y[2] = i_pan
+    y[3] = i_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def output_jacobian(t, x, u, p, yx, yp):
+    """Write the non-zero derivatives of outputs by state and parameter."""
+    yx[0, 0] = 1.0
+    yx[1, 1] = 1.0
+    yx[2, 6] = 1.0
+    yx[3, 7] = 1.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def energy(t, x, u, p, m, e):
+    """Write stored energy in J, power in and dissipated power in W into e."""
+    theta_pan = x[0]
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    theta_gear_pan = x[4]
+    omega_gear_pan = x[5]
+    i_pan = x[6]
+    i_tilt = x[7]
+    u_pan = u[0]
+    u_tilt = u[1]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    m_payload = p[4]
+    J_x_payload = p[5]
+    J_y_payload = p[6]
+    J_z_payload = p[7]
+    c_x_payload = p[8]
+    c_y_payload = p[9]
+    c_z_payload = p[10]
+    b_pan = p[11]
+    b_tilt = p[12]
+    F_c_pan = p[13]
+    F_s_pan = p[14]
+    v_s_pan = p[15]
+    F_v_pan = p[16]
+    a_F_c_pan = p[17]
+    a_F_s_pan = p[18]
+    a_v_s_pan = p[19]
+    a_F_v_pan = p[20]
+    gap_pan = p[21]
+    k_shaft_pan = p[22]
+    d_shaft_pan = p[23]
+    L_pan = p[24]
+    R_pan = p[25]
+    J_motor_pan = p[27]
+    N_pan = p[28]
+    L_tilt = p[29]
+    R_tilt = p[30]
+    K_t_tilt = p[31]
+    J_motor_tilt = p[32]
+    b_motor_tilt = p[33]
+    N_tilt = p[34]
+    lead_tilt = p[35]
+    d_screw_tilt = p[36]
+    f_screw_tilt = p[37]
+    l_ground_tilt = p[38]
+    l_min_tilt = p[39]
+    r_arm_tilt = p[40]
+    s_start_tilt = p[41]
+    slide_pan = m[0]
+    slide_tilt = m[1]
+    side_pan = m[2]
+    active_pan = m[3]
+    sin_tilt = math.sin(theta_tilt)
+    c_x_payload_sin_tilt = c_x_payload * sin_tilt
+    c_y_payload_m_payload = c_y_payload * m_payload
+    stored_term = c_x_payload_sin_tilt * c_y_payload_m_payload
+    cos_tilt = math.cos(theta_tilt)
+    c_z_payload_cos_tilt = c_z_payload * cos_tilt
+    stored_term_2 = c_y_payload_m_payload * c_z_payload_cos_tilt
+    sin_tilt_sq = sin_tilt * sin_tilt
+    J_x_payload_sin_tilt_sq = J_x_payload * sin_tilt_sq
+    J_x_tilt_sin_tilt_sq = J_x_tilt * sin_tilt_sq
+    cos_tilt_sq = cos_tilt * cos_tilt
+    J_z_payload_cos_tilt_sq = J_z_payload * cos_tilt_sq
+    J_z_tilt_cos_tilt_sq = J_z_tilt * cos_tilt_sq
+    c_x_payload_sq = c_x_payload * c_x_payload
+    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
+    c_x_payload_sq_m_payload_cos_tilt_sq = c_x_payload_sq_m_payload * cos_tilt_sq
+    stored_term_3 = (c_y_payload * c_y_payload) * m_payload
+    sin_tilt_sq_stored_term_3 = sin_tilt_sq * stored_term_3
+    cos_tilt_sq_stored_term_3 = cos_tilt_sq * stored_term_3
+    stored_term_4 = (c_z_payload * c_z_payload) * m_payload
+    sin_tilt_sq_stored_term_4 = sin_tilt_sq * stored_term_4
+    stored_term_5 = c_x_payload_sin_tilt * c_z_payload_cos_tilt
+    omega_pan_omega_tilt = omega_pan * omega_tilt
+    stored_term_6 = -0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan
+    stored_term_7 = 9.81 * m_payload
+    omega_pan_sq = omega_pan * omega_pan
+    m_payload_omega_pan_sq = m_payload * omega_pan_sq
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    linkage_sin_tilt = math.sqrt(
+        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt_term = math.sqrt(
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    length_tilt = length_tilt_term
+    lead_tilt_inverse = 1.0 / lead_tilt
+    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    ratio_tilt_sq = ratio_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
+    half_omega_pan_sq = 0.5 * omega_pan_sq
+    omega_tilt_sq = omega_tilt * omega_tilt
+    half_omega_tilt_sq = 0.5 * omega_tilt_sq
+    i_pan_sq = i_pan * i_pan
+    i_tilt_sq = i_tilt * i_tilt
+    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
+    side_pan_sq = side_pan * side_pan
+    e[0] = (
+        0.5 * J_motor_pan * (N_pan * N_pan) * omega_gear_pan_sq
+        + J_motor_tilt_ratio_tilt_sq * half_omega_tilt_sq
+        + J_pan * half_omega_pan_sq
+        + J_x_payload_sin_tilt_sq * half_omega_pan_sq
+        + J_x_tilt_sin_tilt_sq * half_omega_pan_sq
+        + J_y_payload * half_omega_tilt_sq
+        + J_y_tilt * half_omega_tilt_sq
+        + J_z_payload_cos_tilt_sq * half_omega_pan_sq
+        + J_z_tilt_cos_tilt_sq * half_omega_pan_sq
+        + 0.5 * L_pan * i_pan_sq
+        + 0.5 * L_tilt * i_tilt_sq
+        - c_x_payload_sin_tilt * stored_term_7
+        + c_x_payload_sq_m_payload * half_omega_tilt_sq
+        + c_x_payload_sq_m_payload_cos_tilt_sq * half_omega_pan_sq
+        + c_z_payload_cos_tilt * stored_term_7
+        + cos_tilt_sq_stored_term_3 * half_omega_pan_sq
+        + half_omega_pan_sq * sin_tilt_sq_stored_term_3
+        + half_omega_pan_sq * sin_tilt_sq_stored_term_4
+        + half_omega_tilt_sq * stored_term_4
+        + 0.5 * k_shaft_pan * side_pan_sq * (stored_term_6 * stored_term_6)
+        + m_payload_omega_pan_sq * stored_term_5
+        + omega_pan_omega_tilt * stored_term
+        - omega_pan_omega_tilt * stored_term_2
+    )
+    e[1] = i_pan * u_pan + i_tilt * u_tilt
+    follower_coupling_tilt = stored_term - stored_term_2
+    twice_m_payload = 2.0 * m_payload
+    follower_inertia_tilt = (
+        J_pan
+        + J_x_payload_sin_tilt_sq
+        + J_x_tilt_sin_tilt_sq
+        + J_z_payload_cos_tilt_sq
+        + J_z_tilt_cos_tilt_sq
+        + c_x_payload_sq_m_payload_cos_tilt_sq
+        + cos_tilt_sq_stored_term_3
+        + sin_tilt_sq_stored_term_3
+        + sin_tilt_sq_stored_term_4
+        + stored_term_5 * twice_m_payload
+    )
+    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
+    load_inertia_tilt = (
+        J_y_payload
+        + J_y_tilt
+        + c_x_payload_sq_m_payload
+        - (follower_coupling_tilt * follower_coupling_tilt) * follower_inertia_tilt_inverse
+        + stored_term_4
+    )
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    lowered_tilt = (
+        (-1.0)
+        * lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+    )
+    lost_lowering_tilt = (
+        (1.0 - lowered_tilt)
+        * 1.0
+        / (abs(J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt))
+    )
+    raised_tilt = (
+        lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+    )
+    lost_raising_tilt = (
+        1.0 / (J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt) * (raised_tilt - 1.0)
+    )
+    follower_torque_tilt_term = omega_gear_pan - omega_pan
+    d_shaft_pan_follower_torque_tilt_term = d_shaft_pan * follower_torque_tilt_term
+    k_shaft_pan_stored_term_6 = k_shaft_pan * stored_term_6
+    length_tilt_by_theta_tilt = (
+        1.0
+        / length_tilt_term
+        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
+    )
+    ratio_tilt_by_theta_tilt = (
+        -math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_term
+        / (length_tilt * length_tilt)
+        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
+    )
+    driving_torque_tilt = (
+        -J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
+        + ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt)
+    )
+    cos_tilt_sin_tilt = cos_tilt * sin_tilt
+    follower_torque_tilt_term_2 = 2.0 * cos_tilt_sin_tilt * omega_pan_omega_tilt
+    c_x_payload_cos_tilt = c_x_payload * cos_tilt
+    c_y_payload_m_payload_omega_tilt_sq = c_y_payload_m_payload * omega_tilt_sq
+    c_z_payload_sin_tilt = c_z_payload * sin_tilt
+    c_x_payload_c_z_payload = c_x_payload * c_z_payload
+    follower_torque_tilt = (
+        -J_x_payload * follower_torque_tilt_term_2
+        - J_x_tilt * follower_torque_tilt_term_2
+        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        + active_pan * (d_shaft_pan_follower_torque_tilt_term + k_shaft_pan_stored_term_6)
+        - b_pan * omega_pan
+        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        - c_x_payload_c_z_payload * cos_tilt_sq * omega_pan_omega_tilt * twice_m_payload
+        - c_x_payload_cos_tilt * c_y_payload_m_payload_omega_tilt_sq
+        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+        - c_y_payload_m_payload_omega_tilt_sq * c_z_payload_sin_tilt
+        - follower_torque_tilt_term_2 * stored_term_4
+    )
+    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
+    load_torque_tilt_term = c_x_payload_c_z_payload * m_payload_omega_pan_sq
+    load_torque_tilt = (
+        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
+        - J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
+        - J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
+        - b_tilt * omega_tilt
+        + c_x_payload_cos_tilt * stored_term_7
+        - c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + c_z_payload_sin_tilt * stored_term_7
+        + cos_tilt_sin_tilt_omega_pan_sq * stored_term_4
+        + cos_tilt_sq * load_torque_tilt_term
+        - follower_coupling_tilt * follower_inertia_tilt_inverse * follower_torque_tilt
+        - load_torque_tilt_term * sin_tilt_sq
+    )
+    carried_tilt = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
+    )
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    dissipated_term = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
+    e[2] = (
+        R_pan * i_pan_sq
+        + R_tilt * i_tilt_sq
+        + b_motor_tilt * omega_tilt_sq * ratio_tilt_sq
+        + b_pan * omega_pan_sq
+        + b_tilt * omega_tilt_sq
+        + follower_torque_tilt_term
+        * side_pan_sq
+        * (
+            active_pan * d_shaft_pan_follower_torque_tilt_term
+            - k_shaft_pan_stored_term_6 * (1.0 - active_pan)
+        )
+        + omega_gear_pan_slide_pan
+        * (
+            F_v_pan * omega_gear_pan_slide_pan * (a_F_v_pan * slide_pan + 1.0)
+            + dissipated_term
+            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - dissipated_term)
+            * math.exp(
+                -omega_gear_pan_sq
+                / (
+                    (v_s_pan * v_s_pan)
+                    * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
+                )
+            )
+        )
+        + omega_tilt
+        * slide_tilt
+        * (
+            0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
+            + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
+        )
+    )
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def domain(p, bounds):
+    """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
+    l_ground_tilt = p[38]
+    l_min_tilt = p[39]
+    r_arm_tilt = p[40]
+    s_start_tilt = p[41]
+    s_max_tilt = p[42]
+    lowest_theta_tilt_term = (l_ground_tilt * l_ground_tilt) + (r_arm_tilt * r_arm_tilt)
+    lowest_theta_tilt_term_2 = 0.5 / (l_ground_tilt * r_arm_tilt)
+    lowest_theta_tilt_term_3 = math.acos(
+        lowest_theta_tilt_term_2
+        * (lowest_theta_tilt_term - ((l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)))
+    )
+    bounds[0, 0] = lowest_theta_tilt_term_3 - math.pi
+    bounds[0, 1] = lowest_theta_tilt_term_3
+    bounds[1, 0] = lowest_theta_tilt_term_3 - math.acos(
+        max(
+            -1.0,
+            min(
+                1.0,
+                lowest_theta_tilt_term_2
+                * (
+                    lowest_theta_tilt_term - ((l_min_tilt + s_max_tilt) * (l_min_tilt + s_max_tilt))
+                ),
+            ),
+        )
+    )
+    bounds[1, 1] = lowest_theta_tilt_term_3 - math.acos(
+        max(
+            -1.0,
+            min(
+                1.0,
+                lowest_theta_tilt_term_2 * (-(l_min_tilt * l_min_tilt) + lowest_theta_tilt_term),
+            ),
+        )
+    )
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def margins(p, margin):
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    F_c_pan = p[13]
+    F_s_pan = p[14]
+    lead_tilt = p[35]
+    d_screw_tilt = p[36]
+    f_screw_tilt = p[37]
+    l_ground_tilt = p[38]
+    l_min_tilt = p[39]
+    r_arm_tilt = p[40]
+    s_start_tilt = p[41]
+    s_max_tilt = p[42]
+    margin[0] = -F_c_pan + F_s_pan
+    margin[1] = 2.0 * l_ground_tilt * r_arm_tilt - abs(
+        (l_ground_tilt * l_ground_tilt)
+        + (r_arm_tilt * r_arm_tilt)
+        - ((l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt))
+    )
+    margin[2] = s_max_tilt - s_start_tilt
+    margin[3] = math.pi * d_screw_tilt - f_screw_tilt * lead_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def initial_modes(t, x, u, p, m):
+    """Find the modes of a state: contact from the separation, sticking from the holding torque."""
+    frictions = len(FRICTION_RATES)
+    contacts = (len(m) - frictions) // 2
+    g = np.empty(3 * frictions + 4 * contacts)
+    m[:] = 0.0
+    guards(t, x, u, p, m, g)
+    for k in range(contacts):
+        at = 3 * frictions + 4 * k
+        side = 1.0 if g[at] > 0.0 else -1.0
+        if side * g[at] > g[at + 1]:
+            torque = g[at + 2] if side > 0.0 else g[at + 3]
+            m[frictions + 2 * k] = side
+            m[frictions + 2 * k + 1] = 1.0 if side * torque > 0.0 else 0.0
+    for k in range(frictions):
+        m[k] = np.sign(x[FRICTION_RATES[k]])
+    guards(t, x, u, p, m, g)
+    for k in range(frictions):
+        if m[k] == 0.0 and g[3 * k] > g[3 * k + 1]:
+            m[k] = 1.0
+        elif m[k] == 0.0 and -g[3 * k] > g[3 * k + 2]:
+            m[k] = -1.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def state_derivative(t, x, u, p, dx):
+    """Write the time derivative of the state into dx, in the modes that the state implies."""
+    m = np.empty(len(MODE_NAMES))
+    initial_modes(t, x, u, p, m)
+    mode_derivative(t, x, u, p, m, dx)
+
+
+# END sha256 9d06f87f1b9ba86a705a1c577226b713817a6ea955bf210ded4fde28716cb10a

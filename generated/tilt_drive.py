@@ -1,0 +1,1873 @@
+"""Tilt drive of the thesis: equations of motion, emitted; do not edit.
+
+M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
+
+  M[0, 0] = J_motor_tilt*ratio_tilt**2 + J_y_payload + c_x_payload**2*m_payload +
+      c_z_payload**2*m_payload
+  forcing[omega_tilt] = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt -
+      b_tilt*omega_tilt + 981*c_x_payload*m_payload*cos(theta_tilt)/100 +
+      981*c_z_payload*m_payload*sin(theta_tilt)/100 + ratio_tilt*(K_t_tilt*i_tilt -
+      b_motor_tilt*omega_tilt*ratio_tilt)
+  linkage_cos_tilt = l_ground_tilt**2 + r_arm_tilt**2 - (l_min_tilt + s_start_tilt)**2
+  linkage_sin_tilt = sqrt(4*l_ground_tilt**2*r_arm_tilt**2 - linkage_cos_tilt**2)
+  length_tilt = sqrt(l_ground_tilt**2 - linkage_cos_tilt*cos(theta_tilt) -
+      linkage_sin_tilt*sin(theta_tilt) + r_arm_tilt**2)
+  length_tilt_by_theta_tilt = (linkage_cos_tilt*sin(theta_tilt)/2 -
+      linkage_sin_tilt*cos(theta_tilt)/2)/sqrt(l_ground_tilt**2 -
+      linkage_cos_tilt*cos(theta_tilt) - linkage_sin_tilt*sin(theta_tilt) + r_arm_tilt**2)
+  ratio_tilt = pi*N_tilt*(linkage_cos_tilt*sin(theta_tilt) -
+      linkage_sin_tilt*cos(theta_tilt))/(lead_tilt*length_tilt)
+  ratio_tilt_by_theta_tilt = pi*N_tilt*(linkage_cos_tilt*cos(theta_tilt) +
+      linkage_sin_tilt*sin(theta_tilt))/(lead_tilt*length_tilt) -
+      pi*N_tilt*length_tilt_by_theta_tilt*(linkage_cos_tilt*sin(theta_tilt) -
+      linkage_sin_tilt*cos(theta_tilt))/(lead_tilt*length_tilt**2)
+  driving_torque_tilt = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
+      ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
+  load_torque_tilt = -b_tilt*omega_tilt + 981*c_x_payload*m_payload*cos(theta_tilt)/100 +
+      981*c_z_payload*m_payload*sin(theta_tilt)/100
+  load_inertia_tilt = J_y_payload + c_x_payload**2*m_payload + c_z_payload**2*m_payload
+  raised_tilt = pi*d_screw_tilt*(pi*d_screw_tilt*f_screw_tilt +
+      lead_tilt)/(lead_tilt*(pi*d_screw_tilt - f_screw_tilt*lead_tilt))
+  lowered_tilt = -pi*d_screw_tilt*(pi*d_screw_tilt*f_screw_tilt -
+      lead_tilt)/(lead_tilt*(pi*d_screw_tilt + f_screw_tilt*lead_tilt))
+  carried_tilt = -J_motor_tilt*load_torque_tilt*ratio_tilt**2 +
+      driving_torque_tilt*load_inertia_tilt
+  lost_raising_tilt = (raised_tilt - 1)/(J_motor_tilt*ratio_tilt**2 +
+      load_inertia_tilt*raised_tilt)
+  lost_lowering_tilt = (-lowered_tilt + 1)/Abs(J_motor_tilt*ratio_tilt**2 +
+      load_inertia_tilt*lowered_tilt)
+  sliding friction[omega_tilt] = carried_tilt*slide_tilt*(-lost_lowering_tilt +
+      lost_raising_tilt)/2 + (lost_lowering_tilt +
+      lost_raising_tilt)*Abs(carried_tilt*slide_tilt)/2
+  i_tilt' = (-K_t_tilt*omega_tilt*ratio_tilt - R_tilt*i_tilt + u_tilt)/L_tilt
+
+Operations of the state derivative: 197 as derived, 120 as written.
+
+Effects:
+- payload: thesis section 3.2.2, Table 5.3 with erratum 18
+- viscous_friction (tilt): thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)
+- linear_actuator (tilt): thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+MODEL_HASH = "045ff99c6f478596"
+NAME = "tilt_drive"
+TITLE = "Tilt drive of the thesis"
+AXES = ("tilt",)
+STATE_NAMES = ("theta_tilt", "omega_tilt", "i_tilt")
+STATE_UNITS = ("rad", "rad/s", "A")
+STATE_INITIAL = (0.0, 0.0, 0.0)
+INPUT_NAMES = ("u_tilt",)
+INPUT_UNITS = ("V",)
+# Per input: index of the parameter by which it is late, or -1.
+INPUT_DELAYS = (-1,)
+OUTPUT_NAMES = ("theta_tilt", "i_tilt")
+OUTPUT_UNITS = ("rad", "A")
+MODE_NAMES = ("slide_tilt",)
+FRICTION_RATES = np.array([1], dtype=np.int64)
+# Per state: the friction that sets it to zero when it comes to rest, or -1.
+ZERO_AT_REST = (-1, -1, -1)
+# Per contact: state index of the angle at the gear output and at the joint.
+CONTACT_ANGLES = ()
+# Limits of the equations: state, meaning; `domain` gives the bounds.
+DOMAIN = (
+    ("theta_tilt", "dead centre of the tilt linkage"),
+    ("theta_tilt", "stroke end of the tilt actuator"),
+)
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = (
+    (
+        ("l_ground_tilt", "l_min_tilt", "r_arm_tilt", "s_start_tilt"),
+        "the linkage closes, off its dead centres; change a length",
+        True,
+    ),
+    (("s_start_tilt", "s_max_tilt"), "s_start is at most s_max; change one of them", False),
+    (
+        ("lead_tilt", "d_screw_tilt", "f_screw_tilt"),
+        "the screw wedges unless f < pi d / lead; lower f_screw",
+        True,
+    ),
+)
+# Parameters: name, unit, default, lower and upper bound, meaning.
+PARAMETERS = (
+    ("m_payload", "kg", 6.3785, 0.0, 100000.0, "payload mass"),
+    ("J_y_payload", "kg m^2", 0.0136, 0.0, 10000.0, "payload inertia about its own y axis"),
+    ("c_x_payload", "m", 0.0, -10.0, 10.0, "x of the payload's centre of mass"),
+    ("c_z_payload", "m", 0.0876228, -10.0, 10.0, "z of the payload's centre of mass"),
+    ("b_tilt", "N m s/rad", 10.0, 0.0, 10000.0, "viscous friction in the tilt joint"),
+    ("L_tilt", "H", 0.00935, 1e-09, 1000.0, "winding inductance"),
+    ("R_tilt", "ohm", 17.0, 1e-06, 1000000.0, "winding resistance"),
+    ("K_t_tilt", "N m/A", 0.044, 1e-09, 10000.0, "torque constant"),
+    ("J_motor_tilt", "kg m^2", 1.62e-06, 1e-12, 1000.0, "rotor inertia"),
+    ("b_motor_tilt", "N m s/rad", 0.00011696, 0.0, 100.0, "viscous friction of the rotor"),
+    ("N_tilt", "1", 93.0, 0.001, 1000000.0, "gear ratio"),
+    ("lead_tilt", "m", 0.004, 1e-06, 1.0, "lead of the screw per turn"),
+    ("d_screw_tilt", "m", 0.008, 1e-06, 1.0, "mean diameter of the screw"),
+    ("f_screw_tilt", "1", 0.15, 0.0, 10.0, "friction coefficient of the screw"),
+    ("l_ground_tilt", "m", 0.19755, 1e-06, 100.0, "joint to foot of the actuator"),
+    ("l_min_tilt", "m", 0.139, 1e-06, 100.0, "length of the actuator drawn in"),
+    ("r_arm_tilt", "m", 0.0634133, 1e-06, 100.0, "joint to pin of the actuator"),
+    ("s_start_tilt", "m", 0.0405022, 0.0, 100.0, "stroke at tilt angle zero"),
+    ("s_max_tilt", "m", 0.1, 1e-06, 100.0, "longest stroke"),
+)
+# Searching them: name, value at which the effect vanishes (None: any), starts,
+# period, what a frequency is locked to.
+SEARCH = (("b_tilt", 0.0, (0.1,), None, None),)
+# Effects: id, axis, parameters, title, reference, separating experiment.
+EFFECTS = (
+    (
+        "payload",
+        None,
+        ("m_payload", "J_y_payload", "c_x_payload", "c_z_payload"),
+        "payload",
+        "thesis section 3.2.2, Table 5.3 with erratum 18",
+        "",
+    ),
+    (
+        "viscous_friction",
+        "tilt",
+        ("b_tilt",),
+        "viscous friction in the joint",
+        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+    ),
+    (
+        "linear_actuator",
+        "tilt",
+        (
+            "L_tilt",
+            "R_tilt",
+            "K_t_tilt",
+            "J_motor_tilt",
+            "b_motor_tilt",
+            "N_tilt",
+            "lead_tilt",
+            "d_screw_tilt",
+            "f_screw_tilt",
+            "l_ground_tilt",
+            "l_min_tilt",
+            "r_arm_tilt",
+            "s_start_tilt",
+            "s_max_tilt",
+        ),
+        "linear actuator with lead screw and linkage",
+        "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6",
+        "",
+    ),
+)
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def mode_derivative(t, x, u, p, m, dx):
+    """Write the time derivative of the state into dx in the modes m."""
+    theta_tilt = x[0]
+    omega_tilt = x[1]
+    i_tilt = x[2]
+    u_tilt = u[0]
+    m_payload = p[0]
+    J_y_payload = p[1]
+    c_x_payload = p[2]
+    c_z_payload = p[3]
+    b_tilt = p[4]
+    L_tilt = p[5]
+    R_tilt = p[6]
+    K_t_tilt = p[7]
+    J_motor_tilt = p[8]
+    b_motor_tilt = p[9]
+    N_tilt = p[10]
+    lead_tilt = p[11]
+    d_screw_tilt = p[12]
+    f_screw_tilt = p[13]
+    l_ground_tilt = p[14]
+    l_min_tilt = p[15]
+    r_arm_tilt = p[16]
+    s_start_tilt = p[17]
+    slide_tilt = m[0]
+    dx[0] = omega_tilt
+    gravity_cos_tilt_term = 9.81 * m_payload
+    c_x_payload_gravity_cos_tilt_term = c_x_payload * gravity_cos_tilt_term
+    gravity_cos_tilt = c_x_payload_gravity_cos_tilt_term
+    c_z_payload_gravity_cos_tilt_term = c_z_payload * gravity_cos_tilt_term
+    gravity_sin_tilt = c_z_payload_gravity_cos_tilt_term
+    load_inertia_tilt_term = (
+        J_y_payload
+        + (c_x_payload * c_x_payload) * m_payload
+        + (c_z_payload * c_z_payload) * m_payload
+    )
+    load_inertia_tilt = load_inertia_tilt_term
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lead_tilt_inverse = 1.0 / lead_tilt
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    lowered_tilt = (
+        (-1.0)
+        * lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+    )
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    sin_tilt = math.sin(theta_tilt)
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    linkage_sin_tilt = math.sqrt(
+        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    cos_tilt = math.cos(theta_tilt)
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt_term = math.sqrt(
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    length_tilt = length_tilt_term
+    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
+    lost_lowering_tilt = (
+        (1.0 - lowered_tilt)
+        * 1.0
+        / (abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term))
+    )
+    raised_tilt = (
+        lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+    )
+    lost_raising_tilt = (
+        (raised_tilt - 1.0) * 1.0 / (load_inertia_tilt * raised_tilt + lost_lowering_tilt_term)
+    )
+    length_tilt_by_theta_tilt = (
+        1.0
+        / length_tilt_term
+        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
+    )
+    ratio_tilt_by_theta_tilt = (
+        -math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_term
+        / (length_tilt * length_tilt)
+        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
+    )
+    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
+    driving_torque_tilt_term = J_motor_tilt * (
+        omega_tilt * omega_tilt
+    ) * ratio_tilt * ratio_tilt_by_theta_tilt - ratio_tilt * (
+        K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    )
+    b_tilt_omega_tilt = b_tilt * omega_tilt
+    driving_torque_tilt = -driving_torque_tilt_term
+    load_torque_tilt = (
+        -b_tilt_omega_tilt
+        + c_x_payload_gravity_cos_tilt_term * cos_tilt
+        + c_z_payload_gravity_cos_tilt_term * sin_tilt
+    )
+    carried_tilt = (
+        driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
+    )
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    force_tilt = (
+        -b_tilt_omega_tilt
+        + cos_tilt * gravity_cos_tilt
+        - driving_torque_tilt_term
+        + gravity_sin_tilt * sin_tilt
+        - slide_tilt
+        * (
+            0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
+            + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
+        )
+    )
+    inertia_tilt = load_inertia_tilt_term
+    mass_tilt = inertia_tilt + lost_lowering_tilt_term
+    inverse_mass_tilt = 1.0 / mass_tilt
+    accel_tilt = force_tilt * inverse_mass_tilt * (slide_tilt * slide_tilt)
+    dx[1] = accel_tilt
+    dx[2] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def jacobian(t, x, u, p, m, fx, fu, fp):
+    """Write the non-zero derivatives of mode_derivative by state, input and parameter."""
+    theta_tilt = x[0]
+    omega_tilt = x[1]
+    i_tilt = x[2]
+    u_tilt = u[0]
+    m_payload = p[0]
+    J_y_payload = p[1]
+    c_x_payload = p[2]
+    c_z_payload = p[3]
+    b_tilt = p[4]
+    L_tilt = p[5]
+    R_tilt = p[6]
+    K_t_tilt = p[7]
+    J_motor_tilt = p[8]
+    b_motor_tilt = p[9]
+    N_tilt = p[10]
+    lead_tilt = p[11]
+    d_screw_tilt = p[12]
+    f_screw_tilt = p[13]
+    l_ground_tilt = p[14]
+    l_min_tilt = p[15]
+    r_arm_tilt = p[16]
+    s_start_tilt = p[17]
+    slide_tilt = m[0]
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    cos_tilt = math.cos(theta_tilt)
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
+    linkage_sin_tilt_term_2 = math.sqrt(
+        l_ground_tilt_sq * linkage_sin_tilt_term - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    linkage_sin_tilt = linkage_sin_tilt_term_2
+    sin_tilt = math.sin(theta_tilt)
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt_term = (
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    length_tilt_term_2 = math.sqrt(length_tilt_term)
+    length_tilt = length_tilt_term_2
+    length_tilt_inverse = 1.0 / length_tilt
+    lead_tilt_inverse = 1.0 / lead_tilt
+    ratio_tilt_by_theta_tilt_term = math.pi * lead_tilt_inverse
+    ratio_tilt_by_theta_tilt_term_2 = length_tilt_inverse * ratio_tilt_by_theta_tilt_term
+    ratio_tilt_by_theta_tilt_term_3 = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
+    ratio_tilt_by_theta_tilt_term_4 = (
+        ratio_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt_term_3
+    )
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_by_theta_tilt_term_5 = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    N_tilt_ratio_tilt_by_theta_tilt_term_5 = N_tilt * ratio_tilt_by_theta_tilt_term_5
+    length_tilt_by_theta_tilt_term = (
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    )
+    length_tilt_term_2_inverse = 1.0 / length_tilt_term_2
+    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_term_2_inverse
+    ratio_tilt_by_theta_tilt_term_6 = 1.0 / (length_tilt * length_tilt)
+    ratio_tilt_by_theta_tilt_term_7 = (
+        ratio_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt_term_6
+    )
+    ratio_tilt_by_theta_tilt_term_8 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_7
+    ratio_tilt_by_theta_tilt = (
+        N_tilt * ratio_tilt_by_theta_tilt_term_4
+        - N_tilt_ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_theta_tilt_term_8
+    )
+    length_tilt_by_theta_tilt_by_theta_tilt_term = (
+        length_tilt_by_theta_tilt_term * length_tilt_term ** (-1.5)
+    )
+    length_tilt_by_theta_tilt_by_theta_tilt = (
+        -length_tilt_by_theta_tilt_by_theta_tilt_term * length_tilt_by_theta_tilt_term
+        + length_tilt_term_2_inverse
+        * (0.5 * cos_tilt_linkage_cos_tilt + 0.5 * linkage_sin_tilt_sin_tilt)
+    )
+    N_tilt_ratio_tilt_by_theta_tilt_term_2 = N_tilt * ratio_tilt_by_theta_tilt_term_2
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (
+        N_tilt_ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_theta_tilt_term_7
+    )
+    N_tilt_ratio_tilt_by_theta_tilt_term_3 = N_tilt * ratio_tilt_by_theta_tilt_term_3
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_2 = (
+        N_tilt_ratio_tilt_by_theta_tilt_term_3 * ratio_tilt_by_theta_tilt_term_7
+    )
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_3 = (
+        2.0
+        * math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_by_theta_tilt_term_5
+        / (length_tilt * length_tilt * length_tilt)
+        - ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+    )
+    ratio_tilt_by_theta_tilt_by_theta_tilt = (
+        -N_tilt_ratio_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt_term_5
+        - length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        + length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+    )
+    omega_tilt_sq = omega_tilt * omega_tilt
+    ratio_tilt_term = ratio_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt_term_5
+    ratio_tilt = N_tilt * ratio_tilt_term
+    J_motor_tilt_ratio_tilt = J_motor_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_omega_tilt_sq = J_motor_tilt_ratio_tilt * omega_tilt_sq
+    omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
+    driving_torque_tilt_by_theta_tilt_term = J_motor_tilt * omega_tilt_sq_ratio_tilt_by_theta_tilt
+    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
+    b_motor_tilt_omega_tilt_ratio_tilt = b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt_by_theta_tilt_term_2 = (
+        K_t_tilt * i_tilt
+        - 2.0 * b_motor_tilt_omega_tilt_ratio_tilt
+        - driving_torque_tilt_by_theta_tilt_term
+    )
+    driving_torque_tilt_by_theta_tilt_term_3 = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
+        - driving_torque_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt
+    )
+    driving_torque_tilt_by_theta_tilt = -driving_torque_tilt_by_theta_tilt_term_3
+    c_x_payload_sq = c_x_payload * c_x_payload
+    c_z_payload_sq = c_z_payload * c_z_payload
+    load_inertia_tilt_term = J_y_payload + c_x_payload_sq * m_payload + c_z_payload_sq * m_payload
+    load_inertia_tilt = load_inertia_tilt_term
+    load_torque_tilt_by_theta_tilt_term = 9.81 * sin_tilt
+    load_torque_tilt_by_theta_tilt_term_2 = load_torque_tilt_by_theta_tilt_term * m_payload
+    load_torque_tilt_by_theta_tilt_term_3 = (
+        c_x_payload * load_torque_tilt_by_theta_tilt_term_2
+        - 9.81 * c_z_payload * cos_tilt * m_payload
+    )
+    load_torque_tilt_by_theta_tilt = -load_torque_tilt_by_theta_tilt_term_3
+    ratio_tilt_sq = ratio_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
+    twice_ratio_tilt_by_theta_tilt = 2.0 * ratio_tilt_by_theta_tilt
+    b_tilt_omega_tilt = b_tilt * omega_tilt
+    load_torque_tilt_term = 9.81 * cos_tilt
+    c_x_payload_load_torque_tilt_term = c_x_payload * load_torque_tilt_term
+    load_torque_tilt_term_2 = c_z_payload * load_torque_tilt_by_theta_tilt_term
+    load_torque_tilt = (
+        -b_tilt_omega_tilt
+        + c_x_payload_load_torque_tilt_term * m_payload
+        + load_torque_tilt_term_2 * m_payload
+    )
+    J_motor_tilt_ratio_tilt_load_torque_tilt = J_motor_tilt_ratio_tilt * load_torque_tilt
+    carried_tilt_by_theta_tilt = (
+        -J_motor_tilt_ratio_tilt_load_torque_tilt * twice_ratio_tilt_by_theta_tilt
+        - J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_tilt
+        + driving_torque_tilt_by_theta_tilt * load_inertia_tilt
+    )
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lowered_tilt_term_2 = f_screw_tilt_lowered_tilt_term - lead_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    lowered_tilt_term_3 = f_screw_tilt_lead_tilt + lowered_tilt_term
+    lowered_tilt_term_3_inverse = 1.0 / lowered_tilt_term_3
+    lowered_tilt_term_4 = lead_tilt_inverse * lowered_tilt_term_3_inverse
+    lowered_tilt_term_lowered_tilt_term_4 = lowered_tilt_term * lowered_tilt_term_4
+    lowered_tilt = -lowered_tilt_term_2 * lowered_tilt_term_lowered_tilt_term_4
+    lost_lowering_tilt_by_theta_tilt_term = 1.0 - lowered_tilt
+    lost_lowering_tilt_by_theta_tilt_term_2 = (
+        J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
+    )
+    lost_lowering_tilt_by_theta_tilt_term_3 = (
+        lost_lowering_tilt_by_theta_tilt_term
+        * 1.0
+        / (lost_lowering_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_theta_tilt_term_2)
+        * (
+            0.0
+            if lost_lowering_tilt_by_theta_tilt_term_2 == 0
+            else math.copysign(1, lost_lowering_tilt_by_theta_tilt_term_2)
+        )
+    )
+    lost_lowering_tilt_by_theta_tilt_term_4 = (
+        J_motor_tilt_ratio_tilt * lost_lowering_tilt_by_theta_tilt_term_3
+    )
+    lost_lowering_tilt_by_theta_tilt = (
+        (-1.0) * lost_lowering_tilt_by_theta_tilt_term_4 * twice_ratio_tilt_by_theta_tilt
+    )
+    raised_tilt_term = f_screw_tilt_lowered_tilt_term + lead_tilt
+    raised_tilt_term_2 = -f_screw_tilt_lead_tilt + lowered_tilt_term
+    raised_tilt_term_2_inverse = 1.0 / raised_tilt_term_2
+    raised_tilt_term_3 = lead_tilt_inverse * raised_tilt_term_2_inverse
+    lowered_tilt_term_raised_tilt_term_3 = lowered_tilt_term * raised_tilt_term_3
+    raised_tilt = lowered_tilt_term_raised_tilt_term_3 * raised_tilt_term
+    lost_raising_tilt_by_theta_tilt_term = raised_tilt - 1.0
+    lost_raising_tilt_by_theta_tilt_term_2 = (
+        J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
+    )
+    lost_raising_tilt_by_theta_tilt_term_3 = (
+        lost_raising_tilt_by_theta_tilt_term
+        * 1.0
+        / (lost_raising_tilt_by_theta_tilt_term_2 * lost_raising_tilt_by_theta_tilt_term_2)
+    )
+    lost_raising_tilt_by_theta_tilt_term_4 = (
+        J_motor_tilt_ratio_tilt * lost_raising_tilt_by_theta_tilt_term_3
+    )
+    lost_raising_tilt_by_theta_tilt = (
+        (-1.0) * lost_raising_tilt_by_theta_tilt_term_4 * twice_ratio_tilt_by_theta_tilt
+    )
+    mass_tilt = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt_term
+    inverse_mass_tilt = 1.0 / mass_tilt
+    accel_tilt_term = inverse_mass_tilt * (slide_tilt * slide_tilt)
+    lost_lowering_tilt_term = 1.0 / (abs(lost_lowering_tilt_by_theta_tilt_term_2))
+    lost_lowering_tilt = lost_lowering_tilt_by_theta_tilt_term * lost_lowering_tilt_term
+    lost_raising_tilt_by_theta_tilt_term_2_inverse = 1.0 / lost_raising_tilt_by_theta_tilt_term_2
+    lost_raising_tilt = (
+        lost_raising_tilt_by_theta_tilt_term * lost_raising_tilt_by_theta_tilt_term_2_inverse
+    )
+    accel_tilt_by_theta_tilt_term = lost_lowering_tilt + lost_raising_tilt
+    driving_torque_tilt_term = driving_torque_tilt_by_theta_tilt_term * ratio_tilt - ratio_tilt * (
+        K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
+    )
+    driving_torque_tilt = -driving_torque_tilt_term
+    carried_tilt = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
+    )
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    accel_tilt_by_theta_tilt_term_2 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
+    accel_tilt_by_theta_tilt_term_3 = slide_tilt * (
+        0.5
+        * accel_tilt_by_theta_tilt_term
+        * slide_tilt
+        * (0.0 if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))
+        + accel_tilt_by_theta_tilt_term_2 * slide_tilt
+    )
+    accel_tilt_by_theta_tilt_term_4 = abs(carried_tilt_slide_tilt)
+    half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
+    accel_tilt_by_theta_tilt_term_5 = slide_tilt * (
+        0.5 * accel_tilt_by_theta_tilt_term_4 - half_carried_tilt_slide_tilt
+    )
+    half_accel_tilt_by_theta_tilt_term_4 = 0.5 * accel_tilt_by_theta_tilt_term_4
+    accel_tilt_by_theta_tilt_term_6 = slide_tilt * (
+        half_accel_tilt_by_theta_tilt_term_4 + half_carried_tilt_slide_tilt
+    )
+    force_tilt = (
+        -b_tilt_omega_tilt
+        + 9.81 * c_x_payload * cos_tilt * m_payload
+        + 9.81 * c_z_payload * m_payload * sin_tilt
+        - driving_torque_tilt_term
+        - slide_tilt
+        * (
+            accel_tilt_by_theta_tilt_term * half_accel_tilt_by_theta_tilt_term_4
+            + accel_tilt_by_theta_tilt_term_2 * carried_tilt_slide_tilt
+        )
+    )
+    accel_tilt = accel_tilt_term * force_tilt
+    J_motor_tilt_ratio_tilt_accel_tilt = J_motor_tilt_ratio_tilt * accel_tilt
+    fx[1, 0] = accel_tilt_term * (
+        -J_motor_tilt_ratio_tilt_accel_tilt * twice_ratio_tilt_by_theta_tilt
+        - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_theta_tilt
+        - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_theta_tilt
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_theta_tilt
+        - driving_torque_tilt_by_theta_tilt_term_3
+        - load_torque_tilt_by_theta_tilt_term_3
+    )
+    L_tilt_inverse = 1.0 / L_tilt
+    K_t_tilt_L_tilt_inverse_omega_tilt = K_t_tilt * L_tilt_inverse * omega_tilt
+    fx[2, 0] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_theta_tilt
+    fx[0, 1] = 1.0
+    driving_torque_tilt_by_omega_tilt_term = (
+        J_motor_tilt * omega_tilt_ratio_tilt * twice_ratio_tilt_by_theta_tilt
+        + b_motor_tilt * ratio_tilt_sq
+    )
+    driving_torque_tilt_by_omega_tilt = -driving_torque_tilt_by_omega_tilt_term
+    load_torque_tilt_by_omega_tilt = -b_tilt
+    carried_tilt_by_omega_tilt = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_tilt
+        + driving_torque_tilt_by_omega_tilt * load_inertia_tilt
+    )
+    fx[1, 1] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_omega_tilt
+        - b_tilt
+        - driving_torque_tilt_by_omega_tilt_term
+    )
+    K_t_tilt_ratio_tilt = K_t_tilt * ratio_tilt
+    fx[2, 1] = -K_t_tilt_ratio_tilt * L_tilt_inverse
+    driving_torque_tilt_by_i_tilt = K_t_tilt_ratio_tilt
+    carried_tilt_by_i_tilt = driving_torque_tilt_by_i_tilt * load_inertia_tilt
+    fx[1, 2] = accel_tilt_term * (
+        K_t_tilt_ratio_tilt - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_i_tilt
+    )
+    fx[2, 2] = -L_tilt_inverse * R_tilt
+    fu[2, 0] = L_tilt_inverse
+    c_x_payload_sq_plus_c_z_payload_sq = c_x_payload_sq + c_z_payload_sq
+    load_inertia_tilt_by_m_payload = c_x_payload_sq_plus_c_z_payload_sq
+    load_torque_tilt_by_m_payload = c_x_payload_load_torque_tilt_term + load_torque_tilt_term_2
+    carried_tilt_by_m_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_m_payload
+        + driving_torque_tilt * load_inertia_tilt_by_m_payload
+    )
+    lost_lowering_tilt_by_m_payload_term = lost_lowering_tilt_by_theta_tilt_term_3 * lowered_tilt
+    lost_lowering_tilt_by_m_payload = (
+        (-1.0) * load_inertia_tilt_by_m_payload * lost_lowering_tilt_by_m_payload_term
+    )
+    lost_raising_tilt_by_m_payload_term = lost_raising_tilt_by_theta_tilt_term_3 * raised_tilt
+    lost_raising_tilt_by_m_payload = (
+        (-1.0) * load_inertia_tilt_by_m_payload * lost_raising_tilt_by_m_payload_term
+    )
+    fp[1, 0] = accel_tilt_term * (
+        -accel_tilt * c_x_payload_sq_plus_c_z_payload_sq
+        - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_m_payload
+        - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_m_payload
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_m_payload
+        + 9.81 * c_x_payload * cos_tilt
+        + 9.81 * c_z_payload * sin_tilt
+    )
+    load_inertia_tilt_by_J_y_payload = 1.0
+    carried_tilt_by_J_y_payload = driving_torque_tilt * load_inertia_tilt_by_J_y_payload
+    lost_lowering_tilt_by_J_y_payload = (
+        (-1.0) * load_inertia_tilt_by_J_y_payload * lost_lowering_tilt_by_m_payload_term
+    )
+    lost_raising_tilt_by_J_y_payload = (
+        (-1.0) * load_inertia_tilt_by_J_y_payload * lost_raising_tilt_by_m_payload_term
+    )
+    fp[1, 1] = accel_tilt_term * (
+        -accel_tilt
+        - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_J_y_payload
+        - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_J_y_payload
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_J_y_payload
+    )
+    twice_m_payload = 2.0 * m_payload
+    c_x_payload_twice_m_payload = c_x_payload * twice_m_payload
+    load_inertia_tilt_by_c_x_payload = c_x_payload_twice_m_payload
+    load_torque_tilt_by_c_x_payload = load_torque_tilt_term * m_payload
+    carried_tilt_by_c_x_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_x_payload
+        + driving_torque_tilt * load_inertia_tilt_by_c_x_payload
+    )
+    lost_lowering_tilt_by_c_x_payload = (
+        (-1.0) * load_inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_m_payload_term
+    )
+    lost_raising_tilt_by_c_x_payload = (
+        (-1.0) * load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_m_payload_term
+    )
+    fp[1, 2] = accel_tilt_term * (
+        -accel_tilt * c_x_payload_twice_m_payload
+        - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_c_x_payload
+        - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_c_x_payload
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_c_x_payload
+        + 9.81 * cos_tilt * m_payload
+    )
+    c_z_payload_twice_m_payload = c_z_payload * twice_m_payload
+    load_inertia_tilt_by_c_z_payload = c_z_payload_twice_m_payload
+    load_torque_tilt_by_c_z_payload = load_torque_tilt_by_theta_tilt_term_2
+    carried_tilt_by_c_z_payload = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_z_payload
+        + driving_torque_tilt * load_inertia_tilt_by_c_z_payload
+    )
+    lost_lowering_tilt_by_c_z_payload = (
+        (-1.0) * load_inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_m_payload_term
+    )
+    lost_raising_tilt_by_c_z_payload = (
+        (-1.0) * load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_m_payload_term
+    )
+    fp[1, 3] = accel_tilt_term * (
+        -accel_tilt * c_z_payload_twice_m_payload
+        - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_c_z_payload
+        - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_c_z_payload
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_c_z_payload
+        + 9.81 * m_payload * sin_tilt
+    )
+    load_torque_tilt_by_b_tilt = -omega_tilt
+    carried_tilt_by_b_tilt = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_tilt
+    fp[1, 4] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_b_tilt - omega_tilt
+    )
+    fp[2, 5] = -(-K_t_tilt_ratio_tilt * omega_tilt - R_tilt * i_tilt + u_tilt) / (L_tilt * L_tilt)
+    fp[2, 6] = -L_tilt_inverse * i_tilt
+    driving_torque_tilt_by_K_t_tilt = i_tilt * ratio_tilt
+    carried_tilt_by_K_t_tilt = driving_torque_tilt_by_K_t_tilt * load_inertia_tilt
+    fp[1, 7] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_K_t_tilt + i_tilt * ratio_tilt
+    )
+    fp[2, 7] = -L_tilt_inverse * omega_tilt_ratio_tilt
+    driving_torque_tilt_by_J_motor_tilt_term = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
+    driving_torque_tilt_by_J_motor_tilt = -driving_torque_tilt_by_J_motor_tilt_term
+    carried_tilt_by_J_motor_tilt = (
+        driving_torque_tilt_by_J_motor_tilt * load_inertia_tilt - load_torque_tilt * ratio_tilt_sq
+    )
+    lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_term_3 * ratio_tilt_sq
+    lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term_3 * ratio_tilt_sq
+    fp[1, 8] = accel_tilt_term * (
+        -accel_tilt * ratio_tilt_sq
+        - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_J_motor_tilt
+        - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_J_motor_tilt
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_J_motor_tilt
+        - driving_torque_tilt_by_J_motor_tilt_term
+    )
+    omega_tilt_ratio_tilt_sq = omega_tilt * ratio_tilt_sq
+    driving_torque_tilt_by_b_motor_tilt = -omega_tilt_ratio_tilt_sq
+    carried_tilt_by_b_motor_tilt = driving_torque_tilt_by_b_motor_tilt * load_inertia_tilt
+    fp[1, 9] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_b_motor_tilt - omega_tilt_ratio_tilt_sq
+    )
+    ratio_tilt_by_N_tilt = ratio_tilt_term
+    ratio_tilt_by_theta_tilt_by_N_tilt = (
+        ratio_tilt_by_theta_tilt_term_4
+        - ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_theta_tilt_term_8
+    )
+    driving_torque_tilt_by_N_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_N_tilt
+        - driving_torque_tilt_by_theta_tilt_term_2 * ratio_tilt_by_N_tilt
+    )
+    driving_torque_tilt_by_N_tilt = -driving_torque_tilt_by_N_tilt_term
+    carried_tilt_by_N_tilt_term = 2.0 * J_motor_tilt_ratio_tilt_load_torque_tilt
+    carried_tilt_by_N_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
+        + driving_torque_tilt_by_N_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_N_tilt_term = 2.0 * lost_lowering_tilt_by_theta_tilt_term_4
+    lost_lowering_tilt_by_N_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
+    lost_raising_tilt_by_N_tilt_term = 2.0 * lost_raising_tilt_by_theta_tilt_term_4
+    lost_raising_tilt_by_N_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
+    twice_J_motor_tilt_ratio_tilt_accel_tilt = 2.0 * J_motor_tilt_ratio_tilt_accel_tilt
+    fp[1, 10] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_N_tilt
+        - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_N_tilt
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_N_tilt
+        - driving_torque_tilt_by_N_tilt_term
+        - ratio_tilt_by_N_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+    )
+    fp[2, 10] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_N_tilt
+    ratio_tilt_by_lead_tilt_term = 1.0 / (lead_tilt * lead_tilt)
+    ratio_tilt_by_lead_tilt_term_2 = math.pi * length_tilt_inverse * ratio_tilt_by_lead_tilt_term
+    ratio_tilt_by_lead_tilt = (
+        (-1.0) * N_tilt_ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_lead_tilt_term_2
+    )
+    ratio_tilt_by_theta_tilt_by_lead_tilt = (
+        math.pi
+        * N_tilt
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_by_lead_tilt_term
+        * ratio_tilt_by_theta_tilt_term_5
+        * ratio_tilt_by_theta_tilt_term_6
+        - N_tilt_ratio_tilt_by_theta_tilt_term_3 * ratio_tilt_by_lead_tilt_term_2
+    )
+    driving_torque_tilt_by_lead_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_lead_tilt
+        - driving_torque_tilt_by_theta_tilt_term_2 * ratio_tilt_by_lead_tilt
+    )
+    driving_torque_tilt_by_lead_tilt = -driving_torque_tilt_by_lead_tilt_term
+    carried_tilt_by_lead_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
+        + driving_torque_tilt_by_lead_tilt * load_inertia_tilt
+    )
+    lowered_tilt_by_lead_tilt_term = lowered_tilt_term * ratio_tilt_by_lead_tilt_term
+    lowered_tilt_by_lead_tilt_term_2 = f_screw_tilt_lowered_tilt_term * lead_tilt_inverse
+    lowered_tilt_by_lead_tilt_term_3 = lowered_tilt_term_2 * lowered_tilt_term_3_inverse
+    lowered_tilt_by_lead_tilt_term_4 = 1.0 / (lowered_tilt_term_3 * lowered_tilt_term_3)
+    lowered_tilt_by_lead_tilt = (
+        lowered_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt_term_3
+        + lowered_tilt_by_lead_tilt_term_2 * lowered_tilt_by_lead_tilt_term_4 * lowered_tilt_term_2
+        + lowered_tilt_term_lowered_tilt_term_4
+    )
+    lost_lowering_tilt_by_lead_tilt_term = (
+        -load_inertia_tilt * lost_lowering_tilt_by_theta_tilt_term_3 - lost_lowering_tilt_term
+    )
+    lost_lowering_tilt_by_lead_tilt = (
+        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
+        + lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt
+    )
+    raised_tilt_by_lead_tilt_term = raised_tilt_term * raised_tilt_term_2_inverse
+    raised_tilt_by_lead_tilt_term_2 = raised_tilt_term / (raised_tilt_term_2 * raised_tilt_term_2)
+    raised_tilt_by_lead_tilt = (
+        -lowered_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt_term
+        + lowered_tilt_by_lead_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
+        + lowered_tilt_term_raised_tilt_term_3
+    )
+    lost_raising_tilt_by_lead_tilt_term = (
+        -load_inertia_tilt * lost_raising_tilt_by_theta_tilt_term_3
+        + lost_raising_tilt_by_theta_tilt_term_2_inverse
+    )
+    lost_raising_tilt_by_lead_tilt = (
+        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
+        + lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt
+    )
+    fp[1, 11] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_lead_tilt
+        - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_lead_tilt
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_lead_tilt
+        - driving_torque_tilt_by_lead_tilt_term
+        - ratio_tilt_by_lead_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+    )
+    fp[2, 11] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_lead_tilt
+    lowered_tilt_by_d_screw_tilt_term = math.pi * math.pi
+    lowered_tilt_by_d_screw_tilt_term_2 = d_screw_tilt * lowered_tilt_by_d_screw_tilt_term
+    lowered_tilt_by_d_screw_tilt_term_3 = f_screw_tilt * lowered_tilt_by_d_screw_tilt_term_2
+    lowered_tilt_by_d_screw_tilt = (
+        d_screw_tilt
+        * lead_tilt_inverse
+        * lowered_tilt_by_d_screw_tilt_term
+        * lowered_tilt_by_lead_tilt_term_4
+        * lowered_tilt_term_2
+        - lowered_tilt_by_d_screw_tilt_term_3 * lowered_tilt_term_4
+        - lowered_tilt_by_lead_tilt_term_3 * ratio_tilt_by_theta_tilt_term
+    )
+    lost_lowering_tilt_by_d_screw_tilt = (
+        lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_d_screw_tilt
+    )
+    raised_tilt_by_d_screw_tilt = (
+        -lead_tilt_inverse * lowered_tilt_by_d_screw_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
+        + lowered_tilt_by_d_screw_tilt_term_3 * raised_tilt_term_3
+        + raised_tilt_by_lead_tilt_term * ratio_tilt_by_theta_tilt_term
+    )
+    lost_raising_tilt_by_d_screw_tilt = (
+        lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_d_screw_tilt
+    )
+    fp[1, 12] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_d_screw_tilt
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_d_screw_tilt
+    )
+    lowered_tilt_by_f_screw_tilt_term = (
+        d_screw_tilt * d_screw_tilt
+    ) * lowered_tilt_by_d_screw_tilt_term
+    lowered_tilt_by_f_screw_tilt = (
+        math.pi * d_screw_tilt * lowered_tilt_by_lead_tilt_term_4 * lowered_tilt_term_2
+        - lowered_tilt_by_f_screw_tilt_term * lowered_tilt_term_4
+    )
+    lost_lowering_tilt_by_f_screw_tilt = (
+        lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_f_screw_tilt
+    )
+    raised_tilt_by_f_screw_tilt = (
+        lowered_tilt_by_f_screw_tilt_term * raised_tilt_term_3
+        + lowered_tilt_term * raised_tilt_by_lead_tilt_term_2
+    )
+    lost_raising_tilt_by_f_screw_tilt = (
+        lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_f_screw_tilt
+    )
+    fp[1, 13] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_f_screw_tilt
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_f_screw_tilt
+    )
+    linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
+    linkage_sin_tilt_term_2_inverse = 1.0 / linkage_sin_tilt_term_2
+    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_term_2_inverse
+    linkage_sin_tilt_by_l_ground_tilt = (
+        l_ground_tilt * linkage_sin_tilt_term * linkage_sin_tilt_term_2_inverse
+        - linkage_cos_tilt_by_l_ground_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    half_length_tilt_term_2_inverse = 0.5 * length_tilt_term_2_inverse
+    cos_tilt_half_length_tilt_term_2_inverse = cos_tilt * half_length_tilt_term_2_inverse
+    half_length_tilt_term_2_inverse_sin_tilt = half_length_tilt_term_2_inverse * sin_tilt
+    length_tilt_by_l_ground_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_ground_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
+        + l_ground_tilt * length_tilt_term_2_inverse
+    )
+    ratio_tilt_by_l_ground_tilt_term = N_tilt_ratio_tilt_by_theta_tilt_term_2 * cos_tilt
+    ratio_tilt_by_l_ground_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_l_ground_tilt
+        * sin_tilt
+        - length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        - linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term = (
+        0.5 * length_tilt_by_theta_tilt_by_theta_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
+        cos_tilt * length_tilt_by_theta_tilt_by_l_ground_tilt_term
+        + half_length_tilt_term_2_inverse_sin_tilt
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 = (
+        -cos_tilt_half_length_tilt_term_2_inverse
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term * sin_tilt
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt = (
+        -l_ground_tilt * length_tilt_by_theta_tilt_by_theta_tilt_term
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_ground_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_ground_tilt
+    )
+    N_tilt_ratio_tilt_by_theta_tilt_term_8 = N_tilt * ratio_tilt_by_theta_tilt_term_8
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt_term = (
+        N_tilt_ratio_tilt_by_theta_tilt_term_2 * sin_tilt
+        + N_tilt_ratio_tilt_by_theta_tilt_term_8 * cos_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
+        -N_tilt_ratio_tilt_by_theta_tilt_term_8 * sin_tilt + ratio_tilt_by_l_ground_tilt_term
+    )
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt = (
+        length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        + linkage_cos_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    driving_torque_tilt_by_l_ground_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_ground_tilt
+        - driving_torque_tilt_by_theta_tilt_term_2 * ratio_tilt_by_l_ground_tilt
+    )
+    driving_torque_tilt_by_l_ground_tilt = -driving_torque_tilt_by_l_ground_tilt_term
+    carried_tilt_by_l_ground_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+        + driving_torque_tilt_by_l_ground_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_l_ground_tilt = (
+        (-1.0) * lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+    )
+    lost_raising_tilt_by_l_ground_tilt = (
+        (-1.0) * lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+    )
+    fp[1, 14] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_l_ground_tilt
+        - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_l_ground_tilt
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_l_ground_tilt
+        - driving_torque_tilt_by_l_ground_tilt_term
+        - ratio_tilt_by_l_ground_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+    )
+    fp[2, 14] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_l_ground_tilt
+    linkage_cos_tilt_by_l_min_tilt_term = -2.0 * l_min_tilt - 2.0 * s_start_tilt
+    linkage_cos_tilt_by_l_min_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    linkage_sin_tilt_by_l_min_tilt = (
+        (-1.0) * linkage_cos_tilt_by_l_min_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_l_min_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_min_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_min_tilt
+    )
+    ratio_tilt_by_l_min_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_l_min_tilt
+        * sin_tilt
+        - length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        - linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_l_min_tilt = (
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_min_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_min_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_l_min_tilt = (
+        length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        + linkage_cos_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    driving_torque_tilt_by_l_min_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_min_tilt
+        - driving_torque_tilt_by_theta_tilt_term_2 * ratio_tilt_by_l_min_tilt
+    )
+    driving_torque_tilt_by_l_min_tilt = -driving_torque_tilt_by_l_min_tilt_term
+    carried_tilt_by_l_min_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
+        + driving_torque_tilt_by_l_min_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_l_min_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
+    lost_raising_tilt_by_l_min_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
+    fp[1, 15] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_l_min_tilt
+        - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_l_min_tilt
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_l_min_tilt
+        - driving_torque_tilt_by_l_min_tilt_term
+        - ratio_tilt_by_l_min_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+    )
+    fp[2, 15] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_l_min_tilt
+    linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
+    linkage_sin_tilt_by_r_arm_tilt = (
+        4.0 * l_ground_tilt_sq * linkage_sin_tilt_term_2_inverse * r_arm_tilt
+        - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_r_arm_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_r_arm_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
+        + length_tilt_term_2_inverse * r_arm_tilt
+    )
+    ratio_tilt_by_r_arm_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_r_arm_tilt
+        * sin_tilt
+        - length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        - linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_r_arm_tilt = (
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_r_arm_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_r_arm_tilt
+        - length_tilt_by_theta_tilt_by_theta_tilt_term * r_arm_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_r_arm_tilt = (
+        length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        + linkage_cos_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    driving_torque_tilt_by_r_arm_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_r_arm_tilt
+        - driving_torque_tilt_by_theta_tilt_term_2 * ratio_tilt_by_r_arm_tilt
+    )
+    driving_torque_tilt_by_r_arm_tilt = -driving_torque_tilt_by_r_arm_tilt_term
+    carried_tilt_by_r_arm_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
+        + driving_torque_tilt_by_r_arm_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_r_arm_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
+    lost_raising_tilt_by_r_arm_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
+    fp[1, 16] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_r_arm_tilt
+        - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_r_arm_tilt
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_r_arm_tilt
+        - driving_torque_tilt_by_r_arm_tilt_term
+        - ratio_tilt_by_r_arm_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+    )
+    fp[2, 16] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_r_arm_tilt
+    linkage_cos_tilt_by_s_start_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    linkage_sin_tilt_by_s_start_tilt = (
+        (-1.0) * linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_s_start_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_s_start_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_s_start_tilt
+    )
+    ratio_tilt_by_s_start_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_s_start_tilt
+        * sin_tilt
+        - length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        - linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_s_start_tilt = (
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_s_start_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_s_start_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_s_start_tilt = (
+        length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    driving_torque_tilt_by_s_start_tilt_term = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_s_start_tilt
+        - driving_torque_tilt_by_theta_tilt_term_2 * ratio_tilt_by_s_start_tilt
+    )
+    driving_torque_tilt_by_s_start_tilt = -driving_torque_tilt_by_s_start_tilt_term
+    carried_tilt_by_s_start_tilt = (
+        -carried_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+        + driving_torque_tilt_by_s_start_tilt * load_inertia_tilt
+    )
+    lost_lowering_tilt_by_s_start_tilt = (
+        (-1.0) * lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+    )
+    lost_raising_tilt_by_s_start_tilt = (
+        (-1.0) * lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+    )
+    fp[1, 17] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_s_start_tilt
+        - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_s_start_tilt
+        - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_s_start_tilt
+        - driving_torque_tilt_by_s_start_tilt_term
+        - ratio_tilt_by_s_start_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
+    )
+    fp[2, 17] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_s_start_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def guards(t, x, u, p, m, g):
+    """Write holding and breakaway torques, gap separations and contact torques into g."""
+    theta_tilt = x[0]
+    omega_tilt = x[1]
+    i_tilt = x[2]
+    m_payload = p[0]
+    c_x_payload = p[2]
+    c_z_payload = p[3]
+    b_tilt = p[4]
+    K_t_tilt = p[7]
+    J_motor_tilt = p[8]
+    b_motor_tilt = p[9]
+    N_tilt = p[10]
+    lead_tilt = p[11]
+    d_screw_tilt = p[12]
+    f_screw_tilt = p[13]
+    l_ground_tilt = p[14]
+    l_min_tilt = p[15]
+    r_arm_tilt = p[16]
+    s_start_tilt = p[17]
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    sin_tilt = math.sin(theta_tilt)
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    linkage_sin_tilt = math.sqrt(
+        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    cos_tilt = math.cos(theta_tilt)
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt_term = math.sqrt(
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    length_tilt = length_tilt_term
+    lead_tilt_inverse = 1.0 / lead_tilt
+    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    length_tilt_by_theta_tilt = (
+        1.0
+        / length_tilt_term
+        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
+    )
+    ratio_tilt_by_theta_tilt = (
+        -math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_term
+        / (length_tilt * length_tilt)
+        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
+    )
+    holding_tilt_term = (
+        J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
+    )
+    holding_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt
+    b_tilt_omega_tilt = b_tilt * omega_tilt
+    holding_tilt_term_3 = 9.81 * m_payload
+    holding_tilt_term_4 = (
+        -b_tilt_omega_tilt
+        + c_x_payload * cos_tilt * holding_tilt_term_3
+        + c_z_payload * holding_tilt_term_3 * sin_tilt
+    )
+    g[0] = -holding_tilt_term + holding_tilt_term_2 * ratio_tilt + holding_tilt_term_4
+    load_torque_tilt = holding_tilt_term_4
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    lowered_tilt = (
+        (-1.0)
+        * lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+    )
+    raised_tilt = (
+        lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+    )
+    forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
+    forward_tilt_term_2 = abs(load_torque_tilt)
+    forward_tilt_term_3 = -lowered_tilt + raised_tilt
+    g[1] = -forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
+    g[2] = forward_tilt_term + 0.5 * forward_tilt_term_2 * forward_tilt_term_3
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def guard_jacobian(t, x, u, p, m, gx, gp):
+    """Write the non-zero derivatives of guards by state and parameter."""
+    theta_tilt = x[0]
+    omega_tilt = x[1]
+    i_tilt = x[2]
+    m_payload = p[0]
+    c_x_payload = p[2]
+    c_z_payload = p[3]
+    b_tilt = p[4]
+    K_t_tilt = p[7]
+    J_motor_tilt = p[8]
+    b_motor_tilt = p[9]
+    N_tilt = p[10]
+    lead_tilt = p[11]
+    d_screw_tilt = p[12]
+    f_screw_tilt = p[13]
+    l_ground_tilt = p[14]
+    l_min_tilt = p[15]
+    r_arm_tilt = p[16]
+    s_start_tilt = p[17]
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    cos_tilt = math.cos(theta_tilt)
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
+    linkage_sin_tilt_term_2 = math.sqrt(
+        l_ground_tilt_sq * linkage_sin_tilt_term - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    linkage_sin_tilt = linkage_sin_tilt_term_2
+    sin_tilt = math.sin(theta_tilt)
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt_term = (
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    length_tilt_term_2 = math.sqrt(length_tilt_term)
+    length_tilt = length_tilt_term_2
+    length_tilt_inverse = 1.0 / length_tilt
+    lead_tilt_inverse = 1.0 / lead_tilt
+    ratio_tilt_by_theta_tilt_term = math.pi * lead_tilt_inverse
+    ratio_tilt_by_theta_tilt_term_2 = length_tilt_inverse * ratio_tilt_by_theta_tilt_term
+    ratio_tilt_by_theta_tilt_term_3 = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
+    ratio_tilt_by_theta_tilt_term_4 = (
+        ratio_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt_term_3
+    )
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_by_theta_tilt_term_5 = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    N_tilt_ratio_tilt_by_theta_tilt_term_5 = N_tilt * ratio_tilt_by_theta_tilt_term_5
+    length_tilt_by_theta_tilt_term = (
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    )
+    length_tilt_term_2_inverse = 1.0 / length_tilt_term_2
+    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_term_2_inverse
+    ratio_tilt_by_theta_tilt_term_6 = 1.0 / (length_tilt * length_tilt)
+    ratio_tilt_by_theta_tilt_term_7 = (
+        ratio_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt_term_6
+    )
+    ratio_tilt_by_theta_tilt_term_8 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_7
+    ratio_tilt_by_theta_tilt = (
+        N_tilt * ratio_tilt_by_theta_tilt_term_4
+        - N_tilt_ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_theta_tilt_term_8
+    )
+    length_tilt_by_theta_tilt_by_theta_tilt_term = (
+        length_tilt_by_theta_tilt_term * length_tilt_term ** (-1.5)
+    )
+    length_tilt_by_theta_tilt_by_theta_tilt = (
+        -length_tilt_by_theta_tilt_by_theta_tilt_term * length_tilt_by_theta_tilt_term
+        + length_tilt_term_2_inverse
+        * (0.5 * cos_tilt_linkage_cos_tilt + 0.5 * linkage_sin_tilt_sin_tilt)
+    )
+    N_tilt_ratio_tilt_by_theta_tilt_term_2 = N_tilt * ratio_tilt_by_theta_tilt_term_2
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (
+        N_tilt_ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_theta_tilt_term_7
+    )
+    N_tilt_ratio_tilt_by_theta_tilt_term_3 = N_tilt * ratio_tilt_by_theta_tilt_term_3
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_2 = (
+        N_tilt_ratio_tilt_by_theta_tilt_term_3 * ratio_tilt_by_theta_tilt_term_7
+    )
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_3 = (
+        2.0
+        * math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_by_theta_tilt_term_5
+        / (length_tilt * length_tilt * length_tilt)
+        - ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+    )
+    ratio_tilt_by_theta_tilt_by_theta_tilt = (
+        -N_tilt_ratio_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt_term_5
+        - length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        + length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+    )
+    omega_tilt_sq = omega_tilt * omega_tilt
+    ratio_tilt_term = ratio_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt_term_5
+    ratio_tilt = N_tilt * ratio_tilt_term
+    J_motor_tilt_ratio_tilt = J_motor_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_omega_tilt_sq = J_motor_tilt_ratio_tilt * omega_tilt_sq
+    omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
+    holding_tilt_by_theta_tilt_term = J_motor_tilt * omega_tilt_sq_ratio_tilt_by_theta_tilt
+    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
+    b_motor_tilt_omega_tilt_ratio_tilt = b_motor_tilt * omega_tilt_ratio_tilt
+    holding_tilt_by_theta_tilt_term_2 = (
+        K_t_tilt * i_tilt
+        - 2.0 * b_motor_tilt_omega_tilt_ratio_tilt
+        - holding_tilt_by_theta_tilt_term
+    )
+    holding_tilt_by_theta_tilt_term_3 = (
+        J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
+        - holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt
+    )
+    holding_tilt_by_theta_tilt_term_4 = 9.81 * sin_tilt
+    holding_tilt_by_theta_tilt_term_5 = holding_tilt_by_theta_tilt_term_4 * m_payload
+    holding_tilt_by_theta_tilt_term_6 = (
+        c_x_payload * holding_tilt_by_theta_tilt_term_5 - 9.81 * c_z_payload * cos_tilt * m_payload
+    )
+    gx[0, 0] = -holding_tilt_by_theta_tilt_term_3 - holding_tilt_by_theta_tilt_term_6
+    load_torque_tilt_by_theta_tilt = -holding_tilt_by_theta_tilt_term_6
+    b_tilt_omega_tilt = b_tilt * omega_tilt
+    load_torque_tilt_term = 9.81 * cos_tilt
+    c_x_payload_load_torque_tilt_term = c_x_payload * load_torque_tilt_term
+    load_torque_tilt_term_2 = c_z_payload * holding_tilt_by_theta_tilt_term_4
+    load_torque_tilt = (
+        -b_tilt_omega_tilt
+        + c_x_payload_load_torque_tilt_term * m_payload
+        + load_torque_tilt_term_2 * m_payload
+    )
+    forward_tilt_by_theta_tilt_term = (
+        0.0 if load_torque_tilt == 0 else math.copysign(1, load_torque_tilt)
+    )
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lowered_tilt_term_2 = f_screw_tilt_lowered_tilt_term - lead_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    lowered_tilt_term_3 = f_screw_tilt_lead_tilt + lowered_tilt_term
+    lowered_tilt_term_3_inverse = 1.0 / lowered_tilt_term_3
+    lowered_tilt_term_4 = lead_tilt_inverse * lowered_tilt_term_3_inverse
+    lowered_tilt_term_lowered_tilt_term_4 = lowered_tilt_term * lowered_tilt_term_4
+    lowered_tilt = -lowered_tilt_term_2 * lowered_tilt_term_lowered_tilt_term_4
+    raised_tilt_term = f_screw_tilt_lowered_tilt_term + lead_tilt
+    raised_tilt_term_2 = -f_screw_tilt_lead_tilt + lowered_tilt_term
+    raised_tilt_term_2_inverse = 1.0 / raised_tilt_term_2
+    raised_tilt_term_3 = lead_tilt_inverse * raised_tilt_term_2_inverse
+    lowered_tilt_term_raised_tilt_term_3 = lowered_tilt_term * raised_tilt_term_3
+    raised_tilt = lowered_tilt_term_raised_tilt_term_3 * raised_tilt_term
+    forward_tilt_by_theta_tilt_term_2 = -lowered_tilt + raised_tilt
+    forward_tilt_by_theta_tilt_term_3 = 0.5 * lowered_tilt + 0.5 * raised_tilt - 1.0
+    forward_tilt_by_theta_tilt_term_4 = (
+        0.5 * forward_tilt_by_theta_tilt_term * forward_tilt_by_theta_tilt_term_2
+        - forward_tilt_by_theta_tilt_term_3
+    )
+    gx[1, 0] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_theta_tilt
+    backward_tilt_by_theta_tilt_term = (
+        0.5 * forward_tilt_by_theta_tilt_term * forward_tilt_by_theta_tilt_term_2
+        + forward_tilt_by_theta_tilt_term_3
+    )
+    gx[2, 0] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_theta_tilt
+    ratio_tilt_sq = ratio_tilt * ratio_tilt
+    twice_ratio_tilt_by_theta_tilt = 2.0 * ratio_tilt_by_theta_tilt
+    holding_tilt_by_omega_tilt_term = (
+        J_motor_tilt * omega_tilt_ratio_tilt * twice_ratio_tilt_by_theta_tilt
+        + b_motor_tilt * ratio_tilt_sq
+    )
+    gx[0, 1] = -b_tilt - holding_tilt_by_omega_tilt_term
+    load_torque_tilt_by_omega_tilt = -b_tilt
+    gx[1, 1] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_omega_tilt
+    gx[2, 1] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_omega_tilt
+    K_t_tilt_ratio_tilt = K_t_tilt * ratio_tilt
+    gx[0, 2] = K_t_tilt_ratio_tilt
+    holding_tilt_by_m_payload_term = c_x_payload_load_torque_tilt_term + load_torque_tilt_term_2
+    gp[0, 0] = holding_tilt_by_m_payload_term
+    load_torque_tilt_by_m_payload = holding_tilt_by_m_payload_term
+    gp[1, 0] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_m_payload
+    gp[2, 0] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_m_payload
+    load_torque_tilt_term_m_payload = load_torque_tilt_term * m_payload
+    gp[0, 2] = load_torque_tilt_term_m_payload
+    load_torque_tilt_by_c_x_payload = load_torque_tilt_term_m_payload
+    gp[1, 2] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_c_x_payload
+    gp[2, 2] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_c_x_payload
+    gp[0, 3] = holding_tilt_by_theta_tilt_term_5
+    load_torque_tilt_by_c_z_payload = holding_tilt_by_theta_tilt_term_5
+    gp[1, 3] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_c_z_payload
+    gp[2, 3] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_c_z_payload
+    minus_omega_tilt = -omega_tilt
+    gp[0, 4] = minus_omega_tilt
+    load_torque_tilt_by_b_tilt = minus_omega_tilt
+    gp[1, 4] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_b_tilt
+    gp[2, 4] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_b_tilt
+    i_tilt_ratio_tilt = i_tilt * ratio_tilt
+    gp[0, 7] = i_tilt_ratio_tilt
+    holding_tilt_by_J_motor_tilt_term = -omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
+    gp[0, 8] = holding_tilt_by_J_motor_tilt_term
+    minus_omega_tilt_ratio_tilt_sq = -omega_tilt * ratio_tilt_sq
+    gp[0, 9] = minus_omega_tilt_ratio_tilt_sq
+    ratio_tilt_by_N_tilt = ratio_tilt_term
+    ratio_tilt_by_theta_tilt_by_N_tilt = (
+        ratio_tilt_by_theta_tilt_term_4
+        - ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_theta_tilt_term_8
+    )
+    holding_tilt_by_N_tilt_term = (
+        -J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_N_tilt
+        + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_N_tilt
+    )
+    gp[0, 10] = holding_tilt_by_N_tilt_term
+    ratio_tilt_by_lead_tilt_term = 1.0 / (lead_tilt * lead_tilt)
+    ratio_tilt_by_lead_tilt_term_2 = math.pi * length_tilt_inverse * ratio_tilt_by_lead_tilt_term
+    ratio_tilt_by_lead_tilt = (
+        (-1.0) * N_tilt_ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_lead_tilt_term_2
+    )
+    ratio_tilt_by_theta_tilt_by_lead_tilt = (
+        math.pi
+        * N_tilt
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_by_lead_tilt_term
+        * ratio_tilt_by_theta_tilt_term_5
+        * ratio_tilt_by_theta_tilt_term_6
+        - N_tilt_ratio_tilt_by_theta_tilt_term_3 * ratio_tilt_by_lead_tilt_term_2
+    )
+    holding_tilt_by_lead_tilt_term = (
+        -J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_lead_tilt
+        + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_lead_tilt
+    )
+    gp[0, 11] = holding_tilt_by_lead_tilt_term
+    lowered_tilt_by_lead_tilt_term = lowered_tilt_term * ratio_tilt_by_lead_tilt_term
+    lowered_tilt_by_lead_tilt_term_2 = f_screw_tilt_lowered_tilt_term * lead_tilt_inverse
+    lowered_tilt_by_lead_tilt_term_3 = lowered_tilt_term_2 * lowered_tilt_term_3_inverse
+    lowered_tilt_by_lead_tilt_term_4 = 1.0 / (lowered_tilt_term_3 * lowered_tilt_term_3)
+    lowered_tilt_by_lead_tilt = (
+        lowered_tilt_by_lead_tilt_term * lowered_tilt_by_lead_tilt_term_3
+        + lowered_tilt_by_lead_tilt_term_2 * lowered_tilt_by_lead_tilt_term_4 * lowered_tilt_term_2
+        + lowered_tilt_term_lowered_tilt_term_4
+    )
+    raised_tilt_by_lead_tilt_term = raised_tilt_term * raised_tilt_term_2_inverse
+    raised_tilt_by_lead_tilt_term_2 = raised_tilt_term / (raised_tilt_term_2 * raised_tilt_term_2)
+    raised_tilt_by_lead_tilt = (
+        -lowered_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt_term
+        + lowered_tilt_by_lead_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
+        + lowered_tilt_term_raised_tilt_term_3
+    )
+    half_load_torque_tilt = 0.5 * load_torque_tilt
+    forward_tilt_by_lead_tilt_term = 0.5 * abs(load_torque_tilt)
+    forward_tilt_by_lead_tilt_term_2 = forward_tilt_by_lead_tilt_term + half_load_torque_tilt
+    minus_forward_tilt_by_lead_tilt_term_2 = -forward_tilt_by_lead_tilt_term_2
+    forward_tilt_by_lead_tilt_term_3 = -forward_tilt_by_lead_tilt_term + half_load_torque_tilt
+    minus_forward_tilt_by_lead_tilt_term_3 = -forward_tilt_by_lead_tilt_term_3
+    gp[1, 11] = (
+        lowered_tilt_by_lead_tilt * minus_forward_tilt_by_lead_tilt_term_2
+        + minus_forward_tilt_by_lead_tilt_term_3 * raised_tilt_by_lead_tilt
+    )
+    gp[2, 11] = (
+        forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_lead_tilt
+        + forward_tilt_by_lead_tilt_term_3 * lowered_tilt_by_lead_tilt
+    )
+    lowered_tilt_by_d_screw_tilt_term = math.pi * math.pi
+    lowered_tilt_by_d_screw_tilt_term_2 = d_screw_tilt * lowered_tilt_by_d_screw_tilt_term
+    lowered_tilt_by_d_screw_tilt_term_3 = f_screw_tilt * lowered_tilt_by_d_screw_tilt_term_2
+    lowered_tilt_by_d_screw_tilt = (
+        d_screw_tilt
+        * lead_tilt_inverse
+        * lowered_tilt_by_d_screw_tilt_term
+        * lowered_tilt_by_lead_tilt_term_4
+        * lowered_tilt_term_2
+        - lowered_tilt_by_d_screw_tilt_term_3 * lowered_tilt_term_4
+        - lowered_tilt_by_lead_tilt_term_3 * ratio_tilt_by_theta_tilt_term
+    )
+    raised_tilt_by_d_screw_tilt = (
+        -lead_tilt_inverse * lowered_tilt_by_d_screw_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
+        + lowered_tilt_by_d_screw_tilt_term_3 * raised_tilt_term_3
+        + raised_tilt_by_lead_tilt_term * ratio_tilt_by_theta_tilt_term
+    )
+    gp[1, 12] = (
+        lowered_tilt_by_d_screw_tilt * minus_forward_tilt_by_lead_tilt_term_2
+        + minus_forward_tilt_by_lead_tilt_term_3 * raised_tilt_by_d_screw_tilt
+    )
+    gp[2, 12] = (
+        forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_d_screw_tilt
+        + forward_tilt_by_lead_tilt_term_3 * lowered_tilt_by_d_screw_tilt
+    )
+    lowered_tilt_by_f_screw_tilt_term = (
+        d_screw_tilt * d_screw_tilt
+    ) * lowered_tilt_by_d_screw_tilt_term
+    lowered_tilt_by_f_screw_tilt = (
+        math.pi * d_screw_tilt * lowered_tilt_by_lead_tilt_term_4 * lowered_tilt_term_2
+        - lowered_tilt_by_f_screw_tilt_term * lowered_tilt_term_4
+    )
+    raised_tilt_by_f_screw_tilt = (
+        lowered_tilt_by_f_screw_tilt_term * raised_tilt_term_3
+        + lowered_tilt_term * raised_tilt_by_lead_tilt_term_2
+    )
+    gp[1, 13] = (
+        lowered_tilt_by_f_screw_tilt * minus_forward_tilt_by_lead_tilt_term_2
+        + minus_forward_tilt_by_lead_tilt_term_3 * raised_tilt_by_f_screw_tilt
+    )
+    gp[2, 13] = (
+        forward_tilt_by_lead_tilt_term_2 * raised_tilt_by_f_screw_tilt
+        + forward_tilt_by_lead_tilt_term_3 * lowered_tilt_by_f_screw_tilt
+    )
+    linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
+    linkage_sin_tilt_term_2_inverse = 1.0 / linkage_sin_tilt_term_2
+    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_term_2_inverse
+    linkage_sin_tilt_by_l_ground_tilt = (
+        l_ground_tilt * linkage_sin_tilt_term * linkage_sin_tilt_term_2_inverse
+        - linkage_cos_tilt_by_l_ground_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    half_length_tilt_term_2_inverse = 0.5 * length_tilt_term_2_inverse
+    cos_tilt_half_length_tilt_term_2_inverse = cos_tilt * half_length_tilt_term_2_inverse
+    half_length_tilt_term_2_inverse_sin_tilt = half_length_tilt_term_2_inverse * sin_tilt
+    length_tilt_by_l_ground_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_ground_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
+        + l_ground_tilt * length_tilt_term_2_inverse
+    )
+    ratio_tilt_by_l_ground_tilt_term = N_tilt_ratio_tilt_by_theta_tilt_term_2 * cos_tilt
+    ratio_tilt_by_l_ground_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_l_ground_tilt
+        * sin_tilt
+        - length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        - linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term = (
+        0.5 * length_tilt_by_theta_tilt_by_theta_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
+        cos_tilt * length_tilt_by_theta_tilt_by_l_ground_tilt_term
+        + half_length_tilt_term_2_inverse_sin_tilt
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 = (
+        -cos_tilt_half_length_tilt_term_2_inverse
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term * sin_tilt
+    )
+    length_tilt_by_theta_tilt_by_l_ground_tilt = (
+        -l_ground_tilt * length_tilt_by_theta_tilt_by_theta_tilt_term
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_ground_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_ground_tilt
+    )
+    N_tilt_ratio_tilt_by_theta_tilt_term_8 = N_tilt * ratio_tilt_by_theta_tilt_term_8
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt_term = (
+        N_tilt_ratio_tilt_by_theta_tilt_term_2 * sin_tilt
+        + N_tilt_ratio_tilt_by_theta_tilt_term_8 * cos_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
+        -N_tilt_ratio_tilt_by_theta_tilt_term_8 * sin_tilt + ratio_tilt_by_l_ground_tilt_term
+    )
+    ratio_tilt_by_theta_tilt_by_l_ground_tilt = (
+        length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        + linkage_cos_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    holding_tilt_by_l_ground_tilt_term = (
+        -J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_ground_tilt
+        + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_l_ground_tilt
+    )
+    gp[0, 14] = holding_tilt_by_l_ground_tilt_term
+    linkage_cos_tilt_by_l_min_tilt_term = -2.0 * l_min_tilt - 2.0 * s_start_tilt
+    linkage_cos_tilt_by_l_min_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    linkage_sin_tilt_by_l_min_tilt = (
+        (-1.0) * linkage_cos_tilt_by_l_min_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_l_min_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_min_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_min_tilt
+    )
+    ratio_tilt_by_l_min_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_l_min_tilt
+        * sin_tilt
+        - length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        - linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_l_min_tilt = (
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_min_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_min_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_l_min_tilt = (
+        length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        + linkage_cos_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    holding_tilt_by_l_min_tilt_term = (
+        -J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_min_tilt
+        + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_l_min_tilt
+    )
+    gp[0, 15] = holding_tilt_by_l_min_tilt_term
+    linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
+    linkage_sin_tilt_by_r_arm_tilt = (
+        4.0 * l_ground_tilt_sq * linkage_sin_tilt_term_2_inverse * r_arm_tilt
+        - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_r_arm_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_r_arm_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
+        + length_tilt_term_2_inverse * r_arm_tilt
+    )
+    ratio_tilt_by_r_arm_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_r_arm_tilt
+        * sin_tilt
+        - length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        - linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_r_arm_tilt = (
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_r_arm_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_r_arm_tilt
+        - length_tilt_by_theta_tilt_by_theta_tilt_term * r_arm_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_r_arm_tilt = (
+        length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        + linkage_cos_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    holding_tilt_by_r_arm_tilt_term = (
+        -J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_r_arm_tilt
+        + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_r_arm_tilt
+    )
+    gp[0, 16] = holding_tilt_by_r_arm_tilt_term
+    linkage_cos_tilt_by_s_start_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    linkage_sin_tilt_by_s_start_tilt = (
+        (-1.0) * linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_s_start_tilt = (
+        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_s_start_tilt
+        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_s_start_tilt
+    )
+    ratio_tilt_by_s_start_tilt = (
+        math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_inverse
+        * linkage_cos_tilt_by_s_start_tilt
+        * sin_tilt
+        - length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        - linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_l_ground_tilt_term
+    )
+    length_tilt_by_theta_tilt_by_s_start_tilt = (
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_s_start_tilt
+        + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_s_start_tilt
+    )
+    ratio_tilt_by_theta_tilt_by_s_start_tilt = (
+        length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
+    )
+    holding_tilt_by_s_start_tilt_term = (
+        -J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_s_start_tilt
+        + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_s_start_tilt
+    )
+    gp[0, 17] = holding_tilt_by_s_start_tilt_term
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def outputs(t, x, u, p, y):
+    """Write the measured signals into y."""
+    theta_tilt = x[0]
+    i_tilt = x[2]
+    y[0] = theta_tilt
+    y[1] = i_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def output_jacobian(t, x, u, p, yx, yp):
+    """Write the non-zero derivatives of outputs by state and parameter."""
+    yx[0, 0] = 1.0
+    yx[1, 2] = 1.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def energy(t, x, u, p, m, e):
+    """Write stored energy in J, power in and dissipated power in W into e."""
+    theta_tilt = x[0]
+    omega_tilt = x[1]
+    i_tilt = x[2]
+    u_tilt = u[0]
+    m_payload = p[0]
+    J_y_payload = p[1]
+    c_x_payload = p[2]
+    c_z_payload = p[3]
+    b_tilt = p[4]
+    L_tilt = p[5]
+    R_tilt = p[6]
+    K_t_tilt = p[7]
+    J_motor_tilt = p[8]
+    b_motor_tilt = p[9]
+    N_tilt = p[10]
+    lead_tilt = p[11]
+    d_screw_tilt = p[12]
+    f_screw_tilt = p[13]
+    l_ground_tilt = p[14]
+    l_min_tilt = p[15]
+    r_arm_tilt = p[16]
+    s_start_tilt = p[17]
+    slide_tilt = m[0]
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    stored_term = 9.81 * m_payload
+    c_x_payload_stored_term = c_x_payload * stored_term
+    c_z_payload_stored_term = c_z_payload * stored_term
+    stored_term_2 = (c_x_payload * c_x_payload) * m_payload
+    stored_term_3 = (c_z_payload * c_z_payload) * m_payload
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    linkage_sin_tilt = math.sqrt(
+        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt_term = math.sqrt(
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    length_tilt = length_tilt_term
+    lead_tilt_inverse = 1.0 / lead_tilt
+    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    ratio_tilt_sq = ratio_tilt * ratio_tilt
+    J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
+    omega_tilt_sq = omega_tilt * omega_tilt
+    half_omega_tilt_sq = 0.5 * omega_tilt_sq
+    i_tilt_sq = i_tilt * i_tilt
+    e[0] = (
+        J_motor_tilt_ratio_tilt_sq * half_omega_tilt_sq
+        + J_y_payload * half_omega_tilt_sq
+        + 0.5 * L_tilt * i_tilt_sq
+        - c_x_payload_stored_term * sin_tilt
+        + c_z_payload_stored_term * cos_tilt
+        + half_omega_tilt_sq * stored_term_2
+        + half_omega_tilt_sq * stored_term_3
+    )
+    e[1] = i_tilt * u_tilt
+    load_inertia_tilt = J_y_payload + stored_term_2 + stored_term_3
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    lowered_tilt = (
+        (-1.0)
+        * lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+    )
+    lost_lowering_tilt = (
+        (1.0 - lowered_tilt)
+        * 1.0
+        / (abs(J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt))
+    )
+    raised_tilt = (
+        lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+    )
+    lost_raising_tilt = (
+        1.0 / (J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt) * (raised_tilt - 1.0)
+    )
+    length_tilt_by_theta_tilt = (
+        1.0
+        / length_tilt_term
+        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
+    )
+    ratio_tilt_by_theta_tilt = (
+        -math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_term
+        / (length_tilt * length_tilt)
+        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
+    )
+    driving_torque_tilt = (
+        -J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
+        + ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt)
+    )
+    load_torque_tilt = (
+        -b_tilt * omega_tilt
+        + c_x_payload_stored_term * cos_tilt
+        + c_z_payload_stored_term * sin_tilt
+    )
+    carried_tilt = (
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
+    )
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    e[2] = (
+        R_tilt * i_tilt_sq
+        + b_motor_tilt * omega_tilt_sq * ratio_tilt_sq
+        + b_tilt * omega_tilt_sq
+        + omega_tilt
+        * slide_tilt
+        * (
+            0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
+            + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
+        )
+    )
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def domain(p, bounds):
+    """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
+    l_ground_tilt = p[14]
+    l_min_tilt = p[15]
+    r_arm_tilt = p[16]
+    s_start_tilt = p[17]
+    s_max_tilt = p[18]
+    lowest_theta_tilt_term = (l_ground_tilt * l_ground_tilt) + (r_arm_tilt * r_arm_tilt)
+    lowest_theta_tilt_term_2 = 0.5 / (l_ground_tilt * r_arm_tilt)
+    lowest_theta_tilt_term_3 = math.acos(
+        lowest_theta_tilt_term_2
+        * (lowest_theta_tilt_term - ((l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)))
+    )
+    bounds[0, 0] = lowest_theta_tilt_term_3 - math.pi
+    bounds[0, 1] = lowest_theta_tilt_term_3
+    bounds[1, 0] = lowest_theta_tilt_term_3 - math.acos(
+        max(
+            -1.0,
+            min(
+                1.0,
+                lowest_theta_tilt_term_2
+                * (
+                    lowest_theta_tilt_term - ((l_min_tilt + s_max_tilt) * (l_min_tilt + s_max_tilt))
+                ),
+            ),
+        )
+    )
+    bounds[1, 1] = lowest_theta_tilt_term_3 - math.acos(
+        max(
+            -1.0,
+            min(
+                1.0,
+                lowest_theta_tilt_term_2 * (-(l_min_tilt * l_min_tilt) + lowest_theta_tilt_term),
+            ),
+        )
+    )
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def margins(p, margin):
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    lead_tilt = p[11]
+    d_screw_tilt = p[12]
+    f_screw_tilt = p[13]
+    l_ground_tilt = p[14]
+    l_min_tilt = p[15]
+    r_arm_tilt = p[16]
+    s_start_tilt = p[17]
+    s_max_tilt = p[18]
+    margin[0] = 2.0 * l_ground_tilt * r_arm_tilt - abs(
+        (l_ground_tilt * l_ground_tilt)
+        + (r_arm_tilt * r_arm_tilt)
+        - ((l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt))
+    )
+    margin[1] = s_max_tilt - s_start_tilt
+    margin[2] = math.pi * d_screw_tilt - f_screw_tilt * lead_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def initial_modes(t, x, u, p, m):
+    """Find the modes of a state: contact from the separation, sticking from the holding torque."""
+    frictions = len(FRICTION_RATES)
+    contacts = (len(m) - frictions) // 2
+    g = np.empty(3 * frictions + 4 * contacts)
+    m[:] = 0.0
+    guards(t, x, u, p, m, g)
+    for k in range(contacts):
+        at = 3 * frictions + 4 * k
+        side = 1.0 if g[at] > 0.0 else -1.0
+        if side * g[at] > g[at + 1]:
+            torque = g[at + 2] if side > 0.0 else g[at + 3]
+            m[frictions + 2 * k] = side
+            m[frictions + 2 * k + 1] = 1.0 if side * torque > 0.0 else 0.0
+    for k in range(frictions):
+        m[k] = np.sign(x[FRICTION_RATES[k]])
+    guards(t, x, u, p, m, g)
+    for k in range(frictions):
+        if m[k] == 0.0 and g[3 * k] > g[3 * k + 1]:
+            m[k] = 1.0
+        elif m[k] == 0.0 and -g[3 * k] > g[3 * k + 2]:
+            m[k] = -1.0
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def state_derivative(t, x, u, p, dx):
+    """Write the time derivative of the state into dx, in the modes that the state implies."""
+    m = np.empty(len(MODE_NAMES))
+    initial_modes(t, x, u, p, m)
+    mode_derivative(t, x, u, p, m, dx)
+
+
+# END sha256 94e2a858f81401264b6f748ed86594541910759b9bc7dc6922136db47020b0da

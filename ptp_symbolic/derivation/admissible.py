@@ -1,0 +1,71 @@
+"""Refuse a machine that cannot exist: parameters against each other, bodies, inertia."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import sympy as sp
+
+from ptp_symbolic.bodies import Body
+from ptp_symbolic.derivation.equations import Equations
+from ptp_symbolic.effects.effect import Requirement
+from ptp_symbolic.errors import InputError
+
+SLACK = 1e-9
+ANGLE = 0.3
+
+
+def refuse_impossible(equations: Equations) -> None:
+    """Raise InputError unless a machine with the declared parameters of `equations` can exist.
+
+    Checked are the relations that the effects require, the inertia tensor of every body, and that
+    every coordinate has inertia.
+    """
+    values = {sp.Symbol(p.name, real=True): sp.Float(p.default) for p in equations.parameters}
+    for requirement in equations.requirements:
+        _refuse_broken(requirement, equations, values)
+    for body in equations.rigid.bodies:
+        _refuse_impossible_tensor(body, equations, values)
+    _refuse_massless(equations, values)
+
+
+def _refuse_broken(
+    requirement: Requirement, equations: Equations, values: Mapping[sp.Symbol, sp.Float]
+) -> None:
+    if requirement.holds.subs(values) == sp.false:
+        given = _given(requirement.holds.free_symbols, equations)
+        raise InputError(f"Impossible {given}: {requirement.rule}.")
+
+
+def _refuse_impossible_tensor(
+    body: Body, equations: Equations, values: Mapping[sp.Symbol, sp.Float]
+) -> None:
+    """A body that is given about one axis alone has no tensor to check."""
+    if any(body.inertia[k, k] == 0 for k in range(3)):
+        return
+    tensor = np.array(body.inertia.subs(values), dtype=float)
+    low, middle, high = np.linalg.eigvalsh(tensor)
+    if high > (low + middle) * (1.0 + SLACK):
+        given = _given(body.inertia.free_symbols, equations)
+        raise InputError(
+            f"Impossible {given}: of the principal inertias {low:.4g}, {middle:.4g} and"
+            f" {high:.4g} kg m^2 of '{body.name}' none may exceed the sum of the others; change"
+            " one of them."
+        )
+
+
+def _refuse_massless(equations: Equations, values: Mapping[sp.Symbol, sp.Float]) -> None:
+    known = {**values, **dict.fromkeys(equations.coordinates, sp.Float(ANGLE))}
+    for symbol, term in equations.terms:
+        known[symbol] = term.subs(known)
+    mass = np.array(equations.mass_matrix.subs(known), dtype=float)
+    scale = np.sqrt(np.diag(mass))
+    if not (np.all(scale > 0) and np.linalg.eigvalsh(mass / np.outer(scale, scale))[0] > SLACK):
+        given = _given(equations.mass_matrix.free_symbols, equations)
+        raise InputError(f"Impossible {given}: every axis needs inertia; give it some.")
+
+
+def _given(symbols: set[sp.Symbol], equations: Equations) -> str:
+    names = {str(symbol) for symbol in symbols}
+    return ", ".join(
+        f"{p.name} = {p.default:g} {p.unit}" for p in equations.parameters if p.name in names
+    )

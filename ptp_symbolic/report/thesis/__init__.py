@@ -1,0 +1,1 @@
+"""Everything the thesis computes, recomputed: one file per chapter, one item per printed result."""

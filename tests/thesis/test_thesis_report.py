@@ -1,0 +1,116 @@
+"""The report of the thesis: complete, readable by machine, and LaTeX without a warning."""
+
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from ptp_symbolic.cli.report_thesis import thesis
+from ptp_symbolic.report.derivation import has_warning
+from ptp_symbolic.report.thesis import document
+from ptp_symbolic.report.thesis.errata import ERRATA
+
+FIGURES = (
+    *(f"fig_5_{n}" for n in (1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 14, 15, 16, 17, 18)),
+    "fig_4_3", "fig_4_6",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def files() -> dict[str, str | bytes]:
+    return document.thesis_files()
+
+
+@pytest.fixture(scope="module")
+def rows(files: dict[str, str | bytes]) -> list[dict[str, object]]:
+    content = json.loads(files["thesis.json"])
+    assert content["schema_version"] == 1
+    return list(content["items"])
+
+
+def test_every_erratum_is_there_and_settled(rows: list[dict[str, object]]) -> None:
+    errata = {r["erratum"]: r for r in rows if r["settled"] is not None}
+    assert sorted(errata) == sorted(ERRATA) == list(range(1, 33))
+    assert [n for n, r in errata.items() if not r["settled"]] == []
+    assert all(r["agrees"] is False and r["computed"] is not None for r in errata.values())
+
+
+def test_every_item_says_what_it_is(rows: list[dict[str, object]]) -> None:
+    names = [r["id"] for r in rows]
+    assert len(names) == len(set(names))
+    for row in rows:
+        assert row["title"] and row["check"]
+        assert isinstance(row["unit"], str)
+        if row["agrees"] is None:
+            assert row["printed"] is None or row["computed"] is None
+        else:
+            assert row["printed"] is not None and row["computed"] is not None
+        if row["agrees"] is False:
+            assert row["erratum"] in ERRATA, row["id"]
+
+
+def test_every_part_of_the_thesis_has_items(rows: list[dict[str, object]]) -> None:
+    names = " ".join(str(r["id"]) for r in rows)
+    for part in (
+        "table_2_2.", "eq_3_8.", "appendix_a.", "table_4_1.", "table_4_2.", "section_4_3.",
+        "section_5_4.", *(f"fig_5_{n}." for n in (1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 14)),
+    ):  # fmt: skip
+        assert part in names, part
+
+
+def test_every_figure_is_there_in_both_formats(files: dict[str, str | bytes]) -> None:
+    for name in FIGURES:
+        assert bytes(files[f"{name}.pdf"]).startswith(b"%PDF")
+        assert bytes(files[f"{name}.png"]).startswith(b"\x89PNG")
+    included = re.findall(r"\\includegraphics\[[^]]*\]\{([^}]*)\}", str(files["thesis.tex"]))
+    assert set(included) == {n for n in files if n.endswith(".pdf")}
+
+
+def test_compiles_without_a_warning(files: dict[str, str | bytes], tmp_path: Path) -> None:
+    if shutil.which("pdflatex") is None:
+        pytest.skip("pdflatex is not installed")
+    for name, content in files.items():
+        data = content.encode() if isinstance(content, str) else content
+        (tmp_path / name).write_bytes(data)
+    for _ in range(2):
+        subprocess.run(
+            ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape", "thesis.tex"],
+            cwd=tmp_path, capture_output=True, check=True,
+        )  # fmt: skip
+    assert not has_warning((tmp_path / "thesis.log").read_text(encoding="latin-1"))
+
+
+@pytest.mark.parametrize(
+    ("text", "latex"),
+    [
+        ("F_s < 5 % of kg m^2", r"$F_{\mathrm{s}}$ $<$ 5\,\% of kg m$^{2}$"),
+        ("theta', psi', b_7", r"$\theta$', $\psi$', $b_{\mathrm{7}}$"),
+        ("a_long_word & 0.5", r"$a_{\mathrm{long},\mathrm{word}}$ \& 0.5"),
+    ],
+)
+def test_names_become_formulas(text: str, latex: str) -> None:
+    assert document._text(text) == latex
+
+
+def test_the_command_writes_everything_and_says_when_there_is_no_pdf(
+    files: dict[str, str | bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(document, "thesis_files", lambda progress: dict(files))
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    done = CliRunner().invoke(thesis, ["--out", str(tmp_path / "report")])
+    assert done.exit_code == 0
+    assert "No thesis.pdf: pdflatex is not installed." in done.stderr
+    written = {path.name for path in (tmp_path / "report").iterdir()}
+    assert written == set(files)
+
+
+def test_the_command_refuses_a_file_as_its_folder(tmp_path: Path) -> None:
+    taken = tmp_path / "taken"
+    taken.write_text("")
+    done = CliRunner().invoke(thesis, ["--out", str(taken)])
+    assert done.exit_code != 0
+    assert "is not a folder" in str(done.exception)
