@@ -90,11 +90,7 @@ def _noise_floor(task: Task, trials: Sequence[Trial]) -> float:
 
 def is_settled(verdict: Verdict) -> bool:
     """True when no further effect needs to be searched."""
-    if verdict.word == NOTHING_MISSING:
-        return True
-    if verdict.accepted is None:
-        return False
-    return float(np.sqrt(held_out_cost(verdict.accepted))) <= AT_FLOOR * verdict.floor
+    return verdict.word in (NOTHING_MISSING, EXPLAINED, UP_TO_GROUP)
 
 
 def _simplest(judged: Sequence[Trial]) -> tuple[Trial, tuple[Trial, ...]]:

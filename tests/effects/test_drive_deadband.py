@@ -40,7 +40,7 @@ def test_no_load_speed_lacks_the_half_width(model: Model, command: float) -> Non
 def test_current_of_a_blocked_motor_under_a_ramp_through_the_band(model: Model) -> None:
     """Zero until the ramp leaves the band at `late`, then that of a ramp into R and L."""
     slope, blocked = 20.0, {"u_dead_pan": DEAD, "K_t_pan": 1e-9}
-    found = simulate(model, 0.1, {"u_pan": ramp(0.0, 2.0, 0.0, 0.1)}, blocked)
+    found = simulate(model, 0.1, {"u_pan": ramp(0.0, 2.0, 0.0, 0.1)}, blocked, atol=1e-12)
     since = np.maximum(found.t - DEAD / slope, 0.0)
     current = slope / R * (since - L / R * (1.0 - np.exp(-since * R / L)))
     assert found["i_pan"] == pytest.approx(current, abs=1e-7)

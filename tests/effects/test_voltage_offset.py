@@ -45,7 +45,7 @@ def test_the_command_that_cancels_it_keeps_the_axis_still(model: Model) -> None:
 def test_motions_add_up(model: Model) -> None:
     """The drive is linear: command and offset together move it by the sum of what each does."""
     command, values = {"u_pan": multisine([5.0], [3.0])}, {"b_pan": DAMPING}
-    both = simulate(model, 0.5, command, values | {"u0_pan": OFFSET})
-    parts = [simulate(model, 0.5, command, values)]
-    parts.append(simulate(model, 0.5, None, values | {"u0_pan": OFFSET}))
+    both = simulate(model, 0.5, command, values | {"u0_pan": OFFSET}, atol=1e-12)
+    parts = [simulate(model, 0.5, command, values, atol=1e-12)]
+    parts.append(simulate(model, 0.5, None, values | {"u0_pan": OFFSET}, atol=1e-12))
     assert both.x == pytest.approx(parts[0].x + parts[1].x, abs=1e-7)

@@ -39,7 +39,7 @@ def test_current_of_a_blocked_motor_under_a_ramp_into_the_rail(model: Model) -> 
         after = np.maximum(since, 0.0)
         return slope / R * (after - L / R * (1.0 - np.exp(-after * R / L)))
 
-    found = simulate(model, 0.06, {"u_pan": ramp(0.0, 24.0, 0.0, 0.06)}, blocked)
+    found = simulate(model, 0.06, {"u_pan": ramp(0.0, 24.0, 0.0, 0.06)}, blocked, atol=1e-12)
     current = response(found.t) - response(found.t - LIMIT / slope)
     assert found["i_pan"] == pytest.approx(current, abs=1e-7)
     assert found["i_pan"][-1] == pytest.approx(LIMIT / R, rel=1e-6)

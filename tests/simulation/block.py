@@ -84,6 +84,7 @@ def block() -> Model:
         STATE_INITIAL=(0.0, 0.0), INPUT_NAMES=("tau_pan",), INPUT_UNITS=("N m",),
         INPUT_DELAYS=(-1,), OUTPUT_NAMES=(), OUTPUT_UNITS=(), MODE_NAMES=("slide_pan",),
         FRICTION_RATES=np.array([1]), ZERO_AT_REST=(-1, -1), CONTACT_ANGLES=(), SEARCH=(),
+        DOMAIN=(), REQUIREMENTS=(), domain=lambda p, bounds: None, margins=lambda p, margin: None,
         EFFECTS=(),
         PARAMETERS=(
             ("J", "kg m^2", J, 1e-6, 1e6, "inertia"),
