@@ -42,17 +42,16 @@ def on_curve(equations, inputs, t, h, fraction, step, watch):
 def first_violation(equations, inputs, t, h, step, watch):
     """A fraction of the step at which a mode is found to have ended; 0 if none has.
 
-    Middle and end are looked at, and the summit of the parabola through start, middle and end of
-    every element whose summit comes near: a mode may end and hold again within one step.
+    inputs.u is as at the end of the step. End and middle are looked at, and the summit of the
+    parabola through start, middle and end of every element whose summit comes near: a mode may end
+    and hold again within one step.
     """
+    ended = fill_violations(equations, inputs, t + h, step.end, watch, watch.at_end) > 0.0
     curve(0.5, step, step.point)
     if not inputs.held:
         evaluate_inputs(t + 0.5 * h, -1, *inputs.table, inputs.cursor, inputs.u)
     if fill_violations(equations, inputs, t + 0.5 * h, step.point, watch, watch.at_middle) > 0.0:
         return 0.5
-    if not inputs.held:
-        evaluate_inputs(t + h, -1, *inputs.table, inputs.cursor, inputs.u)
-    ended = fill_violations(equations, inputs, t + h, step.end, watch, watch.at_end) > 0.0
     for element in range(len(watch.at_end)):
         start, end = watch.at_start[element], watch.at_end[element]
         middle = watch.at_middle[element]

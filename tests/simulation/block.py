@@ -74,15 +74,26 @@ def initial_modes(t, x, u, p, m):
         m[0] = math.copysign(1.0, hold)
 
 
+@njit(error_model="numpy", nogil=True)
+def outputs(t, x, u, p, y):
+    y[0] = x[0]
+
+
+@njit(error_model="numpy", nogil=True)
+def output_jacobian(t, x, u, p, yx, yp):
+    yx[0, 0] = 1.0
+
+
 def block() -> Model:
     """The block with J, K, F_C and F_S as defaults."""
     module = types.ModuleType("block")
     module.__dict__.update(
         mode_derivative=mode_derivative, jacobian=jacobian, guards=guards,
-        guard_jacobian=guard_jacobian, energy=energy, initial_modes=initial_modes, NAME="block",
+        guard_jacobian=guard_jacobian, energy=energy, initial_modes=initial_modes,
+        outputs=outputs, output_jacobian=output_jacobian, NAME="block",
         AXES=("pan",), STATE_NAMES=("theta_pan", "omega_pan"), STATE_UNITS=("rad", "rad/s"),
         STATE_INITIAL=(0.0, 0.0), INPUT_NAMES=("tau_pan",), INPUT_UNITS=("N m",),
-        INPUT_DELAYS=(-1,), OUTPUT_NAMES=(), OUTPUT_UNITS=(), MODE_NAMES=("slide_pan",),
+        INPUT_DELAYS=(-1,), OUTPUT_NAMES=("theta_pan",), OUTPUT_UNITS=("rad",), MODE_NAMES=("slide_pan",),
         FRICTION_RATES=np.array([1]), ZERO_AT_REST=(-1, -1), CONTACT_ANGLES=(), SEARCH=(),
         DOMAIN=(), REQUIREMENTS=(), domain=lambda p, bounds: None, margins=lambda p, margin: None,
         EFFECTS=(),

@@ -1,0 +1,85 @@
+"""The pan drive by scipy's integrators: the same jitted functions, events found by `solve_ivp`."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.simulation.emitted import GUARDS, addresses
+from ptp_symbolic.simulation.input_values import evaluate_inputs
+from ptp_symbolic.simulation.inputs import InputTable
+from ptp_symbolic.simulation.modes import settle, violation
+
+FloatArray = NDArray[np.float64]
+PAST = 1e-11  # s; how far a peer is carried past an event, so that the mode has really ended
+
+
+class EventMachine:
+    """A model in one mode at a time, as `solve_ivp` wants it: right-hand side and events."""
+
+    def __init__(self, model: Model, table: InputTable) -> None:
+        """Start in the modes of the state at rest."""
+        self.model, self.table, self.p = model, table, model.parameter_vector()
+        self.m, self.u = np.zeros(len(model.mode_names)), np.zeros(len(model.input_names))
+        frictions = len(model.friction_rates)
+        elements = frictions + (len(self.m) - frictions) // 2
+        self.g = np.zeros(3 * frictions + 4 * (elements - frictions))
+        self.dx, self.cursor = np.zeros(len(model.state_names)), table.new_cursor()
+        self.fx = np.zeros((len(self.dx), len(self.dx)))
+        self.fu = np.zeros((len(self.dx), len(self.u)))
+        self.fp = np.zeros((len(self.dx), len(self.p)))
+        self.events = [self._event(element) for element in range(elements)]
+
+    def rhs(self, t: float, x: FloatArray) -> FloatArray:
+        """Return dx/dt in the present modes."""
+        evaluate_inputs(t, 1, *self.table.arrays, self.cursor, self.u)
+        self.model.module.mode_derivative(t, x, self.u, self.p, self.m, self.dx)
+        return self.dx.copy()
+
+    def jacobian(self, t: float, x: FloatArray) -> FloatArray:
+        """Return the emitted Jacobian in the present modes."""
+        evaluate_inputs(t, 1, *self.table.arrays, self.cursor, self.u)
+        self.model.module.jacobian(t, x, self.u, self.p, self.m, self.fx, self.fu, self.fp)
+        return self.fx.copy()
+
+    def settle(self, t: float, x: FloatArray) -> None:
+        """Choose the modes from (t, x) on."""
+        evaluate_inputs(t, 1, *self.table.arrays, self.cursor, self.u)
+        settle(
+            addresses(self.model.module)[GUARDS], t, x, self.u, self.p, self.m, self.g,
+            self.model.friction_rates, self.model.zero_at_rest,
+        )  # fmt: skip
+
+    def _event(self, element: int):  # type: ignore[no-untyped-def]
+        def past(t: float, x: FloatArray) -> float:
+            evaluate_inputs(t, 1, *self.table.arrays, self.cursor, self.u)
+            self.model.module.guards(t, x, self.u, self.p, self.m, self.g)
+            return float(violation(element, x, self.m, self.g, self.model.friction_rates))
+
+        past.terminal, past.direction = True, 1.0  # type: ignore[attr-defined]
+        return past
+
+
+def simulate_with_scipy(
+    model: Model, table: InputTable, end: float, method: str, rtol: float, atol: FloatArray
+) -> tuple[FloatArray, int]:
+    """Final state [n] of a run from rest over `end` s, and the number of events."""
+    machine, x, count = EventMachine(model, table), np.zeros(len(model.state_names)), 0
+    stops = [s for s in table.stops if 0.0 < s < end] + [end]
+    extra = {"jac": machine.jacobian} if method in ("LSODA", "Radau") else {}
+    t = 0.0
+    for stop in stops:
+        machine.settle(t, x)
+        while t < stop:
+            found = solve_ivp(
+                machine.rhs, (t, stop), x, method=method, rtol=rtol, atol=atol,
+                events=machine.events, **extra,
+            )  # fmt: skip
+            t, x = float(found.t[-1]), found.y[:, -1].copy()
+            if found.status != 1:
+                break
+            x += PAST * machine.rhs(t, x)
+            t = min(t + PAST, stop)
+            machine.settle(t, x)
+            count += 1
+    return x, count

@@ -1,0 +1,95 @@
+"""Sensitivities by both methods: closed forms, central differences, events, samples."""
+
+import math
+
+import numpy as np
+import pytest
+
+import ptp_symbolic
+from ptp_symbolic.simulation.inputs import multisine, ramp, step, table
+from tests.simulation.block import F_C, F_S, J, K, block
+
+METHODS = ("rosenbrock", "runge_kutta")
+
+
+@pytest.fixture(scope="module")
+def drive():
+    return ptp_symbolic.load("pan_drive")
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_where_a_block_stops_by_closed_form(method: str) -> None:
+    """Way = J omega^2 / (2 F_c): the jump of the tangents at rest makes or breaks it."""
+    found = ptp_symbolic.sensitivity(
+        block(), [0.0, 5.0], None, {"k": 0.0}, {"omega_pan": 2.0}, ["J", "F_c"], ["omega_pan"],
+        method=method,
+    )  # fmt: skip
+    exact = [2.0**2 / (2.0 * F_C), -J * 2.0**2 / (2.0 * F_C**2), J * 2.0 / F_C]
+    assert found.states[-1, 0] == pytest.approx(exact, rel=1e-8)
+    assert np.all(found.states[-1, 1] == 0.0)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_when_a_block_breaks_away_by_closed_form(method: str) -> None:
+    """Pulled by a ramp, it starts at F_s / slope; then it moves as an oscillator does."""
+    slope, t, rate = 0.4, 2.0, math.sqrt(K / J)
+    found = ptp_symbolic.sensitivity(
+        block(), [0.0, t], {"tau_pan": ramp(0.0, 10.0 * slope, 0.0, 10.0)},
+        by_parameters=["F_s", "F_c"], method=method,
+    )  # fmt: skip
+
+    def angle(breakaway: float, sliding: float) -> float:
+        late = t - breakaway / slope
+        step_part = (breakaway - sliding) / K * (1.0 - math.cos(rate * late))
+        return step_part + slope / K * (late - math.sin(rate * late) / rate)
+
+    h = 1e-5
+    exact = [
+        (angle(F_S + h, F_C) - angle(F_S - h, F_C)) / (2.0 * h),
+        (angle(F_S, F_C + h) - angle(F_S, F_C - h)) / (2.0 * h),
+    ]
+    assert found.x[-1, 0] == pytest.approx(angle(F_S, F_C), abs=1e-8)
+    assert found.states[-1, 0] == pytest.approx(exact, rel=1e-5)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_six_parameters_through_stick_slip_and_gap(drive, method: str) -> None:
+    """At 1e-5 relative, as measured against differences of a run a thousand times as exact."""
+    names = ("F_c_pan", "J_pan", "gap_pan", "k_shaft_pan", "R_pan", "F_v_pan")
+    times, inputs = [0.0, 2.0], {"u_pan": step(0.0, 24.0, 0.5)}
+    found = ptp_symbolic.sensitivity(drive, times, inputs, by_parameters=names, method=method)
+    for index, name in enumerate(names):
+        h = 2e-4 * drive.defaults[name]
+        ends = [
+            ptp_symbolic.simulate(
+                drive, times, inputs, {name: drive.defaults[name] + s * h}, rtol=1e-12,
+                atol=1e-13,
+            )["theta_pan"][-1]
+            for s in (1.0, -1.0)
+        ]  # fmt: skip
+        difference = (ends[0] - ends[1]) / (2.0 * h)
+        assert found.states[-1, 0, index] == pytest.approx(difference, rel=3e-5)
+
+
+def test_both_methods_agree_over_samples_of_a_held_input(drive) -> None:
+    time = np.arange(400) * 5e-3
+    volts = 10.0 + 6.0 * np.sin(2 * math.pi * 0.9 * time)
+    one, other = (
+        ptp_symbolic.sensitivity(
+            drive, time, {"u_pan": table(time, volts, "hold")}, by_parameters=["R_pan", "F_v_pan"],
+            by_initial=["theta_gear_pan"], method=method,
+        )
+        for method in METHODS
+    )  # fmt: skip
+    size = np.abs(other.states[:, 0]).max(axis=0)
+    assert np.all(np.abs(one.states[:, 0] - other.states[:, 0]).max(axis=0) < 1e-4 * size)
+
+
+def test_a_smooth_model_by_the_implicit_method() -> None:
+    model = ptp_symbolic.load("payload")
+    arguments = ([0.0, 1.0], {"tau_tilt": multisine([0.5], [1.0])}, None, {"theta_tilt": 0.4})
+    one, other = (
+        ptp_symbolic.sensitivity(model, *arguments, rtol=1e-10, atol=1e-11, method=method)
+        for method in METHODS
+    )
+    assert one.states[-1] == pytest.approx(other.states[-1], rel=1e-5, abs=1e-8)
