@@ -93,7 +93,8 @@ def block() -> Model:
         outputs=outputs, output_jacobian=output_jacobian, NAME="block",
         AXES=("pan",), STATE_NAMES=("theta_pan", "omega_pan"), STATE_UNITS=("rad", "rad/s"),
         STATE_INITIAL=(0.0, 0.0), INPUT_NAMES=("tau_pan",), INPUT_UNITS=("N m",),
-        INPUT_DELAYS=(-1,), OUTPUT_NAMES=("theta_pan",), OUTPUT_UNITS=("rad",), MODE_NAMES=("slide_pan",),
+        INPUT_DELAYS=(-1,), OUTPUT_NAMES=("theta_pan",), OUTPUT_UNITS=("rad",),
+        MODE_NAMES=("slide_pan",),
         FRICTION_RATES=np.array([1]), ZERO_AT_REST=(-1, -1), CONTACT_ANGLES=(), SEARCH=(),
         EFFECTS=(),
         PARAMETERS=(
