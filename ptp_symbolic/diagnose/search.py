@@ -19,6 +19,7 @@ from ptp_symbolic.diagnose.trial import (
     COARSE,
     FINE,
     LAST,
+    NEARBY_COUNTS,
     NEXT,
     Task,
     Trial,
@@ -51,9 +52,10 @@ def fit_declared(task: Task) -> Trial:
         for free in (task.free, tuple(_shifted(f) for f in task.free))
     ]
     trial = Trial((), min(fits, key=lambda fit: fit.cost))
-    for effort in (MENDED, LAST):
-        trial = continue_fits(task, [trial], effort)[0]
-        task.progress(f"fitting the declared model: {trial.train.rms_counts():.3f} counts rms")
+    trial = continue_fits(task, [trial], MENDED)[0]
+    if trial.train.rms_counts() < NEARBY_COUNTS:
+        trial = continue_fits(task, [trial], LAST)[0]
+    task.progress(f"the declared model leaves {trial.train.rms_counts():.3f} counts rms")
     return judge(task, escape(task, trial))
 
 
