@@ -12,6 +12,7 @@ A bounce shorter than a step is missed. Work per step is bounded, and nothing is
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import njit, types
@@ -176,7 +177,10 @@ def compiled_runner(sources: int) -> Callable[..., int]:
     return run_fixed
 
 
-run_fixed = compiled_runner(source_stamp())
+@lru_cache(maxsize=1)
+def runner() -> Callable[..., int]:
+    """The runner, compiled when it is first needed."""
+    return compiled_runner(source_stamp())
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,7 +234,7 @@ def pass_in_steps(
         grid, z((len(grid), n)), z((0, n, 0)), z((len(grid), 3)), z((event_room, 3)), z(3),
         z((4, 3)), z(2), z(5, np.int64),
     )  # fmt: skip
-    status = run_fixed(
+    status = runner()(
         addresses(model.module), p, model.friction_rates, model.zero_at_rest, inputs.arrays,
         inputs.new_cursor(), inputs.held, z((2, nu)), x, m, float(step), tuple(work), tuple(record),
     )  # fmt: skip

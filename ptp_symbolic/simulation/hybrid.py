@@ -7,6 +7,7 @@ the event. The step length is carried over stops and events.
 """
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 from numba import njit, types
@@ -255,4 +256,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
     return run
 
 
-run = compiled_runner(source_stamp())
+@lru_cache(maxsize=1)
+def runner() -> Callable[..., int]:
+    """The runner, compiled when it is first needed: half a minute once on a new machine."""
+    return compiled_runner(source_stamp())
