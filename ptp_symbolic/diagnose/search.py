@@ -36,13 +36,13 @@ from ptp_symbolic.identify.run import Run
 
 FloatArray = NDArray[np.float64]
 
-FIRST = Effort(5, 3e-3, COARSE, 0.3)
+FIRST = Effort(5, 3e-3, COARSE, 0.3, secants=True)
 DECLARED = Effort(8, 1e-2, COARSE, 0.3)
 MENDED = Effort(10, 2e-3, COARSE, secants=True)
 SMOOTH = Effort(15, 1e-4, FINE)
 HELD_OUT = Effort(10, 1e-4, FINE)
-DROP_FACTOR, CLOSE_FACTOR = 25.0, 4.0
-KEPT_AFTER_FIRST, POLISHED, FINISHED, BEAM = 6, 4, 3, 3
+DROP_FACTOR, CLOSE_FACTOR = 25.0, 1.5
+PURSUED, FINISHED, BEAM = 3, 3, 3
 VISIBLE_SHARE = 0.03
 
 
@@ -79,9 +79,15 @@ def try_candidates(
     task: Task, bases: Sequence[Trial], candidates: Sequence[Candidate]
 ) -> list[Trial]:
     """Refit every base with each candidate added; the best are polished and judged, best first."""
-    first, left = first_round(task, bases, candidates)
-    second = _two_ways(task, _best(first, KEPT_AFTER_FIRST, DROP_FACTOR))
-    third = continue_fits(task, _best(second, POLISHED, DROP_FACTOR), NEXT)
+    groups, left = first_round(task, bases, candidates)
+    second = [freed for group in groups for freed in _freed(task, group)]
+    third = _distinct(
+        [
+            trial
+            for group in second
+            for trial in continue_fits(task, _best(group, PURSUED, DROP_FACTOR), NEXT)
+        ]
+    )
     task.progress("polishing the best candidates")
     polished = continue_fits(task, _best(third, FINISHED, CLOSE_FACTOR), LAST)
     polished = continue_fits(task, polished, SMOOTH)
@@ -90,7 +96,11 @@ def try_candidates(
     for trial in sorted(judged, key=held_out_cost):
         error = np.sqrt(held_out_cost(trial))
         task.progress(f"{' + '.join(trial.keys)}: {error:.3f} counts rms on held-out runs")
-    dropped = [t for t in (*third, *second, *first) if t.keys not in {j.keys for j in judged}]
+    dropped = [
+        t
+        for t in (*third, *(t for group in second for t in group))
+        if t.keys not in {j.keys for j in judged}
+    ]
     unique = {t.keys: t for t in reversed(dropped)}
     ordered = sorted(unique.values(), key=lambda t: t.train.cost)
     return sorted(judged, key=held_out_cost) + ordered + left
@@ -141,14 +151,19 @@ def visible_candidates(
     return [c for c, visible in zip(candidates, seen, strict=True) if visible]
 
 
-def _two_ways(task: Task, trials: Sequence[Trial]) -> list[Trial]:
-    """Free the declared parameters, from where they are and from their table start."""
-    onwards = {t.keys: t for t in continue_fits(task, trials, FIRST)}
-    better = []
-    for trial in trials:
-        afresh = start_afresh(task, trial, FIRST)
-        better.append(min(onwards[trial.keys], afresh, key=lambda t: t.train.cost))
-    return better
+def _freed(task: Task, group: Sequence[Trial]) -> list[list[Trial]]:
+    """Free the declared parameters of a group; several effects at once are also started afresh."""
+    freed = [continue_fits(task, group, FIRST)]
+    several = [t for t in group if len(t.candidates) > 1]
+    return freed + ([[start_afresh(task, t, FIRST) for t in several]] if several else [])
+
+
+def _distinct(trials: Sequence[Trial]) -> list[Trial]:
+    """The best trial of every set of effects."""
+    best: dict[tuple[str, ...], Trial] = {}
+    for trial in sorted(trials, key=lambda trial: trial.train.cost):
+        best.setdefault(trial.keys, trial)
+    return list(best.values())
 
 
 def _best(trials: Sequence[Trial], count: int, factor: float) -> list[Trial]:

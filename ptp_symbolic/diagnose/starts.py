@@ -26,7 +26,8 @@ GO_ON = Effort(3, 1e-2, COARSE, rejections=2)
 CONFIRM = Effort(2, 1e-2, COARSE, rejections=2)
 PROBED_SHARE, TELLING_SHARE = 0.1, 0.4
 STARTS_KEPT, START_FACTOR = 2, 2.0
-SOUGHT, CONFIRMED, FAR_BEHIND = 14, 8, 50.0
+SOUGHT, CONFIRMED, FAR_BEHIND = 10, 5, 50.0
+OPTIMUM, TABLE = "optimum", "table"
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +39,7 @@ class _Search:
     free: tuple[FreeParameter, ...]
     fixed: Mapping[str, float]
     z: tuple[FloatArray, ...]
+    origin: str
     fit: Fit | None = None
 
     @property
@@ -59,32 +61,35 @@ class _Search:
 
 def first_round(
     task: Task, bases: Sequence[Trial], candidates: Sequence[Candidate]
-) -> tuple[list[Trial], list[Trial]]:
-    """The best start of every candidate after a few coarse iterations.
+) -> tuple[list[list[Trial]], list[Trial]]:
+    """The best start of every candidate after a few coarse iterations, from either origin.
 
-    Returns those worth going on with, fitted to all train runs, and the rest, fitted to the runs
-    that tell most.
+    Returns those worth going on with, fitted to all train runs, as one group per origin, and the
+    rest, fitted to the runs that tell most. From the table a candidate may look worse and yet lead
+    to the better end, so the two origins do not compete here.
     """
     candidates = with_lines(task, bases[0].train, candidates)
     searches = [
-        _Search(base, candidate, start, values, z)
+        _Search(base, candidate, start, values, z, origin)
         for base in bases
         for candidate in candidates
         if candidate.key not in base.keys
-        for values, z in _origins(task, base, candidate)
+        for origin, values, z in _origins(task, base, candidate)
         for start in candidate.starts
     ]
     task.progress(f"trying {len(candidates)} candidates from {len(searches)} starts")
     probed = _advance(task, searches, _telling_runs(bases[0].train, PROBED_SHARE), PROBE)
     telling = _telling_runs(bases[0].train, TELLING_SHARE)
     sought = _leaders(_advance(task, _leaders(probed, STARTS_KEPT), telling, SEEK), 1)
-    near, behind = _split(sought, SOUGHT)
-    kept, left = _split(_advance(task, near, telling, GO_ON), CONFIRMED)
-    confirmed = _advance(task, kept, tuple(range(len(task.train))), CONFIRM)
-    return (
-        [t for search in confirmed for t in search.trial()],
-        [t for search in (*left, *behind) for t in search.trial()],
-    )
+    groups: list[list[Trial]] = []
+    left: list[_Search] = []
+    for origin in (OPTIMUM, TABLE):
+        near, behind = _split([s for s in sought if s.origin == origin], SOUGHT)
+        best, others = _split(_advance(task, near, telling, GO_ON), CONFIRMED)
+        left += [*others, *behind]
+        confirmed = _advance(task, best, tuple(range(len(task.train))), CONFIRM)
+        groups.append([t for search in confirmed for t in search.trial()])
+    return groups, [t for search in left for t in search.trial()]
 
 
 def _telling_runs(fit: Fit, share: float) -> tuple[int, ...]:
@@ -102,13 +107,14 @@ def _telling_runs(fit: Fit, share: float) -> tuple[int, ...]:
 
 def _origins(
     task: Task, base: Trial, candidate: Candidate
-) -> list[tuple[dict[str, float], tuple[FloatArray, ...]]]:
+) -> list[tuple[str, dict[str, float], tuple[FloatArray, ...]]]:
     """Where searches begin: the optimum of `base`; for the first effect also the table start."""
-    optimum = (dict(base.train.values), tuple(base.train.z))
+    optimum = (OPTIMUM, dict(base.train.values), tuple(base.train.z))
     if base.candidates or candidate.is_declared_value:
         return [optimum]
     rest = tuple(np.zeros(len(run.unknowns)) for run in task.train)
-    return [({**base.train.values, **all_values_at_start(task.free)}, rest), optimum]
+    table = {**base.train.values, **all_values_at_start(task.free)}
+    return [(TABLE, table, rest), optimum]
 
 
 def _advance(
@@ -134,14 +140,17 @@ def _advance(
 def _split(searches: Sequence[_Search], count: int) -> tuple[list[_Search], list[_Search]]:
     """The best `count` searches that are not far behind the best, and the others."""
     ordered = sorted(searches, key=lambda search: search.cost)
+    if not ordered:
+        return [], []
     near = [s for s in ordered[:count] if s.cost <= FAR_BEHIND * ordered[0].cost]
     return near, ordered[len(near) :]
 
 
 def _leaders(searches: Sequence[_Search], count: int) -> list[_Search]:
-    """For every set of effects its `count` best searches, as far as they are near the best."""
+    """For every set of effects and origin the `count` best searches that are near the best."""
     leaders: list[_Search] = []
-    for key in dict.fromkeys(search.key for search in searches):
-        own = sorted((s for s in searches if s.key == key), key=lambda search: search.cost)
+    for rival in dict.fromkeys((search.key, search.origin) for search in searches):
+        own = [s for s in searches if (s.key, s.origin) == rival]
+        own.sort(key=lambda search: search.cost)
         leaders += [s for s in own[:count] if s.cost <= START_FACTOR * own[0].cost]
     return leaders

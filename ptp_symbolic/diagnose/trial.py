@@ -79,8 +79,7 @@ def continue_fits(task: Task, trials: Sequence[Trial], effort: Effort) -> list[T
     """
     continued = []
     for trial in trials:
-        near = trial.train.rms_counts() < NEARBY_COUNTS
-        chosen = effort if near else replace(effort, secants=False, tolerance=COARSE)
+        chosen = _suited(effort, trial)
         free = restarted(trial.train)
         fit = fit_parameters(
             task.model,
@@ -94,6 +93,12 @@ def continue_fits(task: Task, trials: Sequence[Trial], effort: Effort) -> list[T
         kept = fit if fit.cost <= 1.02 * trial.train.cost else trial.train
         continued.append(replace(trial, train=kept))
     return sorted(continued, key=lambda trial: trial.train.cost)
+
+
+def _suited(effort: Effort, trial: Trial) -> Effort:
+    """`effort` near the floor; far from it one that makes do with derivatives at a point."""
+    near = trial.train.rms_counts() < NEARBY_COUNTS
+    return effort if near else replace(effort, secants=False, tolerance=COARSE)
 
 
 def start_afresh(task: Task, trial: Trial, effort: Effort) -> Trial:
@@ -112,5 +117,7 @@ def start_afresh(task: Task, trial: Trial, effort: Effort) -> Trial:
     fixed = fixed_values(task, free)
     return replace(
         trial,
-        train=fit_parameters(task.model, task.train, free, fixed, z, effort, task.executor),
+        train=fit_parameters(
+            task.model, task.train, free, fixed, z, _suited(effort, trial), task.executor
+        ),
     )

@@ -166,7 +166,7 @@ def _problem(
         [np.array([u.sigma for u in run.unknowns]) for run in runs],
         centre,
         precision,
-        secants(residual, lower, upper, executor) if effort.secants else None,
+        secants(residual, upper, executor) if effort.secants else None,
     )
 
 

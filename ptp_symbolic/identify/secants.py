@@ -20,39 +20,32 @@ Residual = Callable[[int, FloatArray, FloatArray], FloatArray | None]
 Refine = Callable[[FloatArray, Sequence[FloatArray], list[Evaluation]], list[Evaluation]]
 
 STEP = 0.02
-MISLEADING = 0.1
+MISLEADING = 0.25
 
 
 def secants(
     residual: Residual,
-    lower: FloatArray,
     upper: FloatArray,
     executor: Executor | None = None,
 ) -> Refine:
-    """Return a function that replaces misleading derivatives by phi with central differences.
+    """Return a function that replaces misleading derivatives by phi with differences.
 
-    `residual(run, phi, z)` simulates one run (None: it failed); lower and upper [nf] bound phi. On
+    `residual(run, phi, z)` simulates one run (None: it failed); `upper` [nf] bounds phi. On
     its first call the function compares every column of every run, later only those that misled.
     """
     chosen: list[Shift] | None = None
-
-    def shifted(
-        phi: FloatArray, z: Sequence[FloatArray], shift: Shift, step: float
-    ) -> tuple[float, FloatArray | None]:
-        run, column = shift
-        moved = phi.copy()
-        moved[column] = np.clip(phi[column] + step, lower[column], upper[column])
-        return moved[column], residual(run, moved, z[run])
 
     def difference(
         phi: FloatArray, z: Sequence[FloatArray], evaluations: Sequence[Evaluation], shift: Shift
     ) -> FloatArray:
         run, column = shift
-        high, above = shifted(phi, z, shift, STEP)
-        low, below = shifted(phi, z, shift, -STEP)
-        if above is None or below is None or high <= low:
+        step = STEP if phi[column] + STEP <= upper[column] else -STEP
+        moved = phi.copy()
+        moved[column] += step
+        after = residual(run, moved, z[run])
+        if after is None:
             return evaluations[run].by_parameter[:, column]
-        return (above - below) / (high - low)
+        return (after - evaluations[run].residual) / step
 
     def refine(
         phi: FloatArray, z: Sequence[FloatArray], evaluations: list[Evaluation]
