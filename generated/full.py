@@ -153,6 +153,9 @@ MODE_NAMES = ("slide_pan", "slide_tilt", "side_pan", "active_pan")
 FRICTION_RATES = np.array([5, 3], dtype=np.int64)
 # Per state: the friction that sets it to zero when it comes to rest, or -1.
 ZERO_AT_REST = (-1, -1, -1, -1, -1, -1, -1, -1)
+# Samplers: parameters of the period. Sampled: sampler and state of each update.
+SAMPLERS = ()
+SAMPLED = ()
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ((4, 0),)
 # Limits of the equations: state, meaning; `domain` gives the bounds.
@@ -4799,4 +4802,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 9d06f87f1b9ba86a705a1c577226b713817a6ea955bf210ded4fde28716cb10a
+# END sha256 4af55866bebcf093a7b447c3a93ef25b01d2149cbee4701af00f87be4d4b83ce

@@ -39,6 +39,9 @@ MODE_NAMES = ()
 FRICTION_RATES = ()
 # Per state: the friction that sets it to zero when it comes to rest, or -1.
 ZERO_AT_REST = (-1, -1, -1, -1)
+# Samplers: parameters of the period. Sampled: sampler and state of each update.
+SAMPLERS = ()
+SAMPLED = ()
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
 # Limits of the equations: state, meaning; `domain` gives the bounds.
@@ -283,4 +286,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 aa362be91e6b0b5ae896a0303816a34ff8f7ff58e12ca8943f325ffd70fe0523
+# END sha256 047897919e9ff27505c024529770dcc3f61295496c4d4cce522e839cab87e62e

@@ -48,6 +48,9 @@ MODE_NAMES = ("slide_pan", "side_pan", "active_pan")
 FRICTION_RATES = np.array([3], dtype=np.int64)
 # Per state: the friction that sets it to zero when it comes to rest, or -1.
 ZERO_AT_REST = (-1, -1, -1, -1, -1)
+# Samplers: parameters of the period. Sampled: sampler and state of each update.
+SAMPLERS = ()
+SAMPLED = ()
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ((2, 0),)
 # Limits of the equations: state, meaning; `domain` gives the bounds.
@@ -649,4 +652,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 7fbb373919306c5cc2b01c343ecb5c0d39a698d035a197bd4f5cb5b9e966184e
+# END sha256 d3a129d093f844dfe44080180ca4d56ed2c62ff47ce85d07d387f6a62240f82e

@@ -62,6 +62,9 @@ MODE_NAMES = ()
 FRICTION_RATES = ()
 # Per state: the friction that sets it to zero when it comes to rest, or -1.
 ZERO_AT_REST = (-1, -1, -1, -1)
+# Samplers: parameters of the period. Sampled: sampler and state of each update.
+SAMPLERS = ()
+SAMPLED = ()
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
 # Limits of the equations: state, meaning; `domain` gives the bounds.
@@ -698,4 +701,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 93ea6c978a3447323cae253f918c2f914c7da85f023ccd1de343266b2dd99a44
+# END sha256 7ac2c4395abe61695e12a396be81570635d9c19fdb040b5a5c74c8bbcd580a95

@@ -71,6 +71,9 @@ MODE_NAMES = ("slide_tilt",)
 FRICTION_RATES = np.array([1], dtype=np.int64)
 # Per state: the friction that sets it to zero when it comes to rest, or -1.
 ZERO_AT_REST = (-1, -1, -1)
+# Samplers: parameters of the period. Sampled: sampler and state of each update.
+SAMPLERS = ()
+SAMPLED = ()
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
 # Limits of the equations: state, meaning; `domain` gives the bounds.
@@ -1870,4 +1873,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 94e2a858f81401264b6f748ed86594541910759b9bc7dc6922136db47020b0da
+# END sha256 2267ce37167212671bbcc0250935974c83f9f1cd7e90af97fb8662380ac6f50f

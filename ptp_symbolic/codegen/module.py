@@ -65,6 +65,7 @@ def module_text(equations: Equations) -> str:
             _energy(equations, vectors),
             _domain(equations, vectors),
             _margins(equations, vectors),
+            *_samplers(equations, vectors),
             STATE_DERIVATIVE_HYBRID if vectors.m else STATE_DERIVATIVE_SMOOTH,
         ]
     )
@@ -230,6 +231,29 @@ def _domain(equations: Equations, vectors: Vectors) -> str:
     ]
     doc = "Write lower and upper bound of the state of every row of DOMAIN into bounds."
     return _kernel("domain", "p, bounds", doc, vectors, share((), outputs, words_of(equations)))
+
+
+def _samplers(equations: Equations, vectors: Vectors) -> list[str]:
+    """What samplers do, and its derivatives; nothing in a machine that has none."""
+    if not equations.samplers:
+        return []
+    timing = [e for s in equations.samplers for e in (s.period, s.offset, s.phase)]
+    values = [equations.written_out(e) for e in (*timing, *(v for _, _, v in equations.updates))]
+    outputs = [(f"z[{i}]", sp.sympify(e, strict=True)) for i, e in enumerate(values)]
+    doc = "Write period, offset and phase of every sampler, then what SAMPLED states become into z."
+    lines = share((), outputs, words_of(equations))
+    slopes = [
+        (f"z{letter}[{i}, {j}]", sp.diff(expression, variable))
+        for letter, symbols in _columns(equations)
+        for j, variable in enumerate(symbols)
+        for i, expression in enumerate(values)
+    ]
+    by = "Write the non-zero derivatives of sample by state, input and parameter."
+    arguments = f"{MODE_ARGUMENTS}, zx, zu, zp"
+    return [
+        _kernel("sample", f"{MODE_ARGUMENTS}, z", doc, vectors, lines),
+        _kernel("sample_jacobian", arguments, by, vectors, _shared(equations, (), slopes)),
+    ]
 
 
 def _margins(equations: Equations, vectors: Vectors) -> str:

@@ -5,7 +5,15 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic.bodies import RigidConfiguration, RigidEquations
-from ptp_symbolic.effects.effect import Effect, Friction, Input, Limit, Requirement, State
+from ptp_symbolic.effects.effect import (
+    Effect,
+    Friction,
+    Input,
+    Limit,
+    Requirement,
+    Sampler,
+    State,
+)
 from ptp_symbolic.parameters import Parameter
 
 
@@ -49,9 +57,9 @@ class Equations:
 
     Set-valued friction and contact enter through mode symbols, so that the equations are smooth
     in every mode. `forcing` holds everything but the friction torques. `terms` are named functions
-    in which they are written, each of those before it. `delays` gives for every input the time by
-    which it is late, if it can be. The equations hold within `limits`, for parameters that meet
-    the `requirements`.
+    in which they are written, each of those before it. `samplers` set states at instants. `delays`
+    gives for every input the time by which it is late, if it can be. The equations hold within
+    `limits`, for parameters that meet the `requirements`.
     """
 
     name: str
@@ -63,6 +71,7 @@ class Equations:
     forcing: sp.ImmutableMatrix
     terms: tuple[tuple[sp.Symbol, sp.Expr], ...]
     extra_states: tuple[State, ...]
+    samplers: tuple[Sampler, ...]
     inputs: tuple[Input, ...]
     delays: tuple[sp.Symbol | None, ...]
     parameters: tuple[Parameter, ...]
@@ -100,6 +109,15 @@ class Equations:
         named = {symbol for symbol, _ in self.terms}
         return self.mass_matrix.applyfunc(
             lambda entry: sp.Add(*(a for a in sp.Add.make_args(entry) if a.free_symbols & named))
+        )
+
+    @property
+    def updates(self) -> tuple[tuple[int, sp.Symbol, sp.Expr], ...]:
+        """What samplers set: index of the sampler, the state, its new value."""
+        return tuple(
+            (index, symbol, value)
+            for index, sampler in enumerate(self.samplers)
+            for symbol, value in sampler.updates.items()
         )
 
     @property

@@ -20,6 +20,7 @@ from ptp_symbolic.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION
 from ptp_symbolic.effects.lugre_friction import LUGRE_FRICTION
 from ptp_symbolic.effects.payload import PAYLOAD
 from ptp_symbolic.effects.payload_com_offset import PAYLOAD_COM_OFFSET
+from ptp_symbolic.effects.pid_controller import PID_CONTROLLER
 from ptp_symbolic.effects.position_dependent_friction import POSITION_DEPENDENT_FRICTION
 from ptp_symbolic.effects.prescribed_motion import PRESCRIBED_MOTION
 from ptp_symbolic.effects.product_of_inertia import PRODUCT_OF_INERTIA
@@ -53,6 +54,7 @@ EFFECTS: tuple[Effect, ...] = (
     GEAR_ECCENTRICITY,
     DC_MOTOR,
     LINEAR_ACTUATOR,
+    PID_CONTROLLER,
     PRESCRIBED_MOTION,
     DRIVE_DEADBAND,
     VOLTAGE_OFFSET,

@@ -54,6 +54,13 @@ from ptp_symbolic.simulation.kernels import (
     kernel,
 )
 from ptp_symbolic.simulation.outputs import note_switches
+from ptp_symbolic.simulation.sampling import (
+    SAMPLING,
+    Sampling,
+    new_sampling,
+    next_stop,
+    sample_now,
+)
 
 FloatArray = NDArray[np.float64]
 
@@ -94,6 +101,21 @@ def take_step(equations, inputs, t, t_end, x, m, work, record):
 
 
 @inlined
+def take_steps(equations, inputs, begin, end, step, x, m, work, record):
+    """Go from begin to end in equal steps of at most `step` s. Returns a status."""
+    count = max(1, int(np.ceil((end - begin) / step - 1e-9)))
+    h = (end - begin) / count
+    for index in range(count):
+        t = begin + index * h
+        t_end = end if index + 1 == count else begin + (index + 1) * h
+        status = take_step(equations, inputs, t, t_end, x, m, work, record)
+        if status != DONE:
+            record.clock[TIME] = t
+            return status
+    return DONE
+
+
+@inlined
 def add_work(equations, t, t_end, x, u, u_end, m, end, record):
     """Add the work of the step, by the trapezoidal rule over the powers at its ends."""
     call(equations.energy, t, x, u, equations.p, m, record.powers[0])
@@ -129,41 +151,43 @@ def write_output(equations, t, x, u, m, record):
         types.float64,  # step in s: every interval is cut into equal steps of at most this length
         _WORK,
         _RECORD,
+        SAMPLING,
     ),
     cache=True,
     **KERNEL,
 )
 def run_fixed(
-    functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, m, step, work, record
-):
+    functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, m, step, work, record,
+    sampling,
+):  # fmt: skip
     """Integrate from the first to the last output time; inputs jump at no other time."""
     equations = Equations(
         functions[0], functions[1], functions[2], functions[3], functions[4], p, friction_rates,
         zero_at_rest,
     )  # fmt: skip
-    inputs, work, record = (
+    inputs, work, record, sampling = (
         Inputs(table, cursor, held, u[0], u[1]), StepWork(*work), Record(*record),
+        Sampling(*sampling),
     )  # fmt: skip
     times = record.times
     for interval in range(len(times)):
         begin = times[interval]
         evaluate_inputs(begin, 1, *inputs.table, inputs.cursor, inputs.ahead)
+        sample_now(equations, inputs.ahead, begin, x, m, sampling)
         if interval == 0 and not choose_start_modes(equations, begin, x, inputs.ahead, m, work):
             return UNDECIDED
         write_output(equations, begin, x, inputs.ahead, m, record)
         if interval + 1 == len(times):
             break
         copy(inputs.ahead, inputs.u)
-        length = times[interval + 1] - begin
-        count = max(1, int(np.ceil(length / step - 1e-9)))
-        h = length / count
-        for index in range(count):
-            t, last = begin + index * h, index + 1 == count
-            t_end = times[interval + 1] if last else begin + (index + 1) * h
-            status = take_step(equations, inputs, t, t_end, x, m, work, record)
+        while begin < times[interval + 1]:
+            target = next_stop(times[interval + 1], sampling)
+            status = take_steps(equations, inputs, begin, target, step, x, m, work, record)
             if status != DONE:
-                record.clock[TIME] = t
                 return status
+            begin = target
+            if begin < times[interval + 1]:
+                sample_now(equations, inputs.ahead, begin, x, m, sampling)
     record.clock[TIME] = times[-1]
     return DONE
 
@@ -222,6 +246,7 @@ def pass_in_steps(
     status = run_fixed(
         addresses(model.module), p, model.friction_rates, model.zero_at_rest, inputs.arrays,
         inputs.new_cursor(), inputs.held, z((2, nu)), x, m, float(step), tuple(work), tuple(record),
+        tuple(new_sampling(model, p, x, times, 0)),
     )  # fmt: skip
     kept, counts = np.searchsorted(grid, times), record.counts
     return FixedPassage(

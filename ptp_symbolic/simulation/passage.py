@@ -11,6 +11,7 @@ from ptp_symbolic.simulation.emitted import addresses
 from ptp_symbolic.simulation.inputs import InputTable
 from ptp_symbolic.simulation.kernels import EVENTS, STEPS, TIME, Record, Step, Tangents, Watch
 from ptp_symbolic.simulation.rodas5p import STAGES
+from ptp_symbolic.simulation.sampling import new_sampling
 from ptp_symbolic.simulation.steps import ROSENBROCK, RUNGE_KUTTA
 
 FloatArray = NDArray[np.float64]
@@ -112,6 +113,7 @@ def pass_through(
         inputs.arrays, cursor, held, u, x, stops,
         np.array([accuracy.relative, accuracy.largest_step]), accuracy.absolute,
         tuple(_step(n, nu, len(p))), tuple(watch), tuple(tangents), tuple(record),
+        tuple(new_sampling(model, p, x, stops, s.shape[1])),
     )  # fmt: skip
     return Passage(
         status, float(record.clock[TIME]), x, record.x, record.s, record.ledger,
