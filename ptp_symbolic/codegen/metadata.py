@@ -98,6 +98,8 @@ def _docstring(equations: Equations, operations: tuple[int, int]) -> str:
     for sampler in equations.samplers:
         start = sp.Symbol("k", real=True) + sampler.phase
         lines += _wrapped("instants", sampler.offset + start * sampler.period)
+        for symbol, term in sampler.terms.items():
+            lines += _wrapped(str(symbol), term)
         for symbol, value in sampler.updates.items():
             lines += _wrapped(f"{symbol} from there", value)
     before, after = operations

@@ -237,22 +237,27 @@ def _samplers(equations: Equations, vectors: Vectors) -> list[str]:
     """What samplers do, and its derivatives; nothing in a machine that has none."""
     if not equations.samplers:
         return []
-    timing = [e for s in equations.samplers for e in (s.period, s.offset, s.phase)]
-    values = [equations.written_out(e) for e in (*timing, *(v for _, _, v in equations.updates))]
+    values = [e for s in equations.samplers for e in (s.period, s.offset, s.phase)]
+    values += [value for _, _, value in equations.updates]
+    terms = {symbol: term for s in equations.samplers for symbol, term in s.terms.items()}
     outputs = [(f"z[{i}]", sp.sympify(e, strict=True)) for i, e in enumerate(values)]
     doc = "Write period, offset and phase of every sampler, then what SAMPLED states become into z."
-    lines = share((), outputs, words_of(equations))
+    named = [(str(symbol), term) for symbol, term in (*equations.terms, *terms.items())]
+    lines = share(named, outputs, words_of(equations))
+    for symbol, term in reversed(terms.items()):
+        values = [value.xreplace({symbol: term}) for value in values]
     slopes = [
-        (f"z{letter}[{i}, {j}]", sp.diff(expression, variable))
+        (f"z{letter}[{i}, {j}]", sp.diff(equations.written_out(value), variable))
         for letter, symbols in _columns(equations)
         for j, variable in enumerate(symbols)
-        for i, expression in enumerate(values)
+        for i, value in enumerate(values)
     ]
+    derived = _shared(equations, (), slopes)
     by = "Write the non-zero derivatives of sample by state, input and parameter."
     arguments = f"{MODE_ARGUMENTS}, zx, zu, zp"
     return [
         _kernel("sample", f"{MODE_ARGUMENTS}, z", doc, vectors, lines),
-        _kernel("sample_jacobian", arguments, by, vectors, _shared(equations, (), slopes)),
+        _kernel("sample_jacobian", arguments, by, vectors, derived),
     ]
 
 

@@ -165,6 +165,7 @@ def _samplers(parts: Parts) -> tuple[Sampler, ...]:
             {symbol: parts.resolve(value) for symbol, value in own.updates.items()},
             parts.resolve(own.offset),
             parts.resolve(own.phase),
+            {symbol: parts.resolve(term) for symbol, term in own.terms.items()},
         )
         for contribution in parts.contributions
         for own in contribution.samplers
@@ -199,6 +200,7 @@ def _with_parameters(equations: Equations, declared: dict[str, Parameter]) -> Eq
             sampler.offset,
             sampler.phase,
             *sampler.updates.values(),
+            *sampler.terms.values(),
         ):
             used |= expression.free_symbols
     for _, _, expression in equations.outputs:

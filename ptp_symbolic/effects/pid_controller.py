@@ -11,7 +11,7 @@ from ptp_symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter("K_p_{axis}", "V/rad", 100.0, 0.0, 1e9, "proportional gain"),
-    Parameter("K_i_{axis}", "V/rad/s", 0.0, 0.0, 1e9, "integral gain"),
+    Parameter("K_i_{axis}", "V/(rad s)", 0.0, 0.0, 1e9, "integral gain"),
     Parameter("K_d_{axis}", "V s/rad", 0.0, 0.0, 1e9, "derivative gain"),
     Parameter("u_i_max_{axis}", "V", 24.0, 0.0, 1e6, "largest integral part"),
     Parameter("t_sample_{axis}", "s", 2048 / 6e6, 1e-6, 1e3, "sampling time of the controller"),
@@ -35,10 +35,11 @@ def _contribute(place: Place) -> Contribution:
     kp, ki, kd, limit, period, every, full, steps = (place.parameter(p.name) for p in PARAMETERS)
     command, integral, derivative, last = (place.parameter(name) for name, _, _ in STATES)
     wanted = place.parameter("setpoint_{axis}")
-    error = wanted - place.quantity(f"reading_{place.angle}")
-    total = integral + period * error
+    error, total, asked = map(place.parameter, ("error_{axis}", "sum_{axis}", "asked_{axis}"))
     between = NearestCount(every, 1) * period
-    asked = kp * error + _within(ki * total, limit) + kd * derivative
+    seen = {error: wanted - place.quantity(f"reading_{place.angle}")}
+    part = _within(ki * total, limit)
+    sums = {total: integral + period * error, asked: kp * error + part + kd * derivative}
     given = _within(NearestCount(asked, full / steps), full)
     return Contribution(
         changes={f"command_{place.axis}": Change(through=lambda _: command)},
@@ -50,8 +51,8 @@ def _contribute(place: Place) -> Contribution:
             for name, unit, text in STATES
         ),
         samplers=(
-            Sampler(between, {derivative: (error - last) / between, last: error}),
-            Sampler(period, {command: given, integral: total}),
+            Sampler(between, {derivative: (error - last) / between, last: error}, terms=seen),
+            Sampler(period, {command: given, integral: total}, terms=seen | sums),
         ),
     )
 

@@ -178,6 +178,8 @@ def _results(equations: Equations) -> str:
         parts.append("Held in between, and set anew at the instants")
         start = sp.Symbol("k", real=True) + sampler.phase
         parts.append(formula("", sampler.offset + start * sampler.period, "t_k"))
+        for symbol, term in sampler.terms.items():
+            parts.append(formula("", term, symbol_latex(str(symbol))))
         for symbol, value in sampler.updates.items():
             parts.append(formula("", value, rf"{symbol_latex(str(symbol))}\big|_{{t_k}}"))
     return "\n".join(parts)
