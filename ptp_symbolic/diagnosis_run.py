@@ -107,6 +107,7 @@ def _task(
     executor: ThreadPoolExecutor,
     progress: Progress,
 ) -> Task:
+    progress("preparing the simulation (compiles for half a minute once on a new machine)")
     free = loop.free_parameters(platform, model)
     fixed = {**model.defaults, **off, **loop.known_values(platform, model)}
     runs = [prepare_runs(model, platform, tuple(logs)) for logs in (train, validate)]

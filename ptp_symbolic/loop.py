@@ -73,26 +73,25 @@ def torque_driven(platform: Platform) -> Platform:
 
     Friction at the gear output then acts on the joint.
     """
-    placed = zip(place_effects(platform), platform.effects, strict=True)
     kept = []
-    for (effect, place), declaration in placed:
+    for effect, place in place_effects(platform):
         added = effect.contribute(place)
         if not (added.drives or added.shafts or added.prescribed):
-            kept.append((effect, replace(place, shafts=frozenset()), declaration))
+            kept.append((effect, replace(place, shafts=frozenset())))
     while True:
-        available = available_quantities([(effect, place) for effect, place, _ in kept])
+        available = available_quantities(kept)
         usable = [
-            (effect, place, declaration)
-            for effect, place, declaration in kept
+            (effect, place)
+            for effect, place in kept
             if all(need.format(axis=place.axis) in available for need in effect.needs)
         ]
         if len(usable) == len(kept):
             break
         kept = usable
-    own = {p.name for effect, place, _ in kept for p in effect.parameters(place)}
+    own = {p.name for effect, place in kept for p in effect.parameters(place)}
     return replace(
         platform,
-        effects=tuple(declaration for _, _, declaration in kept),
+        effects=tuple(EffectDeclaration(e.id, place.axis, place.site) for e, place in kept),
         parameters=tuple(p for p in platform.parameters if p.name in own),
     )
 

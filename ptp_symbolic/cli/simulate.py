@@ -17,6 +17,10 @@ INPUT = click.option(
     " inputs give NAME=PROFILE each.",
 )
 DURATION = click.option("--duration", type=float, help="Seconds; default 10, or the whole log.")
+METHOD = click.option(
+    "--method", help="rosenbrock, runge_kutta or fixed_step; default: what suits the model."
+)
+STEP = click.option("--step", type=float, default=1e-4, help="Seconds, for fixed_step.")
 OUT = click.option("--out", type=Path, required=True, help="Folder for the results.")
 
 
@@ -24,8 +28,17 @@ OUT = click.option("--out", type=Path, required=True, help="Folder for the resul
 @PLATFORM
 @INPUT
 @DURATION
+@METHOD
+@STEP
 @OUT
-def simulate(source: str, inputs: tuple[str, ...], duration: float | None, out: Path) -> None:
+def simulate(
+    source: str,
+    inputs: tuple[str, ...],
+    duration: float | None,
+    method: str | None,
+    step: float,
+    out: Path,
+) -> None:
     """Simulate a platform; writes trajectory.csv and events.csv."""
     from ptp_symbolic import load
     from ptp_symbolic.atomic import check_writable, write_files_atomically
@@ -34,7 +47,7 @@ def simulate(source: str, inputs: tuple[str, ...], duration: float | None, out: 
     check_writable(out)
     model = load(source)
     signals, end = _signals(source, model, inputs, duration)
-    found = run(model, end, signals)
+    found = run(model, end, signals, method=method, step=step)
     names = [f"{n} [{model.units[n]}]" for n in model.state_names]
     head = ["time [s]", *names, "stored [J]", "supplied [J]", "dissipated [J]"]
     rows = zip(found.t, *found.x.T, found.stored, found.supplied, found.dissipated, strict=True)

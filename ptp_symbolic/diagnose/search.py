@@ -19,6 +19,7 @@ from ptp_symbolic.diagnose.trial import (
     COARSE,
     FINE,
     LAST,
+    NEARBY_COUNTS,
     NEXT,
     Task,
     Trial,
@@ -37,6 +38,7 @@ FloatArray = NDArray[np.float64]
 FIRST = Effort(5, 3e-3, COARSE, 0.3)
 DECLARED = Effort(8, 1e-2, COARSE, 0.3)
 MENDED = Effort(10, 2e-3, COARSE, secants=True)
+SMOOTH = Effort(15, 1e-4, FINE)
 HELD_OUT = Effort(10, 1e-4, FINE)
 DROP_FACTOR, CLOSE_FACTOR = 25.0, 4.0
 KEPT_AFTER_FIRST, POLISHED, FINISHED, BEAM = 6, 4, 3, 3
@@ -51,9 +53,10 @@ def fit_declared(task: Task) -> Trial:
         for free in (task.free, tuple(_shifted(f) for f in task.free))
     ]
     trial = Trial((), min(fits, key=lambda fit: fit.cost))
-    for effort in (MENDED, LAST):
-        trial = continue_fits(task, [trial], effort)[0]
-        task.progress(f"fitting the declared model: {trial.train.rms_counts():.3f} counts rms")
+    trial = continue_fits(task, [trial], MENDED)[0]
+    if trial.train.rms_counts() < NEARBY_COUNTS:
+        trial = continue_fits(task, [trial], LAST)[0]
+    task.progress(f"the declared model leaves {trial.train.rms_counts():.3f} counts rms")
     return judge(task, escape(task, trial))
 
 
@@ -80,6 +83,7 @@ def try_candidates(
     third = continue_fits(task, _best(second, POLISHED, DROP_FACTOR), NEXT)
     task.progress("polishing the best candidates")
     polished = continue_fits(task, _best(third, FINISHED, CLOSE_FACTOR), LAST)
+    polished = continue_fits(task, polished, SMOOTH)
     polished = [escape(task, t) if t is polished[0] else t for t in polished]
     judged = [judge(task, trial) for trial in polished]
     for trial in sorted(judged, key=held_out_cost):

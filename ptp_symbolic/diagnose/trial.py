@@ -16,6 +16,7 @@ from ptp_symbolic.runtime.model import Model
 
 Progress = Callable[[str], None]
 
+NEARBY_COUNTS = 5.0
 COARSE, FINE = Tolerance(1e-4, 1e-6), Tolerance(1e-5, 1e-7)
 NEXT = Effort(10, 2e-3, COARSE, 0.5, secants=True)
 LAST = Effort(10, 3e-4, FINE, secants=True)
@@ -72,9 +73,14 @@ def fixed_values(task: Task, free: Sequence[FreeParameter]) -> dict[str, float]:
 
 
 def continue_fits(task: Task, trials: Sequence[Trial], effort: Effort) -> list[Trial]:
-    """Fit every trial on from where it ended, best first; a worse end is not taken."""
+    """Fit every trial on from where it ended, best first; a worse end is not taken.
+
+    Far from the floor derivatives at a point are good enough.
+    """
     continued = []
     for trial in trials:
+        near = trial.train.rms_counts() < NEARBY_COUNTS
+        chosen = effort if near else replace(effort, secants=False, tolerance=COARSE)
         free = restarted(trial.train)
         fit = fit_parameters(
             task.model,
@@ -82,7 +88,7 @@ def continue_fits(task: Task, trials: Sequence[Trial], effort: Effort) -> list[T
             free,
             fixed_values(task, free),
             trial.train.z,
-            effort,
+            chosen,
             task.executor,
         )
         kept = fit if fit.cost <= 1.02 * trial.train.cost else trial.train

@@ -24,7 +24,7 @@ FloatArray = NDArray[np.float64]
 
 
 DEFAULT_TOLERANCE = Tolerance()
-GAP_PLACES = (-0.9, -0.45, 0.45, 0.9)
+GAP_PLACES, TRIED_PLACES = (-0.9, -0.45, 0.45, 0.9), 3
 
 
 @dataclass(frozen=True)
@@ -190,21 +190,24 @@ def _fit_starts(
 ) -> Fit:
     """Runs that share no free parameter are independent: fit the start of each by itself.
 
-    The place in a gap is hard to find from afar, so the search begins at the best of a few places.
+    The place in a gap is hard to find from afar: the search begins at the best of several places.
     """
     nothing = np.zeros(0)
 
     def one(pair: tuple[Run, FloatArray]) -> Optimum:
         run, start = pair
         problem = _problem(model, [run], (), fixed, effort, None)
+        begins = [start]
         for index, unknown in enumerate(run.unknowns):
             if unknown.contact is not None:
                 places = [_moved(start, index, value) for value in (start[index], *GAP_PLACES)]
                 costs = [
                     cost_of(problem, problem.evaluate(nothing, [p], False), [p]) for p in places
                 ]
-                start = places[int(np.argmin(costs))]
-        return minimise(problem, nothing, [start], effort.iterations, effort.gain)
+                begins = [places[i] for i in np.argsort(costs, kind="stable")[:TRIED_PLACES]]
+                start = begins[0]
+        found = [minimise(problem, nothing, [b], effort.iterations, effort.gain) for b in begins]
+        return min(found, key=lambda optimum: optimum.cost)
 
     pairs = list(zip(runs, z, strict=True))
     best = list(executor.map(one, pairs)) if executor else [one(pair) for pair in pairs]

@@ -10,7 +10,9 @@ Order 2 in smooth motion, 1 across mode changes: an event takes effect up to one
 A bounce shorter than a step is missed. Work per step is bounded, and nothing is allocated in it.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import njit, types
@@ -41,6 +43,7 @@ from ptp_symbolic.simulation.kernels import (
     MATRIX,
     OUTPUT,
     SMALLEST,
+    SOURCES,
     STEPS,
     TABLE,
     TIME,
@@ -52,6 +55,7 @@ from ptp_symbolic.simulation.kernels import (
     copy,
     inlined,
     kernel,
+    source_stamp,
 )
 from ptp_symbolic.simulation.outputs import note_switches
 from ptp_symbolic.simulation.sampling import (
@@ -136,60 +140,71 @@ def write_output(equations, t, x, u, m, record):
     record.counts[OUTPUT] = output + 1
 
 
-@njit(
-    types.int64(
-        _I,  # addresses of the emitted functions
-        _V,  # parameters
-        _I,  # state index of the rate of every friction
-        _I,  # per state the friction that sets it to zero when it comes to rest, or -1
-        TABLE,
-        _I,  # cursor [nu]
-        types.boolean,  # inputs are held between times
-        _M,  # inputs: at the end and at the start of a step [2, nu]
-        _V,  # x, changed in place
-        _V,  # modes, changed in place
-        types.float64,  # step in s: every interval is cut into equal steps of at most this length
-        _WORK,
-        _RECORD,
-        SAMPLING,
-    ),
-    cache=True,
-    **KERNEL,
-)
-def run_fixed(
-    functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, m, step, work, record,
-    sampling,
-):  # fmt: skip
-    """Integrate from the first to the last output time; inputs jump at no other time."""
-    equations = Equations(
-        functions[0], functions[1], functions[2], functions[3], functions[4], p, friction_rates,
-        zero_at_rest,
-    )  # fmt: skip
-    inputs, work, record, sampling = (
-        Inputs(table, cursor, held, u[0], u[1]), StepWork(*work), Record(*record),
-        Sampling(*sampling),
-    )  # fmt: skip
-    times = record.times
-    for interval in range(len(times)):
-        begin = times[interval]
-        evaluate_inputs(begin, 1, *inputs.table, inputs.cursor, inputs.ahead)
-        sample_now(equations, inputs.ahead, begin, x, m, sampling)
-        if interval == 0 and not choose_start_modes(equations, begin, x, inputs.ahead, m, work):
-            return UNDECIDED
-        write_output(equations, begin, x, inputs.ahead, m, record)
-        if interval + 1 == len(times):
-            break
-        copy(inputs.ahead, inputs.u)
-        while begin < times[interval + 1]:
-            target = next_stop(times[interval + 1], sampling)
-            status = take_steps(equations, inputs, begin, target, step, x, m, work, record)
-            if status != DONE:
-                return status
-            begin = target
-            if begin < times[interval + 1]:
-                sample_now(equations, inputs.ahead, begin, x, m, sampling)
-    record.clock[TIME] = times[-1]
-    return DONE
+def compiled_runner(sources: int) -> Callable[..., int]:
+    """The compiled runner, stamped with the `sources` it comes from (see `source_stamp`)."""
+
+    @njit(
+        types.int64(
+            _I,  # addresses of the emitted functions
+            _V,  # parameters
+            _I,  # state index of the rate of every friction
+            _I,  # per state the friction that sets it to zero when it comes to rest, or -1
+            TABLE,
+            _I,  # cursor [nu]
+            types.boolean,  # inputs are held between times
+            _M,  # inputs: at the end and at the start of a step [2, nu]
+            _V,  # x, changed in place
+            _V,  # modes, changed in place
+            types.float64,  # longest step in s: every interval is cut into equal ones
+            _WORK,
+            _RECORD,
+            SAMPLING,
+        ),
+        cache=True,
+        **KERNEL,
+    )
+    def run_fixed(
+        functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, m, step, work,
+        record, sampling,
+    ):  # fmt: skip
+        """Integrate from the first to the last output time; inputs jump at no other time."""
+        record = Record(*record)
+        record.counts[SOURCES] = sources
+        equations = Equations(
+            functions[0], functions[1], functions[2], functions[3], functions[4], p, friction_rates,
+            zero_at_rest,
+        )  # fmt: skip
+        inputs, work = Inputs(table, cursor, held, u[0], u[1]), StepWork(*work)
+        sampling = Sampling(*sampling)
+        times = record.times
+        for interval in range(len(times)):
+            begin = times[interval]
+            evaluate_inputs(begin, 1, *inputs.table, inputs.cursor, inputs.ahead)
+            sample_now(equations, inputs.ahead, begin, x, m, sampling)
+            if interval == 0 and not choose_start_modes(equations, begin, x, inputs.ahead, m, work):
+                return UNDECIDED
+            write_output(equations, begin, x, inputs.ahead, m, record)
+            if interval + 1 == len(times):
+                break
+            copy(inputs.ahead, inputs.u)
+            while begin < times[interval + 1]:
+                if begin > times[interval]:
+                    sample_now(equations, inputs.ahead, begin, x, m, sampling)
+                end = next_stop(times[interval + 1], sampling)
+                status = take_steps(equations, inputs, begin, end, step, x, m, work, record)
+                if status != DONE:
+                    return status
+                begin = end
+        record.clock[TIME] = times[-1]
+        return DONE
+
+    return run_fixed
+
+
+@lru_cache(maxsize=1)
+def runner() -> Callable[..., int]:
+    """The runner, compiled when it is first needed."""
+    return compiled_runner(source_stamp())
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,9 +256,9 @@ def pass_in_steps(
     )  # fmt: skip
     record = Record(
         grid, z((len(grid), n)), z((0, n, 0)), z((len(grid), 3)), z((event_room, 3)), z(3),
-        z((4, 3)), z(2), z(4, np.int64),
+        z((4, 3)), z(2), z(5, np.int64),
     )  # fmt: skip
-    status = run_fixed(
+    status = runner()(
         addresses(model.module), p, model.friction_rates, model.zero_at_rest, inputs.arrays,
         inputs.new_cursor(), inputs.held, z((2, nu)), x, m, float(step), tuple(work), tuple(record),
         tuple(new_sampling(model, p, x, times, 0)),

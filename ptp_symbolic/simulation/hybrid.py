@@ -6,6 +6,9 @@ ends inside a step is found on the step's interpolant, then by repeating the ste
 landing point lies just past the event. The step length is carried over stops and events.
 """
 
+from collections.abc import Callable
+from functools import lru_cache
+
 import numpy as np
 from numba import njit, types
 
@@ -22,6 +25,7 @@ from ptp_symbolic.simulation.kernels import (
     LARGEST_STATE,
     LENGTH,
     MATRIX,
+    SOURCES,
     STEPS,
     TABLE,
     TIME,
@@ -36,6 +40,7 @@ from ptp_symbolic.simulation.kernels import (
     flush,
     inlined,
     kernel,
+    source_stamp,
 )
 from ptp_symbolic.simulation.location import (
     TIME_RESOLUTION,
@@ -204,64 +209,77 @@ def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents,
     record.clock[TIME] = t_new
 
 
-@njit(
-    types.int64(
-        types.int64,  # method
-        _I,  # addresses of the emitted functions
-        _V,  # parameters
-        _I,  # state index of the rate of every friction
-        _I,  # per state the friction that zeroes it when it comes to rest, or -1
-        TABLE,
-        _I,  # cursor [nu]
-        types.boolean,  # inputs are held between stops
-        _M,  # inputs: now, ahead, before [3, nu]
-        _V,  # x, changed in place
-        _V,  # stops, the first is the start
-        _V,  # rtol, largest step
-        _V,  # atol
-        _STEP,
-        _WATCH,
-        _TANGENTS,
-        _RECORD,
-        SAMPLING,
-    ),
-    cache=True,
-    **KERNEL,
-)
-def run(
-    method, functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, stops, limits,
-    atol, step, watch, tangents, record, sampling,
-):  # fmt: skip
-    """Integrate from the first to the last stop; returns a status, the rest is in the records."""
-    equations = Equations(
-        functions[0],
-        functions[1],
-        functions[2],
-        functions[3],
-        functions[4],
-        p,
-        friction_rates,
-        zero_at_rest,
+def compiled_runner(sources: int) -> Callable[..., int]:
+    """The compiled runner, stamped with the `sources` it comes from (see `source_stamp`)."""
+
+    @njit(
+        types.int64(
+            types.int64,  # method
+            _I,  # addresses of the emitted functions
+            _V,  # parameters
+            _I,  # state index of the rate of every friction
+            _I,  # per state the friction that zeroes it when it comes to rest, or -1
+            TABLE,
+            _I,  # cursor [nu]
+            types.boolean,  # inputs are held between stops
+            _M,  # inputs: now, ahead, before [3, nu]
+            _V,  # x, changed in place
+            _V,  # stops, the first is the start
+            _V,  # rtol, largest step
+            _V,  # atol
+            _STEP,
+            _WATCH,
+            _TANGENTS,
+            _RECORD,
+            SAMPLING,
+        ),
+        cache=True,
+        **KERNEL,
     )
-    inputs, step, watch = Inputs(table, cursor, held, u[0], u[1]), Step(*step), Watch(*watch)
-    tangents, record, sampling = Tangents(*tangents), Record(*record), Sampling(*sampling)
-    record.clock[TIME], record.clock[LENGTH] = stops[0], limits[1]
-    if is_due(stops[0], sampling):
-        sample_with_tangents(equations, inputs, stops[0], x, watch.m, tangents, sampling)
-    evaluate_inputs(stops[0], 1, *inputs.table, inputs.cursor, inputs.u)
-    write_here(equations, inputs, stops[0], x, watch.m, tangents, record)
-    for index in range(1, len(stops)):
-        copy(inputs.u, u[2])
-        evaluate_inputs(stops[index - 1], 1, *inputs.table, inputs.cursor, inputs.u)
-        if tangents.table.shape[1] > 0 and index > 1:
-            jump_by_delay(equations, inputs, stops[index - 1], x, u[2], watch, tangents)
-        if not enter(equations, inputs, stops[index - 1], x, watch, record):
-            return CHATTERING
-        status = advance_by_samples(
-            method, equations, inputs, stops[index], x, limits, atol, step, watch, tangents, record,
-            sampling,
-        )  # fmt: skip
-        if status != DONE:
-            return status
-        write_here(equations, inputs, stops[index], x, watch.m, tangents, record)
-    return DONE
+    def run(
+        method, functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, stops,
+        limits, atol, step, watch, tangents, record, sampling,
+    ):  # fmt: skip
+        """Integrate from the first to the last stop; returns a status, the rest is in `record`."""
+        record = Record(*record)
+        record.counts[SOURCES] = sources
+        equations = Equations(
+            functions[0],
+            functions[1],
+            functions[2],
+            functions[3],
+            functions[4],
+            p,
+            friction_rates,
+            zero_at_rest,
+        )
+        inputs, step, watch = Inputs(table, cursor, held, u[0], u[1]), Step(*step), Watch(*watch)
+        tangents, sampling = Tangents(*tangents), Sampling(*sampling)
+        record.clock[TIME], record.clock[LENGTH] = stops[0], limits[1]
+        if is_due(stops[0], sampling):
+            sample_with_tangents(equations, inputs, stops[0], x, watch.m, tangents, sampling)
+        evaluate_inputs(stops[0], 1, *inputs.table, inputs.cursor, inputs.u)
+        write_here(equations, inputs, stops[0], x, watch.m, tangents, record)
+        for index in range(1, len(stops)):
+            copy(inputs.u, u[2])
+            evaluate_inputs(stops[index - 1], 1, *inputs.table, inputs.cursor, inputs.u)
+            if tangents.table.shape[1] > 0 and index > 1:
+                jump_by_delay(equations, inputs, stops[index - 1], x, u[2], watch, tangents)
+            if not enter(equations, inputs, stops[index - 1], x, watch, record):
+                return CHATTERING
+            status = advance_by_samples(
+                method, equations, inputs, stops[index], x, limits, atol, step, watch, tangents,
+                record, sampling,
+            )  # fmt: skip
+            if status != DONE:
+                return status
+            write_here(equations, inputs, stops[index], x, watch.m, tangents, record)
+        return DONE
+
+    return run
+
+
+@lru_cache(maxsize=1)
+def runner() -> Callable[..., int]:
+    """The runner, compiled when it is first needed: half a minute once on a new machine."""
+    return compiled_runner(source_stamp())

@@ -4,6 +4,8 @@ Kernels allocate nothing, so that numba need not count references: counting cost
 arithmetic of a step. They are inlined, so that a record costs nothing either.
 """
 
+import hashlib
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from numba import njit, types
@@ -16,7 +18,7 @@ SMALLEST = 1e-60
 DONE, DIVERGED, CHATTERING, UNDECIDED = 0, 1, 2, 3
 LARGEST_STATE = 1e12
 TIME, LENGTH = 0, 1
-OUTPUT, EVENTS, STEPS, INSTANT = 0, 1, 2, 3
+OUTPUT, EVENTS, STEPS, INSTANT, SOURCES = 0, 1, 2, 3, 4
 
 VECTOR, MATRIX = types.float64[::1], types.float64[:, ::1]
 CUBE, INTEGERS = types.float64[:, :, ::1], types.int64[::1]
@@ -126,7 +128,8 @@ class Record(NamedTuple):
     """Output at `times` [k]: x [k, n], s [k, n, ns], ledger [k, 3] (or no rows), events [c, 3].
 
     totals [3]: work so far; powers [4, 3]: stored energy, power in and dissipated power over the
-    step; clock [2]: time, next step length; counts [4]: outputs, events, steps, instant events.
+    step; clock [2]: time, next step length; counts [5]: outputs, events, steps, instant events, and
+    the stamp of the sources that the runner was compiled from.
     """
 
     times: Any
@@ -138,6 +141,18 @@ class Record(NamedTuple):
     powers: Any
     clock: Any
     counts: Any
+
+
+def source_stamp() -> int:
+    """A number that changes with any source of the kernels.
+
+    numba keeps a compiled function until its own file changes; a runner that holds this number
+    is compiled anew when a kernel in another file has changed.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(path.read_bytes())
+    return int.from_bytes(digest.digest()[:7], "big")
 
 
 @inlined

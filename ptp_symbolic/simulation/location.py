@@ -99,7 +99,7 @@ def locate_event(method, equations, inputs, t, h, fraction, x, step, watch):
     """
     length = root_on_curve(equations, inputs, t, h, fraction, step, watch) * h
     low, high = 0.0, h
-    before, last = 0.0, -1.0
+    before, last, reach = 0.0, -1.0, LANDING
     for _ in range(60):
         attempt(method, equations, inputs, t, length, x, watch.m, step)
         value = violation_at(equations, inputs, t + length, step.end, watch)
@@ -113,9 +113,15 @@ def locate_event(method, equations, inputs, t, h, fraction, x, step, watch):
             low = length
             if h - low <= TIME_RESOLUTION:
                 break
-        ahead = LANDING if value <= 0.0 else -LANDING
-        if rate > 0.0:
-            ahead = 0.5 * LANDING - value / rate
+            if length + reach >= h:
+                length = h
+                continue
+        ahead = 0.5 * LANDING - value / rate if rate > 0.0 else 0.0
+        if value <= 0.0:
+            ahead = max(ahead, reach)
+            reach *= 8.0
+        elif ahead >= 0.0:
+            ahead = -LANDING
         length += ahead
         if not low < length < high:
             length = 0.5 * (low + high)
