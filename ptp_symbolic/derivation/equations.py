@@ -87,14 +87,16 @@ class Equations:
 
     @property
     def state_symbols(self) -> tuple[sp.Symbol, ...]:
-        """States in the order of the emitted module: joint angles, joint rates, drives, effects."""
+        """States in the order of the emitted module: joints, drives, effects, those that are held."""
         joints = len(self.axes)
         gears = [
             symbol
             for pair in zip(self.coordinates[joints:], self.rates[joints:], strict=True)
             for symbol in pair
         ]
+        held = {symbol for _, symbol, _ in self.updates}
         extra = [sp.Symbol(state.name, real=True) for state in self.extra_states]
+        extra.sort(key=held.__contains__)
         return (*self.coordinates[:joints], *self.rates[:joints], *gears, *extra)
 
     def written_out(self, expression: sp.Expr) -> sp.Expr:

@@ -149,6 +149,11 @@ class Model:
         """Sampler and state index [r, 2] of everything that samplers set."""
         return np.array(self.module.SAMPLED, dtype=np.int64).reshape(-1, 2)
 
+    @property
+    def moving(self) -> int:
+        """How many states move by themselves; the last ones are held and set by samplers."""
+        return len(self.state_names) - len(set(self.sampled[:, 1]))
+
     @cached_property
     def limits(self) -> tuple[tuple[str, str], ...]:
         """States with limits beyond which the equations do not hold, each with its meaning."""

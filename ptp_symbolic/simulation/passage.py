@@ -112,8 +112,8 @@ def pass_through(
         METHODS[method], addresses(module), p, model.friction_rates, model.zero_at_rest,
         inputs.arrays, cursor, held, u, x, stops,
         np.array([accuracy.relative, accuracy.largest_step]), accuracy.absolute,
-        tuple(_step(n, nu, len(p))), tuple(watch), tuple(tangents), tuple(record),
-        tuple(new_sampling(model, p, x, stops, s.shape[1])),
+        tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)), tuple(watch),
+        tuple(tangents), tuple(record), tuple(new_sampling(model, p, x, stops, s.shape[1])),
     )  # fmt: skip
     return Passage(
         status, float(record.clock[TIME]), x, record.x, record.s, record.ledger,
@@ -121,11 +121,12 @@ def pass_through(
     )  # fmt: skip
 
 
-def _step(n: int, nu: int, parameters: int) -> Step:
+def _step(n: int, nu: int, parameters: int, solved: int) -> Step:
     z = np.zeros
     return Step(
         z(n), z(n), z((STAGES, n)), z((STAGES, n)), z(n), z((5, n)), z((n, n)), z((n, nu)),
-        z((n, parameters)), z((n, n)), z((n, n)), z(n, dtype=np.int64), z(n), z(n),
+        z((n, parameters)), z((solved, solved)), z((solved, solved)), z(n, dtype=np.int64), z(n),
+        z(n),
     )  # fmt: skip
 
 

@@ -211,6 +211,31 @@ def test_tangents_jump_with_the_update(model: Model) -> None:
         assert np.max(np.abs(found.states[:, :3, k] - slope[:, :3]) / size) < 2e-4, name
 
 
+def test_tangents_know_of_a_late_set_point_and_look_through_the_counts(counted: Model) -> None:
+    """By the delay along a ramp; rounding to a count has the slope 1 of what is rounded."""
+    late, values = servo("input_delay"), {**GAINS, **FINE, "t_sample_pan": 1e-3}
+    driven, times = {"setpoint_pan": ramp(0.0, 0.02, 0.01, 0.3)}, [0.0, 0.0777, 0.1555]
+    kept = {"rtol": 1e-11, "atol": 1e-11}
+    found = sensitivity(
+        late,
+        times,
+        driven,
+        {**values, "t_delay_pan": 0.0123},
+        by_parameters=["t_delay_pan"],
+        **kept,
+    )
+    ends = [
+        simulate(late, times, driven, {**values, "t_delay_pan": 0.0123 + h}, **kept).x
+        for h in (1e-5, -1e-5)
+    ]
+    slope = ((ends[0] - ends[1]) / 2e-5)[1:, :3]
+    assert found.states[1:, :3, 0] == pytest.approx(slope, rel=1e-4)
+    by = {"by_parameters": ["K_p_pan"], **kept}
+    plain = sensitivity(servo(), times, driven, values, **by)
+    seen = sensitivity(counted, times, driven, {**values, "q_count_pan": 1e-9}, **by)
+    assert seen.states[:, :3] == pytest.approx(plain.states[:, :3], rel=1e-3, abs=1e-12)
+
+
 @pytest.mark.parametrize(("period", "duration"), [(0.5, 0.2), (1e-6, 20.0)])
 def test_a_sampling_time_that_does_not_fit_is_refused(
     model: Model, period: float, duration: float
