@@ -147,6 +147,8 @@ INPUT_NAMES = ("u_pan", "u_tilt")
 INPUT_UNITS = ("V", "V")
 # Per input: index of the parameter by which it is late, or -1.
 INPUT_DELAYS = (-1, -1)
+# Per input: whether motion depends on it, and not samplers alone.
+INPUT_ACTS = (True, True)
 OUTPUT_NAMES = ("theta_pan", "theta_tilt", "i_pan", "i_tilt")
 OUTPUT_UNITS = ("rad", "rad", "A", "A")
 MODE_NAMES = ("slide_pan", "slide_tilt", "side_pan", "active_pan")
@@ -4802,4 +4804,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 4af55866bebcf093a7b447c3a93ef25b01d2149cbee4701af00f87be4d4b83ce
+# END sha256 e93780b5ca57bc6495ca6f9bdd0dfdc86fd54d0c67c5f8c038fd7d7b12e23ece

@@ -33,6 +33,8 @@ INPUT_NAMES = ("tau_pan", "tau_tilt")
 INPUT_UNITS = ("N m", "N m")
 # Per input: index of the parameter by which it is late, or -1.
 INPUT_DELAYS = (-1, -1)
+# Per input: whether motion depends on it, and not samplers alone.
+INPUT_ACTS = (True, True)
 OUTPUT_NAMES = ("theta_pan", "theta_tilt")
 OUTPUT_UNITS = ("rad", "rad")
 MODE_NAMES = ()
@@ -286,4 +288,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 047897919e9ff27505c024529770dcc3f61295496c4d4cce522e839cab87e62e
+# END sha256 dc644f94bf9a1466fcd5f25045611de69a91b3f116dcb288bb5f8c5dfe3a5f67

@@ -42,6 +42,8 @@ INPUT_NAMES = ("u_pan",)
 INPUT_UNITS = ("V",)
 # Per input: index of the parameter by which it is late, or -1.
 INPUT_DELAYS = (-1,)
+# Per input: whether motion depends on it, and not samplers alone.
+INPUT_ACTS = (True,)
 OUTPUT_NAMES = ("theta_pan", "i_pan")
 OUTPUT_UNITS = ("rad", "A")
 MODE_NAMES = ("slide_pan", "side_pan", "active_pan")
@@ -652,4 +654,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 d3a129d093f844dfe44080180ca4d56ed2c62ff47ce85d07d387f6a62240f82e
+# END sha256 2e1fe0077ecd579086f3cfc71a5973bdfe7471dc9d8a37217c2f85be9a029573

@@ -56,6 +56,8 @@ INPUT_NAMES = ("tau_pan", "tau_tilt")
 INPUT_UNITS = ("N m", "N m")
 # Per input: index of the parameter by which it is late, or -1.
 INPUT_DELAYS = (-1, -1)
+# Per input: whether motion depends on it, and not samplers alone.
+INPUT_ACTS = (True, True)
 OUTPUT_NAMES = ("theta_pan", "theta_tilt")
 OUTPUT_UNITS = ("rad", "rad")
 MODE_NAMES = ()
@@ -701,4 +703,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 7ac2c4395abe61695e12a396be81570635d9c19fdb040b5a5c74c8bbcd580a95
+# END sha256 7b946d41a5d2e0158980e57e5b340e137287db7910e9d2392860437d34b91bda

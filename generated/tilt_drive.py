@@ -65,6 +65,8 @@ INPUT_NAMES = ("u_tilt",)
 INPUT_UNITS = ("V",)
 # Per input: index of the parameter by which it is late, or -1.
 INPUT_DELAYS = (-1,)
+# Per input: whether motion depends on it, and not samplers alone.
+INPUT_ACTS = (True,)
 OUTPUT_NAMES = ("theta_tilt", "i_tilt")
 OUTPUT_UNITS = ("rad", "A")
 MODE_NAMES = ("slide_tilt",)
@@ -1873,4 +1875,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 2267ce37167212671bbcc0250935974c83f9f1cd7e90af97fb8662380ac6f50f
+# END sha256 e3643795e8e5ca551727adfc0920b7d653d0d2f6e98479294cfa44ee6ba5739d

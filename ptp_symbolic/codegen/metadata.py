@@ -31,6 +31,8 @@ def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]
                 _tuple("INPUT_UNITS", (f'"{i.unit}"' for i in equations.inputs)),
                 "# Per input: index of the parameter by which it is late, or -1.",
                 _tuple("INPUT_DELAYS", map(str, _delays(equations))),
+                "# Per input: whether motion depends on it, and not samplers alone.",
+                _tuple("INPUT_ACTS", map(str, _acting(equations))),
                 _tuple("OUTPUT_NAMES", (f'"{name}"' for name, _, _ in equations.outputs)),
                 _tuple("OUTPUT_UNITS", (f'"{unit}"' for _, unit, _ in equations.outputs)),
                 _tuple("MODE_NAMES", (f'"{m}"' for m in equations.mode_symbols)),
@@ -211,6 +213,11 @@ def _friction_rates(equations: Equations) -> list[str]:
     if not equations.mode_symbols:
         return [_tuple("FRICTION_RATES", indices)]
     return [f"FRICTION_RATES = np.array([{', '.join(indices)}], dtype=np.int64)"]
+
+
+def _acting(equations: Equations) -> list[bool]:
+    motion = {str(symbol) for symbol in equations.motion_symbols}
+    return [given.name in motion for given in equations.inputs]
 
 
 def _delays(equations: Equations) -> list[int]:

@@ -87,7 +87,7 @@ class Equations:
 
     @property
     def state_symbols(self) -> tuple[sp.Symbol, ...]:
-        """States in the order of the emitted module: joints, drives, effects, those that are held."""
+        """States in the order of the emitted module: joints, drives, effects, what is held."""
         joints = len(self.axes)
         gears = [
             symbol
@@ -121,6 +121,17 @@ class Equations:
             for index, sampler in enumerate(self.samplers)
             for symbol, value in sampler.updates.items()
         )
+
+    @property
+    def motion_symbols(self) -> set[sp.Symbol]:
+        """What the motion between samples and its energy ledger depend on."""
+        ledger = self.ledger
+        found = [*self.mass_matrix, *self.forcing, *(term for _, term in self.terms)]
+        found += [e for f in self.frictions for e in (f.level, f.breakaway)]
+        found += [e for c in self.contacts for e in (c.separation, c.half_gap, c.torque)]
+        found += [s.derivative for s in self.extra_states]
+        found += [ledger.stored, ledger.power_in, ledger.dissipated]
+        return set().union(*(sp.sympify(e, strict=True).free_symbols for e in found))
 
     @property
     def mode_symbols(self) -> tuple[sp.Symbol, ...]:

@@ -1,7 +1,7 @@
 """A bridge that turns a commanded voltage into pulses of its supply, averaged or pulse by pulse.
 
-Both come from the same duty, command over supply within -1 and 1. Switching, the duty is taken
-when a carrier period starts, and the pulse ends exactly where it says. The bridge has no losses.
+Both come from the same duty, command over supply within -1 and 1. Switching, it is taken when a
+carrier period starts; the pulse ends exactly where it says. The bridge has no losses.
 """
 
 from collections.abc import Callable
@@ -12,13 +12,14 @@ import sympy as sp
 from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place, Sampler, State
 from ptp_symbolic.parameters import Parameter
 
+ZERO = sp.Integer(0)
 SUPPLY = Parameter("u_supply_{axis}", "V", 24.0, 1e-3, 1e6, "supply voltage of the {axis} bridge")
 CARRIER = Parameter("f_pwm_{axis}", "Hz", 6e6 / 512, 1e-3, 1e8, "carrier of the {axis} bridge")
 
 
 def _duty(place: Place) -> sp.Expr:
-    command = place.quantity("command_{axis}")
-    return sp.Max(sp.Min(command / place.parameter(SUPPLY.name), 1), -1)
+    asked = place.quantity("command_{axis}") / place.parameter(SUPPLY.name)
+    return sp.Max(sp.Min(asked, 1), -1)
 
 
 def _averaged(place: Place) -> Contribution:
@@ -29,12 +30,12 @@ def _averaged(place: Place) -> Contribution:
 def _pulses(place: Place, high: sp.Expr, low: sp.Expr, until: sp.Expr) -> Contribution:
     """High until a fraction of the carrier period, a function of the duty, then low."""
     period = 1 / place.parameter(CARRIER.name)
-    bridge, duty = place.parameter("bridge_{axis}"), place.parameter("duty_{axis}")
+    bridge, duty = map(place.parameter, ("bridge_{axis}", "duty_{axis}"))
     return Contribution(
         changes={f"drive_voltage_{place.axis}": Change(through=lambda _: bridge)},
         states=(
-            State(str(bridge), "V", f"voltage of the {place.axis} bridge", sp.Integer(0)),
-            State(str(duty), "1", f"duty of the {place.axis} bridge", sp.Integer(0)),
+            State(str(bridge), "V", f"voltage of the {place.axis} bridge", ZERO),
+            State(str(duty), "1", f"duty of the {place.axis} bridge", ZERO),
         ),
         samplers=(
             Sampler(period, {bridge: high, duty: _duty(place)}),
@@ -46,7 +47,7 @@ def _pulses(place: Place, high: sp.Expr, low: sp.Expr, until: sp.Expr) -> Contri
 def _switching(place: Place) -> Contribution:
     supply, duty = place.parameter(SUPPLY.name), place.parameter("duty_{axis}")
     high = sp.Piecewise((supply, _duty(place) >= 0), (-supply, True))
-    return _pulses(place, high, sp.Integer(0), sp.Max(duty, -duty))
+    return _pulses(place, high, ZERO, sp.Max(duty, -duty))
 
 
 def _bipolar(place: Place) -> Contribution:

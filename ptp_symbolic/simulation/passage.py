@@ -88,9 +88,9 @@ def pass_through(
 ) -> Passage:
     """Run `model` from the first to the last of `stops`, starting at x [n] with tangents s [n, ns].
 
-    `held` says that inputs change at stops only. With tangents, output times must be stops. The
-    first tangents belong to the parameters `columns`; `delay_column` is per input the tangent of
-    its delay, or -1.
+    `held` says that inputs change at stops only; those that samplers alone read need not. With
+    tangents, output times must be stops. The first tangents belong to the parameters `columns`;
+    `delay_column` is per input the tangent of its delay, or -1.
     """
     n, nu, module = len(x), len(model.input_names), model.module
     none = np.zeros(0, dtype=np.int64)
@@ -110,7 +110,7 @@ def pass_through(
     )  # fmt: skip
     status = hybrid.runner()(
         METHODS[method], addresses(module), p, model.friction_rates, model.zero_at_rest,
-        inputs.arrays, cursor, held, u, x, stops,
+        inputs.arrays, cursor, held or not any(module.INPUT_ACTS), u, x, stops,
         np.array([accuracy.relative, accuracy.largest_step]), accuracy.absolute,
         tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)), tuple(watch),
         tuple(tangents), tuple(record), tuple(new_sampling(model, p, x, stops, s.shape[1])),

@@ -194,10 +194,7 @@ def _fill_shift(i, tangents, sampling):
 def _fill_rows(i, inputs, t, tangents, sampling):
     """Write the tangents of what sampler i is about to set."""
     s, columns, first = tangents.table, tangents.columns, TIMING * len(sampling.due)
-    for j in range(len(sampling.slopes)):
-        sampling.slopes[j] = 0.0
-    if not inputs.held:
-        evaluate_input_slopes(t, 1, *inputs.table, inputs.cursor, sampling.slopes)
+    evaluate_input_slopes(t, 1, *inputs.table, inputs.cursor, sampling.slopes)
     for r in range(len(sampling.owner)):
         if sampling.owner[r] != i:
             continue

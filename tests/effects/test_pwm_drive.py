@@ -160,3 +160,18 @@ def test_the_kind_is_declared_in_the_platform(tmp_path: Path) -> None:
         InputError, match=r"no kind 'humming'\. Choose one of: averaged, switching,"
     ):
         loop.emit(read_platform(path))
+
+
+def test_a_carrier_that_starts_with_a_sample_takes_the_new_command() -> None:
+    """The LM629 derives both from one clock: every fourth carrier period starts with a sample."""
+    base = read_platform("thesis-pan-servo")
+    effects = tuple(
+        replace(e, kind="switching") if e.effect == "pwm_drive" else e for e in base.effects
+    )
+    times = np.arange(900) * 2048 / 6e6
+    goal = {"setpoint_pan": step(0.01, 0.01, 1.0)}
+    found = simulate(loop.emit(replace(base, effects=effects)), times, goal)
+    assert len(np.unique(found["command_pan"])) > 5
+    assert found["duty_pan"] == pytest.approx(found["command_pan"] / U, abs=1e-15)
+    mean = simulate(loop.emit(base), times, goal)
+    assert found["theta_pan"] == pytest.approx(mean["theta_pan"], abs=2 * math.pi / 7200)

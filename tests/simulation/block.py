@@ -93,7 +93,7 @@ def block() -> Model:
         outputs=outputs, output_jacobian=output_jacobian, NAME="block",
         AXES=("pan",), STATE_NAMES=("theta_pan", "omega_pan"), STATE_UNITS=("rad", "rad/s"),
         STATE_INITIAL=(0.0, 0.0), INPUT_NAMES=("tau_pan",), INPUT_UNITS=("N m",),
-        INPUT_DELAYS=(-1,), OUTPUT_NAMES=("theta_pan",), OUTPUT_UNITS=("rad",),
+        INPUT_DELAYS=(-1,), INPUT_ACTS=(True,), OUTPUT_NAMES=("theta_pan",), OUTPUT_UNITS=("rad",),
         MODE_NAMES=("slide_pan",), SAMPLERS=(), SAMPLED=(),
         FRICTION_RATES=np.array([1]), ZERO_AT_REST=(-1, -1), CONTACT_ANGLES=(), SEARCH=(),
         DOMAIN=(), REQUIREMENTS=(), domain=lambda p, bounds: None, margins=lambda p, margin: None,
