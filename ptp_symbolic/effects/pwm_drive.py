@@ -12,14 +12,14 @@ import sympy as sp
 from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place, Sampler, State
 from ptp_symbolic.parameters import Parameter
 
-ZERO = sp.Integer(0)
+Contributing = Callable[[Place], Contribution]
 SUPPLY = Parameter("u_supply_{axis}", "V", 24.0, 1e-3, 1e6, "supply voltage of the {axis} bridge")
 CARRIER = Parameter("f_pwm_{axis}", "Hz", 6e6 / 512, 1e-3, 1e8, "carrier of the {axis} bridge")
 
 
 def _duty(place: Place) -> sp.Expr:
-    asked = place.quantity("command_{axis}") / place.parameter(SUPPLY.name)
-    return sp.Max(sp.Min(asked, 1), -1)
+    share = place.quantity("command_{axis}") / place.parameter(SUPPLY.name)
+    return sp.Max(sp.Min(share, 1), -1)
 
 
 def _averaged(place: Place) -> Contribution:
@@ -31,11 +31,12 @@ def _pulses(place: Place, high: sp.Expr, low: sp.Expr, until: sp.Expr) -> Contri
     """High until a fraction of the carrier period, a function of the duty, then low."""
     period = 1 / place.parameter(CARRIER.name)
     bridge, duty = map(place.parameter, ("bridge_{axis}", "duty_{axis}"))
+    named = ((bridge, "V", "voltage"), (duty, "1", "duty"))
     return Contribution(
         changes={f"drive_voltage_{place.axis}": Change(through=lambda _: bridge)},
-        states=(
-            State(str(bridge), "V", f"voltage of the {place.axis} bridge", ZERO),
-            State(str(duty), "1", f"duty of the {place.axis} bridge", ZERO),
+        states=tuple(
+            State(str(s), unit, f"{what} of the {place.axis} bridge", sp.Integer(0))
+            for s, unit, what in named
         ),
         samplers=(
             Sampler(period, {bridge: high, duty: _duty(place)}),
@@ -47,7 +48,7 @@ def _pulses(place: Place, high: sp.Expr, low: sp.Expr, until: sp.Expr) -> Contri
 def _switching(place: Place) -> Contribution:
     supply, duty = place.parameter(SUPPLY.name), place.parameter("duty_{axis}")
     high = sp.Piecewise((supply, _duty(place) >= 0), (-supply, True))
-    return _pulses(place, high, ZERO, sp.Max(duty, -duty))
+    return _pulses(place, high, sp.Integer(0), sp.Max(duty, -duty))
 
 
 def _bipolar(place: Place) -> Contribution:
@@ -55,9 +56,7 @@ def _bipolar(place: Place) -> Contribution:
     return _pulses(place, supply, -supply, (1 + duty) / 2)
 
 
-def _kind(
-    kind: str, title: str, contribute: Callable[[Place], Contribution], *given: Parameter
-) -> Effect:
+def _kind(kind: str, title: str, contribute: Contributing, *given: Parameter) -> Effect:
     return Effect(
         id="pwm_drive", kind=kind, title=title, contribute=contribute, structural=True,
         reference="Mohan (2003), section 7 (full bridge); LM629 data sheet; thesis section 3.2.3.1",
