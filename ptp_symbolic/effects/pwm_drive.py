@@ -31,12 +31,11 @@ def _pulses(place: Place, high: sp.Expr, low: sp.Expr, until: sp.Expr) -> Contri
     """High until a fraction of the carrier period, a function of the duty, then low."""
     period = 1 / place.parameter(CARRIER.name)
     bridge, duty = map(place.parameter, ("bridge_{axis}", "duty_{axis}"))
-    named = ((bridge, "V", "voltage"), (duty, "1", "duty"))
     return Contribution(
         changes={f"drive_voltage_{place.axis}": Change(through=lambda _: bridge)},
-        states=tuple(
-            State(str(s), unit, f"{what} of the {place.axis} bridge", sp.Integer(0))
-            for s, unit, what in named
+        states=(
+            State(str(bridge), "V", f"voltage of the {place.axis} bridge", sp.Integer(0)),
+            State(str(duty), "1", f"duty of the {place.axis} bridge", sp.Integer(0)),
         ),
         samplers=(
             Sampler(period, {bridge: high, duty: _duty(place)}),
