@@ -1,7 +1,5 @@
 """Leave local minima: breakaways and bounces in a gap make the cost piecewise smooth."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from ptp_symbolic.diagnose.floor import floor_counts
@@ -12,10 +10,9 @@ from ptp_symbolic.diagnose.trial import (
     Task,
     Trial,
     continue_fits,
-    fixed_values,
-    restarted,
+    start_afresh,
 )
-from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, run_counts
+from ptp_symbolic.identify.fit import Effort, Fit, run_counts
 
 AGAIN, ROUNDS = Effort(8, 1e-3, FINE, secants=True), 3
 UNEVEN, NEAR, FAR = 1.2, 3.0, 30.0
@@ -39,14 +36,10 @@ def _from_table(task: Task, trial: Trial) -> Trial:
     """Refit with the declared parameters back at their table start, the effect kept."""
     if not trial.candidates or not _is_uneven(trial.train, FAR):
         return trial
-    free = tuple(
-        f if f.table is None else replace(f, start=f.table) for f in restarted(trial.train)
-    )
-    fixed, z = fixed_values(task, free), trial.train.z
-    fit = fit_parameters(task.model, task.train, free, fixed, z, NEXT, task.executor)
-    if fit.cost >= 0.998 * trial.train.cost:
+    again = start_afresh(task, trial, NEXT)
+    if again.train.cost >= 0.998 * trial.train.cost:
         return trial
-    return continue_fits(task, [replace(trial, train=fit)], LAST)[0]
+    return continue_fits(task, [again], LAST)[0]
 
 
 def _is_uneven(fit: Fit, near: float = NEAR) -> bool:

@@ -27,6 +27,7 @@ from ptp_symbolic.diagnose.trial import (
     fixed_values,
     held_out_cost,
     restarted,
+    start_afresh,
 )
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.evaluate import evaluate
@@ -79,7 +80,7 @@ def try_candidates(
 ) -> list[Trial]:
     """Refit every base with each candidate added; the best are polished and judged, best first."""
     first, left = first_round(task, bases, candidates)
-    second = continue_fits(task, _best(first, KEPT_AFTER_FIRST, DROP_FACTOR), FIRST)
+    second = _two_ways(task, _best(first, KEPT_AFTER_FIRST, DROP_FACTOR))
     third = continue_fits(task, _best(second, POLISHED, DROP_FACTOR), NEXT)
     task.progress("polishing the best candidates")
     polished = continue_fits(task, _best(third, FINISHED, CLOSE_FACTOR), LAST)
@@ -138,6 +139,16 @@ def visible_candidates(
 
     seen = list(task.executor.map(is_visible, candidates))
     return [c for c, visible in zip(candidates, seen, strict=True) if visible]
+
+
+def _two_ways(task: Task, trials: Sequence[Trial]) -> list[Trial]:
+    """Free the declared parameters, from where they are and from their table start."""
+    onwards = {t.keys: t for t in continue_fits(task, trials, FIRST)}
+    better = []
+    for trial in trials:
+        afresh = start_afresh(task, trial, FIRST)
+        better.append(min(onwards[trial.keys], afresh, key=lambda t: t.train.cost))
+    return better
 
 
 def _best(trials: Sequence[Trial], count: int, factor: float) -> list[Trial]:

@@ -94,3 +94,23 @@ def continue_fits(task: Task, trials: Sequence[Trial], effort: Effort) -> list[T
         kept = fit if fit.cost <= 1.02 * trial.train.cost else trial.train
         continued.append(replace(trial, train=kept))
     return sorted(continued, key=lambda trial: trial.train.cost)
+
+
+def start_afresh(task: Task, trial: Trial, effort: Effort) -> Trial:
+    """Fit `trial` anew: declared parameters at their table start, those of the effect where they
+    are, unless they went to a bound; these begin where their search began.
+    """
+    began = {f.name: f for c in trial.candidates for f in c.starts[0]}
+    free = []
+    for f in restarted(trial.train):
+        if f.table is not None:
+            f = replace(f, start=f.table)
+        elif f.name in began and not f.lower < f.start < f.upper:
+            f = began[f.name]
+        free.append(f)
+    z = [np.zeros(len(run.unknowns)) for run in task.train]
+    fixed = fixed_values(task, free)
+    return replace(
+        trial,
+        train=fit_parameters(task.model, task.train, free, fixed, z, effort, task.executor),
+    )
