@@ -147,12 +147,17 @@ INPUT_NAMES = ("u_pan", "u_tilt")
 INPUT_UNITS = ("V", "V")
 # Per input: index of the parameter by which it is late, or -1.
 INPUT_DELAYS = (-1, -1)
+# Per input: whether motion depends on it, and not samplers alone.
+INPUT_ACTS = (True, True)
 OUTPUT_NAMES = ("theta_pan", "theta_tilt", "i_pan", "i_tilt")
 OUTPUT_UNITS = ("rad", "rad", "A", "A")
 MODE_NAMES = ("slide_pan", "slide_tilt", "side_pan", "active_pan")
 FRICTION_RATES = np.array([5, 3], dtype=np.int64)
 # Per state: the friction that sets it to zero when it comes to rest, or -1.
 ZERO_AT_REST = (-1, -1, -1, -1, -1, -1, -1, -1)
+# Samplers: parameters of the period. Sampled: sampler and state of each update.
+SAMPLERS = ()
+SAMPLED = ()
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ((4, 0),)
 # Limits of the equations: state, meaning; `domain` gives the bounds.
@@ -4799,4 +4804,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 9d06f87f1b9ba86a705a1c577226b713817a6ea955bf210ded4fde28716cb10a
+# END sha256 e93780b5ca57bc6495ca6f9bdd0dfdc86fd54d0c67c5f8c038fd7d7b12e23ece

@@ -33,12 +33,17 @@ INPUT_NAMES = ("tau_pan", "tau_tilt")
 INPUT_UNITS = ("N m", "N m")
 # Per input: index of the parameter by which it is late, or -1.
 INPUT_DELAYS = (-1, -1)
+# Per input: whether motion depends on it, and not samplers alone.
+INPUT_ACTS = (True, True)
 OUTPUT_NAMES = ("theta_pan", "theta_tilt")
 OUTPUT_UNITS = ("rad", "rad")
 MODE_NAMES = ()
 FRICTION_RATES = ()
 # Per state: the friction that sets it to zero when it comes to rest, or -1.
 ZERO_AT_REST = (-1, -1, -1, -1)
+# Samplers: parameters of the period. Sampled: sampler and state of each update.
+SAMPLERS = ()
+SAMPLED = ()
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
 # Limits of the equations: state, meaning; `domain` gives the bounds.
@@ -283,4 +288,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 aa362be91e6b0b5ae896a0303816a34ff8f7ff58e12ca8943f325ffd70fe0523
+# END sha256 dc644f94bf9a1466fcd5f25045611de69a91b3f116dcb288bb5f8c5dfe3a5f67

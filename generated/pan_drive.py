@@ -42,12 +42,17 @@ INPUT_NAMES = ("u_pan",)
 INPUT_UNITS = ("V",)
 # Per input: index of the parameter by which it is late, or -1.
 INPUT_DELAYS = (-1,)
+# Per input: whether motion depends on it, and not samplers alone.
+INPUT_ACTS = (True,)
 OUTPUT_NAMES = ("theta_pan", "i_pan")
 OUTPUT_UNITS = ("rad", "A")
 MODE_NAMES = ("slide_pan", "side_pan", "active_pan")
 FRICTION_RATES = np.array([3], dtype=np.int64)
 # Per state: the friction that sets it to zero when it comes to rest, or -1.
 ZERO_AT_REST = (-1, -1, -1, -1, -1)
+# Samplers: parameters of the period. Sampled: sampler and state of each update.
+SAMPLERS = ()
+SAMPLED = ()
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ((2, 0),)
 # Limits of the equations: state, meaning; `domain` gives the bounds.
@@ -649,4 +654,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 7fbb373919306c5cc2b01c343ecb5c0d39a698d035a197bd4f5cb5b9e966184e
+# END sha256 2e1fe0077ecd579086f3cfc71a5973bdfe7471dc9d8a37217c2f85be9a029573

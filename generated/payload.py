@@ -56,12 +56,17 @@ INPUT_NAMES = ("tau_pan", "tau_tilt")
 INPUT_UNITS = ("N m", "N m")
 # Per input: index of the parameter by which it is late, or -1.
 INPUT_DELAYS = (-1, -1)
+# Per input: whether motion depends on it, and not samplers alone.
+INPUT_ACTS = (True, True)
 OUTPUT_NAMES = ("theta_pan", "theta_tilt")
 OUTPUT_UNITS = ("rad", "rad")
 MODE_NAMES = ()
 FRICTION_RATES = ()
 # Per state: the friction that sets it to zero when it comes to rest, or -1.
 ZERO_AT_REST = (-1, -1, -1, -1)
+# Samplers: parameters of the period. Sampled: sampler and state of each update.
+SAMPLERS = ()
+SAMPLED = ()
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
 # Limits of the equations: state, meaning; `domain` gives the bounds.
@@ -698,4 +703,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 93ea6c978a3447323cae253f918c2f914c7da85f023ccd1de343266b2dd99a44
+# END sha256 7b946d41a5d2e0158980e57e5b340e137287db7910e9d2392860437d34b91bda

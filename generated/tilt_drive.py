@@ -65,12 +65,17 @@ INPUT_NAMES = ("u_tilt",)
 INPUT_UNITS = ("V",)
 # Per input: index of the parameter by which it is late, or -1.
 INPUT_DELAYS = (-1,)
+# Per input: whether motion depends on it, and not samplers alone.
+INPUT_ACTS = (True,)
 OUTPUT_NAMES = ("theta_tilt", "i_tilt")
 OUTPUT_UNITS = ("rad", "A")
 MODE_NAMES = ("slide_tilt",)
 FRICTION_RATES = np.array([1], dtype=np.int64)
 # Per state: the friction that sets it to zero when it comes to rest, or -1.
 ZERO_AT_REST = (-1, -1, -1)
+# Samplers: parameters of the period. Sampled: sampler and state of each update.
+SAMPLERS = ()
+SAMPLED = ()
 # Per contact: state index of the angle at the gear output and at the joint.
 CONTACT_ANGLES = ()
 # Limits of the equations: state, meaning; `domain` gives the bounds.
@@ -1870,4 +1875,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 94e2a858f81401264b6f748ed86594541910759b9bc7dc6922136db47020b0da
+# END sha256 e3643795e8e5ca551727adfc0920b7d653d0d2f6e98479294cfa44ee6ba5739d

@@ -22,6 +22,7 @@ import argparse
 import json
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -34,6 +35,8 @@ from rich.table import Table
 from scipy.integrate import solve_ivp
 
 import ptp_symbolic
+from ptp_symbolic import loop
+from ptp_symbolic.platform import ParameterDeclaration, read_platform
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.inputs import InputSignal, constant, multisine, ramp, stack, step
 from ptp_symbolic.simulation.kernels import KERNEL
@@ -157,8 +160,8 @@ def run_drive(
     times = np.linspace(0.0, END, 10001) if outputs else stops[[0, -1]]
     accuracy = Accuracy(tolerance, 0.1 * tolerance * tolerance_weights(model), 0.1)
     return pass_through(
-        model, method, model.parameter_vector(), np.zeros(5), table, table.held, stops, times,
-        accuracy, ledger=outputs, event_room=10_000, **rest,
+        model, method, model.parameter_vector(), np.zeros(len(model.state_names)), table,
+        table.held, stops, times, accuracy, ledger=outputs, event_room=10_000, **rest,
     )  # fmt: skip
 
 
@@ -196,6 +199,22 @@ def _peer_row(
         "what": f"pan_drive, {name}, {events} events", "peer": f"scipy {method}, events",
         "error": abs(float(state[0] - exact.x[-1, 0])), "peer ms": taken * 1e3,
         "ratio": taken / ours,
+    }  # fmt: skip
+
+
+def sampled_controller() -> Row:
+    """The pan servo with its controller at 1 kHz, along a ramp that ends: it comes to rest."""
+    servo = read_platform("thesis-pan-servo")
+    fast = ParameterDeclaration("t_sample_pan", "s", 1e-3)
+    kept = tuple(p for p in servo.parameters if p.name != "t_sample_pan")
+    model = loop.emit(replace(servo, parameters=(*kept, fast)))
+    goal = ramp(0.0, 1.0, 0.0, 5.0)
+    exact = run_drive(model, goal, 1e-11)
+    whole, found = best(partial(run_drive, model, goal, 1e-6))
+    return {
+        "what": f"pan_servo at 1 kHz, {len(found.events)} events", "ms": whole * 1e3,
+        "of which": best(partial(run_drive, model, goal, 1e-6, False))[0] * 1e3,
+        "error": _off(found.x[:, 0], exact.x[:, 0]), "tolerance": 1e-6,
     }  # fmt: skip
 
 
@@ -251,8 +270,8 @@ def main() -> None:
     parser.add_argument("--all", action="store_true", help="also the peers that take minutes")
     arguments = parser.parse_args()
     rows = [
-        *right_hand_side(), *one_trajectory(), *drive_cases(arguments.all), *work_and_precision(),
-        *sensitivities(),
+        *right_hand_side(), *one_trajectory(), *drive_cases(arguments.all), sampled_controller(),
+        *work_and_precision(), *sensitivities(),
     ]  # fmt: skip
     if arguments.json:
         print(json.dumps(rows, indent=2))

@@ -31,12 +31,17 @@ def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]
                 _tuple("INPUT_UNITS", (f'"{i.unit}"' for i in equations.inputs)),
                 "# Per input: index of the parameter by which it is late, or -1.",
                 _tuple("INPUT_DELAYS", map(str, _delays(equations))),
+                "# Per input: whether motion depends on it, and not samplers alone.",
+                _tuple("INPUT_ACTS", map(str, _acting(equations))),
                 _tuple("OUTPUT_NAMES", (f'"{name}"' for name, _, _ in equations.outputs)),
                 _tuple("OUTPUT_UNITS", (f'"{unit}"' for _, unit, _ in equations.outputs)),
                 _tuple("MODE_NAMES", (f'"{m}"' for m in equations.mode_symbols)),
                 *_friction_rates(equations),
                 "# Per state: the friction that sets it to zero when it comes to rest, or -1.",
                 _tuple("ZERO_AT_REST", map(str, _zero_at_rest(equations))),
+                "# Samplers: parameters of the period. Sampled: sampler and state of each update.",
+                _tuple("SAMPLERS", _samplers(equations)),
+                _tuple("SAMPLED", _sampled(equations)),
                 "# Per contact: state index of the angle at the gear output and at the joint.",
                 _tuple("CONTACT_ANGLES", _contact_states(equations)),
                 "# Limits of the equations: state, meaning; `domain` gives the bounds.",
@@ -88,8 +93,17 @@ def _docstring(equations: Equations, operations: tuple[int, int]) -> str:
         lines += _wrapped(str(symbol), term)
     for friction in equations.frictions:
         lines += _wrapped(f"sliding friction[{friction.rate}]", friction.level)
+    held = {symbol for _, symbol, _ in equations.updates}
     for state in equations.extra_states:
-        lines += _wrapped(f"{state.name}'", state.derivative)
+        if sp.Symbol(state.name, real=True) not in held:
+            lines += _wrapped(f"{state.name}'", state.derivative)
+    for sampler in equations.samplers:
+        start = sp.Symbol("k", real=True) + sampler.phase
+        lines += _wrapped("instants", sampler.offset + start * sampler.period)
+        for symbol, term in sampler.terms.items():
+            lines += _wrapped(str(symbol), term)
+        for symbol, value in sampler.updates.items():
+            lines += _wrapped(f"{symbol} from there", value)
     before, after = operations
     lines += ["", f"Operations of the state derivative: {before} as derived, {after} as written."]
     lines += ["", "Effects:"]
@@ -163,6 +177,20 @@ def _contact_states(equations: Equations) -> list[str]:
     return pairs
 
 
+def _samplers(equations: Equations) -> list[str]:
+    rows = []
+    for sampler in equations.samplers:
+        symbols = {str(symbol) for symbol in sampler.period.free_symbols}
+        names = [repr_text(p.name) for p in equations.parameters if p.name in symbols]
+        rows.append(f"({', '.join(names)}{',' if len(names) == 1 else ''})")
+    return rows
+
+
+def _sampled(equations: Equations) -> list[str]:
+    states = list(equations.state_symbols)
+    return [f"({owner}, {states.index(symbol)})" for owner, symbol, _ in equations.updates]
+
+
 def _domain(equations: Equations) -> list[str]:
     return [f"({repr_text(str(own.state))}, {repr_text(own.meaning)})" for own in equations.limits]
 
@@ -185,6 +213,11 @@ def _friction_rates(equations: Equations) -> list[str]:
     if not equations.mode_symbols:
         return [_tuple("FRICTION_RATES", indices)]
     return [f"FRICTION_RATES = np.array([{', '.join(indices)}], dtype=np.int64)"]
+
+
+def _acting(equations: Equations) -> list[bool]:
+    motion = {str(symbol) for symbol in equations.motion_symbols}
+    return [given.name in motion for given in equations.inputs]
 
 
 def _delays(equations: Equations) -> list[int]:

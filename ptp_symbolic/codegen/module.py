@@ -65,6 +65,7 @@ def module_text(equations: Equations) -> str:
             _energy(equations, vectors),
             _domain(equations, vectors),
             _margins(equations, vectors),
+            *_samplers(equations, vectors),
             STATE_DERIVATIVE_HYBRID if vectors.m else STATE_DERIVATIVE_SMOOTH,
         ]
     )
@@ -230,6 +231,34 @@ def _domain(equations: Equations, vectors: Vectors) -> str:
     ]
     doc = "Write lower and upper bound of the state of every row of DOMAIN into bounds."
     return _kernel("domain", "p, bounds", doc, vectors, share((), outputs, words_of(equations)))
+
+
+def _samplers(equations: Equations, vectors: Vectors) -> list[str]:
+    """What samplers do, and its derivatives; nothing in a machine that has none."""
+    if not equations.samplers:
+        return []
+    values = [e for s in equations.samplers for e in (s.period, s.offset, s.phase)]
+    values += [value for _, _, value in equations.updates]
+    terms = {symbol: term for s in equations.samplers for symbol, term in s.terms.items()}
+    outputs = [(f"z[{i}]", sp.sympify(e, strict=True)) for i, e in enumerate(values)]
+    doc = "Write period, offset and phase of every sampler, then what SAMPLED states become into z."
+    named = [(str(symbol), term) for symbol, term in (*equations.terms, *terms.items())]
+    lines = share(named, outputs, words_of(equations))
+    for symbol, term in reversed(terms.items()):
+        values = [value.xreplace({symbol: term}) for value in values]
+    slopes = [
+        (f"z{letter}[{i}, {j}]", sp.diff(equations.written_out(value), variable))
+        for letter, symbols in _columns(equations)
+        for j, variable in enumerate(symbols)
+        for i, value in enumerate(values)
+    ]
+    derived = _shared(equations, (), slopes)
+    by = "Write the non-zero derivatives of sample by state, input and parameter."
+    arguments = f"{MODE_ARGUMENTS}, zx, zu, zp"
+    return [
+        _kernel("sample", f"{MODE_ARGUMENTS}, z", doc, vectors, lines),
+        _kernel("sample_jacobian", arguments, by, vectors, derived),
+    ]
 
 
 def _margins(equations: Equations, vectors: Vectors) -> str:

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 
 from ptp_symbolic.derivation.equations import Equations
 
+SAMPLER_WORDS = ("period", "offset", "phase")
+
 
 def words_of(equations: Equations) -> dict[str, str]:
     """Words by target: ``accel_pan`` for ``dx[2]``, ``accel_pan_by_b_pan`` for ``fp[2, 4]``."""
@@ -22,11 +24,14 @@ def words_of(equations: Equations) -> dict[str, str]:
         for k, limit in enumerate(equations.limits)
         for side, word in enumerate(("lowest", "highest"))
     }
-    words = {**rates, **guards, **readings, **energy, **margins, **bounds}
+    timing = [f"{w}_{k}" for k in range(len(equations.samplers)) for w in SAMPLER_WORDS]
+    sampled = _numbered("z", [*timing, *(f"next_{state}" for _, state, _ in equations.updates)])
+    words = {**rates, **guards, **readings, **energy, **margins, **bounds, **sampled}
     for letter, names in columns.items():
         words |= _derivatives("f", letter, rates, names)
         words |= _derivatives("g", letter, guards, names)
         words |= _derivatives("y", letter, readings, names)
+        words |= _derivatives("z", letter, sampled, names)
     return words
 
 

@@ -15,7 +15,7 @@ from ptp_symbolic.derivation.parts import BASE_ACCELERATION, GRAVITY_QUANTITIES,
 from ptp_symbolic.derivation.placement import place_effects, resolved_parameters
 from ptp_symbolic.derivation.prescribed import constraint_power, reduced, released
 from ptp_symbolic.derivation.transmission import Transmission, transmission
-from ptp_symbolic.effects.effect import Input, Limit, State
+from ptp_symbolic.effects.effect import Input, Limit, Sampler, State
 from ptp_symbolic.effects.effect import quantity as quantity_symbol
 from ptp_symbolic.parameters import Parameter
 from ptp_symbolic.platform import Platform
@@ -55,6 +55,7 @@ def assemble(platform: Platform) -> Equations:
         forcing=mechanics.forcing,
         terms=(*parts.terms.items(), *loads),
         extra_states=_extra_states(parts),
+        samplers=_samplers(parts),
         inputs=tuple(given for given, _ in inputs),
         delays=tuple(_delay_of(axis, parts) for _, axis in inputs),
         parameters=(),
@@ -133,9 +134,11 @@ def _rigid_configuration(platform: Platform, parts: Parts) -> RigidConfiguration
 
 
 def _inputs(platform: Platform, parts: Parts) -> list[tuple[Input, str]]:
-    """The inputs, each with its axis: of a drive, a prescribed motion, else the joint's torque."""
+    """The inputs, each with its axis: of what commands or drives it, else the joint's torque."""
     drives = {drive.axis: drive.inputs for drive in parts.drives}
     drives |= {str(w).removeprefix("omega_"): (given,) for w, given in parts.prescribed.items()}
+    for contribution in parts.contributions:
+        drives |= contribution.commands
     inputs = []
     for axis in platform.axes:
         own = Input(str(kinematics.torque(axis)), "N m", f"torque on the {axis} joint")
@@ -152,6 +155,20 @@ def _extra_states(parts: Parts) -> tuple[State, ...]:
         replace(state, derivative=parts.resolve(state.derivative))
         for contribution in parts.contributions
         for state in contribution.states
+    )
+
+
+def _samplers(parts: Parts) -> tuple[Sampler, ...]:
+    return tuple(
+        Sampler(
+            parts.resolve(own.period),
+            {symbol: parts.resolve(value) for symbol, value in own.updates.items()},
+            parts.resolve(own.offset),
+            parts.resolve(own.phase),
+            {symbol: parts.resolve(term) for symbol, term in own.terms.items()},
+        )
+        for contribution in parts.contributions
+        for own in contribution.samplers
     )
 
 
@@ -177,6 +194,15 @@ def _with_parameters(equations: Equations, declared: dict[str, Parameter]) -> Eq
         used |= contact.half_gap.free_symbols | contact.torque.free_symbols
     for state in equations.extra_states:
         used |= state.derivative.free_symbols
+    for sampler in equations.samplers:
+        for expression in (
+            sampler.period,
+            sampler.offset,
+            sampler.phase,
+            *sampler.updates.values(),
+            *sampler.terms.values(),
+        ):
+            used |= expression.free_symbols
     for _, _, expression in equations.outputs:
         used |= expression.free_symbols
     for limit in equations.limits:

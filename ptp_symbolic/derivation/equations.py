@@ -5,7 +5,15 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic.bodies import RigidConfiguration, RigidEquations
-from ptp_symbolic.effects.effect import Effect, Friction, Input, Limit, Requirement, State
+from ptp_symbolic.effects.effect import (
+    Effect,
+    Friction,
+    Input,
+    Limit,
+    Requirement,
+    Sampler,
+    State,
+)
 from ptp_symbolic.parameters import Parameter
 
 
@@ -49,9 +57,9 @@ class Equations:
 
     Set-valued friction and contact enter through mode symbols, so that the equations are smooth
     in every mode. `forcing` holds everything but the friction torques. `terms` are named functions
-    in which they are written, each of those before it. `delays` gives for every input the time by
-    which it is late, if it can be. The equations hold within `limits`, for parameters that meet
-    the `requirements`.
+    in which they are written, each of those before it. `samplers` set states at instants. `delays`
+    gives for every input the time by which it is late, if it can be. The equations hold within
+    `limits`, for parameters that meet the `requirements`.
     """
 
     name: str
@@ -63,6 +71,7 @@ class Equations:
     forcing: sp.ImmutableMatrix
     terms: tuple[tuple[sp.Symbol, sp.Expr], ...]
     extra_states: tuple[State, ...]
+    samplers: tuple[Sampler, ...]
     inputs: tuple[Input, ...]
     delays: tuple[sp.Symbol | None, ...]
     parameters: tuple[Parameter, ...]
@@ -78,14 +87,16 @@ class Equations:
 
     @property
     def state_symbols(self) -> tuple[sp.Symbol, ...]:
-        """States in the order of the emitted module: joint angles, joint rates, drives, effects."""
+        """States in the order of the emitted module: joints, drives, effects, what is held."""
         joints = len(self.axes)
         gears = [
             symbol
             for pair in zip(self.coordinates[joints:], self.rates[joints:], strict=True)
             for symbol in pair
         ]
+        held = {symbol for _, symbol, _ in self.updates}
         extra = [sp.Symbol(state.name, real=True) for state in self.extra_states]
+        extra.sort(key=held.__contains__)
         return (*self.coordinates[:joints], *self.rates[:joints], *gears, *extra)
 
     def written_out(self, expression: sp.Expr) -> sp.Expr:
@@ -101,6 +112,26 @@ class Equations:
         return self.mass_matrix.applyfunc(
             lambda entry: sp.Add(*(a for a in sp.Add.make_args(entry) if a.free_symbols & named))
         )
+
+    @property
+    def updates(self) -> tuple[tuple[int, sp.Symbol, sp.Expr], ...]:
+        """What samplers set: index of the sampler, the state, its new value."""
+        return tuple(
+            (index, symbol, value)
+            for index, sampler in enumerate(self.samplers)
+            for symbol, value in sampler.updates.items()
+        )
+
+    @property
+    def motion_symbols(self) -> set[sp.Symbol]:
+        """What the motion between samples and its energy ledger depend on."""
+        ledger = self.ledger
+        found = [*self.mass_matrix, *self.forcing, *(term for _, term in self.terms)]
+        found += [e for f in self.frictions for e in (f.level, f.breakaway)]
+        found += [e for c in self.contacts for e in (c.separation, c.half_gap, c.torque)]
+        found += [s.derivative for s in self.extra_states]
+        found += [ledger.stored, ledger.power_in, ledger.dissipated]
+        return set().union(*(sp.sympify(e, strict=True).free_symbols for e in found))
 
     @property
     def mode_symbols(self) -> tuple[sp.Symbol, ...]:

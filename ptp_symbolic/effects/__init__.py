@@ -20,9 +20,11 @@ from ptp_symbolic.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION
 from ptp_symbolic.effects.lugre_friction import LUGRE_FRICTION
 from ptp_symbolic.effects.payload import PAYLOAD
 from ptp_symbolic.effects.payload_com_offset import PAYLOAD_COM_OFFSET
+from ptp_symbolic.effects.pid_controller import PID_CONTROLLER
 from ptp_symbolic.effects.position_dependent_friction import POSITION_DEPENDENT_FRICTION
 from ptp_symbolic.effects.prescribed_motion import PRESCRIBED_MOTION
 from ptp_symbolic.effects.product_of_inertia import PRODUCT_OF_INERTIA
+from ptp_symbolic.effects.pwm_drive import PWM_DRIVE
 from ptp_symbolic.effects.quadratic_drag import QUADRATIC_DRAG
 from ptp_symbolic.effects.rate_dependent_breakaway import RATE_DEPENDENT_BREAKAWAY
 from ptp_symbolic.effects.rigid_bodies import RIGID_BODIES
@@ -53,6 +55,8 @@ EFFECTS: tuple[Effect, ...] = (
     GEAR_ECCENTRICITY,
     DC_MOTOR,
     LINEAR_ACTUATOR,
+    PID_CONTROLLER,
+    PWM_DRIVE,
     PRESCRIBED_MOTION,
     DRIVE_DEADBAND,
     VOLTAGE_OFFSET,

@@ -6,7 +6,8 @@ from ptp_symbolic.effects.effect import Contribution, Drive, Effect, Input, Plac
 from ptp_symbolic.parameters import Parameter
 
 ZERO = sp.Integer(0)
-QUANTITIES = ("winding_resistance_{axis}", "motor_voltage_{axis}")
+WINDING = "winding_resistance_{axis}"
+VOLTAGES = ("motor_voltage_{axis}", "drive_voltage_{axis}", "command_{axis}")  # each from the next
 
 
 def motor_parameters(values: tuple[float, float, float, float]) -> tuple[Parameter, ...]:
@@ -32,7 +33,7 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
     inductance, resistance, constant, rotor = (place.parameter(p.name) for p in MOTOR)
     current = sp.Symbol(f"i_{place.axis}", real=True)
     applied = sp.Symbol(f"u_{place.axis}", real=True)
-    warm, voltage = map(place.quantity, QUANTITIES)
+    warm, (voltage, switched, command) = place.quantity(WINDING), map(place.quantity, VOLTAGES)
     speed = ratio * place.gear_rate
     derivative = (voltage - warm * current - constant * speed) / inductance
     drive = Drive(
@@ -44,9 +45,9 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
         stored=inductance * current**2 / 2,
         dissipated=warm * current**2 + damping * speed**2,
     )
-    defined = zip((warm, voltage), (resistance, applied), strict=True)
+    defined = {warm: resistance, voltage: switched, switched: command, command: applied}
     state = State(str(current), "A", f"current of the {place.axis} motor", derivative)
-    quantities = {str(q).removeprefix("quantity:"): value for q, value in defined}
+    quantities = {str(q).removeprefix("quantity:"): value for q, value in defined.items()}
     return Contribution(quantities=quantities, drives=(drive,), states=(state,))
 
 

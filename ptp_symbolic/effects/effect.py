@@ -49,6 +49,26 @@ class State:
 
 
 @dataclass(frozen=True)
+class Sampler:
+    """Sets states that are held in between at the instants offset + (k + phase) period, in s.
+
+    k counts from 0. `updates` gives the new values by state, all from what holds just before: time,
+    states, inputs and the quantities ``reading_<state>`` of the sensors; `terms` are functions of
+    those that the equations keep under their names, each of those before it. `period` and `offset`
+    depend on parameters, `phase` also on held states as they are when the period starts: from 1 on
+    there is no instant in this period. Where instants coincide the inputs have jumped already,
+    samplers run in the order of the catalogue, each after what those before it have set, and modes
+    of friction and contact follow last.
+    """
+
+    period: sp.Expr
+    updates: Mapping[sp.Symbol, sp.Expr]
+    offset: sp.Expr = sp.Integer(0)
+    phase: sp.Expr = sp.Integer(0)
+    terms: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Input:
     """An input of the machine: name, unit, meaning."""
 
@@ -132,7 +152,8 @@ class Contribution:
     `potential` is an energy of the coordinates, whose gradient acts as torques; `stored` an energy
     of the effect's own states, which its `torques` charge and discharge. `delays` hold back the
     inputs of an axis. `prescribed` gives joint rates an acceleration as input, in place of the
-    torque on the joint. What a sensor shows is the quantity ``reading_<state>``.
+    torque on the joint; `commands` gives an axis other inputs than those of its drive. What a
+    sensor shows is the quantity ``reading_<state>``.
     """
 
     quantities: Mapping[str, sp.Expr] = field(default_factory=dict)
@@ -146,6 +167,8 @@ class Contribution:
     shafts: tuple[Shaft, ...] = ()
     drives: tuple[Drive, ...] = ()
     states: tuple[State, ...] = ()
+    samplers: tuple[Sampler, ...] = ()
+    commands: Mapping[str, tuple[Input, ...]] = field(default_factory=dict)
     delays: Mapping[str, sp.Symbol] = field(default_factory=dict)
     limits: tuple[Limit, ...] = ()
     prescribed: Mapping[sp.Symbol, Input] = field(default_factory=dict)
@@ -242,7 +265,8 @@ class Effect:
     quantities without which it has nothing to act on, `requires` what its parameters must fulfil
     among each other. `dissipative` is a claim that tests verify:
     its torques can only take energy out. `structural` effects have no parameter value at which
-    they vanish (a motor, a shaft, a body): they are declared, never searched for.
+    they vanish (a motor, a shaft, a body): they are declared, never searched for. Other `kinds` of
+    an effect share its id; a platform that names none gets this one, of the `kind` given here.
     """
 
     id: str
@@ -257,3 +281,5 @@ class Effect:
     needs: tuple[str, ...] = ()
     requires: Callable[[Place], tuple[Requirement, ...]] = _without_conditions
     separating_experiment: str = ""
+    kind: str | None = None
+    kinds: tuple["Effect", ...] = ()

@@ -1,6 +1,7 @@
 """An encoder that counts: the reading is the nearest whole count."""
 
 import sympy as sp
+from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.printer import Printer
 
 from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place
@@ -23,7 +24,8 @@ class NearestCount(sp.Function):
         return sp.Integer(1 if argindex == 1 else 0)
 
     def _pythoncode(self, printer: Printer) -> str:
-        angle, count = (printer._print(a) for a in self.args)
+        angle = printer._print(self.args[0])
+        count = printer.parenthesize(self.args[1], PRECEDENCE["Func"], strict=True)
         return f"({count} * math.floor(({angle}) / {count} + 0.5))"
 
     def _latex(self, printer: Printer, **_: object) -> str:

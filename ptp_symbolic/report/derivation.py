@@ -168,11 +168,20 @@ def _results(equations: Equations) -> str:
         parts.append(rf"The shaft of the {contact.axis} axis has a dead zone; it cannot pull:")
         parts.append(formula("", contact.torque, r"T_{\mathrm{shaft}}"))
         parts.append(formula("", contact.half_gap, r"\tfrac12\,\mathrm{gap}"))
-    for state in equations.extra_states:
+    held = {str(symbol) for _, symbol, _ in equations.updates}
+    for state in (s for s in equations.extra_states if s.name not in held):
         name = symbol_latex(state.name)
         parts.append(
             formula("", state.derivative, rf"\frac{{\mathrm{{d}}}}{{\mathrm{{d}}t}}{name}")
         )
+    for sampler in equations.samplers:
+        parts.append("Held in between, and set anew at the instants")
+        start = sp.Symbol("k", real=True) + sampler.phase
+        parts.append(formula("", sampler.offset + start * sampler.period, "t_k"))
+        for symbol, term in sampler.terms.items():
+            parts.append(formula("", term, symbol_latex(str(symbol))))
+        for symbol, value in sampler.updates.items():
+            parts.append(formula("", value, rf"{symbol_latex(str(symbol))}\big|_{{t_k}}"))
     return "\n".join(parts)
 
 

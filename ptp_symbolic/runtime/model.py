@@ -140,6 +140,21 @@ class Model:
         return np.array(self.module.INPUT_DELAYS, dtype=np.int64)
 
     @cached_property
+    def sampler_periods(self) -> tuple[tuple[str, ...], ...]:
+        """Per sampler the parameters that its period follows from."""
+        return tuple(self.module.SAMPLERS)
+
+    @cached_property
+    def sampled(self) -> NDArray[np.int64]:
+        """Sampler and state index [r, 2] of everything that samplers set."""
+        return np.array(self.module.SAMPLED, dtype=np.int64).reshape(-1, 2)
+
+    @property
+    def moving(self) -> int:
+        """How many states move by themselves; the last ones are held and set by samplers."""
+        return len(self.state_names) - len(set(self.sampled[:, 1]))
+
+    @cached_property
     def limits(self) -> tuple[tuple[str, str], ...]:
         """States with limits beyond which the equations do not hold, each with its meaning."""
         return tuple(self.module.DOMAIN)

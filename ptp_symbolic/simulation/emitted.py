@@ -23,6 +23,10 @@ SIGNATURES = {
     "guard_jacobian": types.void(*_AT, _MATRIX, _MATRIX),
     "energy": types.void(*_AT, _VECTOR),
 }
+SAMPLER_SIGNATURES = {
+    "sample": SIGNATURES["mode_derivative"],
+    "sample_jacobian": SIGNATURES["jacobian"],
+}
 DERIVATIVE, JACOBIAN, GUARDS, GUARD_JACOBIAN, ENERGY = range(5)
 
 
@@ -32,8 +36,18 @@ def addresses(module: ModuleType) -> NDArray[np.int64]:
 
     The module keeps the functions alive, and the cache keeps the module.
     """
+    return _compiled(module, SIGNATURES)
+
+
+@lru_cache(maxsize=256)
+def sampler_addresses(module: ModuleType) -> NDArray[np.int64]:
+    """Addresses [2] of `sample` and `sample_jacobian` of a module with samplers."""
+    return _compiled(module, SAMPLER_SIGNATURES)
+
+
+def _compiled(module: ModuleType, signatures: dict[str, Any]) -> NDArray[np.int64]:
     found = []
-    for name, signature in SIGNATURES.items():
+    for name, signature in signatures.items():
         compiled = getattr(module, name).get_compile_result(signature)
         name_there = compiled.fndesc.llvm_func_name
         found.append(compiled.library.get_pointer_to_function(name_there))

@@ -58,6 +58,13 @@ from ptp_symbolic.simulation.kernels import (
     source_stamp,
 )
 from ptp_symbolic.simulation.outputs import note_switches
+from ptp_symbolic.simulation.sampling import (
+    SAMPLING,
+    Sampling,
+    new_sampling,
+    next_stop,
+    sample_now,
+)
 
 FloatArray = NDArray[np.float64]
 
@@ -94,6 +101,21 @@ def take_step(equations, inputs, t, t_end, x, m, work, record):
         x[i] = work.end[i] if abs(work.end[i]) > SMALLEST else 0.0
     copy(u, inputs.ahead)
     record.counts[STEPS] += 1
+    return DONE
+
+
+@inlined
+def take_steps(equations, inputs, begin, end, step, x, m, work, record):
+    """Go from begin to end in equal steps of at most `step` s. Returns a status."""
+    count = max(1, int(np.ceil((end - begin) / step - 1e-9)))
+    h = (end - begin) / count
+    for index in range(count):
+        t = begin + index * h
+        t_end = end if index + 1 == count else begin + (index + 1) * h
+        status = take_step(equations, inputs, t, t_end, x, m, work, record)
+        if status != DONE:
+            record.clock[TIME] = t
+            return status
     return DONE
 
 
@@ -136,13 +158,15 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             types.float64,  # longest step in s: every interval is cut into equal ones
             _WORK,
             _RECORD,
+            SAMPLING,
         ),
         cache=True,
         **KERNEL,
     )
     def run_fixed(
-        functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, m, step, work, record
-    ):
+        functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, m, step, work,
+        record, sampling,
+    ):  # fmt: skip
         """Integrate from the first to the last output time; inputs jump at no other time."""
         record = Record(*record)
         record.counts[SOURCES] = sources
@@ -151,26 +175,26 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             zero_at_rest,
         )  # fmt: skip
         inputs, work = Inputs(table, cursor, held, u[0], u[1]), StepWork(*work)
+        sampling = Sampling(*sampling)
         times = record.times
         for interval in range(len(times)):
             begin = times[interval]
             evaluate_inputs(begin, 1, *inputs.table, inputs.cursor, inputs.ahead)
+            sample_now(equations, inputs.ahead, begin, x, m, sampling)
             if interval == 0 and not choose_start_modes(equations, begin, x, inputs.ahead, m, work):
                 return UNDECIDED
             write_output(equations, begin, x, inputs.ahead, m, record)
             if interval + 1 == len(times):
                 break
             copy(inputs.ahead, inputs.u)
-            length = times[interval + 1] - begin
-            count = max(1, int(np.ceil(length / step - 1e-9)))
-            h = length / count
-            for index in range(count):
-                t, last = begin + index * h, index + 1 == count
-                t_end = times[interval + 1] if last else begin + (index + 1) * h
-                status = take_step(equations, inputs, t, t_end, x, m, work, record)
+            while begin < times[interval + 1]:
+                if begin > times[interval]:
+                    sample_now(equations, inputs.ahead, begin, x, m, sampling)
+                end = next_stop(times[interval + 1], sampling)
+                status = take_steps(equations, inputs, begin, end, step, x, m, work, record)
                 if status != DONE:
-                    record.clock[TIME] = t
                     return status
+                begin = end
         record.clock[TIME] = times[-1]
         return DONE
 
@@ -237,6 +261,7 @@ def pass_in_steps(
     status = runner()(
         addresses(model.module), p, model.friction_rates, model.zero_at_rest, inputs.arrays,
         inputs.new_cursor(), inputs.held, z((2, nu)), x, m, float(step), tuple(work), tuple(record),
+        tuple(new_sampling(model, p, x, times, 0)),
     )  # fmt: skip
     kept, counts = np.searchsorted(grid, times), record.counts
     return FixedPassage(

@@ -1,9 +1,9 @@
 """The compiled runner: adaptive steps by either method, located events, tangents through both.
 
 One runner serves every model: the emitted functions come in as typed function pointers. Steps end
-at every stop (sample of a held input, break of a profile). A mode that ends inside a step is found
-on the step's interpolant, then by repeating the step itself until the landing point lies just past
-the event. The step length is carried over stops and events.
+at every stop (sample of a held input, break of a profile) and where a sampler is due. A mode that
+ends inside a step is found on the step's interpolant, then by repeating the step itself until the
+landing point lies just past the event. The step length is carried over stops and events.
 """
 
 from collections.abc import Callable
@@ -55,6 +55,13 @@ from ptp_symbolic.simulation.outputs import (
     work_done,
     write_here,
     write_inside,
+)
+from ptp_symbolic.simulation.sampling import (
+    SAMPLING,
+    Sampling,
+    is_due,
+    next_stop,
+    sample_with_tangents,
 )
 from ptp_symbolic.simulation.steps import (
     RUNGE_KUTTA,
@@ -143,6 +150,28 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
 
 
 @inlined
+def advance_by_samples(
+    method, equations, inputs, stop, x, limits, atol, step, watch, tangents, record, sampling
+):
+    """Advance to `stop`, running the samplers that come due until then and there."""
+    while True:
+        target = next_stop(stop, sampling)
+        status = advance(
+            method, equations, inputs, target, x, limits, atol, step, watch, tangents, record
+        )
+        if status != DONE:
+            return status
+        if is_due(target, sampling):
+            sample_with_tangents(equations, inputs, target, x, watch.m, tangents, sampling)
+        if target == stop:
+            return DONE
+        write_here(equations, inputs, target, x, watch.m, tangents, record)
+        evaluate_inputs(target, 1, *inputs.table, inputs.cursor, inputs.u)
+        if not enter(equations, inputs, target, x, watch, record):
+            return CHATTERING
+
+
+@inlined
 def next_length(remaining, largest, clock):
     """Length of the next attempt: as planned, but so that equal steps reach the stop."""
     planned = min(clock[LENGTH], largest)
@@ -202,13 +231,14 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             _WATCH,
             _TANGENTS,
             _RECORD,
+            SAMPLING,
         ),
         cache=True,
         **KERNEL,
     )
     def run(
         method, functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, stops,
-        limits, atol, step, watch, tangents, record,
+        limits, atol, step, watch, tangents, record, sampling,
     ):  # fmt: skip
         """Integrate from the first to the last stop; returns a status, the rest is in `record`."""
         record = Record(*record)
@@ -224,8 +254,10 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             zero_at_rest,
         )
         inputs, step, watch = Inputs(table, cursor, held, u[0], u[1]), Step(*step), Watch(*watch)
-        tangents = Tangents(*tangents)
+        tangents, sampling = Tangents(*tangents), Sampling(*sampling)
         record.clock[TIME], record.clock[LENGTH] = stops[0], limits[1]
+        if is_due(stops[0], sampling):
+            sample_with_tangents(equations, inputs, stops[0], x, watch.m, tangents, sampling)
         evaluate_inputs(stops[0], 1, *inputs.table, inputs.cursor, inputs.u)
         write_here(equations, inputs, stops[0], x, watch.m, tangents, record)
         for index in range(1, len(stops)):
@@ -235,19 +267,10 @@ def compiled_runner(sources: int) -> Callable[..., int]:
                 jump_by_delay(equations, inputs, stops[index - 1], x, u[2], watch, tangents)
             if not enter(equations, inputs, stops[index - 1], x, watch, record):
                 return CHATTERING
-            status = advance(
-                method,
-                equations,
-                inputs,
-                stops[index],
-                x,
-                limits,
-                atol,
-                step,
-                watch,
-                tangents,
-                record,
-            )
+            status = advance_by_samples(
+                method, equations, inputs, stops[index], x, limits, atol, step, watch, tangents,
+                record, sampling,
+            )  # fmt: skip
             if status != DONE:
                 return status
             write_here(equations, inputs, stops[index], x, watch.m, tangents, record)

@@ -60,8 +60,9 @@ class Step(NamedTuple):
 
     slope, by_time [n]: dx/dt at the start and its derivative by time alone; stage, k [8, n];
     end [n]; dense [5, n]: the state as a polynomial in the fraction of the step; fx [n, n],
-    fu [n, nu], fp [n, np] at the start; inverse [n, n] of the matrix of the implicit stages, also
-    by columns, and its row exchanges `order` [n]; point, right [n]: scratch.
+    fu [n, nu], fp [n, np] at the start; inverse of the matrix of the implicit stages, also by
+    columns, and its row exchanges `order` [n]: [n, n] with tangents, else without the states that
+    are held; point, right [n]: scratch.
     """
 
     slope: Any

@@ -11,6 +11,7 @@ from ptp_symbolic.simulation.emitted import addresses
 from ptp_symbolic.simulation.inputs import InputTable
 from ptp_symbolic.simulation.kernels import EVENTS, STEPS, TIME, Record, Step, Tangents, Watch
 from ptp_symbolic.simulation.rodas5p import STAGES
+from ptp_symbolic.simulation.sampling import new_sampling
 from ptp_symbolic.simulation.steps import ROSENBROCK, RUNGE_KUTTA
 
 FloatArray = NDArray[np.float64]
@@ -87,9 +88,9 @@ def pass_through(
 ) -> Passage:
     """Run `model` from the first to the last of `stops`, starting at x [n] with tangents s [n, ns].
 
-    `held` says that inputs change at stops only. With tangents, output times must be stops. The
-    first tangents belong to the parameters `columns`; `delay_column` is per input the tangent of
-    its delay, or -1.
+    `held` says that inputs change at stops only; those that samplers alone read need not. With
+    tangents, output times must be stops. The first tangents belong to the parameters `columns`;
+    `delay_column` is per input the tangent of its delay, or -1.
     """
     n, nu, module = len(x), len(model.input_names), model.module
     none = np.zeros(0, dtype=np.int64)
@@ -109,9 +110,10 @@ def pass_through(
     )  # fmt: skip
     status = hybrid.runner()(
         METHODS[method], addresses(module), p, model.friction_rates, model.zero_at_rest,
-        inputs.arrays, cursor, held, u, x, stops,
+        inputs.arrays, cursor, held or not any(module.INPUT_ACTS), u, x, stops,
         np.array([accuracy.relative, accuracy.largest_step]), accuracy.absolute,
-        tuple(_step(n, nu, len(p))), tuple(watch), tuple(tangents), tuple(record),
+        tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)), tuple(watch),
+        tuple(tangents), tuple(record), tuple(new_sampling(model, p, x, stops, s.shape[1])),
     )  # fmt: skip
     return Passage(
         status, float(record.clock[TIME]), x, record.x, record.s, record.ledger,
@@ -119,11 +121,12 @@ def pass_through(
     )  # fmt: skip
 
 
-def _step(n: int, nu: int, parameters: int) -> Step:
+def _step(n: int, nu: int, parameters: int, solved: int) -> Step:
     z = np.zeros
     return Step(
         z(n), z(n), z((STAGES, n)), z((STAGES, n)), z(n), z((5, n)), z((n, n)), z((n, nu)),
-        z((n, parameters)), z((n, n)), z((n, n)), z(n, dtype=np.int64), z(n), z(n),
+        z((n, parameters)), z((solved, solved)), z((solved, solved)), z(n, dtype=np.int64), z(n),
+        z(n),
     )  # fmt: skip
 
 

@@ -42,25 +42,27 @@ def begin(equations, inputs, t, x, m, step):
 def attempt(equations, inputs, t, h, x, m, step):
     """Try a step of length h in s: fill the increments k and the end point.
 
-    Resting frictions are copied back, or rounding would make them creep.
+    Resting frictions are copied back, or rounding would make them creep. States that samplers hold
+    come last; the inverse may leave them out.
     """
-    n, point, right = len(x), step.point, step.right
+    n, point = step.inverse.shape[0], step.point
+    right = step.right[:n]
     invert(step.fx, 1.0 / (h * GAMMA), step.inverse, step.order, step.columns)
     for i in range(STAGES):
         if i == 0:
-            copy(step.slope, right)
+            copy(step.slope, step.right)
         else:
             place_stage(i, x, step.k, point)
             if not inputs.held and i < 6:
                 side = -1 if C[i] == 1.0 else 1
                 evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
-            call(equations.derivative, t + C[i] * h, point, inputs.u, equations.p, m, right)
+            call(equations.derivative, t + C[i] * h, point, inputs.u, equations.p, m, step.right)
         for a in range(n):
             right[a] += h * D[i] * step.by_time[a]
             step.k[i, a] = 0.0
         add_stages(i, COUPLING, 1.0 / h, step.k, right)
-        add_columns(step.columns, right, step.k[i])
-    for a in range(n):
+        add_columns(step.columns, right, step.k[i, :n])
+    for a in range(len(x)):
         step.end[a] = point[a] + step.k[STAGES - 1, a]
     for f in range(len(equations.friction_rates)):
         if m[f] == 0.0:

@@ -13,6 +13,7 @@ from ptp_symbolic import loop
 from ptp_symbolic.codegen import dynamics
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.derivation.equations import Equations
+from ptp_symbolic.derivation.placement import available_quantities, place_effects
 from ptp_symbolic.effects import EFFECTS, Effect
 from ptp_symbolic.kinematics import TIME
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
@@ -39,8 +40,10 @@ def with_effect(effect: Effect) -> Platform:
             if addition.effect == effect.id:
                 return replace(base, effects=(*base.effects, addition))
     assert effect.structural, f"No base platform takes {effect.id}."
-    axis = BASES[0].axes[0] if effect.on_axis else None
-    return replace(BASES[0], effects=(*BASES[0].effects, EffectDeclaration(effect.id, axis, None)))
+    needs = {need.format(axis="pan") for need in effect.needs}
+    base = next(b for b in BASES if needs <= available_quantities(place_effects(b)))
+    addition = EffectDeclaration(effect.id, base.axes[0] if effect.on_axis else None, None)
+    return replace(base, effects=(*base.effects, addition))
 
 
 def without(platform: Platform, effect: Effect) -> Platform:

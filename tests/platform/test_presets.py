@@ -17,7 +17,7 @@ def values(platform: Platform) -> dict[str, float]:
 def test_the_presets_are_named_after_their_files() -> None:
     named = [name.removeprefix("thesis-").replace("-", "_") for name in preset_names()]
     assert named == [
-        "full", "ideal", "pan_drive", "payload", "tilt_drive", "tilt_drive_stroke_48",
+        "full", "ideal", "pan_drive", "pan_servo", "payload", "tilt_drive", "tilt_drive_stroke_48",
     ]  # fmt: skip
     assert [read_platform(preset).name for preset in preset_names()] == named
 
