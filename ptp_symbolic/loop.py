@@ -77,7 +77,7 @@ def torque_driven(platform: Platform) -> Platform:
     kept = []
     for (effect, place), declaration in placed:
         added = effect.contribute(place)
-        if not (added.drives or added.shafts or added.prescribed):
+        if not (added.drives or added.shafts or added.plays or added.prescribed):
             kept.append((effect, replace(place, shafts=frozenset()), declaration))
     while True:
         available = available_quantities([(effect, place) for effect, place, _ in kept])

@@ -39,6 +39,7 @@ def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]
                 _tuple("ZERO_AT_REST", map(str, _zero_at_rest(equations))),
                 "# Per contact: state index of the angle at the gear output and at the joint.",
                 _tuple("CONTACT_ANGLES", _contact_states(equations)),
+                *_rigid_contacts(equations),
                 "# Limits of the equations: state, meaning; `domain` gives the bounds.",
                 _tuple("DOMAIN", _domain(equations)),
                 "# Relations: parameters, rule, strict; `margins` gives what is at least zero.",
@@ -161,6 +162,21 @@ def _contact_states(equations: Equations) -> list[str]:
         )
         pairs.append(f"({gear}, {joint})")
     return pairs
+
+
+def _rigid_contacts(equations: Equations) -> list[str]:
+    """Nothing where every contact is sprung."""
+    if not any(contact.rigid for contact in equations.contacts):
+        return []
+    states, rows = list(equations.state_symbols), []
+    for contact in equations.contacts:
+        rates = (kinematics.gear_rate(contact.axis), kinematics.rate(contact.axis))
+        rule = "2" if contact.holds else "1" if contact.rigid else "0"
+        rows.append(f"[{', '.join([*(str(states.index(rate)) for rate in rates), rule])}]")
+    return [
+        "# Per contact: state index of both rates; 0 sprung, 1 rigid, 2 rigid and held in the gap.",
+        f"RIGID_CONTACTS = np.array([{', '.join(rows)}], dtype=np.int64)",
+    ]
 
 
 def _domain(equations: Equations) -> list[str]:

@@ -16,17 +16,19 @@ def words_of(equations: Equations) -> dict[str, str]:
         "u": [i.name for i in equations.inputs],
         "p": [p.name for p in equations.parameters],
     }
+    strikes = _numbered("strike", _strikes(equations))
     margins = _numbered("margin", [f"requirement_{k}" for k in range(len(equations.requirements))])
     bounds = {
         f"bounds[{k}, {side}]": f"{word}_{limit.state}"
         for k, limit in enumerate(equations.limits)
         for side, word in enumerate(("lowest", "highest"))
     }
-    words = {**rates, **guards, **readings, **energy, **margins, **bounds}
+    words = {**rates, **guards, **readings, **energy, **strikes, **margins, **bounds}
     for letter, names in columns.items():
         words |= _derivatives("f", letter, rates, names)
         words |= _derivatives("g", letter, guards, names)
         words |= _derivatives("y", letter, readings, names)
+        words |= _derivatives("strike", letter, strikes, names)
     return words
 
 
@@ -57,4 +59,12 @@ def _guards(equations: Equations) -> list[str]:
         words += [f"{word}_{friction.axis}" for word in ("holding", "forward", "backward")]
     for contact in equations.contacts:
         words += [f"{word}_{contact.axis}" for word in ("separation", "half_gap", "upper", "lower")]
+    return words
+
+
+def _strikes(equations: Equations) -> list[str]:
+    words = []
+    for contact in equations.contacts:
+        words += [f"strike_{contact.axis}_on_{state}" for state in equations.state_symbols]
+        words += [f"restitution_{contact.axis}", f"strike_energy_{contact.axis}"]
     return words

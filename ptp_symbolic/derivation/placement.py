@@ -19,14 +19,29 @@ def find_effect(identifier: str) -> Effect:
     raise InputError(f"Unknown effect '{identifier}'. Choose one of: {choices}.")
 
 
+def _of_kind(effect: Effect, kind: str | None) -> Effect:
+    """The `kind` of `effect`, its usual one if None; raises InputError with the list of choices."""
+    if kind is None:
+        return effect
+    kinds = {each.kind: each for each in (effect, *effect.kinds) if each.kind is not None}
+    if not kinds:
+        raise InputError(f"Effect '{effect.id}' has no kinds; remove kind = \"{kind}\".")
+    if kind not in kinds:
+        raise InputError(
+            f"Effect '{effect.id}' has no kind '{kind}'. Choose one of: {', '.join(kinds)}."
+        )
+    return kinds[kind]
+
+
 def place_effects(platform: Platform) -> list[tuple[Effect, Place]]:
     """Return every declared effect with its place, after checking names, units and bounds.
 
     The order is that of the catalogue, however the platform lists them: the same machine has the
     same equations.
     """
-    found = [(find_effect(d.effect), d) for d in platform.effects]
-    found.sort(key=lambda pair: EFFECTS.index(pair[0]))
+    order = [effect.id for effect in EFFECTS]
+    found = [(_of_kind(find_effect(d.effect), d.kind), d) for d in platform.effects]
+    found.sort(key=lambda pair: order.index(pair[0].id))
     shafts = frozenset(d.axis for e, d in found if e.splits_axis and d.axis is not None)
     placed = []
     for effect, declaration in found:

@@ -86,6 +86,21 @@ class Shaft:
 
 
 @dataclass(frozen=True)
+class Play:
+    """A gap of twice `half_gap` in rad between gear output and joint of `axis`, both rigid.
+
+    Faces strike with the coefficient of `restitution`; joined, the two turn as one body until they
+    would pull at each other. With `holds`, friction keeps the joint where it is while it crosses
+    the gap, and at the face until the gear output turns back.
+    """
+
+    axis: str
+    half_gap: sp.Expr
+    restitution: sp.Expr
+    holds: bool = False
+
+
+@dataclass(frozen=True)
 class Drive:
     """A motor on `axis`: inertia in kg m^2 and torque in N m, both seen at the gear output.
 
@@ -144,6 +159,7 @@ class Contribution:
     torques: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     frictions: tuple[Friction, ...] = ()
     shafts: tuple[Shaft, ...] = ()
+    plays: tuple[Play, ...] = ()
     drives: tuple[Drive, ...] = ()
     states: tuple[State, ...] = ()
     delays: Mapping[str, sp.Symbol] = field(default_factory=dict)
@@ -242,7 +258,8 @@ class Effect:
     quantities without which it has nothing to act on, `requires` what its parameters must fulfil
     among each other. `dissipative` is a claim that tests verify:
     its torques can only take energy out. `structural` effects have no parameter value at which
-    they vanish (a motor, a shaft, a body): they are declared, never searched for.
+    they vanish (a motor, a shaft, a body): they are declared, never searched for. Other `kinds` of
+    an effect share its id; a platform that names none gets this one, of the `kind` given here.
     """
 
     id: str
@@ -257,3 +274,5 @@ class Effect:
     needs: tuple[str, ...] = ()
     requires: Callable[[Place], tuple[Requirement, ...]] = _without_conditions
     separating_experiment: str = ""
+    kind: str | None = None
+    kinds: tuple["Effect", ...] = ()

@@ -26,12 +26,14 @@ class EffectDeclaration:
     """One effect of the platform: its id, the axis it acts on, and where on the drive train.
 
     `axis` is None for an effect of the whole platform. `site` is "gear" (at the gear output),
-    "joint" (at the load) or None (the effect's own place).
+    "joint" (at the load) or None (the effect's own place). `kind` chooses among the kinds of an
+    effect that has several, None its usual one.
     """
 
     effect: str
     axis: str | None
     site: str | None
+    kind: str | None = None
 
 
 @dataclass(frozen=True)

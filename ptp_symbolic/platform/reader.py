@@ -137,15 +137,16 @@ def _effects(given: object, axes: tuple[str, ...], file: str) -> tuple[EffectDec
     found: dict[tuple[str, str | None], EffectDeclaration] = {}
     for position, entry in enumerate(given, start=1):
         where = f"{file}: effects[{position}]"
-        entry = fields.table(entry, where, ("effect", "axis", "site"))
+        entry = fields.table(entry, where, ("effect", "axis", "site", "kind"))
         effect = fields.name(fields.required(entry, "effect", where), f"{where}.effect")
         where = f"{where} {effect}"
         axis = fields.choice(entry["axis"], axes, f"{where}.axis") if "axis" in entry else None
         site = fields.choice(entry["site"], SITES, f"{where}.site") if "site" in entry else None
+        kind = fields.name(entry["kind"], f"{where}.kind") if "kind" in entry else None
         if (effect, axis) in found:
             on_axis = f" on axis {axis}" if axis else ""
             raise InputError(f"{where}: is declared twice{on_axis}; remove one of the two.")
-        found[effect, axis] = EffectDeclaration(effect, axis, site)
+        found[effect, axis] = EffectDeclaration(effect, axis, site, kind)
     return tuple(found.values())
 
 

@@ -37,6 +37,8 @@ def _effect_lines(effect: EffectDeclaration) -> list[str]:
         lines.append(f"axis = {_quoted(effect.axis)}")
     if effect.site is not None:
         lines.append(f"site = {_quoted(effect.site)}")
+    if effect.kind is not None:
+        lines.append(f"kind = {_quoted(effect.kind)}")
     return lines
 
 

@@ -24,16 +24,25 @@ SIGNATURES = {
     "energy": types.void(*_AT, _VECTOR),
 }
 DERIVATIVE, JACOBIAN, GUARDS, GUARD_JACOBIAN, ENERGY = range(5)
+IMPACT_SIGNATURES = {
+    "impacts": types.void(*_AT, _VECTOR),
+    "impact_jacobian": types.void(*_AT, _MATRIX, _MATRIX),
+}
 
 
 @lru_cache(maxsize=256)
 def addresses(module: ModuleType) -> NDArray[np.int64]:
-    """Addresses [5] of the compiled functions of an emitted module, in the order above.
+    """Addresses [7] of the compiled functions of an emitted module, in the order above.
+
+    A module without rigid contacts has no impacts, and zeros as their addresses.
 
     The module keeps the functions alive, and the cache keeps the module.
     """
     found = []
-    for name, signature in SIGNATURES.items():
+    for name, signature in (*SIGNATURES.items(), *IMPACT_SIGNATURES.items()):
+        if name in IMPACT_SIGNATURES and name not in vars(module):
+            found.append(0)
+            continue
         compiled = getattr(module, name).get_compile_result(signature)
         name_there = compiled.fndesc.llvm_func_name
         found.append(compiled.library.get_pointer_to_function(name_there))

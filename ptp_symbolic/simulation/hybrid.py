@@ -24,6 +24,7 @@ from ptp_symbolic.simulation.kernels import (
     MATRIX,
     STEPS,
     TABLE,
+    TABLE_OF_CONTACTS,
     TIME,
     VECTOR,
     Equations,
@@ -46,6 +47,7 @@ from ptp_symbolic.simulation.location import (
 from ptp_symbolic.simulation.modes import settle
 from ptp_symbolic.simulation.outputs import (
     fill_powers,
+    note_strikes,
     note_switches,
     work_done,
     write_here,
@@ -67,24 +69,22 @@ INSTANT_STEP = 1e-10  # s
 
 _V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
 _STEP = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V))
-_WATCH = types.Tuple((_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V))
+_WATCH = types.Tuple((_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V))
 _TANGENTS = types.Tuple((_V, _M, _I, _I, _M, _V, _V, _V, _C, _M, _M, _M, _M))
 _RECORD = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
 
 
 @inlined
-def enter(equations, inputs, t, x, watch, record):
+def enter(equations, inputs, t, x, watch, tangents, record):
     """Settle modes that the inputs from t on have ended; False when that does not end."""
     elements = len(watch.at_end)
     if elements == 0 or fill_violations(equations, inputs, t, x, watch, watch.at_start) <= 0.0:
         return True
     copy(watch.m, watch.m_before)
-    if not settle(
-        equations.guards, t, x, inputs.u, equations.p, watch.m, watch.g, equations.friction_rates,
-        equations.zero_at_rest,
-    ):  # fmt: skip
+    if not settle(equations, t, x, inputs.u, watch, tangents):
         return False
     note_switches(t, watch.m, watch.m_before, len(equations.friction_rates), record)
+    note_strikes(watch, record)
     fill_violations(equations, inputs, t, x, watch, watch.at_start)
     return True
 
@@ -182,6 +182,7 @@ def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents,
         _V,  # parameters
         _I,  # state index of the rate of every friction
         _I,  # per state the friction that zeroes it when it comes to rest, or -1
+        TABLE_OF_CONTACTS,
         TABLE,
         _I,  # cursor [nu]
         types.boolean,  # inputs are held between stops
@@ -199,8 +200,8 @@ def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents,
     **KERNEL,
 )
 def run(
-    method, functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, stops, limits,
-    atol, step, watch, tangents, record,
+    method, functions, p, friction_rates, zero_at_rest, contacts, table, cursor, held, u, x, stops,
+    limits, atol, step, watch, tangents, record,
 ):  # fmt: skip
     """Integrate from the first to the last stop; returns a status, the rest is in the records."""
     equations = Equations(
@@ -212,6 +213,9 @@ def run(
         p,
         friction_rates,
         zero_at_rest,
+        functions[5],
+        functions[6],
+        contacts,
     )
     inputs, step, watch = Inputs(table, cursor, held, u[0], u[1]), Step(*step), Watch(*watch)
     tangents, record = Tangents(*tangents), Record(*record)
@@ -223,7 +227,7 @@ def run(
         evaluate_inputs(stops[index - 1], 1, *inputs.table, inputs.cursor, inputs.u)
         if tangents.table.shape[1] > 0 and index > 1:
             jump_by_delay(equations, inputs, stops[index - 1], x, u[2], watch, tangents)
-        if not enter(equations, inputs, stops[index - 1], x, watch, record):
+        if not enter(equations, inputs, stops[index - 1], x, watch, tangents, record):
             return CHATTERING
         status = advance(
             method, equations, inputs, stops[index], x, limits, atol, step, watch, tangents, record

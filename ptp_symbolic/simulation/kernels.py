@@ -20,6 +20,7 @@ OUTPUT, EVENTS, STEPS, INSTANT = 0, 1, 2, 3
 
 VECTOR, MATRIX = types.float64[::1], types.float64[:, ::1]
 CUBE, INTEGERS = types.float64[:, :, ::1], types.int64[::1]
+TABLE_OF_CONTACTS = types.int64[:, ::1]
 TABLE = types.Tuple((VECTOR, MATRIX, INTEGERS, MATRIX, INTEGERS, MATRIX, INTEGERS))
 
 
@@ -27,7 +28,9 @@ class Equations(NamedTuple):
     """The emitted functions of a model, its parameters p [np], and where its frictions act.
 
     friction_rates: state index of the rate of every friction; zero_at_rest [n]: per state the
-    friction that sets it to zero when it comes to rest, or -1.
+    friction that sets it to zero when it comes to rest, or -1; contacts [c, 3]: state index of the
+    rates at the gear output and at the joint, and 0 for a sprung contact, 1 for rigid bodies, 2 for
+    rigid bodies whose joint is held in the gap.
     """
 
     derivative: Any
@@ -38,6 +41,9 @@ class Equations(NamedTuple):
     p: Any
     friction_rates: Any
     zero_at_rest: Any
+    impacts: Any
+    impact_jacobian: Any
+    contacts: Any
 
 
 class Inputs(NamedTuple):
@@ -82,7 +88,8 @@ class Watch(NamedTuple):
     """Guards g, modes m and m_before, and how far every element is past the end of its mode.
 
     at_start, at_middle, at_end [elements] belong to the step; gx, gp, by_x [n], by_p [np]: the
-    derivatives of guards and of a violation.
+    derivatives of guards and of a violation; strike [c (n + 2)], strike_x, strike_p: as `impacts`
+    writes them, and their derivatives; lost [1]: energy that strikes have taken.
     """
 
     g: Any
@@ -97,6 +104,10 @@ class Watch(NamedTuple):
     by_p: Any
     before: Any
     after: Any
+    strike: Any
+    strike_x: Any
+    strike_p: Any
+    lost: Any
 
 
 class Tangents(NamedTuple):
