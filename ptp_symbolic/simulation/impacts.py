@@ -55,16 +55,26 @@ def strike(contact, equations, t, x, u, watch, tangents):
 @inlined
 def strike_tangents(at, restitution, watch, tangents):
     """Carry the tangents through the strike whose rows of the Jacobians begin at `at`."""
-    s, columns, change = tangents.table, tangents.columns, tangents.right
+    s, change = tangents.table, watch.by_x
     n = s.shape[0]
     for c in range(s.shape[1]):
-        for a in range(n + 1):
-            change[a] = watch.strike_p[at + a, columns[c]] if c < len(columns) else 0.0
-            for b in range(n):
-                change[a] += watch.strike_x[at + a, b] * s[b, c]
-        reversed_more = change[n] if restitution > 0.0 else 0.0
         for a in range(n):
-            s[a, c] += (1.0 + restitution) * change[a] + reversed_more * watch.strike[at + a]
+            change[a] = (1.0 + restitution) * along_tangent(at + a, c, watch, tangents)
+        if restitution > 0.0:
+            more = along_tangent(at + n, c, watch, tangents)
+            for a in range(n):
+                change[a] += more * watch.strike[at + a]
+        for a in range(n):
+            s[a, c] += change[a]
+
+
+@inlined
+def along_tangent(row, c, watch, tangents):
+    """Derivative of one entry of watch.strike along the tangent c."""
+    result = watch.strike_p[row, tangents.columns[c]] if c < len(tangents.columns) else 0.0
+    for b in range(tangents.table.shape[0]):
+        result += watch.strike_x[row, b] * tangents.table[b, c]
+    return result
 
 
 @kernel
