@@ -19,6 +19,7 @@ ZERO = sp.Integer(0)
 
 
 DEAD_BAND = sp.Rational(1, 10**12)  # rad/s, above the rounding of rates that are equal
+FACE_DEPTH = sp.Rational(1, 10**12)  # rad, above the rounding of angles
 
 
 @dataclass(frozen=True)
@@ -205,7 +206,8 @@ def guard_expressions(equations: Equations, solve: Solve) -> list[sp.Expr]:
     """Per friction: holding torque, breakaway forward and backward; per contact: separation,
     half gap, torque at the upper and at the lower face.
 
-    A rigid face has the speed of approach as its torque until it is active.
+    A rigid face has the speed of approach as its torque until it is active; a body that has let go
+    of it has left it when it is FACE_DEPTH away.
     """
     expressions: list[sp.Expr] = []
     for friction in equations.frictions:
@@ -225,7 +227,8 @@ def guard_expressions(equations: Equations, solve: Solve) -> list[sp.Expr]:
             else contact.torque.subs(contact.side, s)
             for s in (1, -1)
         )
-        expressions += [contact.separation, contact.half_gap, upper, lower]
+        depth = FACE_DEPTH * contact.side**2 if contact.rigid else ZERO
+        expressions += [contact.separation, contact.half_gap - depth, upper, lower]
     return expressions
 
 
