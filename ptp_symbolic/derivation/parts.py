@@ -142,8 +142,8 @@ def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Part
 def _transmitted(axis: str, contributions: Iterable[Contribution]) -> sp.Expr:
     """Torque that reaches the joint: of its shaft, else of its drive, else the torque input."""
     contributions = list(contributions)
-    parts: list[Shaft | Play] = [part for c in contributions for part in (*c.shafts, *c.plays)]
-    if any(part.axis == axis for part in parts):
+    shafts = {shaft.axis for c in contributions for shaft in c.shafts}
+    if axis in shafts | {play.axis for c in contributions for play in c.plays}:
         return quantity_symbol(f"shaft_torque_{axis}")
     for contribution in contributions:
         for drive in contribution.drives:

@@ -6,7 +6,6 @@ restitution is a matter of rigid faces. Assumed: faces strike in no time, and dr
 is finite, does not take part in a strike.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import sympy as sp
@@ -33,20 +32,19 @@ def _contribute(place: Place) -> Contribution:
     return Contribution(changes={f"half_gap_{place.axis}": Change(addition=half)})
 
 
-def _rigid(bounces: bool, holds: bool) -> Callable[[Place], Contribution]:
+def _kind(
+    kind: str, title: str, reference: str, bounces: bool = False, holds: bool = False
+) -> Effect:
+    given = (OPEN_GAP, RESTITUTION) if bounces else (OPEN_GAP,)
+
     def contribute(place: Place) -> Contribution:
         half = place.parameter("gap_{axis}") / 2
         restitution = place.parameter(RESTITUTION.name) if bounces else sp.Integer(0)
         return Contribution(plays=(Play(place.own_axis, half, restitution, holds),))
 
-    return contribute
-
-
-def _kind(kind: str, title: str, reference: str, bounces: bool = False, holds: bool = False) -> Effect:
-    given = (OPEN_GAP, RESTITUTION) if bounces else (OPEN_GAP,)
     return Effect(
         id="backlash", kind=kind, title=title, reference=reference,
-        parameters=lambda place: place.named(given), contribute=_rigid(bounces, holds),
+        parameters=lambda place: place.named(given), contribute=contribute,
         structural=True, splits_axis=True,
     )  # fmt: skip
 
