@@ -91,7 +91,8 @@ class Play:
 
     Faces strike with the coefficient of `restitution`; joined, the two turn as one body until they
     would pull at each other. With `holds`, friction keeps the joint where it is while it crosses
-    the gap, and at the face until the gear output turns back.
+    the gap, and at the face until the gear output turns back; assumed is that nothing but the gear
+    output drives the joint, or contact may end and begin again without end.
     """
 
     axis: str

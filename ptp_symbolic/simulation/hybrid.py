@@ -69,7 +69,7 @@ INSTANT_STEP = 1e-10  # s
 
 _V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
 _STEP = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V))
-_WATCH = types.Tuple((_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V))
+_WATCH = types.Tuple((_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M))
 _TANGENTS = types.Tuple((_V, _M, _I, _I, _M, _V, _V, _V, _C, _M, _M, _M, _M))
 _RECORD = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
 

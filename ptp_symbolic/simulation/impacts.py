@@ -24,10 +24,20 @@ def strike_faces(equations, t, x, u, watch, tangents):
         if rule == SPRUNG:
             continue
         if m[where + 1] == 0.0:
-            if rule == HELD:
-                x[joint] = 0.0
+            if rule == HELD and x[joint] != 0.0:
+                hold(joint, equations, t, x, u, watch)
         elif m[where] * (x[gear] - x[joint]) > DEAD_BAND:
             strike(contact, equations, t, x, u, watch, tangents)
+
+
+@inlined
+def hold(joint, equations, t, x, u, watch):
+    """Stop a joint that friction holds; it moves only where a coupled strike has turned it back."""
+    m, energies = watch.m, watch.energies
+    call(equations.energy, t, x, u, equations.p, m, energies[0])
+    x[joint] = 0.0
+    call(equations.energy, t, x, u, equations.p, m, energies[1])
+    watch.lost[0] += energies[0, 0] - energies[1, 0]
 
 
 @inlined

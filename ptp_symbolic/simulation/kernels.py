@@ -89,7 +89,8 @@ class Watch(NamedTuple):
 
     at_start, at_middle, at_end [elements] belong to the step; gx, gp, by_x [n], by_p [np]: the
     derivatives of guards and of a violation; strike [c (n + 2)], strike_x, strike_p: as `impacts`
-    writes them, and their derivatives; lost [1]: energy that strikes have taken.
+    writes them, and their derivatives; lost [1]: energy that strikes have taken; energies
+    [2, 3]: two ledgers to compare.
     """
 
     g: Any
@@ -108,6 +109,7 @@ class Watch(NamedTuple):
     strike_x: Any
     strike_p: Any
     lost: Any
+    energies: Any
 
 
 class Tangents(NamedTuple):

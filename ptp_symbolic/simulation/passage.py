@@ -139,7 +139,7 @@ def _watch(model: Model, n: int, parameters: int) -> Watch:
     return Watch(
         z(guards), z(modes), z(modes), z(elements), z(elements), z(elements), z((guards, n)),
         z((guards, parameters)), z(n), z(parameters), z(n), z(n),
-        z(strikes), z((strikes, n)), z((strikes, parameters)), z(1),
+        z(strikes), z((strikes, n)), z((strikes, parameters)), z(1), z((2, 3)),
     )  # fmt: skip
 
 

@@ -221,6 +221,25 @@ def test_dry_friction_beside_rigid_faces(kind: str, site: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
+def test_strikes_on_one_axis_reach_the_play_of_the_other(kind: str) -> None:
+    given = platform(kind, "payload")
+    tilt = tuple(replace(e, axis="tilt") for e in given.effects if e.effect == "dc_motor")
+    tilt += (EffectDeclaration("backlash", "tilt", None, "elastic_impact"),)
+    model = loop.emit(replace(given, effects=(*given.effects, *tilt)))
+    axes = {"N_tilt": 1.0, "J_motor_tilt": 0.03, "K_t_tilt": 0.3, "gap_tilt": 0.02, "R_tilt": 1.0}
+    parameters = {n: v for n, v in DRIVEN.items() if n != "b_pan"} | PAYLOAD | axes
+    inputs = VOLTAGE | {"u_tilt": multisine([9.0, 4.0], [0.8, 2.3])}
+    runs = [
+        simulate(model, 1.0, inputs, parameters, method=method, rtol=1e-10, atol=1e-11)
+        for method in METHODS
+    ]
+    for found in runs:
+        assert_sound(found)
+        assert {event.element for event in found.events} == {"contact pan", "contact tilt"}
+    assert runs[0].x[-1] == pytest.approx(runs[1].x[-1], abs=2e-5)
+
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_tangents_through_strikes(kind: str) -> None:
     model = loop.emit(platform(kind, "viscous_friction"))
     names = [n for n in ("J_pan", "gap_pan", "K_t_pan", "e_gap_pan") if n in model.parameter_names]
