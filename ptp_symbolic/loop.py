@@ -76,7 +76,7 @@ def torque_driven(platform: Platform) -> Platform:
     kept = []
     for effect, place in place_effects(platform):
         added = effect.contribute(place)
-        if not (added.drives or added.shafts or added.prescribed):
+        if not (added.drives or added.shafts or added.plays or added.prescribed):
             kept.append((effect, replace(place, shafts=frozenset())))
     while True:
         available = available_quantities(kept)

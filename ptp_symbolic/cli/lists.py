@@ -24,7 +24,17 @@ def effects(as_json: bool) -> None:
     """List the effects that a platform can declare."""
     from ptp_symbolic.effects import EFFECTS
 
-    _show([{"effect": e.id, "what": e.title, "reference": e.reference} for e in EFFECTS], as_json)
+    rows = [
+        {
+            "effect": kind.id,
+            "kind": kind.kind or "",
+            "what": kind.title,
+            "reference": kind.reference,
+        }
+        for effect in EFFECTS
+        for kind in (effect, *effect.kinds)
+    ]
+    _show(rows, as_json)
 
 
 @click.command()

@@ -1,7 +1,8 @@
 """The functions of a model as named assignments: accelerations, Jacobians, guards, outputs.
 
 Nothing is inverted symbolically: the coupled joints are solved by Cramer's rule with one division,
-and derivatives of accelerations are taken implicitly from M a = F.
+and derivatives of accelerations are taken implicitly from M a = F. Where rigid contact joins a gear
+output to its joint, the gear's row is added to the joint's, and the gear follows.
 """
 
 from collections.abc import Sequence
@@ -9,11 +10,25 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from ptp_symbolic import kinematics
 from ptp_symbolic.codegen.chain import ChainRule, chain_rule
 from ptp_symbolic.codegen.sharing import Line
-from ptp_symbolic.derivation.equations import Equations
+from ptp_symbolic.derivation.equations import Contact, Equations
 
 ZERO = sp.Integer(0)
+
+
+DEAD_BAND = sp.Rational(1, 10**12)  # rad/s, above the rounding of rates that are equal
+FACE_DEPTH = sp.Rational(1, 10**12)  # rad, above the rounding of angles
+
+
+@dataclass(frozen=True)
+class Lock:
+    """Rows of a gear output and a joint that turn as one where `active` is 1, else apart."""
+
+    gear: int
+    joint: int
+    active: sp.Expr
 
 
 @dataclass(frozen=True)
@@ -21,6 +36,7 @@ class Solve:
     """Accelerations of a model, solved row by row or pairwise where two joints are coupled.
 
     `definitions` start with the named functions of the equations; `chain` differentiates them.
+    `moved` is the inertia of every row with what is locked to it, `free` 0 where a row is held.
     """
 
     definitions: tuple[Line, ...]
@@ -30,19 +46,26 @@ class Solve:
     free: tuple[sp.Expr, ...]
     inverses: tuple[sp.Expr, ...]
     chain: ChainRule
+    moved: tuple[sp.Expr, ...]
+    locks: tuple[Lock, ...]
 
     def solve(self, right: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Return a in M a = `right` for the rows that are free to move."""
         n = len(self.accelerations)
-        result = [ZERO] * n
+        result, right = [ZERO] * n, list(right)
+        for lock in self.locks:
+            right[lock.joint] += lock.active * right[lock.gear]
         for k in range(n):
             partner = self._partner(k)
             if partner is None:
                 result[k] = self.free[k] * right[k] * self.inverses[k]
             else:
                 coupling = self.mass[k, partner] * self.free[k] * self.free[partner]
-                top = self.mass[partner, partner] * right[k] - coupling * right[partner]
+                top = self.moved[partner] * right[k] - coupling * right[partner]
                 result[k] = self.free[k] * top * self.inverses[k]
+        for lock in self.locks:
+            apart = (1 - lock.active) * result[lock.gear]
+            result[lock.gear] = apart + lock.active * result[lock.joint]
         return result
 
     def _partner(self, row: int) -> int | None:
@@ -74,28 +97,59 @@ def solve_accelerations(equations: Equations) -> Solve:
             total = total - direction * friction.level
         definitions.append((f"force_{places[i]}", total))
         force[i] = sp.Symbol(f"force_{places[i]}", real=True)
-    inverses = _inverses(mass, free, places, definitions)
-    solve = Solve(tuple(definitions), (ZERO,) * n, mass, force, tuple(free), tuple(inverses), chain)
+    locks = _locks(equations, free)
+    moved = moved_inertias(mass, locks)
+    inverses = _inverses(mass, moved, free, places, definitions)
+    solve = Solve(
+        tuple(definitions), (ZERO,) * n, mass, force, tuple(free), tuple(inverses), chain, moved,
+        locks,
+    )  # fmt: skip
     accelerations = solve.solve(list(force))
     names = [sp.Symbol(f"accel_{place}", real=True) for place in places]
     lines = [(str(name), a) for name, a in zip(names, accelerations, strict=True)]
     return replace(solve, definitions=(*definitions, *lines), accelerations=tuple(names))
 
 
+def _locks(equations: Equations, free: list[sp.Expr]) -> tuple[Lock, ...]:
+    """The locks of rigid contacts; what holds one of their bodies holds the other in `free` too."""
+    locks = []
+    for contact in equations.contacts:
+        if contact.rigid:
+            gear = equations.rates.index(kinematics.gear_rate(contact.axis))
+            joint = equations.rates.index(kinematics.rate(contact.axis))
+            free[joint] *= 1 - contact.active * (1 - free[gear])
+            if contact.holds:
+                free[joint] *= contact.active
+            locks.append(Lock(gear, joint, contact.active))
+    return tuple(locks)
+
+
+def moved_inertias(mass: sp.Matrix, locks: Sequence[Lock]) -> tuple[sp.Expr, ...]:
+    """The diagonal of `mass`, with the gear outputs that are locked to a joint."""
+    moved = [mass[k, k] for k in range(mass.rows)]
+    for lock in locks:
+        moved[lock.joint] += lock.active * mass[lock.gear, lock.gear]
+    return tuple(moved)
+
+
 def _inverses(
-    mass: sp.Matrix, free: list[sp.Expr], places: list[str], definitions: list[Line]
+    mass: sp.Matrix,
+    moved: Sequence[sp.Expr],
+    free: list[sp.Expr],
+    places: list[str],
+    definitions: list[Line],
 ) -> list[sp.Expr]:
     inverses = []
     for i, place in enumerate(places):
         partners = [j for j in range(mass.rows) if j != i and mass[i, j] != 0]
         if not partners:
             name = f"inverse_mass_{place}"
-            value = 1 / mass[i, i]
+            value = 1 / moved[i]
         else:
             j = partners[0]
             name = "inverse_determinant"
             coupling = mass[i, j] * free[i] * free[j]
-            value = 1 / (mass[i, i] * mass[j, j] - coupling**2)
+            value = 1 / (moved[i] * moved[j] - coupling**2)
         if name not in dict(definitions):
             definitions.append((name, value))
         inverses.append(sp.Symbol(name, real=True))
@@ -151,18 +205,56 @@ def derivative_of(
 def guard_expressions(equations: Equations, solve: Solve) -> list[sp.Expr]:
     """Per friction: holding torque, breakaway forward and backward; per contact: separation,
     half gap, torque at the upper and at the lower face.
+
+    A rigid face has the speed of approach as its torque until it is active; a body that has let go
+    of it has left it when it is FACE_DEPTH away.
     """
     expressions: list[sp.Expr] = []
     for friction in equations.frictions:
         row = equations.rates.index(friction.rate)
-        hold = equations.forcing[row]
-        for j, acceleration in enumerate(solve.accelerations):
-            if j != row:
-                hold -= solve.mass[row, j] * acceleration
+        hold = _torque_at_rest(equations, solve, row)
+        for lock in solve.locks:
+            if row in (lock.gear, lock.joint):
+                other = lock.gear + lock.joint - row
+                hold += lock.active * _torque_at_rest(equations, solve, other)
         direction = _slide(friction.axis)
         forward, backward = (friction.breakaway.subs(direction, s) for s in (1, -1))
         expressions += [hold, forward, backward]
     for contact in equations.contacts:
-        upper, lower = (contact.torque.subs(contact.side, s) for s in (1, -1))
-        expressions += [contact.separation, contact.half_gap, upper, lower]
+        upper, lower = (
+            _push(equations, solve, contact, s)
+            if contact.rigid
+            else contact.torque.subs(contact.side, s)
+            for s in (1, -1)
+        )
+        depth = FACE_DEPTH * contact.side**2 if contact.rigid else ZERO
+        expressions += [contact.separation, contact.half_gap - depth, upper, lower]
     return expressions
+
+
+def _torque_at_rest(equations: Equations, solve: Solve, row: int) -> sp.Expr:
+    """Torque on a row that does not turn, its friction apart."""
+    torque = equations.forcing[row]
+    for j, acceleration in enumerate(solve.accelerations):
+        if j != row:
+            torque -= solve.mass[row, j] * acceleration
+    return torque
+
+
+def _push(equations: Equations, solve: Solve, contact: Contact, side: int) -> sp.Expr:
+    """What must be positive times `side` for a rigid contact to begin, and while active to last.
+
+    It begins with a speed of approach. It lasts while it transmits a torque that pushes, or where
+    friction holds the joint, while the gear output has not turned back.
+    """
+    gear, joint = kinematics.gear_rate(contact.axis), kinematics.rate(contact.axis)
+    approach = gear - joint - side * DEAD_BAND
+    if contact.holds:
+        lasting: sp.Expr = gear + side * DEAD_BAND
+    else:
+        rubbing = {f.rate for f in equations.frictions}
+        row, sign = (gear, 1) if joint in rubbing else (joint, -1)
+        index = equations.rates.index(row)
+        lasting = sign * _torque_at_rest(equations, solve, index)
+        lasting -= sign * solve.mass[index, index] * solve.accelerations[index]
+    return contact.active * lasting + (1 - contact.active) * approach

@@ -44,6 +44,7 @@ def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]
                 _tuple("SAMPLED", _sampled(equations)),
                 "# Per contact: state index of the angle at the gear output and at the joint.",
                 _tuple("CONTACT_ANGLES", _contact_states(equations)),
+                *_rigid_contacts(equations),
                 "# Limits of the equations: state, meaning; `domain` gives the bounds.",
                 _tuple("DOMAIN", _domain(equations)),
                 "# Relations: parameters, rule, strict; `margins` gives what is at least zero.",
@@ -189,6 +190,21 @@ def _samplers(equations: Equations) -> list[str]:
 def _sampled(equations: Equations) -> list[str]:
     states = list(equations.state_symbols)
     return [f"({owner}, {states.index(symbol)})" for owner, symbol, _ in equations.updates]
+
+
+def _rigid_contacts(equations: Equations) -> list[str]:
+    """Nothing where every contact is sprung."""
+    if not any(contact.rigid for contact in equations.contacts):
+        return []
+    states, rows = list(equations.state_symbols), []
+    for contact in equations.contacts:
+        rates = (kinematics.gear_rate(contact.axis), kinematics.rate(contact.axis))
+        rule = "2" if contact.holds else "1" if contact.rigid else "0"
+        rows.append(f"[{', '.join([*(str(states.index(rate)) for rate in rates), rule])}]")
+    return [
+        "# Per contact: state index of both rates; 0 sprung, 1 rigid, 2 rigid and held in the gap.",
+        f"RIGID_CONTACTS = np.array([{', '.join(rows)}], dtype=np.int64)",
+    ]
 
 
 def _domain(equations: Equations) -> list[str]:

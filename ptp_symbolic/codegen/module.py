@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from ptp_symbolic.codegen import dynamics
+from ptp_symbolic.codegen.impacts import impact_expressions
 from ptp_symbolic.codegen.metadata import metadata_text
 from ptp_symbolic.codegen.printer import print_expression, print_factor
 from ptp_symbolic.codegen.sharing import Line, share
-from ptp_symbolic.codegen.templates import STATE_DERIVATIVE_HYBRID, STATE_DERIVATIVE_SMOOTH
+from ptp_symbolic.codegen.templates import state_derivative_text
 from ptp_symbolic.codegen.words import words_of
 from ptp_symbolic.derivation.equations import Equations
 from ptp_symbolic.simplify.base_parameters import base_form
@@ -60,13 +61,14 @@ def module_text(equations: Equations) -> str:
             _jacobian(equations, solve, vectors),
             _guards(equations, solve, vectors),
             _guard_jacobian(equations, solve, vectors),
+            *_impacts(equations, solve, vectors),
             _outputs(equations, vectors),
             _output_jacobian(equations, vectors),
             _energy(equations, vectors),
             _domain(equations, vectors),
             _margins(equations, vectors),
             *_samplers(equations, vectors),
-            STATE_DERIVATIVE_HYBRID if vectors.m else STATE_DERIVATIVE_SMOOTH,
+            state_derivative_text(bool(vectors.m), any(c.rigid for c in equations.contacts)),
         ]
     )
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
@@ -180,8 +182,17 @@ def _guards(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> st
 
 
 def _guard_jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+    outputs = _derivatives(equations, solve, "g", dynamics.guard_expressions(equations, solve))
+    doc = "Write the non-zero derivatives of guards by state and parameter."
+    lines = _shared(equations, (*solve.definitions, *solve.chain.lines), outputs)
+    return _kernel("guard_jacobian", f"{MODE_ARGUMENTS}, gx, gp", doc, vectors, lines)
+
+
+def _derivatives(
+    equations: Equations, solve: dynamics.Solve, word: str, expressions: Sequence[sp.Expr]
+) -> list[Line]:
+    """Derivatives of `expressions` by state and parameter, into the arrays `word`x and `word`p."""
     outputs: list[Line] = []
-    expressions = dynamics.guard_expressions(equations, solve)
     for letter, symbols in _columns(equations):
         if letter == "u":
             continue
@@ -189,10 +200,25 @@ def _guard_jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vector
             by = dynamics.acceleration_derivative(equations, solve, variable)
             for i, expression in enumerate(expressions):
                 value = dynamics.derivative_of(equations, solve, expression, variable, by)
-                outputs.append((f"g{letter}[{i}, {j}]", value))
-    doc = "Write the non-zero derivatives of guards by state and parameter."
-    lines = _shared(equations, (*solve.definitions, *solve.chain.lines), outputs)
-    return _kernel("guard_jacobian", f"{MODE_ARGUMENTS}, gx, gp", doc, vectors, lines)
+                outputs.append((f"{word}{letter}[{i}, {j}]", value))
+    return outputs
+
+
+def _impacts(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> list[str]:
+    """Two kernels where rigid bodies strike each other, none elsewhere."""
+    if not any(contact.rigid for contact in equations.contacts):
+        return []
+    expressions = impact_expressions(equations, solve)
+    definitions = (*solve.definitions, *solve.chain.lines)
+    outputs = [(f"strike[{i}]", e) for i, e in enumerate(expressions)]
+    doc = "Write what a strike changes in the state, restitution and energy, per contact."
+    lines = _shared(equations, definitions, outputs)
+    kernel = _kernel("impacts", f"{MODE_ARGUMENTS}, strike", doc, vectors, lines)
+    outputs = _derivatives(equations, solve, "strike", expressions)
+    doc = "Write the non-zero derivatives of impacts by state and parameter."
+    lines = _shared(equations, definitions, outputs)
+    arguments = f"{MODE_ARGUMENTS}, strikex, strikep"
+    return [kernel, _kernel("impact_jacobian", arguments, doc, vectors, lines)]
 
 
 def _outputs(equations: Equations, vectors: Vectors) -> str:

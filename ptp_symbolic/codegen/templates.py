@@ -42,3 +42,50 @@ def state_derivative(t, x, u, p, dx):
     m = np.empty(len(MODE_NAMES))
     initial_modes(t, x, u, p, m)
     mode_derivative(t, x, u, p, m, dx)'''
+
+
+_SPRUNG_CONTACTS = """    for k in range(contacts):
+        at = 3 * frictions + 4 * k
+        side = 1.0 if g[at] > 0.0 else -1.0
+        if side * g[at] > g[at + 1]:
+            torque = g[at + 2] if side > 0.0 else g[at + 3]
+            m[frictions + 2 * k] = side
+            m[frictions + 2 * k + 1] = 1.0 if side * torque > 0.0 else 0.0
+    for k in range(frictions):
+        m[k] = np.sign(x[FRICTION_RATES[k]])
+"""
+
+_RIGID_CONTACTS = """    for k in range(contacts):
+        gear, joint, rule = RIGID_CONTACTS[k]
+        at, where = 3 * frictions + 4 * k, frictions + 2 * k
+        side = 1.0 if g[at] > 0.0 else -1.0
+        within = 0.0 if rule == 0 else FACE_WIDTH
+        if side * g[at] > g[at + 1] - within:
+            torque = g[at + 2] if side > 0.0 else g[at + 3]
+            m[where] = side
+            m[where + 1] = 1.0 if side * torque > 0.0 else 0.0
+            if rule > 0:
+                m[where + 1] = 1.0 if abs(x[gear] - x[joint]) <= SAME_SPEED else 0.0
+    for k in range(frictions):
+        m[k] = np.sign(x[FRICTION_RATES[k]])
+    guards(t, x, u, p, m, g)
+    for k in range(contacts):
+        at, where = 3 * frictions + 4 * k, frictions + 2 * k
+        if RIGID_CONTACTS[k, 2] > 0 and m[where + 1] > 0.0:
+            push = m[where] * (g[at + 2] if m[where] > 0.0 else g[at + 3])
+            m[where + 1] = 1.0 if push >= 0.0 else 0.0
+"""
+
+_FACES = """FACE_WIDTH, SAME_SPEED = 1e-9, 1e-9  # rad, rad/s: what counts as lasting contact
+
+
+"""
+
+
+def state_derivative_text(modes: bool, rigid: bool) -> str:
+    """The functions that find the modes of a state; `rigid` where rigid bodies meet."""
+    if not modes:
+        return STATE_DERIVATIVE_SMOOTH
+    if not rigid:
+        return STATE_DERIVATIVE_HYBRID
+    return _FACES + STATE_DERIVATIVE_HYBRID.replace(_SPRUNG_CONTACTS, _RIGID_CONTACTS)

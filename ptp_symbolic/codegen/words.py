@@ -18,6 +18,7 @@ def words_of(equations: Equations) -> dict[str, str]:
         "u": [i.name for i in equations.inputs],
         "p": [p.name for p in equations.parameters],
     }
+    strikes = _numbered("strike", _strikes(equations))
     margins = _numbered("margin", [f"requirement_{k}" for k in range(len(equations.requirements))])
     bounds = {
         f"bounds[{k}, {side}]": f"{word}_{limit.state}"
@@ -26,12 +27,13 @@ def words_of(equations: Equations) -> dict[str, str]:
     }
     timing = [f"{w}_{k}" for k in range(len(equations.samplers)) for w in SAMPLER_WORDS]
     sampled = _numbered("z", [*timing, *(f"next_{state}" for _, state, _ in equations.updates)])
-    words = {**rates, **guards, **readings, **energy, **margins, **bounds, **sampled}
+    words = {**rates, **guards, **readings, **energy, **strikes, **margins, **bounds, **sampled}
     for letter, names in columns.items():
         words |= _derivatives("f", letter, rates, names)
         words |= _derivatives("g", letter, guards, names)
         words |= _derivatives("y", letter, readings, names)
         words |= _derivatives("z", letter, sampled, names)
+        words |= _derivatives("strike", letter, strikes, names)
     return words
 
 
@@ -62,4 +64,12 @@ def _guards(equations: Equations) -> list[str]:
         words += [f"{word}_{friction.axis}" for word in ("holding", "forward", "backward")]
     for contact in equations.contacts:
         words += [f"{word}_{contact.axis}" for word in ("separation", "half_gap", "upper", "lower")]
+    return words
+
+
+def _strikes(equations: Equations) -> list[str]:
+    words = []
+    for contact in equations.contacts:
+        words += [f"strike_{contact.axis}_on_{state}" for state in equations.state_symbols]
+        words += [f"restitution_{contact.axis}", f"strike_energy_{contact.axis}"]
     return words

@@ -14,6 +14,7 @@ from ptp_symbolic.derivation.ledger import energy_ledger
 from ptp_symbolic.derivation.parts import BASE_ACCELERATION, GRAVITY_QUANTITIES, Parts, collect
 from ptp_symbolic.derivation.placement import place_effects, resolved_parameters
 from ptp_symbolic.derivation.prescribed import constraint_power, reduced, released
+from ptp_symbolic.derivation.rigid_play import rigid_contact
 from ptp_symbolic.derivation.transmission import Transmission, transmission
 from ptp_symbolic.effects.effect import Input, Limit, Sampler, State
 from ptp_symbolic.effects.effect import quantity as quantity_symbol
@@ -39,6 +40,8 @@ def assemble(platform: Platform) -> Equations:
     rigid_equations = lagrange(rigid)
     full = _mechanics(platform, parts, transmissions, rigid_equations)
     mechanics, rigid_equations = reduced(full, rigid_equations, parts.prescribed)
+    contacts = [t.contact for t in transmissions if t.contact is not None]
+    contacts += [rigid_contact(play, parts, mechanics) for play in parts.plays]
     frictions, loads = resolved_frictions(parts, mechanics)
     inputs = _inputs(platform, parts)
     ledger = energy_ledger(
@@ -60,7 +63,7 @@ def assemble(platform: Platform) -> Equations:
         delays=tuple(_delay_of(axis, parts) for _, axis in inputs),
         parameters=(),
         frictions=frictions,
-        contacts=tuple(t.contact for t in transmissions if t.contact is not None),
+        contacts=tuple(contacts),
         outputs=_outputs(platform, parts),
         limits=tuple(
             Limit(own.state, parts.resolve(own.lower), parts.resolve(own.upper), own.meaning)
@@ -85,7 +88,7 @@ def _mechanics(
     rigid: RigidEquations,
 ) -> Mechanics:
     """Add drives, shafts, torques and potentials of the effects to the rigid equations."""
-    joints, gears = platform.axes, [shaft.axis for shaft in parts.shafts]
+    joints, gears = platform.axes, parts.split_axes
     coordinates = (*map(kinematics.angle, joints), *map(kinematics.gear_angle, gears))
     rates = (*map(kinematics.rate, joints), *map(kinematics.gear_rate, gears))
     mass = sp.diag(rigid.mass_matrix, sp.zeros(len(gears)))
@@ -192,6 +195,7 @@ def _with_parameters(equations: Equations, declared: dict[str, Parameter]) -> Eq
         used |= friction.level.free_symbols | friction.breakaway.free_symbols
     for contact in equations.contacts:
         used |= contact.half_gap.free_symbols | contact.torque.free_symbols
+        used |= set() if contact.restitution is None else contact.restitution.free_symbols
     for state in equations.extra_states:
         used |= state.derivative.free_symbols
     for sampler in equations.samplers:

@@ -23,6 +23,10 @@ class Contact:
 
     `separation` is the angle across the gap in rad. The mode symbols ``side_<axis>`` (-1, 0, 1)
     and ``active_<axis>`` (0, 1) tell which face is touched and whether it transmits torque.
+
+    With a coefficient of `restitution` the two bodies are rigid: they strike, and while active turn
+    as one (``torque`` is then zero: what the contact transmits follows from the motion). With
+    `holds` the joint rests in the gap.
     """
 
     axis: str
@@ -31,6 +35,13 @@ class Contact:
     torque: sp.Expr
     side: sp.Symbol
     active: sp.Symbol
+    restitution: sp.Expr | None = None
+    holds: bool = False
+
+    @property
+    def rigid(self) -> bool:
+        """Whether bodies strike each other, without a spring between."""
+        return self.restitution is not None
 
 
 @dataclass(frozen=True)

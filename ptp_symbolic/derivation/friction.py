@@ -54,7 +54,7 @@ def resolved_frictions(
     terms: list[Term] = []
     for friction in frictions:
         found = friction
-        if _is_loaded(friction):
+        if is_loaded(friction):
             terms += _loads(friction, frictions, parts, mechanics)
             found = _loaded(friction, frictions)
         terms += found.terms.items()
@@ -71,7 +71,8 @@ def _carried(friction: Friction) -> dict[sp.Symbol, sp.Symbol]:
     return {quantity(name): sp.Symbol(name, real=True) for name in names}
 
 
-def _is_loaded(friction: Friction) -> bool:
+def is_loaded(friction: Friction) -> bool:
+    """Whether `friction` depends on what it carries."""
     written = (friction.level, friction.breakaway, *friction.terms.values())
     return any(_carried(friction).keys() & expression.free_symbols for expression in written)
 
@@ -122,7 +123,7 @@ def _loads(
 
 
 def _refuse_circle(friction: Friction) -> None:
-    if _is_loaded(friction):
+    if is_loaded(friction):
         raise InputError(
             "Two coupled joints have friction that depends on the load; declare linear_actuator on"
             " one of them, or with shaft_compliance."

@@ -6,7 +6,16 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic import kinematics
-from ptp_symbolic.effects.effect import Contribution, Drive, Effect, Friction, Input, Place, Shaft
+from ptp_symbolic.effects.effect import (
+    Contribution,
+    Drive,
+    Effect,
+    Friction,
+    Input,
+    Place,
+    Play,
+    Shaft,
+)
 from ptp_symbolic.effects.effect import quantity as quantity_symbol
 
 GRAVITY_QUANTITIES = ("gravity_tilt", "gravity_azimuth")
@@ -52,6 +61,17 @@ class Parts:
         return [s for c in self.contributions for s in c.shafts]
 
     @property
+    def plays(self) -> list[Play]:
+        """Gaps between rigid bodies of all effects."""
+        return [p for c in self.contributions for p in c.plays]
+
+    @property
+    def split_axes(self) -> list[str]:
+        """Axes whose gear output has a coordinate of its own."""
+        found = [shaft.axis for shaft in self.shafts]
+        return found + [p.axis for p in self.plays if p.axis not in found]
+
+    @property
     def drives(self) -> list[Drive]:
         """Drives of all effects."""
         return [d for c in self.contributions for d in c.drives]
@@ -68,8 +88,8 @@ class Parts:
         return moved | {drive.axis for drive in self.drives}
 
     def drive_rate(self, drive: Drive) -> sp.Symbol:
-        """The rate that `drive` works on: at the gear output behind a shaft, else at the joint."""
-        if any(shaft.axis == drive.axis for shaft in self.shafts):
+        """The rate that `drive` works on: of the gear output if it has its own, else the joint."""
+        if drive.axis in self.split_axes:
             return kinematics.gear_rate(drive.axis)
         return kinematics.rate(drive.axis)
 
@@ -122,7 +142,8 @@ def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Part
 def _transmitted(axis: str, contributions: Iterable[Contribution]) -> sp.Expr:
     """Torque that reaches the joint: of its shaft, else of its drive, else the torque input."""
     contributions = list(contributions)
-    if any(shaft.axis == axis for c in contributions for shaft in c.shafts):
+    shafts = {shaft.axis for c in contributions for shaft in c.shafts}
+    if axis in shafts | {play.axis for c in contributions for play in c.plays}:
         return quantity_symbol(f"shaft_torque_{axis}")
     for contribution in contributions:
         for drive in contribution.drives:

@@ -21,7 +21,7 @@ def released(parts: Parts) -> Parts:
     """
     rates = parts.prescribed
     axes = [str(rate).removeprefix("omega_") for rate in rates]
-    busy = {drive.axis for drive in parts.drives} | {shaft.axis for shaft in parts.shafts}
+    busy = {drive.axis for drive in parts.drives} | set(parts.split_axes)
     for axis in axes:
         if axis in busy:
             raise InputError(

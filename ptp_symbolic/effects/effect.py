@@ -106,6 +106,22 @@ class Shaft:
 
 
 @dataclass(frozen=True)
+class Play:
+    """A gap of twice `half_gap` in rad between gear output and joint of `axis`, both rigid.
+
+    Faces strike with the coefficient of `restitution`; joined, the two turn as one body until they
+    would pull at each other. With `holds`, friction keeps the joint where it is while it crosses
+    the gap, and at the face until the gear output turns back; assumed is that nothing but the gear
+    output drives the joint, or contact may end and begin again without end.
+    """
+
+    axis: str
+    half_gap: sp.Expr
+    restitution: sp.Expr
+    holds: bool = False
+
+
+@dataclass(frozen=True)
 class Drive:
     """A motor on `axis`: inertia in kg m^2 and torque in N m, both seen at the gear output.
 
@@ -165,6 +181,7 @@ class Contribution:
     torques: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     frictions: tuple[Friction, ...] = ()
     shafts: tuple[Shaft, ...] = ()
+    plays: tuple[Play, ...] = ()
     drives: tuple[Drive, ...] = ()
     states: tuple[State, ...] = ()
     samplers: tuple[Sampler, ...] = ()
@@ -261,12 +278,12 @@ def _without_conditions(place: Place) -> tuple[Requirement, ...]:
 class Effect:
     """A physical effect, complete in one file.
 
-    `on_axis` tells whether it sits on an axis or on the whole platform; `needs` names the
-    quantities without which it has nothing to act on, `requires` what its parameters must fulfil
-    among each other. `dissipative` is a claim that tests verify:
-    its torques can only take energy out. `structural` effects have no parameter value at which
-    they vanish (a motor, a shaft, a body): they are declared, never searched for. Other `kinds` of
-    an effect share its id; a platform that names none gets this one, of the `kind` given here.
+    `on_axis` tells whether it sits on an axis or on the whole platform; `needs` names the quantities
+    without which it has nothing to act on, `requires` what its parameters must fulfil among each
+    other. `dissipative` is a claim that tests verify: its torques only take energy out. `structural`
+    effects have no parameter value at which they vanish (a motor, a shaft, a body): they are
+    declared, never searched for. Other `kinds` of an effect share its id; a platform that names
+    none gets this one, of the `kind` given here.
     """
 
     id: str

@@ -12,7 +12,7 @@ import sympy as sp
 from ptp_symbolic.codegen.latex import latex_of, symbol_latex
 from ptp_symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.derivation.assembly import assemble
-from ptp_symbolic.derivation.equations import Equations
+from ptp_symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.derivation.kane import kane
 from ptp_symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.derivation.newton_euler import newton_euler
@@ -165,8 +165,7 @@ def _results(equations: Equations) -> str:
         parts.append(formula("", friction.level, r"F_{\mathrm{sliding}}"))
         parts.append(formula("", friction.breakaway, r"F_{\mathrm{breakaway}}"))
     for contact in equations.contacts:
-        parts.append(rf"The shaft of the {contact.axis} axis has a dead zone; it cannot pull:")
-        parts.append(formula("", contact.torque, r"T_{\mathrm{shaft}}"))
+        parts += _contact(contact)
         parts.append(formula("", contact.half_gap, r"\tfrac12\,\mathrm{gap}"))
     held = {str(symbol) for _, symbol, _ in equations.updates}
     for state in (s for s in equations.extra_states if s.name not in held):
@@ -183,6 +182,20 @@ def _results(equations: Equations) -> str:
         for symbol, value in sampler.updates.items():
             parts.append(formula("", value, rf"{symbol_latex(str(symbol))}\big|_{{t_k}}"))
     return "\n".join(parts)
+
+
+def _contact(contact: Contact) -> list[str]:
+    if contact.restitution is None:
+        return [
+            rf"The shaft of the {contact.axis} axis has a dead zone; it cannot pull:",
+            formula("", contact.torque, r"T_{\mathrm{shaft}}"),
+        ]
+    held = ", where friction holds the joint" if contact.holds else ""
+    return [
+        rf"Gear output and joint of the {contact.axis} axis are rigid; they cross a gap{held},"
+        " strike with this restitution, and turn as one body while in contact:",
+        formula("", contact.restitution, "e"),
+    ]
 
 
 def _simplification(equations: Equations) -> str:

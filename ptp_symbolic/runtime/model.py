@@ -135,6 +135,16 @@ class Model:
         return np.array(self.module.ZERO_AT_REST, dtype=np.int64)
 
     @cached_property
+    def contacts(self) -> NDArray[np.int64]:
+        """Per contact [c, 3]: state index of the rates at the gear output and at the joint; 0 where
+        it is sprung, 1 where rigid bodies strike, 2 where the joint is held in the gap as well.
+
+        A module whose contacts are all sprung does not list them.
+        """
+        sprung = np.zeros((len(self.module.CONTACT_ANGLES), 3), dtype=np.int64)
+        return np.asarray(vars(self.module).get("RIGID_CONTACTS", sprung))
+
+    @cached_property
     def input_delays(self) -> NDArray[np.int64]:
         """Per input the index of the parameter by which it is late, or -1."""
         return np.array(self.module.INPUT_DELAYS, dtype=np.int64)

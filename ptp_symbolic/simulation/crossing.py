@@ -1,10 +1,11 @@
 """Cross an event: settle the modes, and let the tangents jump (Aizerman and Gantmacher, 1958)."""
 
 from ptp_symbolic.simulation.emitted import call
+from ptp_symbolic.simulation.impacts import clear_resting
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.kernels import clear, copy, inlined, kernel
 from ptp_symbolic.simulation.modes import settle, violation, violation_gradient
-from ptp_symbolic.simulation.outputs import note_switches
+from ptp_symbolic.simulation.outputs import note_strikes, note_switches
 
 GRAZING = 1e-9  # a guard that is only touched has no event time to differentiate
 AHEAD = 1e-7  # s
@@ -19,15 +20,13 @@ def cross(equations, inputs, t, x, watch, tangents, record):
     m, frictions, ns = watch.m, len(equations.friction_rates), tangents.table.shape[1]
     evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)
     copy(m, watch.m_before)
-    by_time = 0.0
     if ns > 0:
         by_time = differentiate_guard(equations, inputs, t, x, watch)
-    if not settle(
-        equations.guards, t, x, inputs.u, equations.p, m, watch.g, equations.friction_rates,
-        equations.zero_at_rest,
-    ):  # fmt: skip
+        follow_to_event(by_time, watch, tangents)
+    if not settle(equations, t, x, inputs.u, watch, tangents):
         return False
     note_switches(t, m, watch.m_before, frictions, record)
+    note_strikes(watch, record)
     if ns == 0:
         return True
     call(equations.derivative, t, x, inputs.u, equations.p, m, watch.after)
@@ -35,11 +34,8 @@ def cross(equations, inputs, t, x, watch, tangents, record):
         friction = equations.zero_at_rest[a]
         if friction >= 0 and m[friction] == 0.0 and watch.m_before[friction] != 0.0:
             clear(tangents.table[a])
-            watch.before[a] = 0.0
-    jump_tangents(by_time, watch, tangents)
-    for f in range(frictions):
-        if m[f] == 0.0:
-            clear(tangents.table[equations.friction_rates[f]])
+    follow_from_event(watch, tangents)
+    clear_resting(equations, m, tangents.table)
     return True
 
 
@@ -65,10 +61,15 @@ def differentiate_guard(equations, inputs, t, x, watch):
 
 
 @inlined
-def jump_tangents(by_time, watch, tangents):
-    """Add (f- - f+) dt/dp to the tangents, dt/dp from the guard that ended the mode."""
-    s, columns = tangents.table, tangents.columns
+def follow_to_event(by_time, watch, tangents):
+    """Add f- dt/dp to the tangents, dt/dp from the guard that ended the mode; keeps dt/dp.
+
+    Strikes act between this and `follow_from_event`, at the state where the event is.
+    """
+    s, columns, shifts = tangents.table, tangents.columns, tangents.along
     n, ns = s.shape
+    for c in range(ns):
+        shifts[c] = 0.0
     slope, size = by_time, abs(by_time)
     for a in range(n):
         slope += watch.by_x[a] * watch.before[a]
@@ -80,8 +81,18 @@ def jump_tangents(by_time, watch, tangents):
         for a in range(n):
             shift += watch.by_x[a] * s[a, c]
         shift /= -slope
+        shifts[c] = shift
         for a in range(n):
-            s[a, c] += (watch.before[a] - watch.after[a]) * shift
+            s[a, c] += watch.before[a] * shift
+
+
+@inlined
+def follow_from_event(watch, tangents):
+    """Take f+ dt/dp off the tangents."""
+    s = tangents.table
+    for c in range(s.shape[1]):
+        for a in range(s.shape[0]):
+            s[a, c] -= watch.after[a] * tangents.along[c]
 
 
 @kernel

@@ -46,6 +46,7 @@ from ptp_symbolic.simulation.kernels import (
     SOURCES,
     STEPS,
     TABLE,
+    TABLE_OF_CONTACTS,
     TIME,
     UNDECIDED,
     VECTOR,
@@ -149,6 +150,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             _V,  # parameters
             _I,  # state index of the rate of every friction
             _I,  # per state the friction that sets it to zero when it comes to rest, or -1
+            TABLE_OF_CONTACTS,
             TABLE,
             _I,  # cursor [nu]
             types.boolean,  # inputs are held between times
@@ -164,15 +166,15 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         **KERNEL,
     )
     def run_fixed(
-        functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, m, step, work,
-        record, sampling,
+        functions, p, friction_rates, zero_at_rest, contacts, table, cursor, held, u, x, m, step,
+        work, record, sampling,
     ):  # fmt: skip
         """Integrate from the first to the last output time; inputs jump at no other time."""
         record = Record(*record)
         record.counts[SOURCES] = sources
         equations = Equations(
             functions[0], functions[1], functions[2], functions[3], functions[4], p, friction_rates,
-            zero_at_rest,
+            zero_at_rest, functions[5], functions[6], contacts,
         )  # fmt: skip
         inputs, work = Inputs(table, cursor, held, u[0], u[1]), StepWork(*work)
         sampling = Sampling(*sampling)
@@ -237,8 +239,13 @@ def pass_in_steps(
     """Simulate `model` from x [n] in steps of at most `step` s; outputs at `times` [k] in s.
 
     Every output time and every jump of an input is the end of a step. Raises InputError for a step
-    that is no positive time or makes too many steps.
+    that is no positive time or makes too many steps, and for rigid bodies that strike each other.
     """
+    if model.contacts[:, 2].any():
+        raise InputError(
+            "Method 'fixed_step' locates no impacts of rigid faces; choose rosenbrock or"
+            " runge_kutta, or backlash of the kind dead_zone."
+        )
     duration = times[-1] - times[0]
     if not 0.0 < step < np.inf or duration / step > MOST_STEPS:
         raise InputError(
@@ -259,8 +266,9 @@ def pass_in_steps(
         z((4, 3)), z(2), z(5, np.int64),
     )  # fmt: skip
     status = runner()(
-        addresses(model.module), p, model.friction_rates, model.zero_at_rest, inputs.arrays,
-        inputs.new_cursor(), inputs.held, z((2, nu)), x, m, float(step), tuple(work), tuple(record),
+        addresses(model.module), p, model.friction_rates, model.zero_at_rest, model.contacts,
+        inputs.arrays, inputs.new_cursor(), inputs.held, z((2, nu)), x, m, float(step),
+        tuple(work), tuple(record),
         tuple(new_sampling(model, p, x, times, 0)),
     )  # fmt: skip
     kept, counts = np.searchsorted(grid, times), record.counts

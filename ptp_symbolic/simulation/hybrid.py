@@ -28,6 +28,7 @@ from ptp_symbolic.simulation.kernels import (
     SOURCES,
     STEPS,
     TABLE,
+    TABLE_OF_CONTACTS,
     TIME,
     VECTOR,
     Equations,
@@ -51,6 +52,7 @@ from ptp_symbolic.simulation.location import (
 from ptp_symbolic.simulation.modes import settle
 from ptp_symbolic.simulation.outputs import (
     fill_powers,
+    note_strikes,
     note_switches,
     work_done,
     write_here,
@@ -79,24 +81,22 @@ INSTANT_STEP = 1e-10  # s
 
 _V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
 _STEP = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V))
-_WATCH = types.Tuple((_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V))
+_WATCH = types.Tuple((_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M))
 _TANGENTS = types.Tuple((_V, _M, _I, _I, _M, _V, _V, _V, _C, _M, _M, _M, _M))
 _RECORD = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
 
 
 @inlined
-def enter(equations, inputs, t, x, watch, record):
+def enter(equations, inputs, t, x, watch, tangents, record):
     """Settle modes that the inputs from t on have ended; False when that does not end."""
     elements = len(watch.at_end)
     if elements == 0 or fill_violations(equations, inputs, t, x, watch, watch.at_start) <= 0.0:
         return True
     copy(watch.m, watch.m_before)
-    if not settle(
-        equations.guards, t, x, inputs.u, equations.p, watch.m, watch.g, equations.friction_rates,
-        equations.zero_at_rest,
-    ):  # fmt: skip
+    if not settle(equations, t, x, inputs.u, watch, tangents):
         return False
     note_switches(t, watch.m, watch.m_before, len(equations.friction_rates), record)
+    note_strikes(watch, record)
     fill_violations(equations, inputs, t, x, watch, watch.at_start)
     return True
 
@@ -167,7 +167,7 @@ def advance_by_samples(
             return DONE
         write_here(equations, inputs, target, x, watch.m, tangents, record)
         evaluate_inputs(target, 1, *inputs.table, inputs.cursor, inputs.u)
-        if not enter(equations, inputs, target, x, watch, record):
+        if not enter(equations, inputs, target, x, watch, tangents, record):
             return CHATTERING
 
 
@@ -219,6 +219,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             _V,  # parameters
             _I,  # state index of the rate of every friction
             _I,  # per state the friction that zeroes it when it comes to rest, or -1
+            TABLE_OF_CONTACTS,
             TABLE,
             _I,  # cursor [nu]
             types.boolean,  # inputs are held between stops
@@ -237,8 +238,8 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         **KERNEL,
     )
     def run(
-        method, functions, p, friction_rates, zero_at_rest, table, cursor, held, u, x, stops,
-        limits, atol, step, watch, tangents, record, sampling,
+        method, functions, p, friction_rates, zero_at_rest, contacts, table, cursor, held, u, x,
+        stops, limits, atol, step, watch, tangents, record, sampling,
     ):  # fmt: skip
         """Integrate from the first to the last stop; returns a status, the rest is in `record`."""
         record = Record(*record)
@@ -252,6 +253,9 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             p,
             friction_rates,
             zero_at_rest,
+            functions[5],
+            functions[6],
+            contacts,
         )
         inputs, step, watch = Inputs(table, cursor, held, u[0], u[1]), Step(*step), Watch(*watch)
         tangents, sampling = Tangents(*tangents), Sampling(*sampling)
@@ -265,7 +269,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             evaluate_inputs(stops[index - 1], 1, *inputs.table, inputs.cursor, inputs.u)
             if tangents.table.shape[1] > 0 and index > 1:
                 jump_by_delay(equations, inputs, stops[index - 1], x, u[2], watch, tangents)
-            if not enter(equations, inputs, stops[index - 1], x, watch, record):
+            if not enter(equations, inputs, stops[index - 1], x, watch, tangents, record):
                 return CHATTERING
             status = advance_by_samples(
                 method, equations, inputs, stops[index], x, limits, atol, step, watch, tangents,

@@ -22,6 +22,7 @@ OUTPUT, EVENTS, STEPS, INSTANT, SOURCES = 0, 1, 2, 3, 4
 
 VECTOR, MATRIX = types.float64[::1], types.float64[:, ::1]
 CUBE, INTEGERS = types.float64[:, :, ::1], types.int64[::1]
+TABLE_OF_CONTACTS = types.int64[:, ::1]
 TABLE = types.Tuple((VECTOR, MATRIX, INTEGERS, MATRIX, INTEGERS, MATRIX, INTEGERS))
 
 
@@ -29,7 +30,9 @@ class Equations(NamedTuple):
     """The emitted functions of a model, its parameters p [np], and where its frictions act.
 
     friction_rates: state index of the rate of every friction; zero_at_rest [n]: per state the
-    friction that sets it to zero when it comes to rest, or -1.
+    friction that sets it to zero when it comes to rest, or -1; contacts [c, 3]: state index of the
+    rates at the gear output and at the joint, and 0 for a sprung contact, 1 for rigid bodies, 2 for
+    rigid bodies whose joint is held in the gap.
     """
 
     derivative: Any
@@ -40,6 +43,9 @@ class Equations(NamedTuple):
     p: Any
     friction_rates: Any
     zero_at_rest: Any
+    impacts: Any
+    impact_jacobian: Any
+    contacts: Any
 
 
 class Inputs(NamedTuple):
@@ -85,7 +91,9 @@ class Watch(NamedTuple):
     """Guards g, modes m and m_before, and how far every element is past the end of its mode.
 
     at_start, at_middle, at_end [elements] belong to the step; gx, gp, by_x [n], by_p [np]: the
-    derivatives of guards and of a violation.
+    derivatives of guards and of a violation; strike [c (n + 2)], strike_x, strike_p: as `impacts`
+    writes them, and their derivatives; lost [1]: energy that strikes have taken; energies
+    [2, 3]: two ledgers to compare.
     """
 
     g: Any
@@ -100,6 +108,11 @@ class Watch(NamedTuple):
     by_p: Any
     before: Any
     after: Any
+    strike: Any
+    strike_x: Any
+    strike_p: Any
+    lost: Any
+    energies: Any
 
 
 class Tangents(NamedTuple):

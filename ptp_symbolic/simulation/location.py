@@ -6,6 +6,7 @@ from ptp_symbolic.simulation.kernels import inlined, kernel
 from ptp_symbolic.simulation.modes import largest_violation, violation
 from ptp_symbolic.simulation.steps import attempt, curve, fill_dense
 
+MISSES, NEAR_START = 4, 0.01
 TIME_RESOLUTION = 1e-12  # s
 LANDING = 2e-12  # s; how far past an event a step may end
 NEARLY = 0.25
@@ -94,12 +95,13 @@ def locate_event(method, equations, inputs, t, h, fraction, x, step, watch):
     """Length of the step that lands just past the first event; the attempt is left at that step.
 
     The root on the curve is only as good as the curve: the step itself is repeated until it ends
-    past the event and no more than LANDING after it. A bracket that fails at the full step is an
-    event that only the curve has; then the step ends where it is.
+    past the event and no more than LANDING after it. Where a few such steps end before any event,
+    the last of them is taken: the next step begins nearer and its curve is better. Only near the
+    start of a step the search strides ahead, or no progress would be made.
     """
     length = root_on_curve(equations, inputs, t, h, fraction, step, watch) * h
     low, high = 0.0, h
-    before, last, reach = 0.0, -1.0, LANDING
+    before, last, reach, misses = 0.0, -1.0, LANDING, 0
     for _ in range(60):
         attempt(method, equations, inputs, t, length, x, watch.m, step)
         value = violation_at(equations, inputs, t + length, step.end, watch)
@@ -110,18 +112,15 @@ def locate_event(method, equations, inputs, t, h, fraction, x, step, watch):
             if high - low <= LANDING or (rate > 0.0 and value <= LANDING * rate):
                 break
         else:
-            low = length
-            if h - low <= TIME_RESOLUTION:
+            low, misses = length, misses + 1
+            if h - low <= TIME_RESOLUTION or (misses >= MISSES and low > NEAR_START * h):
                 break
-            if length + reach >= h:
-                length = h
-                continue
-        ahead = 0.5 * LANDING - value / rate if rate > 0.0 else 0.0
-        if value <= 0.0:
+        ahead = LANDING if value <= 0.0 else -LANDING
+        if rate > 0.0:
+            ahead = 0.5 * LANDING - value / rate
+        if value <= 0.0 and misses >= MISSES:
+            reach = min(8.0 * reach, NEAR_START * h)
             ahead = max(ahead, reach)
-            reach *= 8.0
-        elif ahead >= 0.0:
-            ahead = -LANDING
         length += ahead
         if not low < length < high:
             length = 0.5 * (low + high)

@@ -8,6 +8,7 @@ the upper and lower face.
 """
 
 from ptp_symbolic.simulation.emitted import call
+from ptp_symbolic.simulation.impacts import rest_together, strike_faces
 from ptp_symbolic.simulation.kernels import inlined, kernel
 
 REVERSAL_DEAD_BAND = 1e-13
@@ -113,23 +114,28 @@ def switch_contacts(m, g, friction_rates):
 
 
 @kernel
-def settle(guards, t, x, u, p, m, g, friction_rates, zero_at_rest):
+def settle(equations, t, x, u, watch, tangents):
     """Resolve all violated modes at one instant; returns False when that does not end.
 
-    Order matters: rates that reversed are zeroed first, then contacts switch, then the torque
-    on every resting friction decides whether it sticks or slides. Ties end in sticking.
+    Order matters: rates that reversed are zeroed first, then contacts switch and rigid faces
+    strike, then the torque on every resting friction decides whether it sticks or slides. Ties end
+    in sticking.
     """
+    guards, p, m, g = equations.guards, equations.p, watch.m, watch.g
+    friction_rates, zero_at_rest = equations.friction_rates, equations.zero_at_rest
     frictions = len(friction_rates)
     for _ in range(20):
         for k in range(frictions):
             if m[k] != 0.0 and violation(k, x, m, g, friction_rates) > 0.0:
                 x[friction_rates[k]] = 0.0
                 m[k] = 0.0
+                rest_together(friction_rates[k], equations, m, x)
                 for a in range(len(x)):
                     if zero_at_rest[a] == k:
                         x[a] = 0.0
         call(guards, t, x, u, p, m, g)
         switch_contacts(m, g, friction_rates)
+        strike_faces(equations, t, x, u, watch, tangents)
         call(guards, t, x, u, p, m, g)
         for k in range(frictions):
             if m[k] == 0.0:

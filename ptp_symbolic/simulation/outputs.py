@@ -103,6 +103,8 @@ def note_switches(t, m, m_before, frictions, record):
         if element >= frictions:
             changed = changed or m[where + 1] != m_before[where + 1]
             mode = m[where] * (2.0 - m[where + 1])
+            bounced = m_before[where] == 0.0 and m[where + 1] == 0.0
+            mode = 3.0 * m[where] if bounced else mode
         if changed:
             count = record.counts[EVENTS]
             if count < len(events):
@@ -110,3 +112,10 @@ def note_switches(t, m, m_before, frictions, record):
                 events[count, 1] = element
                 events[count, 2] = mode
             record.counts[EVENTS] = count + 1
+
+
+@inlined
+def note_strikes(watch, record):
+    """Add what strikes have taken to the energy lost."""
+    record.totals[2] += watch.lost[0]
+    watch.lost[0] = 0.0

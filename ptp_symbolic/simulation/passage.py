@@ -5,9 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation import hybrid
 from ptp_symbolic.simulation.emitted import addresses
+from ptp_symbolic.simulation.impacts import HELD
 from ptp_symbolic.simulation.inputs import InputTable
 from ptp_symbolic.simulation.kernels import EVENTS, STEPS, TIME, Record, Step, Tangents, Watch
 from ptp_symbolic.simulation.rodas5p import STAGES
@@ -17,6 +19,7 @@ from ptp_symbolic.simulation.steps import ROSENBROCK, RUNGE_KUTTA
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+FACE_WIDTH = 1e-9  # rad
 METHODS = {"runge_kutta": RUNGE_KUTTA, "rosenbrock": ROSENBROCK}
 
 
@@ -103,6 +106,7 @@ def pass_through(
     watch = _watch(model, n, len(p))
     hybrid.evaluate_inputs(stops[0], 1, *inputs.arrays, cursor, u[0])
     module.initial_modes(stops[0], x, u[0], p, watch.m)
+    refuse_start(model, x, u[0], p, watch)
     record = Record(
         times, np.zeros((len(times), n)), np.zeros((len(times), *s.shape)),
         np.zeros((len(times) if ledger else 0, 3)), np.zeros((event_room, 3)), np.zeros(3),
@@ -110,7 +114,7 @@ def pass_through(
     )  # fmt: skip
     status = hybrid.runner()(
         METHODS[method], addresses(module), p, model.friction_rates, model.zero_at_rest,
-        inputs.arrays, cursor, held or not any(module.INPUT_ACTS), u, x, stops,
+        model.contacts, inputs.arrays, cursor, held or not any(module.INPUT_ACTS), u, x, stops,
         np.array([accuracy.relative, accuracy.largest_step]), accuracy.absolute,
         tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)), tuple(watch),
         tuple(tangents), tuple(record), tuple(new_sampling(model, p, x, stops, s.shape[1])),
@@ -134,10 +138,32 @@ def _watch(model: Model, n: int, parameters: int) -> Watch:
     frictions, modes = len(model.friction_rates), len(model.mode_names)
     elements = frictions + (modes - frictions) // 2
     guards, z = 3 * frictions + 4 * (elements - frictions), np.zeros
+    strikes = (elements - frictions) * (n + 2)
     return Watch(
         z(guards), z(modes), z(modes), z(elements), z(elements), z(elements), z((guards, n)),
         z((guards, parameters)), z(n), z(parameters), z(n), z(n),
+        z(strikes), z((strikes, n)), z((strikes, parameters)), z(1), z((2, 3)),
     )  # fmt: skip
+
+
+def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watch: Watch) -> None:
+    """Raise InputError where a start x [n] has rigid bodies in each other, or a held one moving."""
+    frictions = len(model.friction_rates)
+    if not model.contacts[:, 2].any():
+        return
+    model.module.guards(0.0, x, u, p, watch.m, watch.g)
+    for contact, (_, joint, rule) in enumerate(model.contacts):
+        separation, half_gap = watch.g[3 * frictions + 4 * contact :][:2]
+        if rule and abs(separation) > half_gap + FACE_WIDTH:
+            raise InputError(
+                f"The gear output starts {separation:.6g} rad ahead of the joint, beyond a rigid"
+                f" face at {half_gap:.6g} rad; start it within the gap."
+            )
+        if rule == HELD and not watch.m[frictions + 2 * contact + 1] and x[joint] != 0.0:
+            raise InputError(
+                f"State '{model.state_names[joint]}' starts at {x[joint]:.6g} rad/s in the gap,"
+                " where friction holds the joint; start it at rest."
+            )
 
 
 def _tangents(

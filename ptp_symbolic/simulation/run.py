@@ -28,8 +28,10 @@ FIXED_STEP = "fixed_step"
 EVENT_CAPACITY = 100_000
 SLIDING = {-1.0: "slides backward", 0.0: "sticks", 1.0: "slides forward"}
 TOUCHING = {
-    -2.0: "lets go of the lower face", -1.0: "touches the lower face", 0.0: "is in the gap",
+    -3.0: "bounces off the lower face", -2.0: "lets go of the lower face",
+    -1.0: "touches the lower face", 0.0: "is in the gap",
     1.0: "touches the upper face", 2.0: "lets go of the upper face",
+    3.0: "bounces off the upper face",
 }  # fmt: skip
 
 
