@@ -25,7 +25,7 @@ def _unchanged(value: sp.Expr) -> sp.Expr:
 class Change:
     """What an effect does to a quantity: multiply by `factor`, add `addition`, send it `through`.
 
-    All factors come first, then all additions, then all functions, each in catalogue order.
+    Factors come first, then additions, then functions, each in catalogue order.
     """
 
     factor: sp.Expr = sp.Integer(1)
@@ -278,12 +278,10 @@ def _without_conditions(place: Place) -> tuple[Requirement, ...]:
 class Effect:
     """A physical effect, complete in one file.
 
-    `on_axis` tells whether it sits on an axis or on the whole platform; `needs` names the quantities
-    without which it has nothing to act on, `requires` what its parameters must fulfil among each
-    other. `dissipative` is a claim that tests verify: its torques only take energy out. `structural`
-    effects have no parameter value at which they vanish (a motor, a shaft, a body): they are
-    declared, never searched for. Other `kinds` of an effect share its id; a platform that names
-    none gets this one, of the `kind` given here.
+    `on_axis`: it sits on an axis, not on the whole platform. `needs`: quantities without which it
+    has nothing to act on; `requires`: what its parameters must fulfil. `dissipative`: its torques
+    only take energy out, which tests verify. `structural`: no parameter value makes it vanish (a
+    motor, a body): declared, never searched for. Other `kinds` share its id; this is the usual one.
     """
 
     id: str

@@ -166,7 +166,7 @@ def advance_by_samples(
         if target == stop:
             return DONE
         write_here(equations, inputs, target, x, watch.m, tangents, record)
-        evaluate_inputs(target, 1, *inputs.table, inputs.cursor, inputs.u)
+        copy(inputs.ahead, inputs.u)
         if not enter(equations, inputs, target, x, watch, tangents, record):
             return CHATTERING
 

@@ -85,7 +85,9 @@ def simulate(
 
     Inputs that are not given are zero. rtol and atol bound the error of a step, atol in rad for
     angles (see `tolerance_weights`); `method` is "rosenbrock" for stiff machines, "runge_kutta"
-    for smooth ones, "fixed_step" for steps of `step` s, None to let the model choose.
+    for smooth ones and where a controller samples faster than a winding settles, "fixed_step" for
+    steps of `step` s, None to let the model choose. Where a controller samples, the state at that
+    instant is the one after it.
 
     Raises InputError for unknown names, times that do not increase and a step that does not fit,
     SimulationError when the state diverges or modes switch without end.

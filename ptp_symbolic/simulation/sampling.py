@@ -116,11 +116,14 @@ def sample_now(equations, u, t, x, m, sampling):
 
 @kernel
 def sample_with_tangents(equations, inputs, t, x, m, tangents, sampling):
-    """Run every sampler that is due at t, and let the tangents jump; inputs.u is as before t."""
+    """Run every sampler that is due at t, and let the tangents jump.
+
+    inputs.u is as before t, inputs.ahead will be as after it.
+    """
+    evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.ahead)
     for i in range(len(sampling.due)):
         if sampling.due[i] > t + COINCIDENT:
             continue
-        evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.ahead)
         if not _comes(i, equations, inputs.ahead, t, x, m, sampling):
             continue
         if tangents.table.shape[1] == 0:
