@@ -30,18 +30,30 @@ def symbol_latex(name: str) -> str:
 
 def latex_of(expression: sp.Expr) -> str:
     """LaTeX of an expression, symbols as `symbol_latex` writes them."""
+    expression = _with_decimals(expression)
     names = {s: symbol_latex(str(s)) for s in expression.free_symbols}
     return str(sp.latex(expression, symbol_names=names, order="lex"))
 
 
+def _with_decimals(expression: sp.Expr) -> sp.Expr:
+    """`expression` with measured numbers such as 981/100 as decimals; simple fractions stay."""
+    return expression.xreplace(
+        {
+            number: sp.sign(number) * sp.Symbol(repr(float(abs(number))))
+            for number in expression.atoms(sp.Rational)
+            if number.q % 10 == 0
+        }
+    )
+
+
 def plain_text_of(expression: sp.Expr) -> str:
     """One line of text, names as in the emitted module."""
-    return str(sp.sstr(expression, order="lex"))
+    return str(sp.sstr(_with_decimals(expression), order="lex"))
 
 
 def mathml_of(expression: sp.Expr) -> str:
     """Presentation MathML of an expression."""
-    return str(mathml(expression, printer="presentation"))
+    return str(mathml(_with_decimals(expression), printer="presentation"))
 
 
 def effect_equations(platform: Platform, effect: str, axis: str | None) -> list[dict[str, Any]]:
