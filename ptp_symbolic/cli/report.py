@@ -19,12 +19,13 @@ def derivation(source: str, out: Path) -> None:
     """Write the derivation of a platform's equations in LaTeX, and as PDF where pdflatex is."""
     from ptp_symbolic.atomic import check_writable, write_files_atomically
     from ptp_symbolic.platform import read_platform
-    from ptp_symbolic.report.derivation import compile_pdf, render_derivation
+    from ptp_symbolic.report.derivation import render_derivation
+    from ptp_symbolic.report.pdf import compile_pdf
 
     platform = read_platform(source)
     check_writable(out)
     files = dict(render_derivation(platform))
-    pdf = compile_pdf(files)
+    pdf = compile_pdf(files, "derivation")
     if pdf is not None:
         files["derivation.pdf"] = pdf
     write_files_atomically(out, files)

@@ -14,11 +14,12 @@ from ptp_symbolic.cli.diagnose import progress_line
 def thesis(out: Path, as_json: bool) -> None:
     """Recompute the thesis: thesis.json, figures, thesis.tex, and thesis.pdf where pdflatex is."""
     from ptp_symbolic.atomic import check_writable, write_files_atomically
-    from ptp_symbolic.report.thesis.document import compile_pdf, thesis_files
+    from ptp_symbolic.report.pdf import compile_pdf
+    from ptp_symbolic.report.thesis.document import thesis_files
 
     check_writable(out)
     files = thesis_files(progress_line())
-    pdf = compile_pdf(files)
+    pdf = compile_pdf(files, "thesis")
     if pdf is not None:
         files["thesis.pdf"] = pdf
     write_files_atomically(out, files)

@@ -1,11 +1,7 @@
 """The derivation of a platform's equations as a LaTeX document, printed from the expressions."""
 
 import re
-import shutil
-import subprocess
-import tempfile
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 
 import sympy as sp
 
@@ -43,21 +39,6 @@ def render_derivation(platform: Platform) -> dict[str, str | bytes]:
         r"\end{document}",
     ]
     return {"derivation.tex": "\n\n".join(parts) + "\n"}
-
-
-def compile_pdf(files: Mapping[str, str | bytes]) -> bytes | None:
-    """The PDF of ``derivation.tex``; None where pdflatex is not installed or fails."""
-    if shutil.which("pdflatex") is None:
-        return None
-    with tempfile.TemporaryDirectory() as folder:
-        for name, content in files.items():
-            data = content.encode() if isinstance(content, str) else content
-            (Path(folder) / name).write_bytes(data)
-        command = ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape", "derivation.tex"]
-        for _ in range(2):
-            done = subprocess.run(command, cwd=folder, capture_output=True, check=False)
-        pdf = Path(folder) / "derivation.pdf"
-        return pdf.read_bytes() if done.returncode == 0 and pdf.is_file() else None
 
 
 def _frames(equations: Equations) -> str:

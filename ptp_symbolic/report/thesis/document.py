@@ -1,14 +1,9 @@
 """The report of the thesis: thesis.json, the figures, and thesis.tex with its PDF."""
 
 import json
-import os
 import re
-import shutil
-import subprocess
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
-from pathlib import Path
 
 from ptp_symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.report.latex_text import PREAMBLE, escaped, formula, table
@@ -239,22 +234,3 @@ def _words(text: str) -> str:
 def _identity(text: str) -> str:
     """An item's id, which may break after its dots and underscores."""
     return "".join(escaped(c) + (r"\allowbreak{}" if c in "._" else "") for c in text)
-
-
-def compile_pdf(files: Mapping[str, str | bytes]) -> bytes | None:
-    """The PDF of ``thesis.tex`` with its figures; None where pdflatex is missing or fails."""
-    if shutil.which("pdflatex") is None:
-        return None
-    with tempfile.TemporaryDirectory() as folder:
-        for name, content in files.items():
-            data = content.encode() if isinstance(content, str) else content
-            (Path(folder) / name).write_bytes(data)
-        command = ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape", "thesis.tex"]
-        # no time in the file: the same numbers give the same bytes
-        environment = os.environ | {"SOURCE_DATE_EPOCH": "0", "FORCE_SOURCE_DATE": "1"}
-        for _ in range(2):
-            done = subprocess.run(
-                command, cwd=folder, capture_output=True, check=False, env=environment
-            )
-        pdf = Path(folder) / "thesis.pdf"
-        return pdf.read_bytes() if done.returncode == 0 and pdf.is_file() else None
