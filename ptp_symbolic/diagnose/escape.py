@@ -1,4 +1,8 @@
-"""Leave local minima: breakaways and bounces in a gap make the cost piecewise smooth."""
+"""Leave local minima and flat valleys.
+
+Breakaways and bounces in a gap make the cost piecewise smooth, and two effects at once can nearly
+stand in for one another: a search that gained little in two steps may still be far from its end.
+"""
 
 import numpy as np
 
@@ -6,7 +10,9 @@ from ptp_symbolic.diagnose.floor import floor_counts
 from ptp_symbolic.diagnose.trial import (
     FINE,
     LAST,
+    NEARBY_COUNTS,
     NEXT,
+    SMOOTH,
     Task,
     Trial,
     continue_fits,
@@ -14,20 +20,24 @@ from ptp_symbolic.diagnose.trial import (
 )
 from ptp_symbolic.identify.fit import Effort, Fit, run_counts
 
-AGAIN, ROUNDS = Effort(8, 1e-3, FINE, secants=True), 3
+AGAIN, ROUNDS, SETTLED = Effort(8, 1e-3, FINE, secants=True), 4, 0.998
 UNEVEN, NEAR, FAR = 1.2, 3.0, 30.0
 
 
 def escape(task: Task, trial: Trial) -> Trial:
-    """Leave a local minimum near the floor: some run is worse than rounding alone explains."""
+    """Go on until nothing is gained; where some run is worse than rounding alone explains, with
+    derivatives over finite steps too.
+    """
     best = _from_table(task, trial)
+    if best.train.rms_counts() > NEARBY_COUNTS:
+        return best
     for _ in range(ROUNDS):
-        if not _is_uneven(best.train):
-            break
         before = best.train.cost
-        best = continue_fits(task, [best], AGAIN)[0]
-        task.progress(f"leaving a local minimum: {best.train.rms_counts():.3f} counts rms")
-        if best.train.cost > 0.998 * before:
+        best = continue_fits(task, [best], SMOOTH)[0]
+        if _is_uneven(best.train):
+            best = continue_fits(task, [best], AGAIN)[0]
+            task.progress(f"leaving a local minimum: {best.train.rms_counts():.3f} counts rms")
+        if best.train.cost > SETTLED * before:
             break
     return best
 
@@ -37,7 +47,7 @@ def _from_table(task: Task, trial: Trial) -> Trial:
     if not trial.candidates or not _is_uneven(trial.train, FAR):
         return trial
     again = start_afresh(task, trial, NEXT)
-    if again.train.cost >= 0.998 * trial.train.cost:
+    if again.train.cost >= SETTLED * trial.train.cost:
         return trial
     return continue_fits(task, [again], LAST)[0]
 

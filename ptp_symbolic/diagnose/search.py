@@ -21,6 +21,7 @@ from ptp_symbolic.diagnose.trial import (
     LAST,
     NEARBY_COUNTS,
     NEXT,
+    SMOOTH,
     Task,
     Trial,
     continue_fits,
@@ -39,7 +40,6 @@ FloatArray = NDArray[np.float64]
 FIRST = Effort(5, 3e-3, COARSE, 0.3, secants=True)
 DECLARED = Effort(8, 1e-2, COARSE, 0.3)
 MENDED = Effort(10, 2e-3, COARSE, secants=True)
-SMOOTH = Effort(15, 1e-4, FINE)
 HELD_OUT = Effort(10, 1e-4, FINE)
 DROP_FACTOR, CLOSE_FACTOR = 25.0, 1.5
 PURSUED, FINISHED, BEAM = 3, 3, 3

@@ -20,6 +20,7 @@ NEARBY_COUNTS = 5.0
 COARSE, FINE = Tolerance(1e-4, 1e-6), Tolerance(1e-5, 1e-7)
 NEXT = Effort(10, 2e-3, COARSE, 0.5, secants=True)
 LAST = Effort(10, 3e-4, FINE, secants=True)
+SMOOTH = Effort(15, 1e-4, FINE)
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,6 +16,7 @@ from ptp_symbolic.identify.coordinates import (
 )
 from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.least_squares import Optimum, Problem, cost_of, minimise
+from ptp_symbolic.identify.requirements import keep_possible
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.identify.secants import secants
 from ptp_symbolic.runtime.model import Model
@@ -167,6 +168,7 @@ def _problem(
         centre,
         precision,
         secants(residual, upper, executor) if effort.secants else None,
+        keep_possible(model, free, parameters),
     )
 
 

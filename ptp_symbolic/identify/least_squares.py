@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.identify.evaluate import Evaluation
+from ptp_symbolic.identify.requirements import Allow
 from ptp_symbolic.identify.secants import Refine
 
 FloatArray = NDArray[np.float64]
@@ -27,7 +28,8 @@ MANY_RUNS, BEND, NEARBY = 20, 2.5, 8.0
 class Problem:
     """What to minimise: `evaluate(phi, z, tangents)`, bounds of phi, bounds and prior of z.
 
-    `refine`, where given, mends the derivatives at every point that the search accepts.
+    `refine`, where given, mends the derivatives at every point that the search accepts; `allow`
+    cuts steps short that lead where no machine is possible.
     """
 
     evaluate: Evaluate
@@ -39,6 +41,7 @@ class Problem:
     prior_centre: FloatArray
     prior_precision: FloatArray
     refine: Refine | None = None
+    allow: Allow | None = None
 
 
 @dataclass(frozen=True)
@@ -131,6 +134,8 @@ def minimise(
         for _rejection in range(rejections):
             step, steps_z = _step(problem, now, phi, z, damping, weight, bend, scale)
             trial = np.clip(phi + step, problem.lower, problem.upper)
+            if problem.allow is not None:
+                trial = problem.allow(phi, trial)
             trial_z = [
                 np.clip(a + b, low, high)
                 for a, b, low, high in zip(
