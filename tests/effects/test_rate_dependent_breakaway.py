@@ -33,7 +33,7 @@ def model() -> Model:
 
 
 @pytest.mark.parametrize("slope", [0.2, -2.0, 50.0])
-def test_slow_ramps_break_away_later(model: Model, slope: float) -> None:
+def test_breakaway_falls_with_the_rate_of_the_torque(model: Model, slope: float) -> None:
     """Where the torque of the ramp meets the breakaway torque that has grown since the start."""
     meet = brentq(lambda t: abs(slope) * t - breakaway(t), 0.0, 20.0)
     driven = {"tau_pan": ramp(0.0, 1.05 * slope * meet, 0.0, 1.05 * meet)}
