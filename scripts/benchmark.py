@@ -8,8 +8,8 @@ the best of several. How to read the table:
 - "trajectory": 10 s of the payload model at a final error below 1e-9, beside scipy's DOP853.
 - "pan_drive": 10 s through stick-slip and gap with 10001 outputs; the error is that of the load
   angle over all outputs against the explicit method at a tolerance of 1e-12. "of which" is the
-  same run without outputs and ledger. Peers give the final state alone, at tolerances that reach
-  about the same error (scipy locates events to 1e-12 too); their ratio is to the whole run.
+  same run for the final state alone. Peers give the final state alone too, at tolerances that
+  reach about the same error (scipy locates events to 1e-12 too); their ratio is to that.
 - "work and precision": tolerance, error and time of the step.
 - "sensitivities": time with six parameters over time without, and their largest relative error.
 
@@ -183,7 +183,7 @@ def drive_cases(everything: bool) -> list[Row]:
         })  # fmt: skip
         peers = ("LSODA", "Radau", "DOP853") if everything or name == "step" else ("LSODA",)
         for method in peers:
-            rows.append(_peer_row(model, signal, method, exact, whole, name))
+            rows.append(_peer_row(model, signal, method, exact, bare, name))
     return rows
 
 
