@@ -5,10 +5,9 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.emitted import GUARDS, addresses
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.inputs import InputTable
-from ptp_symbolic.simulation.modes import settle, violation
+from ptp_symbolic.simulation.modes import switch_contacts, violation
 
 FloatArray = NDArray[np.float64]
 PAST = 1e-11  # s; how far a peer is carried past an event, so that the mode has really ended
@@ -43,12 +42,23 @@ class EventMachine:
         return self.fx.copy()
 
     def settle(self, t: float, x: FloatArray) -> None:
-        """Choose the modes from (t, x) on."""
+        """Choose the modes from (t, x) on; zeroes rates that have reversed."""
         evaluate_inputs(t, 1, *self.table.arrays, self.cursor, self.u)
-        settle(
-            addresses(self.model.module)[GUARDS], t, x, self.u, self.p, self.m, self.g,
-            self.model.friction_rates, self.model.zero_at_rest,
-        )  # fmt: skip
+        rates, m, g = self.model.friction_rates, self.m, self.g
+        for k, rate in enumerate(rates):
+            if m[k] != 0.0 and m[k] * x[rate] < 0.0:
+                x[rate] = m[k] = 0.0
+        for _ in range(20):
+            before = m.copy()
+            self.model.module.guards(t, x, self.u, self.p, m, g)
+            switch_contacts(m, g, rates)
+            self.model.module.guards(t, x, self.u, self.p, m, g)
+            for k in range(len(rates)):
+                held, forward, backward = g[3 * k : 3 * k + 3]
+                if m[k] == 0.0:
+                    m[k] = 1.0 if held > forward else -1.0 if -held > backward else 0.0
+            if np.array_equal(m, before):
+                return
 
     def _event(self, element: int):  # type: ignore[no-untyped-def]
         def past(t: float, x: FloatArray) -> float:

@@ -1,0 +1,26 @@
+"""The peers that the benchmark times find the same motion as the simulation."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ptp_symbolic
+from ptp_symbolic.simulation.inputs import stack, step
+from ptp_symbolic.simulation.passage import tolerance_weights
+
+
+@pytest.mark.parametrize("method", ["LSODA", "DOP853"])
+def test_scipy_with_events_agrees(
+    method: str, checkout: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(checkout / "scripts"))
+    peers = pytest.importorskip("event_peers")
+    model, signal = ptp_symbolic.load("pan_drive"), step(0.0, 24.0, 0.05)
+    atol = 1e-9 * tolerance_weights(model)
+    state, events = peers.simulate_with_scipy(model, stack([signal]), 0.4, method, 1e-8, atol)
+    ours = ptp_symbolic.simulate(model, np.array([0.0, 0.4]), {"u_pan": signal}, rtol=1e-8)
+    sys.modules.pop("event_peers")
+    assert events == len(ours.events) > 2
+    assert state[0] == pytest.approx(ours["theta_pan"][-1], abs=1e-8)
