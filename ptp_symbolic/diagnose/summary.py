@@ -111,6 +111,7 @@ def fit_table(trial: Trial) -> dict[str, Any]:
             "start": starts[e.name],
             "at_bound": e.at_bound,
             "identified": e.identified,
+            "only_with": list(e.only_with),
         }
         for e in estimates(trial.train)
     }

@@ -17,12 +17,15 @@ FloatArray = NDArray[np.float64]
 
 BLOCK_SECONDS = 1.0
 UNIDENTIFIED = 1.0
+LOST_SHARE, INVOLVED = 1e-10, 1e-3
 
 
 @dataclass(frozen=True)
 class Estimate:
     """A fitted value with its 95 % interval; SI. `identified` is False where the interval is wider
-    than the value itself, or the data do not see the parameter at all.
+    than the value itself, or the data do not see the parameter at all: then the interval is that of
+    its bounds. `only_with` names parameters of which the data see a combination alone, such as the
+    sum of two viscous frictions in one joint.
     """
 
     name: str
@@ -31,13 +34,15 @@ class Estimate:
     upper: float
     at_bound: bool
     identified: bool
+    only_with: tuple[str, ...] = ()
 
 
 def estimates(fit: Fit) -> tuple[Estimate, ...]:
     """Values of the free parameters of `fit` with 95 % intervals."""
     if not fit.free:
         return ()
-    covariance, degrees = sandwich(fit)
+    covariance, degrees, lost = sandwich(fit)
+    involved = lost**2 > INVOLVED
     phi = to_search(fit.free, fit.values)
     by_phi = slopes(fit.free, phi)
     reach = float(stats.t.ppf(0.975, max(degrees, 1)))
@@ -49,6 +54,11 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
             low, high = value * np.exp(-spread), value * np.exp(spread)
         else:
             low, high = value - spread * abs(by_phi[index]), value + spread * abs(by_phi[index])
+        others: tuple[str, ...] = ()
+        if involved[index].any():
+            low, high, spread = free.lower, free.upper, np.inf
+            partners = np.flatnonzero(involved[:, involved[index]].any(axis=1))
+            others = tuple(fit.free[i].name for i in partners if i != index)
         near = 1e-4 * max(abs(free.start), abs(value))
         at_bound = value - free.lower <= near or free.upper - value <= near
         width = (
@@ -63,13 +73,16 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
                 float(min(high, free.upper)) if free.period is None else float(high),
                 bool(at_bound),
                 seen,
+                others,
             )
         )
     return tuple(result)
 
 
-def sandwich(fit: Fit) -> tuple[FloatArray, int]:
-    """Covariance [nf, nf] of the search coordinates, and the degrees of freedom of its blocks."""
+def sandwich(fit: Fit) -> tuple[FloatArray, int, FloatArray]:
+    """Covariance [nf, nf] of the search coordinates, the degrees of freedom of its blocks, and the
+    directions [nf, lost] of scaled coordinates that the data do not see; it leaves these out.
+    """
     nf = len(fit.free)
     bread, middle, blocks = np.zeros((nf, nf)), np.zeros((nf, nf)), 0
     for run, e in fit.pairs():
@@ -83,13 +96,23 @@ def sandwich(fit: Fit) -> tuple[FloatArray, int]:
             score = projected[rows].T @ e.residual[rows]
             middle += np.outer(score, score)
             blocks += 1
-    inverse = np.linalg.pinv(bread, rcond=1e-13, hermitian=True)
+    inverse, lost = _inverse(bread)
     correction = blocks / max(blocks - nf, 1)
     white = inverse * max(1.0, fit.cost / max(sum(r.size for r in fit.runs), 1))
     robust = correction * inverse @ middle @ inverse
     larger = np.maximum(np.diag(robust), np.diag(white))
     scale = np.sqrt(larger / np.maximum(np.diag(robust), 1e-300))
-    return robust * np.outer(scale, scale), blocks - nf
+    return robust * np.outer(scale, scale), blocks - nf, lost
+
+
+def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Inverse [nf, nf] where there is information, and the directions without, each scaled."""
+    size = np.sqrt(np.diag(information))
+    unit = np.where(size > 0.0, size, 1.0)
+    shares, directions = np.linalg.eigh(information / np.outer(unit, unit))
+    kept = shares > LOST_SHARE * max(shares[-1], 1e-300)
+    seen = directions[:, kept] / unit[:, None]
+    return seen / shares[kept] @ seen.T, directions[:, ~kept]
 
 
 def project_out(jacobian: FloatArray, nuisance: FloatArray) -> FloatArray:

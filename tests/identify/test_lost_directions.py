@@ -1,0 +1,52 @@
+"""Parameters of which the data see a combination alone are not given an interval each."""
+
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.identify.coordinates import free_parameter
+from ptp_symbolic.identify.fit import Fit
+from ptp_symbolic.identify.intervals import estimates
+
+RNG = np.random.default_rng(5)
+TIME = np.arange(0.0, 20.0, 0.01)
+
+
+def straight_line(columns: dict[str, np.ndarray], noise: float) -> Fit:
+    """A finished fit of y = sum of columns, every coefficient 2, with white noise."""
+    free = tuple(free_parameter(name, 2.0, 0.0, 50.0) for name in columns)
+    matrix = np.column_stack(list(columns.values()))
+    residual = noise * RNG.standard_normal(len(TIME))
+    evaluation = SimpleNamespace(
+        residual=residual, by_parameter=-2.0 * matrix, by_start=np.zeros((len(TIME), 0))
+    )
+    run = SimpleNamespace(time=TIME, measured=np.zeros((len(TIME), 1)), size=len(TIME))
+    return cast(
+        Fit,
+        SimpleNamespace(
+            free=free, values=dict.fromkeys(columns, 2.0), runs=(run,),
+            cost=float(residual @ residual), pairs=lambda: [(run, evaluation)],
+        ),
+    )  # fmt: skip
+
+
+def test_two_frictions_in_one_joint_are_known_as_a_sum_only() -> None:
+    rate, angle = np.sin(TIME), np.cos(3.0 * TIME)
+    found = {e.name: e for e in estimates(straight_line({"b": rate, "F_v": rate, "k": angle}, 0.1))}
+    assert not found["b"].identified and not found["F_v"].identified
+    assert found["b"].only_with == ("F_v",) and found["F_v"].only_with == ("b",)
+    assert (found["b"].lower, found["b"].upper) == (0.0, 50.0)
+    assert found["k"].identified and found["k"].only_with == ()
+
+
+def test_the_interval_of_what_is_seen_stays_that_of_the_textbook() -> None:
+    angle = np.cos(3.0 * TIME)
+    found = {
+        e.name: e
+        for e in estimates(straight_line({"b": np.sin(TIME), "k": angle, "idle": 0.0 * TIME}, 1.0))
+    }
+    half_width = 0.5 * (found["k"].upper - found["k"].lower)
+    assert half_width == pytest.approx(1.96 / np.linalg.norm(angle), rel=0.4)
+    assert not found["idle"].identified and found["idle"].only_with == ()
