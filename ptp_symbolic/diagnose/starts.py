@@ -108,9 +108,11 @@ def _telling_runs(fit: Fit, share: float) -> tuple[int, ...]:
 def _origins(
     task: Task, base: Trial, candidate: Candidate
 ) -> list[tuple[str, dict[str, float], tuple[FloatArray, ...]]]:
-    """Where searches begin: the optimum of `base`; for the first effect also the table start."""
+    """Where searches begin: the optimum of `base`, and the declared parameters back at their table
+    start, because at the optimum they stand in for the effect that is still missing.
+    """
     optimum = (OPTIMUM, dict(base.train.values), tuple(base.train.z))
-    if base.candidates or candidate.is_declared_value:
+    if candidate.is_declared_value:
         return [optimum]
     rest = tuple(np.zeros(len(run.unknowns)) for run in task.train)
     table = {**base.train.values, **all_values_at_start(task.free)}
