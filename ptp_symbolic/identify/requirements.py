@@ -1,6 +1,7 @@
 """Keep a search where the machine is possible: no breakaway below sliding friction, for one."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,55 +24,67 @@ def keep_possible(
 
     `parameters(phi)` gives all parameters [np]. A relation broken at phi already is let be.
     """
-    requirements = model.module.REQUIREMENTS
-    about = [
-        np.array([bool({f.name, *f.tied} & set(names)) for f in free], dtype=np.bool_)
-        for names, _, _ in requirements
-    ]
-
-    def margin(row: int, phi: FloatArray) -> float:
-        found = np.zeros(len(requirements))
-        model.module.margins(parameters(phi), found)
-        return float(found[row])
-
-    def holds(row: int, phi: FloatArray) -> bool:
-        by = margin(row, phi)
-        return by > 0.0 if requirements[row][2] else by >= 0.0
-
-    def cut(row: int, phi: FloatArray, step: FloatArray) -> float:
-        """The largest share of `step` after which the relation still holds."""
-        kept, lost = 0.0, 1.0
-        for _ in range(HALVINGS):
-            middle = 0.5 * (kept + lost)
-            kept, lost = (middle, lost) if holds(row, phi + middle * step) else (kept, middle)
-        return kept
-
-    def gradient(row: int, phi: FloatArray) -> FloatArray:
-        """Derivatives [nf] of the margin by the coordinates that it is about."""
-        slope = np.zeros(len(phi))
-        for i in np.flatnonzero(about[row]):
-            ahead = phi.copy()
-            ahead[i] += DIFFERENCE
-            slope[i] = (margin(row, ahead) - margin(row, phi)) / DIFFERENCE
-        return slope
-
-    def bent(row: int, phi: FloatArray, step: FloatArray) -> FloatArray:
-        boundary = phi + cut(row, phi, step) * step
-        rest, slope = phi + step - boundary, gradient(row, boundary)
-        inward = slope / max(float(slope @ slope), 1e-300)
-        rest -= inward * min(0.0, float(slope @ rest))
-        for _ in range(CORRECTIONS):
-            by = margin(row, boundary + rest)
-            if holds(row, boundary + rest):
-                return boundary + rest
-            rest += inward * (DIFFERENCE * abs(by) - by)
-        return boundary
+    relations = []
+    for row, (names, _, strict) in enumerate(model.module.REQUIREMENTS):
+        about = np.array([bool({f.name, *f.tied} & set(names)) for f in free], dtype=np.bool_)
+        if about.any():
+            relations.append(_Relation(model, parameters, row, strict, about))
 
     def allow(phi: FloatArray, trial: FloatArray) -> FloatArray:
-        for row, columns in enumerate(about):
-            if columns.any() and holds(row, phi) and not holds(row, trial):
-                step = np.where(columns, trial - phi, 0.0)
-                trial = np.where(columns, bent(row, phi, step), trial)
+        for relation in relations:
+            if relation.holds(phi) and not relation.holds(trial):
+                trial = relation.bent(phi, trial)
         return trial
 
     return allow
+
+
+@dataclass(frozen=True, eq=False)
+class _Relation:
+    """One relation between parameters; `about` [nf] marks the coordinates that it concerns."""
+
+    model: Model
+    parameters: Callable[[FloatArray], FloatArray]
+    row: int
+    strict: bool
+    about: NDArray[np.bool_]
+
+    def margin(self, phi: FloatArray) -> float:
+        found = np.zeros(len(self.model.module.REQUIREMENTS))
+        self.model.module.margins(self.parameters(phi), found)
+        return float(found[self.row])
+
+    def holds(self, phi: FloatArray) -> bool:
+        by = self.margin(phi)
+        return by > 0.0 if self.strict else by >= 0.0
+
+    def gradient(self, phi: FloatArray) -> FloatArray:
+        """Derivatives [nf] of the margin."""
+        slope = np.zeros(len(phi))
+        for i in np.flatnonzero(self.about):
+            ahead = phi.copy()
+            ahead[i] += DIFFERENCE
+            slope[i] = (self.margin(ahead) - self.margin(phi)) / DIFFERENCE
+        return slope
+
+    def boundary(self, phi: FloatArray, step: FloatArray) -> FloatArray:
+        """The farthest point along `step` at which the relation still holds."""
+        kept, lost = 0.0, 1.0
+        for _ in range(HALVINGS):
+            middle = 0.5 * (kept + lost)
+            kept, lost = (middle, lost) if self.holds(phi + middle * step) else (kept, middle)
+        return phi + kept * step
+
+    def bent(self, phi: FloatArray, trial: FloatArray) -> FloatArray:
+        """`trial` with the coordinates of the relation moved to the boundary and along it."""
+        step = np.where(self.about, trial - phi, 0.0)
+        boundary = self.boundary(phi, step)
+        rest, slope = phi + step - boundary, self.gradient(boundary)
+        inward = slope / max(float(slope @ slope), 1e-300)
+        rest -= inward * min(0.0, float(slope @ rest))
+        for _ in range(CORRECTIONS):
+            if self.holds(boundary + rest):
+                return np.where(self.about, boundary + rest, trial)
+            by = self.margin(boundary + rest)
+            rest += inward * (DIFFERENCE * abs(by) - by)
+        return np.where(self.about, boundary, trial)
