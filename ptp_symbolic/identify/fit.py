@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,6 +115,53 @@ def all_values_at_start(free: Sequence[FreeParameter]) -> dict[str, float]:
     return {name: f.start for f in free for name in (f.name, *f.tied)}
 
 
+@dataclass(frozen=True, eq=False)
+class _Simulations:
+    """All runs as functions of the search coordinates phi [nf] and the start unknowns z.
+
+    `owner` is the coordinate of every parameter in `columns`: tied ones share theirs.
+    """
+
+    model: Model
+    runs: Sequence[Run]
+    free: Sequence[FreeParameter]
+    base: FloatArray
+    columns: NDArray[np.int64]
+    owner: NDArray[np.int64]
+    tolerance: Tolerance
+    executor: Executor | None
+
+    def parameters(self, phi: FloatArray) -> FloatArray:
+        """All parameters [np]."""
+        p, names = self.base.copy(), self.model.parameter_names
+        for name, value in all_values(self.free, phi).items():
+            p[names.index(name)] = value
+        return p
+
+    def residual(self, index: int, phi: FloatArray, z: FloatArray) -> FloatArray | None:
+        """Residual of one run; None where the simulation fails."""
+        p, run = self.parameters(phi), self.runs[index]
+        e = evaluate(self.model, run, p, z, self.columns, False, self.tolerance)
+        return None if e.failed else e.residual
+
+    def evaluate(
+        self, phi: FloatArray, z: Sequence[FloatArray], tangents: bool
+    ) -> list[Evaluation]:
+        """Evaluations of all runs, their Jacobians by phi."""
+        p = self.parameters(phi)
+        by_phi = np.zeros((len(self.columns), len(self.free)))
+        if len(self.free):
+            by_phi[np.arange(len(self.columns)), self.owner] = slopes(self.free, phi)[self.owner]
+
+        def one(pair: tuple[Run, FloatArray]) -> Evaluation:
+            run, start = pair
+            e = evaluate(self.model, run, p, start, self.columns, tangents, self.tolerance)
+            return replace(e, by_parameter=e.by_parameter @ by_phi) if tangents else e
+
+        pairs = list(zip(self.runs, z, strict=True))
+        return list(self.executor.map(one, pairs)) if self.executor else [one(a) for a in pairs]
+
+
 def _problem(
     model: Model,
     runs: Sequence[Run],
@@ -124,42 +171,16 @@ def _problem(
     executor: Executor | None,
 ) -> Problem:
     names = list(model.parameter_names)
-    columns = np.array(
-        [names.index(name) for f in free for name in (f.name, *f.tied)], dtype=np.int64
-    )
-    owner = np.array([i for i, f in enumerate(free) for _ in (f.name, *f.tied)], dtype=np.int64)
-    base = model.parameter_vector(dict(fixed))
-
-    def parameters(phi: FloatArray) -> FloatArray:
-        p = base.copy()
-        for name, value in all_values(free, phi).items():
-            p[names.index(name)] = value
-        return p
-
-    def residual(index: int, phi: FloatArray, z: FloatArray) -> FloatArray | None:
-        e = evaluate(model, runs[index], parameters(phi), z, columns, False, effort.tolerance)
-        return None if e.failed else e.residual
-
-    def evaluate_all(phi: FloatArray, z: Sequence[FloatArray], tangents: bool) -> list[Evaluation]:
-        p = parameters(phi)
-        by_phi = np.zeros((len(columns), len(free)))
-        by_phi[np.arange(len(columns)), owner] = slopes(free, phi)[owner] if len(free) else 0.0
-
-        def one(pair: tuple[Run, FloatArray]) -> Evaluation:
-            e = evaluate(model, pair[0], p, pair[1], columns, tangents, effort.tolerance)
-            if not tangents:
-                return e
-            return Evaluation(
-                e.residual, e.by_parameter @ by_phi, e.by_start, e.outputs, e.states, e.failed
-            )
-
-        pairs = list(zip(runs, z, strict=True))
-        return list(executor.map(one, pairs)) if executor else [one(pair) for pair in pairs]
-
+    owned = [(i, names.index(name)) for i, f in enumerate(free) for name in (f.name, *f.tied)]
+    owner, columns = np.array(owned, dtype=np.int64).reshape(-1, 2).T
+    simulations = _Simulations(
+        model, runs, free, model.parameter_vector(dict(fixed)), columns.copy(), owner.copy(),
+        effort.tolerance, executor,
+    )  # fmt: skip
     lower, upper = limits(free)
     centre, precision = _prior(free, effort.prior_sigma)
     return Problem(
-        evaluate_all,
+        simulations.evaluate,
         lower,
         upper,
         [np.array([u.lower for u in run.unknowns]) for run in runs],
@@ -167,8 +188,8 @@ def _problem(
         [np.array([u.sigma for u in run.unknowns]) for run in runs],
         centre,
         precision,
-        secants(residual, upper, executor) if effort.secants else None,
-        keep_possible(model, free, parameters),
+        secants(simulations.residual, upper, executor) if effort.secants else None,
+        keep_possible(model, free, simulations.parameters),
     )
 
 

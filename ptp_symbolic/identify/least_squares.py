@@ -6,7 +6,7 @@ call the elimination variable projection).
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,48 +116,72 @@ def minimise(
     so that declared parameters and starts do not bend to stand in for an effect, and weak at the
     noise floor.
     """
-    phi, z = np.clip(phi, problem.lower, problem.upper), [a.copy() for a in z]
-    now = problem.evaluate(phi, z, True)
-    cost = cost_of(problem, now, z)
+    at = _Point(np.clip(phi, problem.lower, problem.upper), [a.copy() for a in z], [])
+    at = replace(at, evaluations=problem.evaluate(at.phi, at.z, True))
+    cost = cost_of(problem, at.evaluations, at.z)
     if not np.isfinite(cost):
-        why = next((e.failed for e in now if e.failed), "not finite")
-        return Optimum(phi, z, np.inf, now, why)
+        why = next((e.failed for e in at.evaluations if e.failed), "not finite")
+        return Optimum(at.phi, at.z, np.inf, at.evaluations, why)
     damping, quiet = FIRST_DAMPING, 0
     for _ in range(iterations):
         if problem.refine is not None:
-            now = problem.refine(phi, z, now)
-        bend = robust_bend(now)
-        size = sum(e.residual.size for e in now)
-        mean_square = sum(_loss(e, bend) for e in now) / size
-        weight, scale = problem.prior_precision * mean_square, max(1.0, mean_square)
-        cost = cost_of(problem, now, z, bend, scale)
-        for _rejection in range(rejections):
-            step, steps_z = _step(problem, now, phi, z, damping, weight, bend, scale)
-            trial = np.clip(phi + step, problem.lower, problem.upper)
-            if problem.allow is not None:
-                trial = problem.allow(phi, trial)
-            trial_z = [
-                np.clip(a + b, low, high)
-                for a, b, low, high in zip(
-                    z, steps_z, problem.start_lower, problem.start_upper, strict=True
-                )
-            ]
-            after = problem.evaluate(trial, trial_z, True)
-            new_cost = cost_of(problem, after, trial_z, bend, scale)
-            if new_cost - cost < _prior(problem, weight, phi) - _prior(problem, weight, trial):
-                break
-            damping *= 10.0
-        else:
+            at = replace(at, evaluations=problem.refine(at.phi, at.z, at.evaluations))
+        weights = _weigh(problem, at)
+        before = cost_of(problem, at.evaluations, at.z, weights.bend, weights.scale)
+        found = _better(problem, at, weights, damping, before, rejections)
+        if found is None:
+            cost = before
             break
-        gained = abs(cost - new_cost) / cost
-        phi, z, now, cost = trial, trial_z, after, new_cost
-        damping = max(damping / 10.0, 1e-12)
-        quiet = quiet + 1 if gained < gain else 0
+        at, cost, damping = found
+        quiet = quiet + 1 if abs(before - cost) / before < gain else 0
         if quiet >= 2:
             break
     if problem.refine is not None:
-        now = problem.refine(phi, z, now)
-    return Optimum(phi, z, cost, now)
+        at = replace(at, evaluations=problem.refine(at.phi, at.z, at.evaluations))
+    return Optimum(at.phi, at.z, cost, at.evaluations)
+
+
+@dataclass(frozen=True)
+class _Point:
+    phi: FloatArray
+    z: list[FloatArray]
+    evaluations: list[Evaluation] = field(repr=False)
+
+
+@dataclass(frozen=True)
+class _Weights:
+    """Bend of the robust loss, precision [nf] of the prior of phi, weight of the prior of z."""
+
+    bend: float
+    prior: FloatArray
+    scale: float
+
+
+def _weigh(problem: Problem, at: _Point) -> _Weights:
+    bend = robust_bend(at.evaluations)
+    size = sum(e.residual.size for e in at.evaluations)
+    mean_square = sum(_loss(e, bend) for e in at.evaluations) / size
+    return _Weights(bend, problem.prior_precision * mean_square, max(1.0, mean_square))
+
+
+def _better(
+    problem: Problem, at: _Point, weights: _Weights, damping: float, cost: float, rejections: int
+) -> tuple[_Point, float, float] | None:
+    """The first of ever shorter steps that gains, its cost and the next damping; None if none."""
+    for _ in range(rejections):
+        step, steps_z = _step(problem, at, damping, weights)
+        phi = np.clip(at.phi + step, problem.lower, problem.upper)
+        if problem.allow is not None:
+            phi = problem.allow(at.phi, phi)
+        bounds = zip(at.z, steps_z, problem.start_lower, problem.start_upper, strict=True)
+        z = [np.clip(a + b, low, high) for a, b, low, high in bounds]
+        trial = _Point(phi, z, problem.evaluate(phi, z, True))
+        after = cost_of(problem, trial.evaluations, z, weights.bend, weights.scale)
+        priors = [_prior(problem, weights.prior, p) for p in (at.phi, phi)]
+        if after - cost < priors[0] - priors[1]:
+            return trial, after, max(damping / 10.0, 1e-12)
+        damping *= 10.0
+    return None
 
 
 def _prior(problem: Problem, weight: FloatArray, phi: FloatArray) -> float:
@@ -165,21 +189,15 @@ def _prior(problem: Problem, weight: FloatArray, phi: FloatArray) -> float:
 
 
 def _step(
-    problem: Problem,
-    evaluations: Sequence[Evaluation],
-    phi: FloatArray,
-    z: Sequence[FloatArray],
-    damping: float,
-    weight: FloatArray,
-    bend: float,
-    scale: float,
+    problem: Problem, at: _Point, damping: float, weights: _Weights
 ) -> tuple[FloatArray, list[FloatArray]]:
+    phi, weight, scale = at.phi, weights.prior, weights.scale
     nf = len(phi)
     schur, right = np.diag(weight), -weight * (phi - problem.prior_centre)
     diagonal = weight.copy()
     blocks = []
-    for e, a, sigma in zip(evaluations, z, problem.start_sigma, strict=True):
-        share = np.sqrt(_share(e, bend))
+    for e, a, sigma in zip(at.evaluations, at.z, problem.start_sigma, strict=True):
+        share = np.sqrt(_share(e, weights.bend))
         j, k, r = share * e.by_parameter, share * e.by_start, share * e.residual
         jj, jk, kk = j.T @ j, j.T @ k, k.T @ k
         kk = kk + np.diag(scale / sigma**2)
