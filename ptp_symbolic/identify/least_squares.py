@@ -178,14 +178,18 @@ def _step(
     schur, right = np.diag(weight), -weight * (phi - problem.prior_centre)
     diagonal = weight.copy()
     blocks = []
-    for e, a, sigma in zip(evaluations, z, problem.start_sigma, strict=True):
+    for e, a, sigma, low, high in zip(
+        evaluations, z, problem.start_sigma, problem.start_lower, problem.start_upper, strict=True
+    ):
         share = np.sqrt(_share(e, bend))
         j, k, r = share * e.by_parameter, share * e.by_start, share * e.residual
         jj, jk, kk = j.T @ j, j.T @ k, k.T @ k
         kk = kk + np.diag(scale / sigma**2)
         kk = kk + damping * np.diag(np.diag(kk))
         gr, gz = -(j.T @ r), -(k.T @ r) - scale * a / sigma**2
-        inverse = np.linalg.inv(kk) if len(a) else kk
+        moves = ~(((a <= low) & (gz < 0)) | ((a >= high) & (gz > 0)))
+        inverse = np.zeros_like(kk)
+        inverse[np.ix_(moves, moves)] = np.linalg.inv(kk[np.ix_(moves, moves)])
         schur += jj - jk @ inverse @ jk.T
         right += gr - jk @ inverse @ gz
         diagonal += np.diag(jj)
