@@ -17,6 +17,7 @@ FloatArray = NDArray[np.float64]
 
 BLOCK_SECONDS = 1.0
 UNIDENTIFIED = 1.0
+BLIND, TOUCHED = 1e-12, 1e-6
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,8 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
             low, high = value * np.exp(-spread), value * np.exp(spread)
         else:
             low, high = value - spread * abs(by_phi[index]), value + spread * abs(by_phi[index])
+        if free.period is not None:
+            low, high = max(low, value - free.period / 2), min(high, value + free.period / 2)
         near = 1e-4 * max(abs(free.start), abs(value))
         at_bound = value - free.lower <= near or free.upper - value <= near
         width = (
@@ -69,7 +72,10 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
 
 
 def sandwich(fit: Fit) -> tuple[FloatArray, int]:
-    """Covariance [nf, nf] of the search coordinates, and the degrees of freedom of its blocks."""
+    """Covariance [nf, nf] of the search coordinates, and the degrees of freedom of its blocks.
+
+    The variance of a coordinate that the data do not see, by itself or beside others, is infinite.
+    """
     nf = len(fit.free)
     bread, middle, blocks = np.zeros((nf, nf)), np.zeros((nf, nf)), 0
     for run, e in fit.pairs():
@@ -83,13 +89,29 @@ def sandwich(fit: Fit) -> tuple[FloatArray, int]:
             score = projected[rows].T @ e.residual[rows]
             middle += np.outer(score, score)
             blocks += 1
-    inverse = np.linalg.pinv(bread, rcond=1e-13, hermitian=True)
+    inverse, unseen = _inverse(bread)
     correction = blocks / max(blocks - nf, 1)
     white = inverse * max(1.0, fit.cost / max(sum(r.size for r in fit.runs), 1))
     robust = correction * inverse @ middle @ inverse
     larger = np.maximum(np.diag(robust), np.diag(white))
     scale = np.sqrt(larger / np.maximum(np.diag(robust), 1e-300))
-    return robust * np.outer(scale, scale), blocks - nf
+    covariance = robust * np.outer(scale, scale)
+    covariance[unseen, unseen] = np.inf
+    return covariance, blocks - nf
+
+
+def _inverse(bread: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Pseudoinverse of J'J [nf, nf], and which coordinates take part in what it leaves out.
+
+    Columns are brought to length one first: how weakly a parameter acts is for its interval to say.
+    """
+    length = np.sqrt(np.diag(bread))
+    length[length == 0.0] = 1.0
+    strength, directions = np.linalg.eigh(bread / np.outer(length, length))
+    blind = strength < BLIND
+    unseen = np.sum(directions[:, blind] ** 2, axis=1) > TOUCHED
+    kept = directions[:, ~blind] / length[:, None]
+    return (kept / strength[~blind]) @ kept.T, unseen
 
 
 def project_out(jacobian: FloatArray, nuisance: FloatArray) -> FloatArray:
