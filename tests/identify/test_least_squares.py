@@ -4,9 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize_scalar
+from scipy.optimize import lsq_linear, minimize_scalar
 
-from ptp_symbolic.identify.least_squares import Optimum, Problem, cost_of, minimise, robust_bend
+from ptp_symbolic.identify.least_squares import (
+    LARGEST_STEP,
+    Optimum,
+    Problem,
+    cost_of,
+    minimise,
+    robust_bend,
+)
 from tests.identify.curves import PHI, PRIOR, Curves, Floats, evaluation, measure
 
 BEGIN = PHI * [1.4, 1.1, 0.6]
@@ -73,6 +80,22 @@ def test_prior_weighs_as_much_as_the_mean_square_residual(curves: Curves) -> Non
     plain, _, _ = curves.dense(problem, BEGIN)
     assert found.phi == pytest.approx(phi, rel=1e-5)
     assert np.max(np.abs(phi / plain - 1.0)) > 0.01
+
+
+@pytest.mark.parametrize("coupling", [0.0, 0.6, -0.6])
+def test_one_parameter_that_wants_far_does_not_stop_the_others(coupling: float) -> None:
+    """The first step is SciPy's minimum in the box of largest steps."""
+    matrix = np.array([[1e-3, 0.0, 0.0], [1e-3 * coupling, 1.0, 0.0], [0.0, 0.3, 2.0]])
+    target = np.array([7.0, 0.4, -0.5])
+    far = np.full(3, 1e6)
+    problem = Problem(
+        lambda phi, z, tangents: [evaluation(target - matrix @ phi, -matrix, np.zeros((3, 0)))],
+        -far, far, *[[np.zeros(0)]] * 3, np.zeros(3), np.zeros(3),
+    )  # fmt: skip
+    found = minimise(problem, np.zeros(3), [np.zeros(0)], iterations=1)
+    exact = lsq_linear(matrix, target, (-LARGEST_STEP, LARGEST_STEP)).x
+    assert found.phi == pytest.approx(exact, abs=2e-3)
+    assert found.phi[0] == LARGEST_STEP
 
 
 def location(values: Floats) -> Problem:
