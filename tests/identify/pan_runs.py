@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 import ptp_symbolic
 from ptp_symbolic.data import Log
 from ptp_symbolic.identify.coordinates import FreeParameter, free_parameter
+from ptp_symbolic.identify.evaluate import Tolerance
+from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters
 from ptp_symbolic.identify.run import Run, prepare_runs
 from ptp_symbolic.platform import read_platform
 from tests.independent.pan_drive import CURRENT, LOAD_ANGLE, PanDrive, simulate
@@ -31,6 +33,9 @@ TRUTH = {
 GAP = math.radians(1.49)
 SAME_BOTH_WAYS = {f"a_{name}_pan": 0.0 for name in ("F_c", "F_s", "v_s", "F_v")}
 KNOWN = {**MODEL.defaults, **SAME_BOTH_WAYS, "gap_pan": GAP}
+
+FLOOR = 1.0 / math.sqrt(12.0)  # what rounding leaves, counts rms
+COARSE_STEPS, FINE_STEPS = Effort(15, 1e-3), Effort(30, 1e-6, Tolerance(1e-5, 1e-7))
 
 
 @dataclass(frozen=True)
@@ -99,3 +104,12 @@ def starts_off(truth: dict[str, float], seed: int) -> tuple[FreeParameter, ...]:
 def unfree(names: dict[str, float]) -> dict[str, float]:
     """Known values without those of `names`."""
     return {name: value for name, value in KNOWN.items() if name not in names}
+
+
+def fitted(runs: tuple[Run, ...], free: tuple[FreeParameter, ...], fixed: dict[str, float]) -> Fit:
+    """Fit coarsely, then finely from there."""
+    first = fit_parameters(MODEL, runs, free, fixed, None, COARSE_STEPS)
+    begin = tuple(
+        free_parameter(f.name, first.values[f.name], f.lower, f.upper, None, f.tied) for f in free
+    )
+    return fit_parameters(MODEL, runs, begin, fixed, first.z, FINE_STEPS)

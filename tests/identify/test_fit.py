@@ -5,18 +5,20 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from ptp_symbolic.identify.coordinates import FreeParameter, free_parameter
+from ptp_symbolic.identify.coordinates import free_parameter
 from ptp_symbolic.identify.evaluate import Tolerance, evaluate
-from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, run_counts
+from ptp_symbolic.identify.fit import Fit, fit_parameters, run_counts
 from ptp_symbolic.identify.intervals import estimates
-from ptp_symbolic.identify.run import Run
 from tests.identify.pan_runs import (
+    FINE_STEPS,
+    FLOOR,
     GAP,
     KNOWN,
     MODEL,
     THREE,
     TRUTH,
     crawl,
+    fitted,
     make_runs,
     seconds,
     sine,
@@ -25,19 +27,6 @@ from tests.identify.pan_runs import (
 )
 from tests.independent.pan_drive import PanDrive
 from tests.independent.pan_logs import COUNT
-
-FINE = Tolerance(1e-5, 1e-7)
-COARSE_STEPS, FINE_STEPS = Effort(15, 1e-3), Effort(30, 1e-6, FINE)
-FLOOR = 1.0 / np.sqrt(12.0)
-
-
-def fitted(runs: tuple[Run, ...], free: tuple[FreeParameter, ...], fixed: dict[str, float]) -> Fit:
-    """Fit coarsely, then finely from there."""
-    first = fit_parameters(MODEL, runs, free, fixed, None, COARSE_STEPS)
-    begin = tuple(
-        free_parameter(f.name, first.values[f.name], f.lower, f.upper, None, f.tied) for f in free
-    )
-    return fit_parameters(MODEL, runs, begin, fixed, first.z, FINE_STEPS)
 
 
 @pytest.fixture(scope="module", params=[10, 11])

@@ -11,8 +11,17 @@ from ptp_symbolic.identify.fit import Effort, all_values, fit_parameters
 from ptp_symbolic.identify.intervals import estimates
 from ptp_symbolic.identify.requirements import Allow, keep_possible
 from ptp_symbolic.runtime.model import Model
-from tests.identify.pan_runs import MODEL, THREE, TRUTH, Floats, make_runs, starts_off, unfree
-from tests.identify.test_fit import FLOOR, fitted
+from tests.identify.pan_runs import (
+    FLOOR,
+    MODEL,
+    THREE,
+    TRUTH,
+    Floats,
+    fitted,
+    make_runs,
+    starts_off,
+    unfree,
+)
 from tests.independent.pan_drive import PanDrive
 
 SLIDING = free_parameter("F_c_pan", 0.24, 0.0, 20.0)
