@@ -74,7 +74,7 @@ def first_round(
         for base in bases
         for candidate in candidates
         if candidate.key not in base.keys
-        for origin, values, z in _origins(task, base, candidate)
+        for origin, values, z in _origins(task, base, candidate, base is bases[0])
         for start in candidate.starts
     ]
     task.progress(f"trying {len(candidates)} candidates from {len(searches)} starts")
@@ -106,13 +106,13 @@ def _telling_runs(fit: Fit, share: float) -> tuple[int, ...]:
 
 
 def _origins(
-    task: Task, base: Trial, candidate: Candidate
+    task: Task, base: Trial, candidate: Candidate, is_best: bool
 ) -> list[tuple[str, dict[str, float], tuple[FloatArray, ...]]]:
-    """Where searches begin: the optimum of `base`, and the declared parameters back at their table
-    start, because at the optimum they stand in for the effect that is still missing.
+    """Where searches begin: the optimum of `base`, and for the best base the declared parameters
+    back at their table start, because at the optimum they stand in for the effect still missing.
     """
     optimum = (OPTIMUM, dict(base.train.values), tuple(base.train.z))
-    if candidate.is_declared_value:
+    if candidate.is_declared_value or not is_best:
         return [optimum]
     rest = tuple(np.zeros(len(run.unknowns)) for run in task.train)
     table = {**base.train.values, **all_values_at_start(task.free)}

@@ -59,6 +59,8 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
             low, high, spread = free.lower, free.upper, np.inf
             partners = np.flatnonzero(involved[:, involved[index]].any(axis=1))
             others = tuple(fit.free[i].name for i in partners if i != index)
+        if free.period is not None:
+            low, high = max(low, value - free.period / 2), min(high, value + free.period / 2)
         near = 1e-4 * max(abs(free.start), abs(value))
         at_bound = value - free.lower <= near or free.upper - value <= near
         width = (

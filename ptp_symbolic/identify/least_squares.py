@@ -196,14 +196,19 @@ def _step(
     schur, right = np.diag(weight), -weight * (phi - problem.prior_centre)
     diagonal = weight.copy()
     blocks = []
-    for e, a, sigma in zip(at.evaluations, at.z, problem.start_sigma, strict=True):
+    for e, a, sigma, low, high in zip(
+        at.evaluations, at.z, problem.start_sigma, problem.start_lower, problem.start_upper,
+        strict=True,
+    ):  # fmt: skip
         share = np.sqrt(_share(e, weights.bend))
         j, k, r = share * e.by_parameter, share * e.by_start, share * e.residual
         jj, jk, kk = j.T @ j, j.T @ k, k.T @ k
         kk = kk + np.diag(scale / sigma**2)
         kk = kk + damping * np.diag(np.diag(kk))
         gr, gz = -(j.T @ r), -(k.T @ r) - scale * a / sigma**2
-        inverse = np.linalg.inv(kk) if len(a) else kk
+        moves = ~(((a <= low) & (gz < 0)) | ((a >= high) & (gz > 0)))
+        inverse = np.zeros_like(kk)
+        inverse[np.ix_(moves, moves)] = np.linalg.inv(kk[np.ix_(moves, moves)])
         schur += jj - jk @ inverse @ jk.T
         right += gr - jk @ inverse @ gz
         diagonal += np.diag(jj)
@@ -212,7 +217,26 @@ def _step(
     free = ~held & (diagonal > 0)
     step = np.zeros(nf)
     if free.any():
-        matrix = schur[np.ix_(free, free)] + np.diag(damping * diagonal[free] + 1e-300)
-        step[free] = np.linalg.lstsq(matrix, right[free], rcond=1e-14)[0]
-        step *= min(1.0, LARGEST_STEP / max(np.max(np.abs(step)), 1e-300))
+        matrix = schur[np.ix_(free, free)] + np.diag(damping * diagonal[free])
+        step[free] = _limited(matrix, right[free], np.sqrt(diagonal[free]))
     return step, [inverse @ (gz - jk.T @ step) for jk, inverse, gz in blocks]
+
+
+def _limited(matrix: FloatArray, right: FloatArray, size: FloatArray) -> FloatArray:
+    """Solve matrix @ step = right with no coordinate beyond LARGEST_STEP; `size` scales them [nf].
+
+    The one that wants furthest is held there and the others solved anew: scaling all alike would
+    let a parameter on its way to zero stop the rest.
+    """
+    step, moves = np.zeros(len(right)), np.ones(len(right), dtype=np.bool_)
+    matrix, right = matrix / np.outer(size, size), right / size
+    while moves.any():
+        rest = right[moves] - matrix[np.ix_(moves, ~moves)] @ (size * step)[~moves]
+        found = np.linalg.lstsq(matrix[np.ix_(moves, moves)], rest, rcond=1e-14)[0]
+        step[moves] = found / size[moves]
+        worst = int(np.argmax(np.where(moves, np.abs(step), 0.0)))
+        if abs(step[worst]) <= LARGEST_STEP:
+            break
+        step[worst] = np.copysign(LARGEST_STEP, step[worst])
+        moves[worst] = False
+    return step

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.identify.coordinates import FreeParameter
+from ptp_symbolic.identify.coordinates import FreeParameter, limits
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 Allow = Callable[[FloatArray, FloatArray], FloatArray]
 
-HALVINGS, CORRECTIONS, DIFFERENCE = 30, 20, 1e-6
+HALVINGS, CORRECTIONS, DIFFERENCE = 40, 20, 1e-6
 
 
 def keep_possible(
@@ -24,11 +24,11 @@ def keep_possible(
 
     `parameters(phi)` gives all parameters [np]. A relation broken at phi already is let be.
     """
-    relations = []
+    relations, bounds = [], limits(free)
     for row, (names, _, strict) in enumerate(model.module.REQUIREMENTS):
         about = np.array([bool({f.name, *f.tied} & set(names)) for f in free], dtype=np.bool_)
         if about.any():
-            relations.append(_Relation(model, parameters, row, strict, about))
+            relations.append(_Relation(model, parameters, row, strict, about, bounds))
 
     def allow(phi: FloatArray, trial: FloatArray) -> FloatArray:
         for relation in relations:
@@ -48,6 +48,7 @@ class _Relation:
     row: int
     strict: bool
     about: NDArray[np.bool_]
+    bounds: tuple[FloatArray, FloatArray]
 
     def margin(self, phi: FloatArray) -> float:
         found = np.zeros(len(self.model.module.REQUIREMENTS))
@@ -83,8 +84,9 @@ class _Relation:
         inward = slope / max(float(slope @ slope), 1e-300)
         rest -= inward * min(0.0, float(slope @ rest))
         for _ in range(CORRECTIONS):
-            if self.holds(boundary + rest):
-                return np.where(self.about, boundary + rest, trial)
-            by = self.margin(boundary + rest)
-            rest += inward * (DIFFERENCE * abs(by) - by)
+            there = np.clip(boundary + rest, *self.bounds)
+            if self.holds(there):
+                return np.where(self.about, there, trial)
+            by = self.margin(there)
+            rest = there - boundary + inward * (DIFFERENCE * abs(by) - by)
         return np.where(self.about, boundary, trial)

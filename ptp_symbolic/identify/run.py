@@ -188,7 +188,10 @@ def _moving_edges(run: Run, edges: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
-    """Cut a run into windows of about `length` s, each with a start of its own."""
+    """Cut a run into windows of about `length` s, each with a start of its own.
+
+    Neighbours share the sample between them, so that no step from sample to sample is lost.
+    """
     duration = run.time[-1] - run.time[0]
     pieces = max(1, round(duration / length))
     if pieces == 1:

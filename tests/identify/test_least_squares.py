@@ -1,0 +1,193 @@
+"""The bordered Levenberg-Marquardt against SciPy, which solves for all unknowns side by side."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear, minimize_scalar
+
+from ptp_symbolic.identify.least_squares import (
+    LARGEST_STEP,
+    Optimum,
+    Problem,
+    cost_of,
+    minimise,
+    robust_bend,
+)
+from tests.identify.curves import PHI, PRIOR, Curves, Floats, evaluation, measure
+
+BEGIN = PHI * [1.4, 1.1, 0.6]
+
+
+@pytest.fixture(scope="module")
+def curves() -> Curves:
+    return measure(runs=5)
+
+
+def fitted(problem: Problem, curves: Curves) -> Optimum:
+    return minimise(problem, BEGIN, curves.nowhere(), iterations=200, gain=1e-13, rejections=12)
+
+
+def mean_square(found: Optimum) -> float:
+    return float(np.mean(np.concatenate([e.residual for e in found.evaluations]) ** 2))
+
+
+def test_five_runs_with_starts_of_their_own_end_where_scipy_ends(curves: Curves) -> None:
+    problem = curves.problem()
+    found = fitted(problem, curves)
+    phi, z, cost = curves.dense(problem, BEGIN)
+    assert found.failed is None
+    assert found.phi == pytest.approx(phi, rel=1e-6)
+    assert np.concatenate(found.z) == pytest.approx(np.concatenate(z), abs=1e-6)
+    assert found.cost == pytest.approx(cost, rel=1e-9)
+    assert found.phi == pytest.approx(PHI, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper"),
+    [((0.0, 0.0, 0.0), (9.0, 9.0, 1.3)), ((0.75, 0.0, 0.0), (9.0,) * 3), ((0.8,) * 3, (2.2,) * 3)],
+)
+def test_bounds_of_shared_parameters_hold_as_in_scipy(
+    curves: Curves, lower: tuple[float, ...], upper: tuple[float, ...]
+) -> None:
+    problem = curves.problem(lower, upper)
+    begin = np.clip(BEGIN, problem.lower + 1e-3, problem.upper - 1e-3)
+    found = fitted(problem, curves)
+    phi, z, cost = curves.dense(problem, begin, mean_square(found))
+    assert np.any((found.phi == problem.lower) | (found.phi == problem.upper))
+    assert found.phi == pytest.approx(phi, rel=1e-5)
+    assert np.concatenate(found.z) == pytest.approx(np.concatenate(z), abs=1e-5)
+    assert found.cost == pytest.approx(cost, rel=1e-8)
+
+
+def test_bounds_of_start_unknowns_hold_as_in_scipy(curves: Curves) -> None:
+    """What a start can no longer take up must bend the shared parameters as it does in SciPy."""
+    problem = curves.problem(start_bound=0.5)
+    found = fitted(problem, curves)
+    phi, z, cost = curves.dense(problem, BEGIN, mean_square(found))
+    at_bound = np.abs(np.concatenate(found.z)) == 0.5
+    assert 2 <= at_bound.sum() < at_bound.size
+    assert found.cost == pytest.approx(cost, rel=1e-6)
+    assert found.phi == pytest.approx(phi, rel=1e-4)
+    assert np.concatenate(found.z) == pytest.approx(np.concatenate(z), abs=1e-4)
+
+
+def test_prior_weighs_as_much_as_the_mean_square_residual(curves: Curves) -> None:
+    """At the end: precision times mean square. SciPy gets that weight and must agree with it."""
+    problem = curves.problem(precision=(90.0, 0.0, 90.0))
+    found = fitted(problem, curves)
+    phi, _, _ = curves.dense(problem, BEGIN, mean_square(found))
+    plain, _, _ = curves.dense(problem, BEGIN)
+    assert found.phi == pytest.approx(phi, rel=1e-5)
+    assert np.max(np.abs(phi / plain - 1.0)) > 0.01
+
+
+@pytest.mark.parametrize("coupling", [0.0, 0.6, -0.6])
+def test_one_parameter_that_wants_far_does_not_stop_the_others(coupling: float) -> None:
+    """The first step is SciPy's minimum in the box of largest steps."""
+    matrix = np.array([[1e-3, 0.0, 0.0], [1e-3 * coupling, 1.0, 0.0], [0.0, 0.3, 2.0]])
+    target = np.array([7.0, 0.4, -0.5])
+    far = np.full(3, 1e6)
+    problem = Problem(
+        lambda phi, z, tangents: [evaluation(target - matrix @ phi, -matrix, np.zeros((3, 0)))],
+        -far, far, *[[np.zeros(0)]] * 3, np.zeros(3), np.zeros(3),
+    )  # fmt: skip
+    found = minimise(problem, np.zeros(3), [np.zeros(0)], iterations=1)
+    exact = lsq_linear(matrix, target, (-LARGEST_STEP, LARGEST_STEP)).x
+    assert found.phi == pytest.approx(exact, abs=2e-3)
+    assert found.phi[0] == LARGEST_STEP
+
+
+def location(values: Floats) -> Problem:
+    """One parameter for runs without start unknowns: run r measures 50 times `values[r]`."""
+    wave = np.tile([1.0, -1.0], 25)
+    none: list[Floats] = [np.zeros(0) for _ in values]
+
+    def evaluate(phi: Floats, z: object, tangents: bool):
+        return [evaluation(v - phi[0] + wave, -np.ones((50, 1)), np.zeros((50, 0))) for v in values]
+
+    return Problem(
+        evaluate, np.array([-99.0]), np.array([99.0]), none, none, none, np.zeros(1), np.zeros(1)
+    )
+
+
+def test_loss_of_windows_by_hand() -> None:
+    """Twenty windows of ten samples: 19 of rms 1, one of rms 10, which counts linearly from 2.5."""
+    none = np.zeros((10, 0))
+    windows = [evaluation(np.full(10, r), none, none) for r in (*[1.0] * 19, 10.0)]
+    problem = location(np.zeros(20))
+    no_starts = [np.zeros(0)] * 20
+    bend = robust_bend(windows)
+    assert bend == 2.5
+    by_hand = 19 * 10 * 1.0 + 10 * (2 * 2.5 * 10.0 - 2.5**2)
+    assert cost_of(problem, windows, no_starts, bend) == pytest.approx(by_hand, rel=1e-14)
+    assert cost_of(problem, windows, no_starts) == pytest.approx(190 + 10 * 100, rel=1e-14)
+    assert robust_bend(windows[:19]) == np.inf
+    far = [replace(e, residual=8.0 * e.residual) for e in windows]
+    assert robust_bend(far) == np.inf
+    assert robust_bend([replace(windows[0], failed="stopped"), *windows[1:]]) == np.inf
+
+
+def test_windows_in_a_wrong_branch_hardly_move_the_optimum() -> None:
+    """Three windows of 23 lie far off. The optimum is that of Huber's loss of windows, by search
+    over one number; least squares would go three times as far from the truth, 0.
+    """
+    values = np.array([*np.linspace(-0.4, 0.4, 20), 12.0, 13.0, 14.0])
+    problem = location(values)
+    found = minimise(problem, np.array([1.0]), [np.zeros(0)] * 23, 100, 1e-13, 12)
+
+    def rms(at: float) -> Floats:
+        return np.sqrt((values - at) ** 2 + 1.0)
+
+    bend = 2.5 * np.median(rms(found.phi[0]))
+
+    def loss(at: float) -> float:
+        r = rms(at)
+        return float(np.sum(np.where(r <= bend, r**2, 2 * bend * r - bend**2)))
+
+    exact = minimize_scalar(loss, bounds=(-5.0, 5.0), method="bounded", options={"xatol": 1e-10})
+    assert found.phi[0] == pytest.approx(exact.x, abs=1e-6)
+    assert found.phi[0] < np.mean(values) / 3.0
+
+
+def test_steps_into_a_failing_region_are_never_accepted(curves: Curves) -> None:
+    """The simulation fails beyond phi_2 = 1.2, where the optimum (1.4) lies."""
+    tried = []
+
+    def fails(phi: Floats) -> bool:
+        tried.append(phi[2])
+        return bool(phi[2] > 1.2)
+
+    found = fitted(curves.problem(fails=fails), curves)
+    assert max(tried) > 1.2
+    assert 0.84 < found.phi[2] <= 1.2
+    assert found.failed is None
+    assert not any(e.failed for e in found.evaluations)
+    assert np.isfinite(found.cost)
+
+
+def test_a_start_that_fails_is_reported_and_left_as_it_is(curves: Curves) -> None:
+    found = fitted(curves.problem(fails=lambda phi: True), curves)
+    assert found.failed == "the model fails here"
+    assert found.cost == np.inf
+    assert np.array_equal(found.phi, BEGIN)
+
+
+def test_residuals_without_end_or_with_absurd_slopes_cost_infinitely(curves: Curves) -> None:
+    problem, z = curves.problem(), curves.nowhere()
+    good = problem.evaluate(PHI, z, True)
+    assert np.isfinite(cost_of(problem, good, z))
+    for bad in (
+        replace(good[0], residual=np.full(60, np.nan)),
+        replace(good[0], by_start=1e16 * np.ones((60, 2))),
+    ):
+        assert cost_of(problem, [bad, *good[1:]], z) == np.inf
+
+
+def test_starts_count_in_the_cost_by_their_prior(curves: Curves) -> None:
+    problem = curves.problem()
+    z = [np.full(n, 0.2) for n in curves.unknowns]
+    runs = problem.evaluate(PHI, z, False)
+    squares = sum(float(np.sum(e.residual**2)) for e in runs)
+    expected = squares + 3.0 * sum(curves.unknowns) * (0.2 / PRIOR) ** 2
+    assert cost_of(problem, runs, z, scale=3.0) == pytest.approx(expected, rel=1e-14)

@@ -1,0 +1,200 @@
+"""How long a run is simulated freely, and how it is cut: closed forms of simple axes."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import ptp_symbolic
+from ptp_symbolic.data import Log
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.identify.evaluate import Tolerance, evaluate
+from ptp_symbolic.identify.run import Run, prepare_runs, split_run
+from ptp_symbolic.identify.windows import cut, input_noise, propagated_noise, window_length
+from ptp_symbolic.platform import Platform, SignalDeclaration
+from tests.identify.curves import Floats
+
+COUNTS = 7200
+COUNT = 2 * math.pi / COUNTS
+SIGNALS = tuple(
+    SignalDeclaration(f"{what}_{axis}", f"{axis}_{what}", unit, role, counts)
+    for what, unit, role, counts in (
+        ("tau", "N m", "input", None),
+        ("theta", "rad", "output", COUNTS),
+    )
+    for axis in ("pan", "tilt")
+)
+PLATFORM = Platform("both", "Both axes", ("pan", "tilt"), 9.81, (), (), SIGNALS)
+MODEL = ptp_symbolic.load("payload")
+INERTIA = 0.02  # of the pan axis, N m s^2/rad
+FREE = {
+    "J_pan": INERTIA, "J_x_tilt": 1e-9, "J_z_tilt": 1e-9, "J_y_tilt": 0.01, "b_pan": 0.0,
+    "b_tilt": 0.0, "m_payload": 0.0, "J_x_payload": 0.0, "J_y_payload": 0.0, "J_z_payload": 0.0,
+}  # fmt: skip
+NONE = np.zeros(0, dtype=np.int64)
+
+
+def run_of(pan: Floats, tilt: Floats, torque: Floats, period: float) -> Run:
+    """A run with angles [k] in rad, rounded, and pan torque [k] in N m."""
+    angles = np.rint(np.column_stack([pan, tilt]) / COUNT) * COUNT
+    inputs = np.column_stack([torque, np.zeros(len(pan))])
+    (run,) = prepare_runs(
+        MODEL, PLATFORM, [Log("run", period * np.arange(len(pan)), inputs, angles)]
+    )
+    return run
+
+
+def still(duration: float, period: float = 0.01, tilt: float = 0.0) -> Run:
+    """A run at rest without torque."""
+    k = round(duration / period) + 1
+    return run_of(np.zeros(k), np.full(k, tilt), np.zeros(k), period)
+
+
+def drifts(seconds: float, period: float, paths: int) -> Floats:
+    """Angles [paths, k] of a free inertia of 1 under held white noise of rms 1, summed by hand."""
+    k = round(seconds / period)
+    torque = np.random.default_rng(9).standard_normal((paths, k))
+    rate = np.cumsum(np.hstack([np.zeros((paths, 1)), torque[:, :-1]]), axis=1) * period
+    return np.cumsum(rate * period + torque * period**2 / 2, axis=1)
+
+
+@pytest.mark.parametrize("length", [None, 8.0, 4.0, 2.0, 1.0, 0.5])
+def test_torque_noise_on_a_free_axis_limits_the_window(length: float | None) -> None:
+    """Its angle errs by a part of T^1.5. Noise is chosen to err by half a count, as the median of
+    paths, after 1.41 times the expected window (None: after twice the run).
+    """
+    period, duration = 0.01, 20.0
+    limit = 2.0 * duration if length is None else math.sqrt(2.0) * length
+    squares = np.median(np.mean(drifts(4.0, period, 1000) ** 2, axis=1)) * (limit / 4.0) ** 3
+    of_both_encoders = math.sqrt(squares / 2.0) / INERTIA / COUNT
+    noise = (0.5 / of_both_encoders, 0.0)
+    runs = [still(duration)] * 15
+    assert window_length(MODEL, runs, MODEL.parameter_vector(FREE), noise) == length
+
+
+def pendulum(growth: float, up: bool) -> tuple[Run, Floats]:
+    """A payload above (below) the tilt axis for as long as a small angle takes to grow by cosh."""
+    values = {**FREE, "m_payload": 5.0, "c_x_payload": 0.001}
+    rate = math.sqrt(5.0 * 9.81 * 0.001 / (0.01 + 5.0 * 0.001**2))
+    run = still(math.acosh(growth) / rate, 0.005, -math.pi / 2 if up else math.pi / 2)
+    return run, MODEL.parameter_vector(values)
+
+
+@pytest.mark.parametrize(
+    ("growth", "up", "length"),
+    [(8.0, True, None), (12.0, True, 1.0), (100.0, True, 1.0), (100.0, False, None)],
+)
+def test_a_payload_above_the_axis_is_cut_where_errors_grow_tenfold(
+    growth: float, up: bool, length: float | None
+) -> None:
+    run, p = pendulum(growth, up)
+    assert run.time[-1] > 1.0
+    assert window_length(MODEL, [run], p, (0.0, 0.0)) == length
+
+
+def test_noise_that_is_not_declared_is_seen_in_third_differences() -> None:
+    rng = np.random.default_rng(2)
+    t = 0.005 * np.arange(4000)
+    smooth = 3.0 * np.sin(2.0 * t)
+    smooth[1500:] += 6.0  # a step is no noise
+    run = run_of(t, t, smooth + 0.05 * rng.standard_normal(4000), 0.005)
+    assert input_noise(run, (None, None)) == pytest.approx([0.05, 0.0], rel=0.05, abs=1e-12)
+    assert input_noise(run, (0.2, None)) == pytest.approx([0.2, 0.0], abs=1e-12)
+
+
+def test_noise_that_a_start_cannot_take_up_is_what_propagates() -> None:
+    """Of the angle of a free axis a start takes up value and slope: a straight line."""
+    t = 0.01 * np.arange(300)
+    runs = [run_of(0.8 * t, 0.0 * t, 0.0 * t, 0.01)] * 151
+    z = [np.zeros(len(run.unknowns)) for run in runs]
+    assert [u.name for u in runs[0].unknowns] == ["theta_pan", "omega_pan", "theta_tilt"]
+    found = propagated_noise(MODEL, runs, z, MODEL.parameter_vector(FREE), (0.1, 0.0))
+    paths = drifts(3.0, 0.01, 2000)
+    line = np.column_stack([np.ones_like(t), t])
+    left = paths.T - line @ np.linalg.lstsq(line, paths.T)[0]
+    square = np.median(np.mean(left**2, axis=0)) * (0.1 / INERTIA / COUNT) ** 2
+    assert found == pytest.approx(math.sqrt(square / 2.0), rel=0.25)
+
+
+def wavy(duration: float = 10.0, period: float = 0.005) -> Run:
+    """Both axes on the move, resting together now and then; torque with memory."""
+    t = period * np.arange(round(duration / period) + 1)
+    torque = np.random.default_rng(6).standard_normal(len(t))
+    return run_of(0.9 * np.sin(2.1 * t), 0.4 * np.cos(2.1 * t + np.pi / 2), torque, period)
+
+
+@pytest.mark.parametrize("length", [0.3, 0.5, 1.0, 3.3])
+def test_a_cut_run_keeps_every_step_once_with_its_inputs(length: float) -> None:
+    """Neighbours share the sample between them: it ends one window and starts the next."""
+    run = wavy()
+    windows = split_run(MODEL, run, length)
+    assert len(windows) == round(10.0 / length)
+    for part, following in pairwise(windows):
+        assert part.time[-1] == following.time[0]
+    times = np.concatenate([w.time[:-1] for w in windows])
+    assert np.array_equal(times, run.time[:-1])
+    assert windows[-1].time[-1] == run.time[-1]
+    for name in ("measured", "held_inputs"):
+        parts = [getattr(w, name)[:-1] for w in windows]
+        assert np.array_equal(np.concatenate(parts), getattr(run, name)[:-1])
+    assert [w.name for w in windows][:2] == ["run#1", "run#2"]
+    lengths = np.array([w.time[-1] - w.time[0] for w in windows])
+    assert np.all((lengths > 0.45 * length) & (lengths < 1.55 * length))
+
+
+def test_a_window_is_driven_as_the_whole_run_is() -> None:
+    """Started in the state of the whole run, every window goes on like it."""
+    run, p, tight = wavy(), MODEL.parameter_vector(FREE), Tolerance(1e-9, 1e-11)
+    none = np.zeros(0)
+    whole = evaluate(MODEL, replace(run, unknowns=()), p, none, NONE, False, tight)
+    for window in split_run(MODEL, run, 2.0):
+        at = int(np.searchsorted(run.time, window.time[0]))
+        begun = replace(window, start=whole.states[at], unknowns=())
+        part = evaluate(MODEL, begun, p, none, NONE, False, tight)
+        assert part.failed is None
+        assert part.outputs == pytest.approx(whole.outputs[at : at + len(window.time)], abs=1e-8)
+
+
+def test_edges_lie_where_every_axis_moves_and_starts_carry_its_speed() -> None:
+    """Both axes turn round together, every 1.5 s; no window starts near there."""
+    run = wavy()
+    states = list(MODEL.state_names)
+    for window in split_run(MODEL, run, 1.0)[1:]:
+        begin = window.time[0]
+        assert abs(math.cos(2.1 * begin)) > 0.6
+        assert [u.name for u in window.unknowns] == [
+            "theta_pan", "omega_pan", "theta_tilt", "omega_tilt",
+        ]  # fmt: skip
+        start = dict(zip(states, window.start, strict=True))
+        assert start["theta_pan"] == window.measured[0, 0]
+        assert start["omega_pan"] == pytest.approx(1.89 * math.cos(2.1 * begin), abs=0.1)
+        assert start["omega_tilt"] == pytest.approx(-0.84 * math.cos(2.1 * begin), abs=0.1)
+
+
+def test_windows_at_rest_start_without_speed() -> None:
+    for window in split_run(MODEL, still(4.0), 1.0):
+        assert [u.name for u in window.unknowns] == ["theta_pan", "theta_tilt"]
+        assert np.all(window.start == 0.0)
+
+
+def test_without_a_length_or_shorter_than_one_runs_stay_whole() -> None:
+    runs = (still(4.0), still(2.0))
+    assert cut(MODEL, runs, None) == runs
+    assert split_run(MODEL, runs[0], 8.0) == (runs[0],)
+    assert [r.name for r in cut(MODEL, runs, 2.0)] == ["run#1", "run#2", "run"]
+
+
+def test_signals_that_the_model_lacks_or_that_have_no_size_are_refused() -> None:
+    t = np.arange(20.0)
+    log = Log("run", t, np.zeros((20, 2)), np.zeros((20, 2)))
+    lacking = replace(PLATFORM, signals=SIGNALS[1:])
+    with pytest.raises(InputError, match="No input signal 'tau_pan' to pair with"):
+        prepare_runs(MODEL, lacking, [log])
+    odd = replace(SIGNALS[2], signal="theta_roll")
+    with pytest.raises(InputError, match="No output signal 'theta_roll' to pair with"):
+        prepare_runs(MODEL, replace(PLATFORM, signals=(*SIGNALS[:2], odd)), [log])
+    bare = replace(SIGNALS[2], counts_per_revolution=None)
+    with pytest.raises(InputError, match="give its noise"):
+        prepare_runs(MODEL, replace(PLATFORM, signals=(*SIGNALS[:2], bare, SIGNALS[3])), [log])
