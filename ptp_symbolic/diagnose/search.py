@@ -41,7 +41,7 @@ FIRST = Effort(5, 3e-3, COARSE, 0.3, secants=True)
 DECLARED = Effort(8, 1e-2, COARSE, 0.3)
 MENDED = Effort(10, 2e-3, COARSE, secants=True)
 HELD_OUT = Effort(10, 1e-4, FINE)
-DROP_FACTOR, CLOSE_FACTOR = 25.0, 1.5
+DROP_FACTOR, CLOSE_FACTOR, CLOSE_COST = 25.0, 1.5, 4.0
 PURSUED, FINISHED, BEAM = 3, 3, 3
 VISIBLE_SHARE = 0.03
 
@@ -53,8 +53,8 @@ def fit_declared(task: Task) -> Trial:
         fit_parameters(task.model, task.train, free, task.fixed, None, DECLARED, task.executor)
         for free in (task.free, tuple(_shifted(f) for f in task.free))
     ]
-    trial = Trial((), min(fits, key=lambda fit: fit.cost))
-    trial = continue_fits(task, [trial], MENDED)[0]
+    trials = _best([Trial((), fit) for fit in fits], len(fits), CLOSE_COST)
+    trial = continue_fits(task, trials, MENDED)[0]
     if trial.train.rms_counts() < NEARBY_COUNTS:
         trial = continue_fits(task, [trial], LAST)[0]
     task.progress(f"the declared model leaves {trial.train.rms_counts():.3f} counts rms")

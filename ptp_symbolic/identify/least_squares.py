@@ -28,8 +28,9 @@ MANY_RUNS, BEND, NEARBY = 20, 2.5, 8.0
 class Problem:
     """What to minimise: `evaluate(phi, z, tangents)`, bounds of phi, bounds and prior of z.
 
-    `refine`, where given, mends the derivatives at every point that the search accepts; `allow`
-    cuts steps short that lead where no machine is possible.
+    `refine`, where given, mends the derivatives from which steps are taken: those that come out are
+    always the ones at the point, which intervals need. `allow` bends steps that lead where no
+    machine is possible.
     """
 
     evaluate: Evaluate
@@ -124,11 +125,12 @@ def minimise(
         return Optimum(at.phi, at.z, np.inf, at.evaluations, why)
     damping, quiet = FIRST_DAMPING, 0
     for _ in range(iterations):
+        mended = at
         if problem.refine is not None:
-            at = replace(at, evaluations=problem.refine(at.phi, at.z, at.evaluations))
+            mended = replace(at, evaluations=problem.refine(at.phi, at.z, at.evaluations))
         weights = _weigh(problem, at)
         before = cost_of(problem, at.evaluations, at.z, weights.bend, weights.scale)
-        found = _better(problem, at, weights, damping, before, rejections)
+        found = _better(problem, mended, weights, damping, before, rejections)
         if found is None:
             cost = before
             break
@@ -136,8 +138,6 @@ def minimise(
         quiet = quiet + 1 if abs(before - cost) / before < gain else 0
         if quiet >= 2:
             break
-    if problem.refine is not None:
-        at = replace(at, evaluations=problem.refine(at.phi, at.z, at.evaluations))
     return Optimum(at.phi, at.z, cost, at.evaluations)
 
 
