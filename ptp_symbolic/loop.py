@@ -37,7 +37,7 @@ def emit(platform: Platform) -> Model:
     Raises InputError when no machine with its parameters can exist.
     """
     equations = assemble(platform)
-    refuse_impossible(equations)
+    refuse_impossible(equations, platform)
     text = module_text(equations)
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     name = f"ptp_model_{digest}"

@@ -5,6 +5,7 @@ from ptp_symbolic.platform.declaration import (
     ParameterDeclaration,
     Platform,
     SignalDeclaration,
+    naming_file,
 )
 from ptp_symbolic.platform.reader import preset_names, read_platform
 from ptp_symbolic.platform.writer import platform_text
@@ -14,6 +15,7 @@ __all__ = [
     "ParameterDeclaration",
     "Platform",
     "SignalDeclaration",
+    "naming_file",
     "platform_text",
     "preset_names",
     "read_platform",

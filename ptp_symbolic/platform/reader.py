@@ -7,7 +7,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.platform import fields
 from ptp_symbolic.platform.declaration import (
     EffectDeclaration,
@@ -61,12 +61,12 @@ def read_platform(source: str | Path) -> Platform:
         effects=_effects(fields.required(document, "effects", where), axes, where),
         parameters=_parameters(document.get("parameters", {}), where),
         signals=_signals(document.get("signals", {}), where),
+        source=where,
     )
 
 
 def _locate(source: str | Path) -> Path:
-    names = preset_names()
-    if isinstance(source, str) and source in names:
+    if isinstance(source, str) and source in preset_names():
         return _PRESETS / f"{source}.toml"
     path = Path(source)
     try:
@@ -74,17 +74,14 @@ def _locate(source: str | Path) -> Path:
     except (OSError, ValueError):
         missing = True
     if missing:
-        presets = ", ".join(names)
-        if path.suffix == "" and len(path.parts) == 1:
-            raise InputError(
-                f"{fields.shown(str(source))} is no preset and no file; presets are {presets}; "
-                "or give the path of a platform TOML."
-            )
-        raise InputError(
-            f"{fields.shown(str(source))}: no such file; give the path of a platform TOML or one "
-            f"of the presets {presets}."
-        )
+        raise unknown_platform(str(source))
     return path
+
+
+def unknown_platform(source: str, names: tuple[str, ...] = ()) -> InputError:
+    """Return the refusal of a `source` that is no file and none of `names` or the presets."""
+    end = "; or give the path of a platform TOML"
+    return unknown("platform", source, (*names, *preset_names()), end)
 
 
 def _parse(path: Path) -> dict[str, Any]:
@@ -200,7 +197,7 @@ def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDecla
         if not lower <= value <= upper:
             raise InputError(
                 f"{where}.{key}: {fields.shown(entry[key])}{unit_text} lies outside its bounds "
-                f"{fields.shown(bounds)}; change one of them."
+                f"{fields.shown(bounds)}{unit_text}; change one of them."
             )
     return ParameterDeclaration(name, unit, value, key == "start", lower, upper)
 
