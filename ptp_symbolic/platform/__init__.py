@@ -7,7 +7,7 @@ from ptp_symbolic.platform.declaration import (
     SignalDeclaration,
     naming_file,
 )
-from ptp_symbolic.platform.reader import preset_names, read_platform
+from ptp_symbolic.platform.reader import platform_file, preset_names, read_platform
 from ptp_symbolic.platform.writer import platform_text
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "Platform",
     "SignalDeclaration",
     "naming_file",
+    "platform_file",
     "platform_text",
     "preset_names",
     "read_platform",

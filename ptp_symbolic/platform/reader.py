@@ -41,7 +41,7 @@ def read_platform(source: str | Path) -> Platform:
     and parameters exist is not known here. Raises InputError (one line) for a file that is missing,
     unreadable, not TOML, or says something that is not allowed.
     """
-    path = _locate(source)
+    path = platform_file(source)
     where = str(path)
     document = fields.table(_parse(path), where, ("platform", "effects", "parameters", "signals"))
     head = fields.table(
@@ -65,7 +65,11 @@ def read_platform(source: str | Path) -> Platform:
     )
 
 
-def _locate(source: str | Path) -> Path:
+def platform_file(source: str | Path, names: tuple[str, ...] = ()) -> Path:
+    """Return the file of a platform: the path given, or that of a preset.
+
+    Raises InputError where there is none; the message offers the presets and `names`.
+    """
     if isinstance(source, str) and source in preset_names():
         return _PRESETS / f"{source}.toml"
     path = Path(source)
@@ -74,14 +78,9 @@ def _locate(source: str | Path) -> Path:
     except (OSError, ValueError):
         missing = True
     if missing:
-        raise unknown_platform(str(source))
+        end = "; or give the path of a platform TOML"
+        raise unknown("platform", str(source), (*names, *preset_names()), end)
     return path
-
-
-def unknown_platform(source: str, names: tuple[str, ...] = ()) -> InputError:
-    """Return the refusal of a `source` that is no file and none of `names` or the presets."""
-    end = "; or give the path of a platform TOML"
-    return unknown("platform", source, (*names, *preset_names()), end)
 
 
 def _parse(path: Path) -> dict[str, Any]:
