@@ -11,7 +11,7 @@ from typing import Any
 from ptp_symbolic import loop
 from ptp_symbolic.codegen.latex import effect_equations
 from ptp_symbolic.codegen.module import module_text
-from ptp_symbolic.data import Log, read_logs
+from ptp_symbolic.data import Log, read_logs, read_split_logs
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.diagnose.candidates import find_candidates, vanished
 from ptp_symbolic.diagnose.rounds import Diagnosis, diagnose
@@ -84,9 +84,9 @@ def diagnose_platform(
 ) -> Output:
     """Fit `platform` to the `train` logs, find what it lacks, judge on the `validate` logs.
 
-    Raises InputError for logs and platforms that do not fit each other.
+    Raises InputError for logs and platforms that do not fit each other, and for a run in both.
     """
-    train_logs, validate_logs = read_logs(train, platform), read_logs(validate, platform)
+    train_logs, validate_logs = read_split_logs(train, validate, platform)
     progress("deriving the equations of the platform and its candidates")
     model = loop.emit(loop.with_candidates(platform))
     declared = effect_keys(platform)
