@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ptp_symbolic.joint_torques import inverse_dynamics
     from ptp_symbolic.runtime.model import Model
     from ptp_symbolic.sensitivities.forward import sensitivity
     from ptp_symbolic.simulation.run import simulate
@@ -15,7 +14,8 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 __all__ = ["__version__", "inverse_dynamics", "load", "sensitivity", "simulate"]
 
-# Imported when they are first asked for: importing the package stays free of SymPy and numba.
+# Imported when they are first asked for: importing the package stays free of SymPy and numba. Some
+# of them stand above rooms that import this file, so that not even a type checker may follow them.
 _HOMES = {
     "inverse_dynamics": "ptp_symbolic.joint_torques",
     "sensitivity": "ptp_symbolic.sensitivities.forward",
