@@ -139,6 +139,7 @@ def _task(
     progress: Progress,
 ) -> Task:
     progress("preparing the simulation (compiles for half a minute once on a new machine)")
+    loop.refuse_unknown_signals(platform, model)
     free = loop.free_parameters(platform, model)
     fixed = {**model.defaults, **off, **loop.known_values(platform, model)}
     runs = [prepare_runs(model, platform, tuple(logs)) for logs in (train, validate)]

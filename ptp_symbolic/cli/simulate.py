@@ -74,6 +74,7 @@ def simulate(
     from ptp_symbolic import load
     from ptp_symbolic.atomic import check_writable, write_files_atomically
     from ptp_symbolic.cli.tables import table_text, trajectory_columns
+    from ptp_symbolic.loop import refuse_unknown_signals
     from ptp_symbolic.regenerate import declared_platform
     from ptp_symbolic.simulation.run import output_times
     from ptp_symbolic.simulation.run import simulate as run
@@ -84,6 +85,7 @@ def simulate(
         )
     check_writable(out)
     platform, model = declared_platform(source), load(source)
+    refuse_unknown_signals(platform, model)
     signals, end = _signals(platform, model, inputs, duration)
     found = run(
         model, output_times(end, every), signals, initial=_initial(model, initial), method=method,

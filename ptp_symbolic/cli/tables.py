@@ -34,9 +34,7 @@ def trajectory_columns(
     for name, values in zip(model.input_names, u.T, strict=True):
         column = declared[name].column if name in declared else name
         columns[column] = (model.units[name], values)
-    measured = [
-        s for s in platform.signals if s.role == "output" and s.signal in model.output_names
-    ]
+    measured = [s for s in platform.signals if s.role == "output"]
     y = _output_values(model, found, u) if measured else None
     for signal in measured:
         assert y is not None

@@ -1,5 +1,6 @@
 """An emitted model at run time: names, units, defaults and compiled functions."""
 
+import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -236,7 +237,7 @@ class Model:
 
 def _refuse_out_of_bounds(p: ModelParameter, value: float) -> None:
     below, above = BOUND_SLACK * abs(p.lower), BOUND_SLACK * abs(p.upper)
-    if not p.lower - below <= value <= p.upper + above or not np.isfinite(value):
+    if not p.lower - below <= value <= p.upper + above or not math.isfinite(value):
         raise InputError(
             f"Parameter '{p.name}' = {value:g} {p.unit} lies outside its bounds"
             f" [{p.lower:g}, {p.upper:g}] {p.unit}; change the value."

@@ -65,6 +65,27 @@ def test_logs(tmp_path: Path, content: str, expected: str) -> None:
     assert not out.exists()
 
 
+@pytest.mark.parametrize("command", ["simulate", "fit"])
+def test_unknown_signals_get_the_nearest(call, tmp_path: Path, command: str) -> None:
+    logs = [str(SAMPLE / "train")] if command == "fit" else []
+    for old, new, wanted in (
+        (
+            "[signals.tau_pan]",
+            "[signals.tau_pam]",
+            "input signal 'tau_pam': did you mean 'tau_pan'",
+        ),
+        (
+            "[signals.theta_tilt]",
+            "[signals.theta_tlt]",
+            "signal 'theta_tlt': did you mean 'theta_t",
+        ),
+    ):
+        platform = changed_platform(tmp_path, old, new)
+        done = call(command, "--platform", platform, *logs, "--out", tmp_path / "out")
+        assert done.code == 2
+        assert f"{platform}: Unknown " in done.err and wanted in done.err
+
+
 def test_output_that_cannot_be_written(tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("", encoding="utf-8")
