@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from ptp_symbolic.data import Log, read_inputs, read_log, read_logs, read_split_logs
+from ptp_symbolic.data import Log, read_inputs, read_log, read_logs
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import Platform, SignalDeclaration
 
@@ -190,28 +190,6 @@ def test_time_may_be_in_any_unit_of_time(tmp_path: Path) -> None:
     path = write(tmp_path, text.replace("\n15.0,", "\n10.0,"))
     with pytest.raises(InputError, match=r"run.csv:5: time 10.0 ms repeats 10.0 ms of the line"):
         read_log(path, PLATFORM)
-
-
-def test_a_run_is_never_both_fitted_and_judged_by(tmp_path: Path) -> None:
-    first = write(tmp_path, GOOD, "first.csv")
-    other = write(tmp_path, GOOD.replace("4.50", "4.75"), "other.csv")
-    copies = tmp_path / "copies"
-    copies.mkdir()
-    shifted = [f"{0.005 * k + 7:.4f},{row.partition(',')[2]}" for k, row in enumerate(ROWS)]
-    same = (
-        first,
-        write(copies, GOOD, "copy.csv"),
-        write(tmp_path, GOOD.replace("\n", "\r\n"), "windows.csv"),
-        write(tmp_path, "\n".join([HEADER, *shifted]) + "\n", "shifted.csv"),
-        copies,
-    )
-    for leak in same:
-        with pytest.raises(InputError, match="holds the same run as") as refused:
-            read_split_logs([other, first], [leak], PLATFORM)
-        assert f"as {first}, which" in str(refused.value)
-        assert str(leak) in str(refused.value)
-    fitted, judging = read_split_logs([other], [first], PLATFORM)
-    assert [log.name for log in (*fitted, *judging)] == ["other", "first"]
 
 
 def test_missing_folder_and_oversized_files_are_refused(tmp_path: Path) -> None:
