@@ -34,6 +34,7 @@ from ptp_symbolic.platform import (
     EffectDeclaration,
     ParameterDeclaration,
     Platform,
+    naming_file,
     platform_text,
 )
 from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
@@ -142,7 +143,8 @@ def _task(
     loop.refuse_unknown_signals(platform, model)
     free = loop.free_parameters(platform, model)
     fixed = {**model.defaults, **off, **loop.known_values(platform, model)}
-    runs = [prepare_runs(model, platform, tuple(logs)) for logs in (train, validate)]
+    with naming_file(platform):
+        runs = [prepare_runs(model, platform, tuple(logs)) for logs in (train, validate)]
     start = {**fixed, **{name: f.start for f in free for name in (f.name, *f.tied)}}
     noises = {s.signal: s.noise for s in platform.signals}
     noise = tuple(noises[name] for name in model.input_names)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.data.table import Table, read_numbers, read_table
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.platform import Platform, SignalDeclaration
+from ptp_symbolic.platform import Platform, SignalDeclaration, naming_file
 from ptp_symbolic.platform.units import compatible, to_si
 
 MIN_ROWS = 10
@@ -40,10 +40,11 @@ def read_log(path: Path | str, platform: Platform) -> Log:
     inputs = [signal for signal in platform.signals if signal.role == "input"]
     outputs = [signal for signal in platform.signals if signal.role == "output"]
     if not outputs:
-        raise InputError(
-            f"Platform '{platform.name}' has no output signal to compare with {path}; add one, "
-            "such as [signals.theta_pan]."
-        )
+        with naming_file(platform):
+            raise InputError(
+                f"Platform '{platform.name}' has no output signal to compare with {path}; add one, "
+                "such as [signals.theta_pan]."
+            )
     time, values = _read_signals(path, [*inputs, *outputs])
     split = len(inputs)
     return Log(
@@ -63,10 +64,11 @@ def read_inputs(
     """
     inputs = [signal for signal in platform.signals if signal.role == "input"]
     if not inputs:
-        raise InputError(
-            f"Platform '{platform.name}' has no input signal to read from {path}; add one, such as "
-            "[signals.u_pan]."
-        )
+        with naming_file(platform):
+            raise InputError(
+                f"Platform '{platform.name}' has no input signal to read from {path}; add one, "
+                "such as [signals.u_pan]."
+            )
     return _read_signals(Path(path), inputs)
 
 

@@ -103,3 +103,12 @@ def test_inputs_are_written_as_they_are_held(call, tmp_path: Path) -> None:
     call(*IDEAL, "--input", "tau_tilt=ramp:0..1@0..0.1", "--duration", 0.1, "--out", tmp_path)
     time, inputs = read_inputs(tmp_path / "trajectory.csv", read_platform("thesis-ideal"))
     assert inputs[:, 1] == pytest.approx(10.0 * time)
+
+
+def test_long_lists_of_defaults_are_cut(call, tmp_path: Path) -> None:
+    path = tmp_path / "bare.toml"
+    path.write_text(UNDECLARED, encoding="utf-8")
+    done = call("report", "derivation", "--platform", path, "--out", tmp_path / "out")
+    assert done.code == 0
+    assert done.err.count(" = ") == 6
+    assert done.err.endswith("m_payload = 4.992 kg, J_x_payload = 0.0053 kg m^2 and 5 more.\n")
