@@ -4,6 +4,8 @@ The tangents follow the variational equation with the method of the run itself; 
 jump by the change of the vector field times the shift of the event (Aizerman and Gantmacher, 1958).
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

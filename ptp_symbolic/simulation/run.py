@@ -1,5 +1,7 @@
 """Simulate a model: inputs as profiles or logs, located events, energy ledger."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -155,7 +157,7 @@ def _regular_times(duration: float, every: float) -> FloatArray:
             f" {MOST_SAMPLES} are allowed; shorten the duration, or give output times further"
             f" apart (--every {1.01 * duration / MOST_SAMPLES:.3g})."
         )
-    if abs(count - round(count)) < 1e-6 or count < 1.0:
+    if abs(count - round(count)) < 1e-3 or count < 1.0:
         return np.linspace(0.0, duration, max(2, round(count) + 1))
     return np.append(every * np.arange(int(count) + 1), duration)
 

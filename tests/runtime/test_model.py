@@ -105,6 +105,8 @@ def test_the_package_shows_real_signatures_and_docstrings() -> None:
         assert "InputError" in (function.__doc__ or "")
         assert name in dir(ptp_symbolic)
     assert "initial" in inspect.signature(ptp_symbolic.simulate).parameters
+    annotation = inspect.signature(ptp_symbolic.simulate).parameters["times"].annotation
+    assert annotation == "float | ArrayLike"  # not the page that numpy makes of it
     with pytest.raises(AttributeError, match="no attribute 'simulat'"):
         ptp_symbolic.simulat  # noqa: B018 - looking it up is the test
 
