@@ -8,9 +8,29 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ptp_symbolic.runtime.model import Model
+    from ptp_symbolic.sensitivities.forward import sensitivity
+    from ptp_symbolic.simulation.run import simulate
 
 __version__ = "0.1.0"
 __all__ = ["__version__", "inverse_dynamics", "load", "sensitivity", "simulate"]
+
+# Imported when they are first asked for: importing the package stays free of SymPy and numba. Some
+# of them stand above rooms that import this file, so that not even a type checker may follow them.
+_HOMES = {
+    "inverse_dynamics": "ptp_symbolic.joint_torques",
+    "sensitivity": "ptp_symbolic.sensitivities.forward",
+    "simulate": "ptp_symbolic.simulation.run",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'ptp_symbolic' has no attribute '{name}'")
+    return getattr(importlib.import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOMES})
 
 
 def load(source: str | Path) -> Model:
@@ -22,33 +42,7 @@ def load(source: str | Path) -> Model:
 
     if str(source) in model_names():
         return load_model(str(source))
-    from ptp_symbolic.errors import InputError
-    from ptp_symbolic.platform import preset_names, read_platform
-
-    if not Path(source).suffix and str(source) not in preset_names():
-        choices = ", ".join((*model_names(), *preset_names()))
-        raise InputError(
-            f"Unknown model '{source}'. Choose one of: {choices}; or give a TOML file."
-        )
     from ptp_symbolic.loop import emit
+    from ptp_symbolic.platform import platform_file, read_platform
 
-    return emit(read_platform(source))
-
-
-def simulate(model: Model, *args: Any, **kwargs: Any) -> Any:
-    """Simulate `model`; see `ptp_symbolic.simulation.run.simulate` for the arguments."""
-    return importlib.import_module("ptp_symbolic.simulation.run").simulate(model, *args, **kwargs)
-
-
-def sensitivity(model: Model, *args: Any, **kwargs: Any) -> Any:
-    """Forward sensitivities of `model`; see `ptp_symbolic.sensitivities.forward.sensitivity`."""
-    return importlib.import_module("ptp_symbolic.sensitivities.forward").sensitivity(
-        model, *args, **kwargs
-    )
-
-
-def inverse_dynamics(machine: Any, *args: Any, **kwargs: Any) -> Any:
-    """Torques that a motion takes; see `ptp_symbolic.joint_torques.inverse_dynamics`."""
-    return importlib.import_module("ptp_symbolic.joint_torques").inverse_dynamics(
-        machine, *args, **kwargs
-    )
+    return emit(read_platform(platform_file(source, model_names())))

@@ -11,11 +11,11 @@ from typing import Any
 from ptp_symbolic import loop
 from ptp_symbolic.codegen.latex import effect_equations
 from ptp_symbolic.codegen.module import module_text
-from ptp_symbolic.data import Log, read_logs
+from ptp_symbolic.data import Log, read_logs, read_split_logs
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.diagnose.candidates import find_candidates, vanished
 from ptp_symbolic.diagnose.rounds import Diagnosis, diagnose
-from ptp_symbolic.diagnose.search import fit_declared
+from ptp_symbolic.diagnose.search import HELD_OUT, fit_declared
 from ptp_symbolic.diagnose.summary import (
     curves_of,
     error_table,
@@ -26,6 +26,7 @@ from ptp_symbolic.diagnose.summary import (
 )
 from ptp_symbolic.diagnose.trial import Task, Trial
 from ptp_symbolic.diagnose.verdict import EXPLAINED, PARTLY, UP_TO_GROUP
+from ptp_symbolic.identify.fit import all_values_at_start, fit_parameters
 from ptp_symbolic.identify.intervals import Estimate, estimates
 from ptp_symbolic.identify.run import prepare_runs
 from ptp_symbolic.identify.windows import cut, window_length
@@ -33,6 +34,7 @@ from ptp_symbolic.platform import (
     EffectDeclaration,
     ParameterDeclaration,
     Platform,
+    naming_file,
     platform_text,
 )
 from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
@@ -40,6 +42,7 @@ from ptp_symbolic.runtime.model import Model
 
 Progress = Callable[[str], None]
 SCHEMA_VERSION = 1
+FAR_FROM_FLOOR = 3.0  # input noise may double the floor where runs are cut into windows
 
 
 @dataclass(frozen=True)
@@ -60,20 +63,49 @@ def fit_platform(
 ) -> Output:
     """Fit the free parameters of `platform` to all logs in `paths`.
 
-    Raises InputError for logs and platforms that do not fit each other.
+    The error before is that at the declared start values (None where they do not simulate), as
+    after with the state at the start of every run fitted. Raises InputError for logs and platforms
+    that do not fit each other.
     """
     logs = read_logs(paths, platform)
     model = loop.emit(platform)
     with ThreadPoolExecutor(os.cpu_count()) as executor:
         task = _task(platform, model, logs, logs, {}, executor, progress)
-        trial = fit_declared(task)
+        begun = _as_declared(task)
+        trial = fit_declared(task) if task.free else begun
+    error = error_table(begun, trial, None)["train"]
+    left, floor = (error[when]["total"]["rmse_counts"] for when in ("after", "noise_floor"))
+    cut_up = len(task.train) > len(logs)
     summary = {
         "schema_version": SCHEMA_VERSION,
         "platform": {"name": platform.name, "title": platform.title},
         "parameters": fit_table(trial),
-        "error": error_table(trial, trial, None)["train"],
+        "error": error | ({"before": None} if begun.train.failed else {}),
+        "far_from_floor": trial.train.failed is not None or left > FAR_FROM_FLOOR * floor,
+        "windows": {"count": len(task.train), "seconds": _mean_length(task)} if cut_up else None,
     }
-    return Output(summary, {"fit.json": _json(summary)})
+    files = {"fit.json": _json(summary), "platform.toml": platform_text(_fitted(platform, trial))}
+    return Output(summary, files)
+
+
+def _as_declared(task: Task) -> Trial:
+    """The declared start values, with nothing but the starts of the runs fitted."""
+    values = {**task.fixed, **all_values_at_start(task.free)}
+    return Trial(
+        (), fit_parameters(task.model, task.train, (), values, None, HELD_OUT, task.executor)
+    )
+
+
+def _mean_length(task: Task) -> float:
+    return sum(float(run.time[-1] - run.time[0]) for run in task.train) / len(task.train)
+
+
+def _fitted(platform: Platform, trial: Trial) -> Platform:
+    """`platform` with every fitted value as the new start, within its bounds to the last bit."""
+    values = {
+        f.name: min(max(trial.train.values[f.name], f.lower), f.upper) for f in trial.train.free
+    }
+    return loop.extended(platform, (), values, ())
 
 
 def diagnose_platform(
@@ -84,9 +116,9 @@ def diagnose_platform(
 ) -> Output:
     """Fit `platform` to the `train` logs, find what it lacks, judge on the `validate` logs.
 
-    Raises InputError for logs and platforms that do not fit each other.
+    Raises InputError for logs and platforms that do not fit each other, and for a run in both.
     """
-    train_logs, validate_logs = read_logs(train, platform), read_logs(validate, platform)
+    train_logs, validate_logs = read_split_logs(train, validate, platform)
     progress("deriving the equations of the platform and its candidates")
     model = loop.emit(loop.with_candidates(platform))
     declared = effect_keys(platform)
@@ -108,9 +140,11 @@ def _task(
     progress: Progress,
 ) -> Task:
     progress("preparing the simulation (compiles for half a minute once on a new machine)")
+    loop.refuse_unknown_signals(platform, model)
     free = loop.free_parameters(platform, model)
     fixed = {**model.defaults, **off, **loop.known_values(platform, model)}
-    runs = [prepare_runs(model, platform, tuple(logs)) for logs in (train, validate)]
+    with naming_file(platform):
+        runs = [prepare_runs(model, platform, tuple(logs)) for logs in (train, validate)]
     start = {**fixed, **{name: f.start for f in free for name in (f.name, *f.tied)}}
     noises = {s.signal: s.noise for s in platform.signals}
     noise = tuple(noises[name] for name in model.input_names)

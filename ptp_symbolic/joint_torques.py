@@ -77,7 +77,7 @@ def inverse_dynamics(
     """
     platform = _with_values(_platform(machine), parameters or {})
     equations = assemble(torque_driven(platform))
-    refuse_impossible(equations)
+    refuse_impossible(equations, platform)
     angles, rates, accelerations, times = _motion(motion).arrays(equations.axes)
     ways = np.where(rates != 0.0, np.sign(rates), np.sign(accelerations))
     wanted = [sp.Symbol(f"alpha_{axis}", real=True) for axis in equations.axes]

@@ -13,8 +13,9 @@ from ptp_symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.derivation.placement import available_quantities, place_effects
 from ptp_symbolic.effects import EFFECTS
+from ptp_symbolic.errors import unknown
 from ptp_symbolic.identify.coordinates import FreeParameter, free_parameter
-from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform
+from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, naming_file
 from ptp_symbolic.runtime.loader import load_module
 from ptp_symbolic.runtime.model import Model
 
@@ -37,7 +38,7 @@ def emit(platform: Platform) -> Model:
     Raises InputError when no machine with its parameters can exist.
     """
     equations = assemble(platform)
-    refuse_impossible(equations)
+    refuse_impossible(equations, platform)
     text = module_text(equations)
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     name = f"ptp_model_{digest}"
@@ -128,6 +129,25 @@ def known_values(platform: Platform, model: Model) -> dict[str, float]:
         for d in platform.parameters
         if not d.free and d.same_as is None and d.name in own
     }
+
+
+def refuse_unknown_signals(platform: Platform, model: Model) -> None:
+    """Raise InputError for a signal of `platform` that `model` does not have.
+
+    An input more than the model takes is let be, unless one that it takes is missing.
+    """
+    inputs, outputs = (
+        [s.signal for s in platform.signals if s.role == r] for r in ("input", "output")
+    )
+    complete = set(model.input_names) <= set(inputs)
+    with naming_file(platform):
+        for role, given, known in (
+            ("input", () if complete else inputs, model.input_names),
+            ("output", outputs, model.output_names),
+        ):
+            for name in given:
+                if name not in known:
+                    raise unknown(f"{role} signal", name, known)
 
 
 def extended(

@@ -2,15 +2,16 @@
 
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from ptp_symbolic.atomic import write_text_if_changed
 from ptp_symbolic.codegen.module import module_text, sealed
+from ptp_symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.platform import read_platform
+from ptp_symbolic.platform import Platform, platform_file, read_platform
 from ptp_symbolic.runtime.loader import generated_folder
 
 COMMITTED = {
@@ -23,6 +24,15 @@ COMMITTED = {
 LINE_LENGTH = 100
 
 
+def declared_platform(source: str | Path) -> Platform:
+    """Read the platform of a committed model, a preset or a file.
+
+    Raises InputError for what is none of them, and for a file that cannot be used.
+    """
+    name = COMMITTED.get(str(source), source)
+    return read_platform(platform_file(name, tuple(COMMITTED)))
+
+
 @dataclass(frozen=True)
 class Outcome:
     """Modules that were written (or, when checking, would be), by file name."""
@@ -32,30 +42,52 @@ class Outcome:
 
 
 def regenerate(models: Sequence[str] = (), check: bool = False) -> Outcome:
-    """Emit `models` (all without a name); with `check` nothing is written.
+    """Emit committed `models` (all without a name); with `check` nothing is written.
 
     Raises InputError for an unknown model.
     """
     for model in models:
         if model not in COMMITTED:
-            raise InputError(f"Unknown model '{model}'. Choose from: {', '.join(COMMITTED)}.")
-    folder = generated_folder()
+            declared_platform(model)  # refuses what is no platform either
+            raise InputError(
+                f"'{model}' is a platform, not one of the committed models"
+                f" {', '.join(COMMITTED)}; add --out FOLDER to emit its module there."
+            )
+    texts = {model: module_of(read_platform(COMMITTED[model])) for model in models or COMMITTED}
+    return _write(texts, generated_folder(), check)
+
+
+def regenerate_into(folder: Path, platforms: Sequence[Platform], check: bool = False) -> Outcome:
+    """Emit a module for each of `platforms` into `folder`, named as they are.
+
+    With `check` nothing is written. Raises InputError for a machine that cannot exist, and for two
+    platforms of one name.
+    """
+    names = [platform.name for platform in platforms]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"Two platforms are called '{name}'; change the name of one.")
+    texts = {platform.name: module_of(platform) for platform in platforms}
+    return _write(texts, folder, check)
+
+
+def module_of(platform: Platform) -> str:
+    """Text of the module of `platform`, formatted and sealed with its checksum."""
+    equations = assemble(platform)
+    refuse_impossible(equations, platform)
+    return sealed(formatted(module_text(equations)))
+
+
+def _write(texts: Mapping[str, str], folder: Path, check: bool) -> Outcome:
     changed: list[str] = []
     unchanged: list[str] = []
-    for model in models or COMMITTED:
-        path = folder / f"{model}.py"
-        text = committed_text(model)
+    for name, text in texts.items():
+        path = folder / f"{name}.py"
         same = path.is_file() and path.read_text(encoding="utf-8") == text
         (unchanged if same else changed).append(path.name)
         if not same and not check:
             write_text_if_changed(path, text)
     return Outcome(tuple(changed), tuple(unchanged))
-
-
-def committed_text(model: str) -> str:
-    """Text of a committed module, formatted and sealed with its checksum."""
-    text = module_text(assemble(read_platform(COMMITTED[model])))
-    return sealed(formatted(text))
 
 
 def formatted(text: str) -> str:

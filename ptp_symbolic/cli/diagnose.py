@@ -9,6 +9,8 @@ from typing import Any
 
 import click
 
+from ptp_symbolic.cli.declared import note_defaults
+
 
 class Several(click.Option):
     """An option that takes all values up to the next option, and may be repeated."""
@@ -52,12 +54,13 @@ def diagnose(
     """Find the effect that a declared platform lacks, from its logs."""
     from ptp_symbolic.atomic import check_writable, write_files_atomically
     from ptp_symbolic.diagnosis_run import diagnose_platform
-    from ptp_symbolic.platform import read_platform
+    from ptp_symbolic.regenerate import declared_platform
 
-    platform = read_platform(source)
+    platform = declared_platform(source)
     check_writable(out)
     found = diagnose_platform(platform, train, validate, progress_line())
     write_files_atomically(out, found.files)
+    note_defaults(platform)
     if as_json:
         click.echo(json.dumps(found.summary, indent=2))
         return
@@ -71,32 +74,74 @@ def diagnose(
 @click.option("--out", type=Path, required=True, help="Folder for the results.")
 @click.option("--json", "as_json", is_flag=True, help="Print fit.json instead of a table.")
 def fit(source: str, logs: tuple[str, ...], out: Path, as_json: bool) -> None:
-    """Fit the free parameters of a platform to logs or folders of logs."""
+    """Fit the free parameters of a platform to logs or folders of logs.
+
+    Writes fit.json, and platform.toml with the fitted values as starts.
+    """
     from ptp_symbolic.atomic import check_writable, write_files_atomically
     from ptp_symbolic.diagnosis_run import fit_platform
-    from ptp_symbolic.platform import read_platform
+    from ptp_symbolic.regenerate import declared_platform
 
-    platform = read_platform(source)
+    platform = declared_platform(source)
     check_writable(out)
     found = fit_platform(platform, logs, progress_line())
     write_files_atomically(out, found.files)
+    note_defaults(platform)
     if as_json:
         click.echo(json.dumps(found.summary, indent=2))
         return
-    _print_parameters(found.summary["parameters"])
-    total = found.summary["error"]["after"]["total"]["rmse_counts"]
-    click.echo(f"{total:.3f} counts rms over all runs. Result: {out / 'fit.json'}")
+    _print_fit(found.summary)
+    click.echo(f"Result: {out / 'fit.json'}, {out / 'platform.toml'}")
+
+
+def _print_fit(summary: Mapping[str, Any]) -> None:
+    _print_parameters(summary["parameters"])
+    if not summary["parameters"]:
+        click.echo("Nothing is free; give a parameter 'start' in place of 'value' to fit it.")
+    if summary["windows"] is not None:
+        count, seconds = summary["windows"]["count"], summary["windows"]["seconds"]
+        click.echo(
+            f"The runs were cut into {count} windows of {seconds:.2g} s, each with a start of its"
+            " own: over longer ones errors of the start and of the inputs would rule."
+        )
+    error = summary["error"]
+    after, floor = (error[w]["total"]["rmse_counts"] for w in ("after", "noise_floor"))
+    before = error["before"]
+    begun = (
+        "the start values do not simulate"
+        if before is None
+        else f"{before['total']['rmse_counts']:.4g} at the start values"
+    )
+    advice = (
+        ": the model does not fit these logs; run diagnose" if summary["far_from_floor"] else ""
+    )
+    click.echo(f"{after:.4g} counts rms over all runs ({begun}), floor {floor:.2g}{advice}.")
 
 
 def _print_diagnosis(summary: Mapping[str, Any]) -> None:
     from rich.console import Console
+
+    Console().print(f"{summary['verdict']}: {summary['summary']}", markup=False, soft_wrap=True)
+    fitted = summary["fit"]["after"]["parameters"]
+    added = {name for effect in summary["added"] for name in effect["parameters"]}
+    for effect in summary["added"]:
+        _print_parameters({name: fitted[name] for name in effect["parameters"]})
+    doubtful = {
+        name: p
+        for name, p in fitted.items()
+        if name not in added and (p["at_bound"] or not p["identified"])
+    }
+    if doubtful:
+        click.echo("Declared parameters that these logs do not settle:")
+        _print_parameters(doubtful)
+    _print_errors(summary["error"])
+
+
+def _print_errors(errors: Mapping[str, Any]) -> None:
+    from rich.console import Console
     from rich.table import Table
 
-    console = Console()
-    console.print(f"{summary['verdict']}: {summary['summary']}", markup=False, soft_wrap=True)
-    for effect in summary["added"]:
-        _print_parameters(effect["parameters"])
-    for part, error in summary["error"].items():
+    for part, error in errors.items():
         title = "fitted" if part == "train" else "never fitted"
         table = Table("run", "before", "after", "floor", box=None, title_justify="left")
         table.title = f"{part} ({title}), counts rms"
@@ -106,7 +151,7 @@ def _print_diagnosis(summary: Mapping[str, Any]) -> None:
                 for when in ("before", "after", "noise_floor")
             ]
             table.add_row(run, *(f"{cell['rmse_counts']:.3f}" for cell in cells))
-        console.print(table)
+        Console().print(table)
 
 
 def _print_parameters(parameters: Mapping[str, Any]) -> None:

@@ -1,29 +1,52 @@
 """`ptp-symbolic effects | models | platforms`: what there is to choose from."""
 
 import json
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import click
 
+PIPE_WIDTH = 10_000
 
-def _show(rows: list[dict[str, str]], as_json: bool) -> None:
+
+def _show(rows: Sequence[Mapping[str, str]], as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps(rows, indent=2))
         return
+    _print_table(rows)
+
+
+def _print_table(rows: Sequence[Mapping[str, str]]) -> None:
+    """One row per line, names whole; only on a terminal the last columns wrap to its width."""
     from rich.console import Console
+    from rich.markup import escape
     from rich.table import Table
 
-    table = Table(*rows[0], box=None)
+    console = Console()
+    table = Table(box=None, pad_edge=False)
+    for number, heading in enumerate(rows[0]):
+        table.add_column(heading, no_wrap=number == 0, overflow="fold")
     for row in rows:
-        table.add_row(*row.values())
-    Console().print(table)
+        table.add_row(*map(escape, row.values()))
+    if console.is_terminal:
+        console.print(table)
+        return
+    wide = Console(width=PIPE_WIDTH)
+    with wide.capture() as printed:
+        wide.print(table)
+    click.echo("\n".join(line.rstrip() for line in printed.get().splitlines()))
 
 
 @click.command()
+@click.argument("effect", required=False)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def effects(as_json: bool) -> None:
-    """List the effects that a platform can declare."""
+def effects(effect: str | None, as_json: bool) -> None:
+    """List the effects that a platform can declare, or explain one of them."""
     from ptp_symbolic.effects import EFFECTS
 
+    if effect is not None:
+        _explain(effect, as_json)
+        return
     rows = [
         {
             "effect": kind.id,
@@ -31,10 +54,82 @@ def effects(as_json: bool) -> None:
             "what": kind.title,
             "reference": kind.reference,
         }
-        for effect in EFFECTS
-        for kind in (effect, *effect.kinds)
+        for each in EFFECTS
+        for kind in (each, *each.kinds)
     ]
     _show(rows, as_json)
+
+
+def _explain(name: str, as_json: bool) -> None:
+    from ptp_symbolic.derivation.placement import find_effect
+
+    effect = find_effect(name)
+    kinds = [_described(kind) for kind in (effect, *effect.kinds)]
+    if as_json:
+        click.echo(json.dumps({"effect": effect.id, "kinds": kinds}, indent=2))
+        return
+    for number, kind in enumerate(kinds):
+        click.echo("\n" if number else "", nl=False)
+        of_kind = f' (kind = "{kind["kind"]}")' if kind["kind"] else ""
+        click.echo(f"{effect.id}{of_kind}: {kind['what']}")
+        searched = "a candidate of diagnose" if kind["searched"] else "declared, never searched for"
+        click.echo(f"  sits on {kind['sits_on']}; {searched}")
+        click.echo(f"  reference: {kind['reference']}")
+        for need in kind["needs"]:
+            click.echo(f"  needs {need['quantity']}, from {' or '.join(need['from'])}")
+        if kind["separating_experiment"]:
+            click.echo(f"  to tell it apart: {kind['separating_experiment']}")
+        if kind["parameters"]:
+            click.echo()
+            _print_table([_as_row(parameter) for parameter in kind["parameters"]])
+
+
+def _described(kind: Any) -> dict[str, Any]:
+    """One kind of an effect as data; `<axis>` stands for pan or tilt."""
+    from ptp_symbolic.derivation.placement import effects_that_define
+    from ptp_symbolic.effects.effect import Place
+
+    axes = ("pan", "tilt")
+    place = Place(axes, "<axis>" if kind.on_axis else None, None, frozenset())
+    return {
+        "kind": kind.kind,
+        "what": kind.title,
+        "sits_on": "an axis" if kind.on_axis else "the whole platform",
+        "searched": not kind.structural,
+        "reference": kind.reference,
+        "separating_experiment": kind.separating_experiment,
+        "needs": [
+            {
+                "quantity": need.format(axis="<axis>"),
+                "from": effects_that_define(need.format(axis=axes[0]), axes),
+            }
+            for need in kind.needs
+        ],
+        "parameters": [
+            {
+                "name": p.name,
+                "unit": p.unit,
+                "default": p.default,
+                "bounds": [p.lower, p.upper],
+                "meaning": p.meaning,
+                "off_at": p.vanishes,
+            }
+            for p in kind.parameters(place)
+        ],
+    }
+
+
+def _as_row(parameter: Mapping[str, Any]) -> dict[str, str]:
+    lower, upper = parameter["bounds"]
+    off = parameter["off_at"]
+    return {
+        "parameter": parameter["name"],
+        "unit": parameter["unit"],
+        "default": f"{parameter['default']:g}",
+        "bounds": f"{lower:g} to {upper:g}",
+        "off at": "" if off is None else f"{off:g}",
+        "meaning": parameter["meaning"],
+    }
 
 
 @click.command()

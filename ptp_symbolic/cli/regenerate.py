@@ -1,17 +1,25 @@
-"""`ptp-symbolic regenerate`: emit the committed models, or check them."""
+"""`ptp-symbolic regenerate`: emit the committed models, or check them, or those of a platform."""
+
+from pathlib import Path
 
 import click
 
 
 @click.command()
-@click.argument("models", nargs=-1, metavar="[MODEL...]")
+@click.argument("models", nargs=-1, metavar="[MODEL|PLATFORM...]")
+@click.option("--out", type=Path, help="Folder for modules of your own platforms (TOML or name).")
 @click.option("--check", is_flag=True, help="Write nothing; exit 1 and name what differs.")
-def regenerate(models: tuple[str, ...], check: bool) -> int:
-    """Emit the committed models (all without a name); only what changed is rewritten."""
+def regenerate(models: tuple[str, ...], out: Path | None, check: bool) -> int:
+    """Emit the committed models (all without a name); only what changed is rewritten.
+
+    With --out, emit the equations of platforms as modules: numpy, numba and nothing else.
+    """
     from ptp_symbolic.regenerate import regenerate as emit
     from ptp_symbolic.regenerate import stray_modules
     from ptp_symbolic.runtime.loader import generated_folder
 
+    if out is not None:
+        return _emit_platforms(models, out, check)
     outcome = emit(models, check)
     for name in outcome.changed:
         click.echo(f"{'differs from its equations' if check else 'written'}: generated/{name}")
@@ -21,3 +29,24 @@ def regenerate(models: tuple[str, ...], check: bool) -> int:
     if not outcome.changed and not stray:
         click.echo(f"{len(outcome.unchanged)} modules are up to date.")
     return 1 if check and (outcome.changed or stray) else 0
+
+
+def _emit_platforms(sources: tuple[str, ...], out: Path, check: bool) -> int:
+    from ptp_symbolic.atomic import check_writable
+    from ptp_symbolic.cli.declared import note_defaults
+    from ptp_symbolic.errors import InputError
+    from ptp_symbolic.regenerate import declared_platform, regenerate_into
+
+    if not sources:
+        raise InputError("Nothing to emit into --out; name a platform TOML, a preset or a model.")
+    if not check:
+        check_writable(out)
+    platforms = [declared_platform(source) for source in sources]
+    outcome = regenerate_into(out, platforms, check)
+    for platform in platforms:
+        note_defaults(platform)
+    for name in outcome.changed:
+        click.echo(f"{'differs from its equations' if check else 'written'}: {out / name}")
+    if not outcome.changed:
+        click.echo(f"{len(outcome.unchanged)} modules are up to date.")
+    return 1 if check and outcome.changed else 0

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from ptp_symbolic.cli.declared import note_defaults
 from ptp_symbolic.cli.report_thesis import thesis
 
 
@@ -18,17 +19,20 @@ def report() -> None:
 def derivation(source: str, out: Path) -> None:
     """Write the derivation of a platform's equations in LaTeX, and as PDF where pdflatex is."""
     from ptp_symbolic.atomic import check_writable, write_files_atomically
-    from ptp_symbolic.platform import read_platform
+    from ptp_symbolic.platform import naming_file
+    from ptp_symbolic.regenerate import declared_platform
     from ptp_symbolic.report.derivation import render_derivation
     from ptp_symbolic.report.pdf import compile_pdf
 
-    platform = read_platform(source)
+    platform = declared_platform(source)
     check_writable(out)
-    files = dict(render_derivation(platform))
+    with naming_file(platform):
+        files = dict(render_derivation(platform))
     pdf = compile_pdf(files, "derivation")
     if pdf is not None:
         files["derivation.pdf"] = pdf
     write_files_atomically(out, files)
+    note_defaults(platform)
     for name in files:
         click.echo(out / name)
 

@@ -1,12 +1,28 @@
 """`ptp-symbolic simulate` and `sensitivity`: a platform and its inputs in, CSV files out."""
 
-import csv
-import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import click
+
+from ptp_symbolic.cli.declared import note_defaults
+from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.platform import Platform
+
+FIXED_STEP = "fixed_step"
+
+
+class WithProfiles(click.Command):
+    """A command whose help ends with the profiles that an input may be."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list; read from where it is defined, when it is asked for."""
+        from ptp_symbolic.simulation.profile_text import profile_forms
+
+        with formatter.section("Profiles (times in s, values in the SI unit of the input)"):
+            formatter.write_dl(profile_forms())
+
 
 PLATFORM = click.option("--platform", "source", required=True, help="Platform TOML or name.")
 INPUT = click.option(
@@ -14,63 +30,93 @@ INPUT = click.option(
     "inputs",
     multiple=True,
     help="A log (CSV) with the input signals, or a profile such as step:24@0.5; for several"
-    " inputs give NAME=PROFILE each.",
+    " inputs repeat the option with NAME=PROFILE.",
 )
 DURATION = click.option("--duration", type=float, help="Seconds; default 10, or the whole log.")
+INITIAL = click.option(
+    "--initial",
+    multiple=True,
+    metavar="STATE=VALUE",
+    help="State at the start in SI, such as theta_pan=0.3; repeat for several.",
+)
+EVERY = click.option(
+    "--every", type=float, default=1e-3, help="Seconds between outputs; default 0.001."
+)
 METHOD = click.option(
     "--method", help="rosenbrock, runge_kutta or fixed_step; default: what suits the model."
 )
-STEP = click.option("--step", type=float, default=1e-4, help="Seconds, for fixed_step.")
+STEP = click.option(
+    "--step", type=float, help="Seconds, for --method fixed_step alone; default 0.0001."
+)
 OUT = click.option("--out", type=Path, required=True, help="Folder for the results.")
 
 
-@click.command()
+@click.command(cls=WithProfiles)
 @PLATFORM
 @INPUT
+@INITIAL
 @DURATION
+@EVERY
 @METHOD
 @STEP
 @OUT
 def simulate(
     source: str,
     inputs: tuple[str, ...],
+    initial: tuple[str, ...],
     duration: float | None,
+    every: float,
     method: str | None,
-    step: float,
+    step: float | None,
     out: Path,
 ) -> None:
-    """Simulate a platform; writes trajectory.csv and events.csv."""
+    """Simulate a platform; writes trajectory.csv, which is a log too, and events.csv."""
     from ptp_symbolic import load
     from ptp_symbolic.atomic import check_writable, write_files_atomically
+    from ptp_symbolic.cli.tables import table_text, trajectory_columns
+    from ptp_symbolic.loop import refuse_unknown_signals
+    from ptp_symbolic.regenerate import declared_platform
+    from ptp_symbolic.simulation.run import output_times
     from ptp_symbolic.simulation.run import simulate as run
 
+    if step is not None and method != FIXED_STEP:
+        raise InputError(
+            f"--step {step:g} is for --method {FIXED_STEP} alone; add that, or leave --step out."
+        )
     check_writable(out)
-    model = load(source)
-    signals, end = _signals(source, model, inputs, duration)
-    found = run(model, end, signals, method=method, step=step)
-    names = [f"{n} [{model.units[n]}]" for n in model.state_names]
-    head = ["time [s]", *names, "stored [J]", "supplied [J]", "dissipated [J]"]
-    rows = zip(found.t, *found.x.T, found.stored, found.supplied, found.dissipated, strict=True)
+    platform, model = declared_platform(source), load(source)
+    refuse_unknown_signals(platform, model)
+    signals, end = _signals(platform, model, inputs, duration)
+    found = run(
+        model, output_times(end, every), signals, initial=_initial(model, initial), method=method,
+        step=1e-4 if step is None else step,
+    )  # fmt: skip
+    columns = trajectory_columns(platform, model, found, signals)
     events = [(e.time, e.element, e.mode) for e in found.events]
     files: dict[str, str | bytes] = {
-        "trajectory.csv": _table(head, rows),
-        "events.csv": _table(["time [s]", "element", "mode"], events),
+        "trajectory.csv": table_text(list(columns), zip(*columns.values(), strict=True)),
+        "events.csv": table_text(["time [s]", "element", "mode"], events),
     }
     write_files_atomically(out, files)
+    note_defaults(platform)
     click.echo(f"{len(found.t)} samples, {len(events)} events: {out / 'trajectory.csv'}")
 
 
-@click.command()
+@click.command(cls=WithProfiles)
 @PLATFORM
 @INPUT
+@INITIAL
 @DURATION
+@EVERY
 @OUT
 @click.option("--by", multiple=True, help="Parameter; repeat for several. Default: all.")
 @click.option("--by-initial", multiple=True, help="Initial state; repeat for several.")
 def sensitivity(
     source: str,
     inputs: tuple[str, ...],
+    initial: tuple[str, ...],
     duration: float | None,
+    every: float,
     out: Path,
     by: tuple[str, ...],
     by_initial: tuple[str, ...],
@@ -78,32 +124,52 @@ def sensitivity(
     """Derivatives of states by parameters and initial states; writes sensitivity.csv."""
     from ptp_symbolic import load
     from ptp_symbolic.atomic import check_writable, write_files_atomically
+    from ptp_symbolic.cli.tables import sensitivity_headings, table_text
+    from ptp_symbolic.regenerate import declared_platform
     from ptp_symbolic.sensitivities.forward import sensitivity as run
+    from ptp_symbolic.simulation.run import output_times
 
     check_writable(out)
-    model = load(source)
-    signals, end = _signals(source, model, inputs, duration)
-    found = run(model, end, signals, by_parameters=by or None, by_initial=by_initial)
-    head = [f"d {state} / d {name}" for state in model.state_names for name in found.names]
+    platform, model = declared_platform(source), load(source)
+    signals, end = _signals(platform, model, inputs, duration)
+    found = run(
+        model, output_times(end, every), signals, initial=_initial(model, initial),
+        by_parameters=by or None, by_initial=by_initial,
+    )  # fmt: skip
+    head = sensitivity_headings(model, found.names)
     rows = ([t, *s.ravel()] for t, s in zip(found.t, found.states, strict=True))
-    write_files_atomically(out, {"sensitivity.csv": _table(["time [s]", *head], rows)})
+    write_files_atomically(out, {"sensitivity.csv": table_text(["time [s]", *head], rows)})
+    note_defaults(platform)
     click.echo(f"{len(head)} derivatives at {len(found.t)} times: {out / 'sensitivity.csv'}")
 
 
+def _initial(model: Any, given: Sequence[str]) -> dict[str, float]:
+    values = {}
+    for text in given:
+        name, _, value = text.partition("=")
+        if name not in model.state_names:
+            raise unknown("state", name, model.state_names)
+        try:
+            values[name] = float(value)
+        except ValueError as error:
+            raise InputError(
+                f"Initial state '{text}': give {name}=VALUE, a number in {model.units[name]}."
+            ) from error
+    return values
+
+
 def _signals(
-    source: str, model: Any, inputs: Sequence[str], duration: float | None
+    platform: Platform, model: Any, inputs: Sequence[str], duration: float | None
 ) -> tuple[dict[str, Any], float]:
+    """The inputs as signals by name, and the end of the simulation in s."""
     from ptp_symbolic.data import read_inputs
-    from ptp_symbolic.errors import InputError
-    from ptp_symbolic.platform import read_platform
     from ptp_symbolic.simulation.inputs import table
-    from ptp_symbolic.simulation.profile_text import parse_profile
+    from ptp_symbolic.simulation.profile_text import as_signals
 
     signals: dict[str, Any] = {}
     end = 10.0 if duration is None else duration
     for text in inputs:
         if text.lower().endswith(".csv"):
-            platform = read_platform(source)
             time, values = read_inputs(Path(text), platform)
             names = [s.signal for s in platform.signals if s.role == "input"]
             for name, column in zip(names, values.T, strict=True):
@@ -118,13 +184,5 @@ def _signals(
                     f" {model.input_names[0]}={text}."
                 )
             name, profile = model.input_names[0], text
-        signals[name] = parse_profile(profile, end)
-    return signals, end
-
-
-def _table(head: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows([v if isinstance(v, str) else repr(float(v)) for v in row] for row in rows)  # type: ignore[arg-type]
-    return text.getvalue()
+        signals[name] = profile
+    return dict(as_signals(model.input_names, signals, end)), end

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.data.table import Table, read_numbers, read_table
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.platform import Platform, SignalDeclaration
+from ptp_symbolic.platform import Platform, SignalDeclaration, naming_file
 from ptp_symbolic.platform.units import compatible, to_si
 
 MIN_ROWS = 10
@@ -40,10 +40,11 @@ def read_log(path: Path | str, platform: Platform) -> Log:
     inputs = [signal for signal in platform.signals if signal.role == "input"]
     outputs = [signal for signal in platform.signals if signal.role == "output"]
     if not outputs:
-        raise InputError(
-            f"Platform '{platform.name}' has no output signal to compare with {path}; add one, "
-            "such as [signals.theta_pan]."
-        )
+        with naming_file(platform):
+            raise InputError(
+                f"Platform '{platform.name}' has no output signal to compare with {path}; add one, "
+                "such as [signals.theta_pan]."
+            )
     time, values = _read_signals(path, [*inputs, *outputs])
     split = len(inputs)
     return Log(
@@ -63,10 +64,11 @@ def read_inputs(
     """
     inputs = [signal for signal in platform.signals if signal.role == "input"]
     if not inputs:
-        raise InputError(
-            f"Platform '{platform.name}' has no input signal to read from {path}; add one, such as "
-            "[signals.u_pan]."
-        )
+        with naming_file(platform):
+            raise InputError(
+                f"Platform '{platform.name}' has no input signal to read from {path}; add one, "
+                "such as [signals.u_pan]."
+            )
     return _read_signals(Path(path), inputs)
 
 
@@ -94,6 +96,34 @@ def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...
     return tuple(logs)
 
 
+def read_split_logs(
+    train: Iterable[Path | str], validate: Iterable[Path | str], platform: Platform
+) -> tuple[tuple[Log, ...], tuple[Log, ...]]:
+    """Read the logs to fit and those to judge by, which must be other runs.
+
+    Raises InputError as `read_logs` does, and for a run that is in both, under whatever name.
+    """
+    places = [[f for path in paths for f in _csv_files(Path(path))] for paths in (train, validate)]
+    fitted, judging = (read_logs(files, platform) for files in places)
+    for file, log in zip(places[1], judging, strict=True):
+        for other, known in zip(places[0], fitted, strict=True):
+            if _same_run(log, known):
+                raise InputError(
+                    f"{file}: holds the same run as {other}, which is given to be fitted; a fit is"
+                    " judged by runs that it has never seen: give others to --validate."
+                )
+    return fitted, judging
+
+
+def _same_run(log: Log, other: Log) -> bool:
+    """Whether both hold the same samples, wherever their clocks started."""
+    return (
+        np.array_equal(log.outputs, other.outputs)
+        and np.array_equal(log.inputs, other.inputs)
+        and np.allclose(log.time - log.time[0], other.time - other.time[0])
+    )
+
+
 def _csv_files(path: Path) -> list[Path]:
     if not path.is_dir():
         return [path]
@@ -108,9 +138,11 @@ def _read_signals(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return time [n] and the signals [n, len(signals)] in SI."""
     table = read_table(path)
-    if ("time", "s") not in table.headings:
-        raise InputError(f"{path}:1: column 'time [s]' is missing; {_listing(table)}.")
     names = [name for name, _ in table.headings]
+    if "time" not in names:
+        raise InputError(f"{path}:1: column 'time [s]' is missing; {_listing(table)}.")
+    clock = table.headings[names.index("time")][1]
+    second = _factor(f"{path}:1: column 'time'", "time", "time", "s", clock)
     missing = [signal.column for signal in signals if signal.column not in names]
     if missing:
         raise InputError(
@@ -119,8 +151,8 @@ def _read_signals(
         )
     columns = [names.index("time"), *(names.index(signal.column) for signal in signals)]
     factors = [
-        _factor(path, signal, table.headings[column][1])
-        for signal, column in zip(signals, columns[1:], strict=True)
+        _factor(f"{path}:1: column '{s.column}'", s.column, s.signal, s.unit, table.headings[k][1])
+        for s, k in zip(signals, columns[1:], strict=True)
     ]
     numbers = read_numbers(table, columns)
     if len(numbers) < MIN_ROWS:
@@ -128,7 +160,9 @@ def _read_signals(
             f"{path}: has {len(numbers)} rows of numbers; a log needs at least {MIN_ROWS}."
         )
     time = np.ascontiguousarray(numbers[:, 0])
-    _check_time(path, time)
+    _check_time(path, time, clock or "s")
+    if second != 1.0:
+        time *= second
     values = np.ascontiguousarray(numbers[:, 1:])
     if any(factor != 1.0 for factor in factors):
         values *= np.array(factors)
@@ -141,30 +175,29 @@ def _listing(table: Table) -> str:
     return "the header has " + (text if len(text) <= 300 else text[:297] + "...")
 
 
-def _factor(path: Path, signal: SignalDeclaration, unit: str | None) -> float:
-    """Return the factor from the unit in the header to the SI unit of the signal."""
-    where = f"{path}:1: column '{signal.column}'"
+def _factor(where: str, column: str, signal: str, wanted: str, unit: str | None) -> float:
+    """Return the factor from the unit in the header to the `wanted` SI unit of the signal."""
     if not unit:
-        raise InputError(f"{where} has no unit; write '{signal.column} [{signal.unit}]'.")
+        raise InputError(f"{where} has no unit; write '{column} [{wanted}]'.")
     try:
-        fits = compatible(unit, signal.unit)
+        fits = compatible(unit, wanted)
         factor = to_si(unit)[0]
     except InputError as error:
         raise InputError(f"{where}: {error}") from error
     if not fits:
         raise InputError(
-            f"{where} is in {unit}, but {signal.signal} is in {signal.unit}; correct the header "
+            f"{where} is in {unit}, but {signal} is in {wanted}; correct the header "
             "or the platform."
         )
     return factor
 
 
-def _check_time(path: Path, time: NDArray[np.float64]) -> None:
+def _check_time(path: Path, time: NDArray[np.float64], unit: str) -> None:
     wrong = np.flatnonzero(np.diff(time) <= 0)
     if len(wrong):
         row = int(wrong[0]) + 1
         what = "repeats" if time[row] == time[row - 1] else "goes back from"
         raise InputError(
-            f"{path}:{row + 2}: time {float(time[row])!r} s {what} {float(time[row - 1])!r} s of "
-            "the line before; time stamps must increase."
+            f"{path}:{row + 2}: time {float(time[row])!r} {unit} {what} {float(time[row - 1])!r} "
+            f"{unit} of the line before; time stamps must increase."
         )

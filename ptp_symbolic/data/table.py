@@ -44,6 +44,12 @@ def read_table(path: Path) -> Table:
     head, _, body = content.partition(b"\n")
     if not content.strip():
         raise InputError(f"{path}: is empty; give a CSV with a header row such as 'time [s],...'.")
+    for mark, called in ((b";", "semicolons"), (b"\t", "tabs")):
+        if head.count(mark) > head.count(b","):
+            raise InputError(
+                f"{path}:1: the columns are separated by {called}; save the file with commas"
+                " between columns and a point in decimal numbers."
+            )
     headings = tuple(_heading(path, cell) for cell in _cells(head.decode(), f"{path}:1"))
     if len(headings) > _MAX_COLUMNS:
         raise InputError(f"{path}:1: has more than {_MAX_COLUMNS} columns; leave out some.")
@@ -136,7 +142,10 @@ def _number(cell: str, name: str, where: str) -> float:
     if not cell:
         raise InputError(f"{where}: '{name}' is missing; every row needs a value.")
     if not _NUMBER.fullmatch(cell) or not math.isfinite(float(cell)):
-        raise InputError(f"{where}: '{name}' is {shown(cell)}, not a finite decimal number.")
+        raise InputError(
+            f"{where}: '{name}' is {shown(cell)}, not a finite decimal number; correct it or remove"
+            " the row (time stamps may have gaps, an input holds across them)."
+        )
     return float(cell)
 
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 from ptp_symbolic.effects import EFFECTS
 from ptp_symbolic.effects.effect import Effect, Place
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, did_you_mean, unknown
 from ptp_symbolic.parameters import Parameter
-from ptp_symbolic.platform import ParameterDeclaration, Platform
+from ptp_symbolic.platform import ParameterDeclaration, Platform, naming_file
 from ptp_symbolic.platform.units import compatible
 
 
@@ -15,8 +15,7 @@ def find_effect(identifier: str) -> Effect:
     for effect in EFFECTS:
         if effect.id == identifier:
             return effect
-    choices = ", ".join(effect.id for effect in EFFECTS)
-    raise InputError(f"Unknown effect '{identifier}'. Choose one of: {choices}.")
+    raise unknown("effect", identifier, (effect.id for effect in EFFECTS))
 
 
 def _of_kind(effect: Effect, kind: str | None) -> Effect:
@@ -37,8 +36,17 @@ def place_effects(platform: Platform) -> list[tuple[Effect, Place]]:
     """Return every declared effect with its place, after checking names, units and bounds.
 
     The order is that of the catalogue, however the platform lists them: the same machine has the
-    same equations.
+    same equations. Raises InputError, which names the file of the platform where it has one.
     """
+    with naming_file(platform):
+        placed = _placed(platform)
+        _check_needs(placed)
+        _check_ownership(placed)
+        _check_parameters(platform, placed)
+    return placed
+
+
+def _placed(platform: Platform) -> list[tuple[Effect, Place]]:
     order = [effect.id for effect in EFFECTS]
     found = [(_of_kind(find_effect(d.effect), d.kind), d) for d in platform.effects]
     found.sort(key=lambda pair: order.index(pair[0].id))
@@ -51,15 +59,19 @@ def place_effects(platform: Platform) -> list[tuple[Effect, Place]]:
             )
         axis = declaration.axis if effect.on_axis else None
         placed.append((effect, Place(platform.axes, axis, declaration.site, shafts)))
-    _check_needs(placed)
-    _check_ownership(placed)
-    _check_parameters(platform, placed)
     return placed
 
 
 def declared_parameters(placed: list[tuple[Effect, Place]]) -> dict[str, Parameter]:
     """Return the parameters of the placed effects by name."""
     return {p.name: p for effect, place in placed for p in effect.parameters(place)}
+
+
+def undeclared_parameters(platform: Platform) -> tuple[Parameter, ...]:
+    """Parameters of the declared effects that `platform` leaves at the catalogue's default."""
+    said = {declaration.name for declaration in platform.parameters}
+    own = declared_parameters(place_effects(platform))
+    return tuple(parameter for name, parameter in own.items() if name not in said)
 
 
 def resolved_parameters(
@@ -86,15 +98,34 @@ def available_quantities(placed: list[tuple[Effect, Place]]) -> set[str]:
     return {name for effect, place in placed for name in effect.contribute(place).quantities}
 
 
+def effects_that_define(quantity: str, axes: tuple[str, ...]) -> list[str]:
+    """Ids of the effects that define `quantity` on a machine with these axes."""
+    return [
+        effect.id
+        for effect in EFFECTS
+        if any(
+            quantity in effect.contribute(Place(axes, axis, None, frozenset())).quantities
+            for axis in (axes if effect.on_axis else (None,))
+        )
+    ]
+
+
 def _check_needs(placed: list[tuple[Effect, Place]]) -> None:
     available = available_quantities(placed)
     for effect, place in placed:
         for need in effect.needs:
             name = need.format(axis=place.axis)
             if name not in available:
+                bringing = " or ".join(effects_that_define(name, place.axes))
+                on_axis = "" if place.axis is None else f" on axis '{place.axis}'"
+                next_step = (
+                    f"declare {bringing}{on_axis} too, or remove it"
+                    if bringing
+                    else f"no effect does on a platform of {' and '.join(place.axes)}; remove it"
+                )
                 raise InputError(
-                    f"Effect '{effect.id}' acts on '{name}', which no declared effect defines;"
-                    " declare the effect that brings it."
+                    f"Effect '{effect.id}' acts on '{name}', which no declared effect"
+                    f" defines; {next_step}."
                 )
 
 
@@ -120,10 +151,7 @@ def _check_parameters(platform: Platform, placed: list[tuple[Effect, Place]]) ->
     for declaration in platform.parameters:
         parameter = own.get(declaration.name)
         if parameter is None:
-            raise InputError(
-                f"Parameter '{declaration.name}' belongs to no declared effect."
-                f" Known here: {', '.join(own)}."
-            )
+            raise InputError(_no_owner(declaration.name, platform.axes, own))
         if declaration.unit is not None and not compatible(declaration.unit, parameter.unit):
             raise InputError(
                 f"Parameter '{declaration.name}' has unit '{declaration.unit}';"
@@ -133,5 +161,19 @@ def _check_parameters(platform: Platform, placed: list[tuple[Effect, Place]]) ->
         if not parameter.lower <= value <= parameter.upper:
             raise InputError(
                 f"Parameter '{declaration.name}' = {value:g} {parameter.unit} lies outside its"
-                f" bounds [{parameter.lower:g}, {parameter.upper:g}]; change the value."
+                f" bounds [{parameter.lower:g}, {parameter.upper:g}] {parameter.unit};"
+                " change the value."
             )
+
+
+def _no_owner(name: str, axes: tuple[str, ...], own: dict[str, Parameter]) -> str:
+    """What to say of a parameter that no declared effect has, though another may have it."""
+    owners = [
+        effect.id
+        for effect in EFFECTS
+        for axis in (axes if effect.on_axis else (None,))
+        if name in {p.name for p in effect.parameters(Place(axes, axis, None, frozenset()))}
+    ]
+    guess = f": it is of {' or '.join(owners)}; declare one." if owners else did_you_mean(name, own)
+    known = ", ".join(own)
+    return f"Parameter '{name}' belongs to no declared effect{guess or '.'} Known here: {known}."

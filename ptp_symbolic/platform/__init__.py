@@ -5,8 +5,9 @@ from ptp_symbolic.platform.declaration import (
     ParameterDeclaration,
     Platform,
     SignalDeclaration,
+    naming_file,
 )
-from ptp_symbolic.platform.reader import preset_names, read_platform
+from ptp_symbolic.platform.reader import platform_file, preset_names, read_platform
 from ptp_symbolic.platform.writer import platform_text
 
 __all__ = [
@@ -14,6 +15,8 @@ __all__ = [
     "ParameterDeclaration",
     "Platform",
     "SignalDeclaration",
+    "naming_file",
+    "platform_file",
     "platform_text",
     "preset_names",
     "read_platform",

@@ -1,6 +1,10 @@
 """The declared machine as plain data: what a platform TOML says, checked and in SI units."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+from ptp_symbolic.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,10 @@ class SignalDeclaration:
 
 @dataclass(frozen=True)
 class Platform:
-    """A declared machine. `axes` are ordered pan, tilt; `gravity` is in m/s^2."""
+    """A declared machine. `axes` are ordered pan, tilt; `gravity` is in m/s^2.
+
+    `source` is the file that says so, for messages; None where there is none.
+    """
 
     name: str
     title: str
@@ -64,3 +71,15 @@ class Platform:
     effects: tuple[EffectDeclaration, ...]
     parameters: tuple[ParameterDeclaration, ...]
     signals: tuple[SignalDeclaration, ...]
+    source: str | None = field(default=None, compare=False, repr=False)
+
+
+@contextmanager
+def naming_file(platform: Platform) -> Iterator[None]:
+    """Let every InputError raised inside name the file that declares `platform`."""
+    try:
+        yield
+    except InputError as wrong:
+        if platform.source is None or str(wrong).startswith(f"{platform.source}:"):
+            raise
+        raise InputError(f"{platform.source}: {wrong}") from wrong

@@ -7,7 +7,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.platform import fields
 from ptp_symbolic.platform.declaration import (
     EffectDeclaration,
@@ -41,7 +41,7 @@ def read_platform(source: str | Path) -> Platform:
     and parameters exist is not known here. Raises InputError (one line) for a file that is missing,
     unreadable, not TOML, or says something that is not allowed.
     """
-    path = _locate(source)
+    path = platform_file(source)
     where = str(path)
     document = fields.table(_parse(path), where, ("platform", "effects", "parameters", "signals"))
     head = fields.table(
@@ -61,12 +61,16 @@ def read_platform(source: str | Path) -> Platform:
         effects=_effects(fields.required(document, "effects", where), axes, where),
         parameters=_parameters(document.get("parameters", {}), where),
         signals=_signals(document.get("signals", {}), where),
+        source=where,
     )
 
 
-def _locate(source: str | Path) -> Path:
-    names = preset_names()
-    if isinstance(source, str) and source in names:
+def platform_file(source: str | Path, names: tuple[str, ...] = ()) -> Path:
+    """Return the file of a platform: the path given, or that of a preset.
+
+    Raises InputError where there is none; the message offers the presets and `names`.
+    """
+    if isinstance(source, str) and source in preset_names():
         return _PRESETS / f"{source}.toml"
     path = Path(source)
     try:
@@ -74,16 +78,8 @@ def _locate(source: str | Path) -> Path:
     except (OSError, ValueError):
         missing = True
     if missing:
-        presets = ", ".join(names)
-        if path.suffix == "" and len(path.parts) == 1:
-            raise InputError(
-                f"{fields.shown(str(source))} is no preset and no file; presets are {presets}; "
-                "or give the path of a platform TOML."
-            )
-        raise InputError(
-            f"{fields.shown(str(source))}: no such file; give the path of a platform TOML or one "
-            f"of the presets {presets}."
-        )
+        end = "; or give the path of a platform TOML"
+        raise unknown("platform", str(source), (*names, *preset_names()), end)
     return path
 
 
@@ -200,7 +196,7 @@ def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDecla
         if not lower <= value <= upper:
             raise InputError(
                 f"{where}.{key}: {fields.shown(entry[key])}{unit_text} lies outside its bounds "
-                f"{fields.shown(bounds)}; change one of them."
+                f"{fields.shown(bounds)}{unit_text}; change one of them."
             )
     return ParameterDeclaration(name, unit, value, key == "start", lower, upper)
 

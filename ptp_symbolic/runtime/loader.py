@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.runtime.model import Model
 
 TRAILER = "# END sha256 "
@@ -29,7 +29,7 @@ def load_model(name: str) -> Model:
     Raises InputError for an unknown name or a module whose text does not fit its checksum.
     """
     if name not in model_names():
-        raise InputError(f"Unknown model '{name}'. Choose one of: {', '.join(model_names())}.")
+        raise unknown("model", name, model_names())
     return load_module(generated_folder() / f"{name}.py", f"ptp_symbolic.generated.{name}")
 
 

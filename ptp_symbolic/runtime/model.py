@@ -1,16 +1,19 @@
 """An emitted model at run time: names, units, defaults and compiled functions."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, unknown
 
 FloatArray = NDArray[np.float64]
+
+BOUND_SLACK = 1e-9  # relative: a search that ends on a bound may miss it by rounding
 
 
 @dataclass(frozen=True)
@@ -175,36 +178,76 @@ class Model:
         self.module.domain(p, bounds)
         return bounds
 
-    def refuse_impossible(self, p: FloatArray) -> None:
-        """Raise InputError when parameters p [np] break a relation that the machine needs."""
+    def refuse_impossible(self, p: FloatArray, given: Collection[str] | None = None) -> None:
+        """Raise InputError when parameters p [np] break a relation that the machine needs.
+
+        With the names of those that were `given`, the message calls the others default.
+        """
         margin = np.zeros(len(self.module.REQUIREMENTS))
         self.module.margins(p, margin)
         values = dict(zip(self.parameter_names, p, strict=True))
         for (names, rule, strict), by in zip(self.module.REQUIREMENTS, margin, strict=True):
             if not (by > 0.0 if strict else by >= 0.0):
-                given = ", ".join(f"{n} = {values[n]:g} {self.units[n]}" for n in names)
-                raise InputError(f"Impossible {given}: {rule}.")
+                said = ", ".join(
+                    f"{n} = {values[n]:g} {self.units[n]}"
+                    f"{'' if given is None or n in given else ' (default)'}"
+                    for n in names
+                )
+                raise InputError(f"Impossible {said}: {rule}.")
 
     @cached_property
     def state_derivative(self) -> Callable[..., None]:
-        """The jitted in-place function f(t, x, u, p, dx)."""
+        """The jitted in-place function f(t, x, u, p, dx), for loops of your own.
+
+        Nothing is checked: all must be contiguous float64 arrays of the right length, or it reads
+        and writes beyond them. `rhs` checks.
+        """
         return self.module.state_derivative
 
-    def rhs(self, t: float, x: FloatArray, u: FloatArray, p: FloatArray) -> FloatArray:
-        """Return dx/dt [n] at time t in s, state x [n], input u [nu], parameters p [np]."""
+    def rhs(self, t: float, x: ArrayLike, u: ArrayLike, p: ArrayLike) -> FloatArray:
+        """Return dx/dt [n] at time t in s, state x [n], input u [nu], parameters p [np].
+
+        Raises InputError for arrays of another shape.
+        """
         dx = np.empty(len(self.state_names))
         self.state_derivative(
-            float(t), *(np.ascontiguousarray(a, dtype=np.float64) for a in (x, u, p)), dx
+            float(t),
+            _vector("State x", x, self.state_names, ""),
+            _vector("Input u", u, self.input_names, ""),
+            _vector("Parameters p", p, self.parameter_names, "; parameter_vector() makes them"),
+            dx,
         )
         return dx
 
-    def parameter_vector(self, values: dict[str, float] | None = None) -> FloatArray:
-        """Return the parameters [np]: defaults, replaced by `values`.
+    def parameter_vector(self, values: Mapping[str, float] | None = None) -> FloatArray:
+        """Return the parameters [np] in SI: defaults, replaced by `values`.
 
-        Raises KeyError for a name that the model does not have.
+        Raises InputError for a name that the model does not have and for a value that is not finite
+        or outside the bounds of its parameter.
         """
         values = values or {}
-        unknown = sorted(values.keys() - self.defaults.keys())
-        if unknown:
-            raise KeyError(f"No parameter {unknown[0]!r}; known: {', '.join(self.parameter_names)}")
+        for name in values:
+            if name not in self.defaults:
+                raise unknown("parameter", name, self.parameter_names)
+        for p in self.parameters:
+            if p.name in values:
+                _refuse_out_of_bounds(p, values[p.name])
         return np.array([values.get(n, d) for n, d in self.defaults.items()], dtype=np.float64)
+
+
+def _refuse_out_of_bounds(p: ModelParameter, value: float) -> None:
+    below, above = BOUND_SLACK * abs(p.lower), BOUND_SLACK * abs(p.upper)
+    if not p.lower - below <= value <= p.upper + above or not math.isfinite(value):
+        raise InputError(
+            f"Parameter '{p.name}' = {value:g} {p.unit} lies outside its bounds"
+            f" [{p.lower:g}, {p.upper:g}] {p.unit}; change the value."
+        )
+
+
+def _vector(what: str, given: ArrayLike, names: Sequence[str], hint: str) -> FloatArray:
+    array = np.asarray(given, dtype=np.float64)
+    if array.shape != (len(names),):
+        raise InputError(
+            f"{what} has shape {array.shape}; give [{len(names)}]: {', '.join(names)}{hint}."
+        )
+    return np.ascontiguousarray(array)

@@ -4,17 +4,20 @@ The tangents follow the variational equation with the method of the run itself; 
 jump by the change of the vector field times the shift of the event (Aizerman and Gantmacher, 1958).
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import unknown
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.delays import delay_columns, delayed, delays_of
 from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
 from ptp_symbolic.simulation.passage import METHODS, Accuracy, pass_through, tolerance_weights
+from ptp_symbolic.simulation.profile_text import as_signals
 from ptp_symbolic.simulation.run import (
     checked_parameters,
     chosen_method,
@@ -45,7 +48,7 @@ class Sensitivities:
 def sensitivity(
     model: Model,
     times: float | ArrayLike,
-    inputs: Mapping[str, InputSignal] | None = None,
+    inputs: Mapping[str, InputSignal | str] | None = None,
     parameters: Mapping[str, float] | None = None,
     initial: Mapping[str, float] | None = None,
     by_parameters: Sequence[str] | None = None,
@@ -61,7 +64,7 @@ def sensitivity(
     SimulationError when the simulation cannot go on.
     """
     t = output_times(times)
-    given = inputs or {}
+    given = as_signals(model.input_names, inputs or {}, float(t[-1]))
     p = checked_parameters(model, parameters or {})
     table = delayed(
         stack([given.get(name, constant(0.0)) for name in model.input_names]), delays_of(model, p)
@@ -106,5 +109,5 @@ def _measured(
 
 def _index(known: Sequence[str], name: str, what: str) -> int:
     if name not in known:
-        raise InputError(f"Unknown {what} '{name}'. Choose from: {', '.join(known)}.")
+        raise unknown(what, name, known)
     return list(known).index(name)

@@ -1,8 +1,9 @@
 """Input profiles as a person types them on the command line: `step:24@0.5`, `constant:3`."""
 
 import re
+from collections.abc import Mapping, Sequence
 
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.simulation.inputs import (
     InputSignal,
     constant,
@@ -28,6 +29,39 @@ _FORMS = {
 }
 
 
+_STRANGE = re.compile(r"(?<![a-z])(?:nan|inf(?:inity)?)(?![a-z])", re.IGNORECASE)
+
+
+def as_signals(
+    names: Sequence[str], given: Mapping[str, InputSignal | str], duration: float
+) -> dict[str, InputSignal]:
+    """Return the inputs `given` to a model whose inputs are `names`, profiles read into signals.
+
+    Raises InputError for a name that is no input, and as `parse_profile` does.
+    """
+    signals = {}
+    for name, signal in given.items():
+        if name not in names:
+            raise unknown("input", name, names)
+        if isinstance(signal, str):
+            try:
+                signal = parse_profile(signal, duration)
+            except InputError as error:
+                raise InputError(f"Input '{name}': {error}") from error
+        if not isinstance(signal, InputSignal):
+            raise InputError(
+                f"Input '{name}' is of type {type(signal).__name__}; give a profile such as"
+                " 'constant:3', or a signal of ptp_symbolic.simulation.inputs."
+            )
+        signals[name] = signal
+    return signals
+
+
+def profile_forms() -> tuple[tuple[str, str], ...]:
+    """Every kind of profile as an example and what its numbers mean."""
+    return tuple((f"{kind}:{example}", rule) for kind, (_, example, rule) in _FORMS.items())
+
+
 def parse_profile(text: str, duration: float) -> InputSignal:
     """Read one profile; times in s, values in the unit of the input that it drives.
 
@@ -38,7 +72,9 @@ def parse_profile(text: str, duration: float) -> InputSignal:
     pattern = _FORMS[kind][0] if kind in _FORMS else None
     found = re.fullmatch(pattern, body, re.ASCII) if pattern else None
     if found is None:
-        raise InputError(f"Profile {_shown(text)} is not understood; use one of {_listed()}.")
+        strange = _STRANGE.search(body)
+        why = f": {strange[0]} is no finite number" if strange else ""
+        raise InputError(f"Profile {_shown(text)} is not understood{why}; use one of {_listed()}.")
     given = [None if group is None or "," in group else float(group) for group in found.groups()]
     try:
         return _profile(kind, body, given, duration)
@@ -70,4 +106,4 @@ def _shown(text: str) -> str:
 
 
 def _listed() -> str:
-    return ", ".join(f"{kind}:{example} ({rule})" for kind, (_, example, rule) in _FORMS.items())
+    return ", ".join(f"{example} ({rule})" for example, rule in profile_forms())

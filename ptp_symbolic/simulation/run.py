@@ -1,12 +1,14 @@
 """Simulate a model: inputs as profiles or logs, located events, energy ledger."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ptp_symbolic.errors import InputError
+from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.delays import delayed, delays_of
 from ptp_symbolic.simulation.fixed_step import FixedPassage, pass_in_steps
@@ -20,10 +22,12 @@ from ptp_symbolic.simulation.passage import (
     pass_through,
     tolerance_weights,
 )
+from ptp_symbolic.simulation.profile_text import as_signals
 
 FloatArray = NDArray[np.float64]
 
 OUTPUT_STEP = 1e-3
+MOST_SAMPLES = 5_000_000
 FIXED_STEP = "fixed_step"
 EVENT_CAPACITY = 100_000
 SLIDING = {-1.0: "slides backward", 0.0: "sticks", 1.0: "slides forward"}
@@ -72,7 +76,7 @@ class Trajectory:
 def simulate(
     model: Model,
     times: float | ArrayLike,
-    inputs: Mapping[str, InputSignal] | None = None,
+    inputs: Mapping[str, InputSignal | str] | None = None,
     parameters: Mapping[str, float] | None = None,
     initial: Mapping[str, float] | None = None,
     rtol: float = 1e-8,
@@ -83,20 +87,20 @@ def simulate(
 ) -> Trajectory:
     """Simulate `model` from 0 to a duration in s (output every ms) or at given `times` [k].
 
-    Inputs that are not given are zero. rtol and atol bound the error of a step, atol in rad for
-    angles (see `tolerance_weights`); `method` is "rosenbrock" for stiff machines, "runge_kutta"
-    for smooth ones and where a controller samples faster than a winding settles, "fixed_step" for
-    steps of `step` s, None to let the model choose. Where a controller samples, the state at that
-    instant is the one after it.
+    Inputs are signals or profiles as text ("step:1@0.5"), zero where not given. rtol and atol bound
+    the error of a step, atol in rad for angles (see `tolerance_weights`); `method` is "rosenbrock"
+    for stiff machines, "runge_kutta" for smooth ones and where a controller samples faster than a
+    winding settles, "fixed_step" for steps of `step` s, None to let the model choose. Where a
+    controller samples, the state at that instant is the one after it.
 
     Raises InputError for unknown names, times that do not increase and a step that does not fit,
     SimulationError when the state diverges or modes switch without end.
     """
     t = output_times(times)
-    _refuse_unknown("input", inputs or {}, model.input_names)
+    given = as_signals(model.input_names, inputs or {}, float(t[-1]))
     x, p = start_of(model, initial or {}), checked_parameters(model, parameters or {})
     table = delayed(
-        stack([_signal(model, inputs or {}, n) for n in model.input_names]), delays_of(model, p)
+        stack([_signal(model, given, n) for n in model.input_names]), delays_of(model, p)
     )
     chosen = chosen_method(model, method)
     found: Passage | FixedPassage
@@ -128,16 +132,34 @@ def chosen_method(
     return method
 
 
-def output_times(times: float | ArrayLike) -> FloatArray:
-    """Times [k] of the output, from a duration or as given. Raises InputError if they decrease."""
+def output_times(times: float | ArrayLike, every: float = OUTPUT_STEP) -> FloatArray:
+    """Times [k] of the output: from 0 to a duration `every` so many s, its end too, or as given.
+
+    Raises InputError if they decrease and for more than five million of them.
+    """
     t = np.array(times, dtype=np.float64)
     if t.ndim == 0:
         if not 0.0 < t < np.inf:
             raise InputError(f"Duration {float(t):g} s; give a positive number of seconds.")
-        t = np.linspace(0.0, float(t), max(2, round(float(t) / OUTPUT_STEP) + 1))
+        t = _regular_times(float(t), every)
     if t.ndim != 1 or len(t) < 2 or not np.all(np.isfinite(t)) or np.any(np.diff(t) <= 0):
         raise InputError("Output times must be two or more finite, increasing numbers of seconds.")
     return t
+
+
+def _regular_times(duration: float, every: float) -> FloatArray:
+    if not 0.0 < every < np.inf:
+        raise InputError(f"Output every {every:g} s; give a positive number of seconds.")
+    count = duration / every
+    if count >= MOST_SAMPLES:
+        raise InputError(
+            f"{duration:g} s with an output every {every:g} s make {count:.3g} samples, at most"
+            f" {MOST_SAMPLES} are allowed; shorten the duration, or give output times further"
+            f" apart (--every {1.01 * duration / MOST_SAMPLES:.3g})."
+        )
+    if abs(count - round(count)) < 1e-3 or count < 1.0:
+        return np.linspace(0.0, duration, max(2, round(count) + 1))
+    return np.append(every * np.arange(int(count) + 1), duration)
 
 
 def checked_parameters(model: Model, parameters: Mapping[str, float]) -> FloatArray:
@@ -145,16 +167,8 @@ def checked_parameters(model: Model, parameters: Mapping[str, float]) -> FloatAr
 
     Raises InputError for unknown names, values outside bounds, values that do not fit each other.
     """
-    _refuse_unknown("parameter", parameters, model.parameter_names)
-    for p in model.parameters:
-        value = parameters.get(p.name, p.default)
-        if not p.lower <= value <= p.upper:
-            raise InputError(
-                f"Parameter '{p.name}' = {value:g} {p.unit} lies outside its bounds"
-                f" [{p.lower:g}, {p.upper:g}]; change the value."
-            )
-    vector = model.parameter_vector(dict(parameters))
-    model.refuse_impossible(vector)
+    vector = model.parameter_vector(parameters)
+    model.refuse_impossible(vector, parameters)
     return vector
 
 
@@ -164,7 +178,8 @@ def start_of(model: Model, initial: Mapping[str, float]) -> FloatArray:
     x = np.array(model.module.STATE_INITIAL, dtype=np.float64)
     for name, value in initial.items():
         if not np.isfinite(value):
-            raise InputError(f"State '{name}' starts at {value}; give a finite number.")
+            unit = model.units[name]
+            raise InputError(f"State '{name}' starts at {value} {unit}; give a finite number.")
         x[model.state_names.index(name)] = value
     return x
 
@@ -207,7 +222,7 @@ def _signal(model: Model, inputs: Mapping[str, InputSignal], name: str) -> Input
 def _refuse_unknown(what: str, given: Mapping[str, object], known: Sequence[str]) -> None:
     for name in given:
         if name not in known:
-            raise InputError(f"Unknown {what} '{name}'. Choose from: {', '.join(known)}.")
+            raise unknown(what, name, known)
 
 
 def _named(model: Model, rows: FloatArray) -> tuple[Event, ...]:

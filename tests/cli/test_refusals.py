@@ -65,6 +65,45 @@ def test_logs(tmp_path: Path, content: str, expected: str) -> None:
     assert not out.exists()
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "wanted"),
+    [
+        ('role = "output"', 'role = "input"', "has no output signal to compare with"),
+        ("counts_per_revolution = 7200", "", "has neither counts_per_revolution nor noise"),
+    ],
+)
+def test_signals_that_cannot_be_compared_name_the_file(
+    call, tmp_path: Path, old: str, new: str, wanted: str
+) -> None:
+    platform = tmp_path / "platform.toml"
+    text = (SAMPLE / "platform.toml").read_text(encoding="utf-8")
+    platform.write_text(text.replace(old, new), encoding="utf-8")
+    done = call("fit", "--platform", platform, SAMPLE / "train", "--out", tmp_path / "out")
+    assert done.code == 2
+    assert done.err.startswith(f"ptp-symbolic: {platform}: ") and wanted in done.err
+
+
+@pytest.mark.parametrize("command", ["simulate", "fit"])
+def test_unknown_signals_get_the_nearest(call, tmp_path: Path, command: str) -> None:
+    logs = [str(SAMPLE / "train")] if command == "fit" else []
+    for old, new, wanted in (
+        (
+            "[signals.tau_pan]",
+            "[signals.tau_pam]",
+            "input signal 'tau_pam': did you mean 'tau_pan'",
+        ),
+        (
+            "[signals.theta_tilt]",
+            "[signals.theta_tlt]",
+            "signal 'theta_tlt': did you mean 'theta_t",
+        ),
+    ):
+        platform = changed_platform(tmp_path, old, new)
+        done = call(command, "--platform", platform, *logs, "--out", tmp_path / "out")
+        assert done.code == 2
+        assert f"{platform}: Unknown " in done.err and wanted in done.err
+
+
 def test_output_that_cannot_be_written(tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("", encoding="utf-8")

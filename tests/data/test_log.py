@@ -108,10 +108,11 @@ HEADER_REFUSALS = [
         "t [s]",
         r"run.csv:1: column 'time \[s\]' is missing; the header has t \[s\], ",
     ),
-    ("time [s]", "time", r"run.csv:1: column 'time \[s\]' is missing; the header has time, pan_v"),
-    ("time [s]", "time [ms]", r"run.csv:1: column 'time \[s\]' is missing"),
+    ("time [s]", "time", r"run.csv:1: column 'time' has no unit; write 'time \[s\]'"),
+    ("time [s]", "time [rad]", r"run.csv:1: column 'time' is in rad, but time is in s; correct"),
     (HEADER + "\n", "", r"run.csv:1: column 'time \[s\]' is missing; the header has 0.0000, 0.00"),
-    (HEADER, HEADER.replace(",", ";"), r"run.csv:1: heading 'time \[s\];.* is not of the form"),
+    (HEADER, HEADER.replace(",", ";"), r"columns are separated by semicolons; save .* commas"),
+    (HEADER, HEADER.replace(",", "\t"), r"run.csv:1: the columns are separated by tabs; save the"),
     ("pan_angle", "angle", r"run.csv:1: signal 'pan_angle' is missing; .*, angle \[rad\]\.$"),
     ("pan_angle [rad]", "pan_angle", r"column 'pan_angle' has no unit; write 'pan_angle \[rad\]'"),
     ("[rad]", "[]", r"run.csv:1: column 'pan_angle' has no unit"),
@@ -131,7 +132,7 @@ ROW_REFUSALS = [
     (",4.50,", ",4,50,", r"run.csv:5: has 5 cells where the header has 4"),
     (",4.50,", ",,", r"run.csv:5: 'pan_voltage' is missing; every row needs a value"),
     ("0.0150,4.50,", ",4.50,", r"run.csv:5: 'time' is missing; every row needs a value"),
-    (",4.50,", ",nan,", r"run.csv:5: 'pan_voltage' is 'nan', not a finite decimal number"),
+    (",4.50,", ",nan,", r"run.csv:5: 'pan_voltage' is 'nan', not a finite .*remove the row"),
     (",4.50,", ",-inf,", r"run.csv:5: 'pan_voltage' is '-inf', not a finite"),
     (",4.50,", ",1e999,", r"run.csv:5: 'pan_voltage' is '1e999', not a finite"),
     (",4.50,", ",four,", r"run.csv:5: 'pan_voltage' is 'four', not a finite"),
@@ -180,6 +181,15 @@ def test_a_bad_log_is_refused_in_one_line(tmp_path: Path, old: str, new: str, me
 def test_a_file_that_is_no_csv_is_refused(tmp_path: Path, content: bytes, message: str) -> None:
     with pytest.raises(InputError, match=message):
         read_log(write(tmp_path, content), PLATFORM)
+
+
+def test_time_may_be_in_any_unit_of_time(tmp_path: Path) -> None:
+    rows = [f"{5.0 * k:.1f},{row.partition(',')[2]}" for k, row in enumerate(ROWS)]
+    text = "\n".join([HEADER.replace("[s]", "[ms]"), *rows]) + "\n"
+    assert_good(read_log(write(tmp_path, text), PLATFORM))
+    path = write(tmp_path, text.replace("\n15.0,", "\n10.0,"))
+    with pytest.raises(InputError, match=r"run.csv:5: time 10.0 ms repeats 10.0 ms of the line"):
+        read_log(path, PLATFORM)
 
 
 def test_missing_folder_and_oversized_files_are_refused(tmp_path: Path) -> None:

@@ -90,15 +90,20 @@ def test_a_tied_parameter_takes_the_value_of_the_other() -> None:
         ),
         (
             with_effect("backlash", "pan"),
-            r"'backlash' acts on 'half_gap_pan', which no declared effect defines; declare the",
+            r"'backlash' acts on 'half_gap_pan', which no declared effect defines; declare"
+            r" shaft_compliance on axis 'pan' too",
         ),
         (
             with_effect("direction_dependent_friction", "tilt"),
-            r"acts on 'coulomb_torque_tilt', which no declared effect defines",
+            r"acts on 'coulomb_torque_tilt', which no declared effect defines; declare csvs",
         ),
         (
             with_parameter(ParameterDeclaration("m_payload", "kg", 1.0)),
-            r"Parameter 'm_payload' belongs to no declared effect\. Known here: J_pan, J_x_tilt",
+            r"'m_payload' belongs to no declared effect: it is of payload; declare one\. Known",
+        ),
+        (
+            with_parameter(ParameterDeclaration("b_pam", "kg", 1.0)),
+            r"Parameter 'b_pam' belongs to no declared effect: did you mean 'b_pan'\? Known",
         ),
         (
             with_parameter(ParameterDeclaration("b_pan", "kg m^2", 0.1)),
@@ -106,11 +111,11 @@ def test_a_tied_parameter_takes_the_value_of_the_other() -> None:
         ),
         (
             with_parameter(ParameterDeclaration("b_pan", "N m s/rad", -0.1)),
-            r"'b_pan' = -0\.1 N m s/rad lies outside its bounds \[0, 10000\]; change the value\.",
+            r"'b_pan' = -0\.1 N m s/rad lies outside its bounds \[0, 10000\] N m s/rad; change",
         ),
         (
             with_parameter(ParameterDeclaration("J_pan", "kg m^2", 1e5)),
-            r"'J_pan' = 100000 kg m\^2 lies outside its bounds \[1e-12, 10000\]",
+            r"'J_pan' = 100000 kg m\^2 lies outside its bounds \[1e-12, 10000\] kg m\^2",
         ),
     ],
 )

@@ -7,6 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from ptp_symbolic.derivation.admissible import refuse_impossible
+from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic.derivation.placement import undeclared_parameters
 from ptp_symbolic.effects import EFFECTS
 from ptp_symbolic.platform import read_platform
 
@@ -30,9 +33,10 @@ def readme(checkout: Path) -> str:
 
 
 def block(readme: str, language: str) -> str:
-    """The one fenced block of a language."""
-    (found,) = re.findall(rf"^```{language}\n(.*?)^```", readme, re.MULTILINE | re.DOTALL)
-    return str(found)
+    """The fenced blocks of a language, one after the other."""
+    found = re.findall(rf"^```{language}\n(.*?)^```", readme, re.MULTILINE | re.DOTALL)
+    assert found
+    return "".join(found)
 
 
 def test_the_example_platform_is_accepted(readme: str, tmp_path: Path) -> None:
@@ -40,15 +44,31 @@ def test_the_example_platform_is_accepted(readme: str, tmp_path: Path) -> None:
     file.write_text(block(readme, "toml"), encoding="utf-8")
     platform = read_platform(file)
     values = {parameter.name: parameter.value for parameter in platform.parameters}
-    assert values == pytest.approx({"m_payload": 4.992, "c_x_payload": 0.1, "F_c_pan": 0.2})
-    assert [parameter.name for parameter in platform.parameters if parameter.free] == ["F_c_pan"]
+    assert values["m_payload"] == 4.992
+    assert values["J_x_payload"] == pytest.approx(5.3e-3)
+    assert values["c_x_payload"] == pytest.approx(0.1)
+    free = [parameter.name for parameter in platform.parameters if parameter.free]
+    assert free == ["F_c_pan", "F_s_pan", "F_v_pan", "b_tilt"]
+
+
+def test_the_example_platform_declares_all_that_its_effects_need(
+    readme: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "turret.toml"
+    file.write_text(block(readme, "toml"), encoding="utf-8")
+    platform = read_platform(file)
+    assert undeclared_parameters(platform) == ()
+    refuse_impossible(assemble(platform), platform)
 
 
 def test_the_python_example_runs(readme: str, tmp_path: Path) -> None:
     program = block(readme, "python") + "print(dx.shape, np.isfinite(dx).all())\n"
     command = [sys.executable, "-c", program]
     ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    assert (ran.stdout, ran.stderr) == ("(4,) True\n", "")
+    assert ran.stderr == ""
+    angle, equations = ran.stdout.splitlines()
+    assert 0.0 < float(angle) < 10.0
+    assert equations == "(4,) True"
 
 
 @pytest.mark.parametrize("command", COMMANDS)

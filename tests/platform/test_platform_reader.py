@@ -168,7 +168,7 @@ REFUSALS = [
     (
         "start = 240",
         "start = -240",
-        r"F_c_pan.start: -240 mN m lies outside its bounds \[0, 5000\]; change one of them",
+        r"F_c_pan.start: -240 mN m lies outside its bounds \[0, 5000\] mN m; change one",
     ),
     ("[0, 5000]", "[5000, 0]", r"F_c_pan.bounds: \[5000, 0\] mN m: the lower bound comes first"),
     ("[0, 5000]", "[0, 0]", r"F_c_pan.bounds: \[0, 0\] mN m: the lower bound comes first"),
@@ -267,9 +267,9 @@ def test_a_file_that_is_no_platform_text_is_refused(
 
 
 def test_missing_files_and_folders_are_refused_with_the_presets(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"'thesis-idael' is no preset .* thesis-ideal, "):
+    with pytest.raises(InputError, match=r"Unknown platform 'thesis-idael': did you mean 'thesis-"):
         read_platform("thesis-idael")
-    with pytest.raises(InputError, match=r"no such file; .* one of the presets thesis-full"):
+    with pytest.raises(InputError, match=r"Unknown platform '.*bench.toml'.*; or give the path of"):
         read_platform(tmp_path / "bench.toml")
     with pytest.raises(InputError, match="is a folder; give a platform TOML"):
         read_platform(tmp_path)

@@ -55,7 +55,7 @@ def test_a_start_outside_is_refused_at_once() -> None:
         (
             "pan_drive",
             {"F_s_pan": 0.1},
-            r"F_c_pan = 0\.2401 N m, F_s_pan = 0\.1 N m: F_s is at least",
+            r"F_c_pan = 0\.2401 N m \(default\), F_s_pan = 0\.1 N m: F_s is",
         ),
     ],
 )

@@ -1,0 +1,88 @@
+"""Results as CSV: trajectories that read back as logs, and headings that carry units."""
+
+import csv
+import io
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.platform import Platform
+from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.simulation.input_values import evaluate_inputs
+from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
+from ptp_symbolic.simulation.run import Trajectory
+
+FloatArray = NDArray[np.float64]
+
+
+def trajectory_columns(
+    platform: Platform, model: Model, found: Trajectory, signals: Mapping[str, InputSignal]
+) -> dict[str, FloatArray]:
+    """Columns [k] of `found` by heading: time, states, energies, inputs, measured signals.
+
+    Inputs and outputs stand under the columns that `platform` declares, so that the file is a log
+    of it; a state of the same name makes room for them.
+    """
+    columns = {
+        name: (model.units[name], values)
+        for name, values in zip(model.state_names, found.x.T, strict=True)
+    }
+    columns |= {name: ("J", getattr(found, name)) for name in ("stored", "supplied", "dissipated")}
+    u = _input_values(model, signals, found.t)
+    declared = {s.signal: s for s in platform.signals}
+    for name, values in zip(model.input_names, u.T, strict=True):
+        column = declared[name].column if name in declared else name
+        columns[column] = (model.units[name], values)
+    measured = [s for s in platform.signals if s.role == "output"]
+    y = _output_values(model, found, u) if measured else None
+    for signal in measured:
+        assert y is not None
+        index = model.output_names.index(signal.signal)
+        columns[signal.column] = (model.units[signal.signal], y[:, index])
+    return {"time [s]": found.t} | {
+        f"{name} [{unit}]": values for name, (unit, values) in columns.items()
+    }
+
+
+def _input_values(model: Model, signals: Mapping[str, InputSignal], t: FloatArray) -> FloatArray:
+    """Inputs [k, nu] at times t [k], after a jump where there is one."""
+    table = stack([signals.get(name, constant(0.0)) for name in model.input_names])
+    cursor, u = table.new_cursor(), np.zeros((len(t), len(model.input_names)))
+    for row, time in zip(u, t, strict=True):
+        evaluate_inputs(time, 1, *table.arrays, cursor, row)
+    return u
+
+
+def _output_values(model: Model, found: Trajectory, u: FloatArray) -> FloatArray:
+    """Measured signals [k, ny] along a trajectory with inputs u [k, nu]."""
+    p, y = model.parameter_vector(), np.zeros((len(found.t), len(model.output_names)))
+    for time, x, given, row in zip(found.t, found.x, u, y, strict=True):
+        model.module.outputs(time, x, given, p, row)
+    return y
+
+
+def sensitivity_headings(model: Model, names: Sequence[str]) -> list[str]:
+    """Headings `d state / d name [unit]`, the states one after the other."""
+    return [
+        f"d {state} / d {name} [{_quotient(model.units[state], model.units[name])}]"
+        for state in model.state_names
+        for name in names
+    ]
+
+
+def _quotient(above: str, below: str) -> str:
+    if above == below:
+        return "1"
+    if below == "1":
+        return above
+    return f"{above}/({below})" if set(below) & set(" /") else f"{above}/{below}"
+
+
+def table_text(head: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
+    """The text of a CSV; numbers to the last bit."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows([v if isinstance(v, str) else repr(float(v)) for v in row] for row in rows)  # type: ignore[arg-type]
+    return text.getvalue()

@@ -1,0 +1,98 @@
+"""Fitting at the command line: what it says, and what it writes."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from ptp_symbolic.cli.diagnose import _print_diagnosis
+from ptp_symbolic.platform import read_platform
+
+SAMPLE = Path(__file__).parents[2] / "ptp_symbolic" / "samples" / "tilted_base"
+LOG = SAMPLE / "train" / "tracking_1.csv"
+
+
+def changed(folder: Path, *pairs: tuple[str, str]) -> Path:
+    text = (SAMPLE / "platform.toml").read_text(encoding="utf-8")
+    for old, new in pairs:
+        assert old in text
+        text = text.replace(old, new)
+    path = folder / "declared.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_fit_far_from_the_floor_says_so(call, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    low = 'start = 0.05\nunit = "N m s/rad"\nbounds = [0.0, 5.0]\n\n[parameters.b_tilt]'
+    path = changed(tmp_path, (low, low.replace("5.0]", "0.06]")))
+    done = call("fit", "--platform", path, LOG, "--out", out)
+    assert (done.code, done.err) == (0, "")
+    assert ", floor 0.29: the model does not fit these logs; run diagnose." in done.out
+    assert "The runs were cut into 8 windows of 1 s, each with a start of its own" in done.out
+    assert "b_pan = 0.06 N m s/rad" in done.out
+
+    summary = json.loads((out / "fit.json").read_text(encoding="utf-8"))
+    before, after = (summary["error"][w]["total"]["rmse_counts"] for w in ("before", "after"))
+    assert before > 1.05 * after
+    assert f"{after:.4g} counts rms over all runs ({before:.4g} at the start values)" in done.out
+    assert summary["windows"] == {"count": 8, "seconds": pytest.approx(1.0, abs=0.01)}
+    assert summary["far_from_floor"] is True
+
+    fitted = read_platform(out / "platform.toml")
+    values = {p.name: p.value for p in fitted.parameters if p.free}
+    assert values["b_pan"] == 0.06
+    assert values == pytest.approx({n: p["value"] for n, p in summary["parameters"].items()})
+    assert fitted.effects == read_platform(path).effects
+
+
+def test_nothing_to_fit_and_what_was_not_declared_are_said(call, tmp_path: Path) -> None:
+    inertia = '[parameters.J_y_tilt]\nvalue = 0.00065\nunit = "kg m^2"\n'
+    path = changed(tmp_path, ("start = 0.05", "value = 0.05"), (inertia, ""))
+    done = call("fit", "--platform", path, LOG, "--out", tmp_path / "out")
+    assert done.code == 0
+    assert "Nothing is free; give a parameter 'start' in place of 'value' to fit it." in done.out
+    assert done.err == "Not declared, default of the catalogue: J_y_tilt = 0.00065 kg m^2.\n"
+    summary = json.loads((tmp_path / "out" / "fit.json").read_text(encoding="utf-8"))
+    assert summary["error"]["before"] == summary["error"]["after"]
+    assert summary["parameters"] == {}
+
+
+def test_a_log_to_fit_is_no_log_to_judge_by(call, tmp_path: Path) -> None:
+    copy = tmp_path / "other_name.csv"
+    copy.write_bytes(LOG.read_bytes())
+    platform = ("diagnose", "--platform", SAMPLE / "platform.toml", "--train", SAMPLE / "train")
+    for leak in (LOG, SAMPLE / "train", copy):
+        done = call(*platform, "--validate", leak, "--out", tmp_path / "out")
+        assert done.code == 2
+        assert done.err.count("\n") == 1
+        assert f"holds the same run as {LOG}, which is given to be fitted" in done.err
+        assert not (tmp_path / "out").exists()
+
+
+def test_a_diagnosis_prints_what_the_logs_do_not_settle(capsys) -> None:
+    def fitted(value: float, identified: bool, at_bound: bool = False) -> dict[str, object]:
+        return {
+            "value": value, "ci95": [0.0, 1.0], "unit": "N m", "identified": identified,
+            "at_bound": at_bound,
+        }  # fmt: skip
+
+    parameters = {
+        "b_pan": fitted(0.1, True),
+        "F_c_pan": fitted(0.2, False),
+        "F_s_pan": fitted(0.3, True, at_bound=True),
+        "beta_base": fitted(0.07, True),
+        "alpha_base": fitted(-0.6, False),
+    }
+    error = {"total": {"rmse_counts": 0.3}, "by_run": {"log": {"rmse_counts": 0.3}}}
+    errors = {"train": {"before": error, "after": error, "noise_floor": error}}
+    added = [{"parameters": {"beta_base": {}, "alpha_base": {}}}]
+    summary = {"verdict": "explained", "summary": "Missing: x.", "added": added, "error": errors}
+    _print_diagnosis({**summary, "fit": {"after": {"parameters": parameters}}})
+    lines = capsys.readouterr().out.splitlines()
+    assert "  beta_base = 0.07 N m  [0, 1]" in lines
+    assert "  alpha_base = -0.6 N m  [0, 1]  (not identified)" in lines
+    told = lines[lines.index("Declared parameters that these logs do not settle:") + 1 :]
+    assert told[0] == "  F_c_pan = 0.2 N m  [0, 1]  (not identified)"
+    assert told[1] == "  F_s_pan = 0.3 N m  [0, 1]  (at its bound)"
+    assert not any("b_pan" in line for line in lines)

@@ -1,0 +1,46 @@
+"""The catalogue at the command line: names are never cut, and one effect is explained whole."""
+
+import json
+
+import pytest
+
+from ptp_symbolic.effects import EFFECTS
+
+
+def test_names_are_whole_through_a_pipe(call, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "60")
+    lines = call("effects").out.splitlines()
+    assert [line.split()[0] for line in lines[1:]] == [
+        kind.id for effect in EFFECTS for kind in (effect, *effect.kinds)
+    ]
+    assert all(kind.reference in line for kind, line in zip(EFFECTS[:14], lines[1:], strict=False))
+    assert "thesis-tilt-drive-stroke-48" in call("platforms").out
+
+
+@pytest.mark.parametrize("effect", [effect.id for effect in EFFECTS])
+def test_every_effect_is_explained(call, effect: str) -> None:
+    done = call("effects", effect)
+    assert (done.code, done.err) == (0, "")
+    assert "reference: " in done.out
+    told = json.loads(call("effects", effect, "--json").out)
+    for kind in told["kinds"]:
+        for need in kind["needs"]:
+            assert need["from"]
+        for parameter in kind["parameters"]:
+            assert parameter["name"] in done.out
+            assert parameter["meaning"] in done.out
+            assert len(parameter["bounds"]) == 2
+
+
+def test_friction_has_its_parameters_with_units_and_bounds(call) -> None:
+    text = call("effects", "csvs_friction").out
+    assert "F_c_<axis>  N m        0.2401   0 to 10000" in text
+    assert "to tell it apart: Crawl through standstill" in text
+    needs = call("effects", "direction_dependent_friction").out
+    assert "needs coulomb_torque_<axis>, from csvs_friction" in needs
+
+
+def test_an_unknown_effect_is_refused_with_the_nearest(call) -> None:
+    done = call("effects", "csvs_frictoin")
+    assert done.code == 2
+    assert "Unknown effect 'csvs_frictoin': did you mean 'csvs_friction'?" in done.err

@@ -1,0 +1,114 @@
+"""Simulating at the command line: what comes in, what is refused, what can be fed back."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.data import read_inputs, read_log
+from ptp_symbolic.platform import read_platform
+
+IDEAL = ("simulate", "--platform", "thesis-ideal")
+UNDECLARED = """[platform]
+name = "bare"
+axes = ["pan", "tilt"]
+[[effects]]
+effect = "rigid_bodies"
+[[effects]]
+effect = "payload"
+"""
+
+
+def columns(path: Path) -> dict[str, np.ndarray]:
+    with path.open(encoding="utf-8", newline="") as file:
+        head, *rows = list(csv.reader(file))
+    return dict(zip(head, np.array(rows, dtype=float).T, strict=True))
+
+
+def test_a_trajectory_is_a_log_of_its_platform(call, tmp_path: Path) -> None:
+    given = ("--input", "tau_pan=step:0.2@0.1", "--initial", "theta_tilt=0.3")
+    first = tmp_path / "first"
+    done = call(*IDEAL, *given, "--duration", 0.5, "--every", 0.002, "--out", first)
+    assert (done.code, done.err) == (0, "")
+    found = columns(first / "trajectory.csv")
+    assert len(found["time [s]"]) == 251
+    assert found["theta_tilt [rad]"][0] == 0.3
+    assert np.array_equal(found["pan_torque [N m]"], 0.2 * (found["time [s]"] >= 0.1))
+    assert np.array_equal(found["tilt_angle [rad]"], found["theta_tilt [rad]"])
+
+    log = read_log(first / "trajectory.csv", read_platform("thesis-ideal"))
+    assert np.array_equal(log.outputs[:, 0], found["theta_pan [rad]"])
+    again = ("--input", first / "trajectory.csv", "--initial", "theta_tilt=0.3")
+    call(*IDEAL, *again, "--every", 0.002, "--out", tmp_path / "again")
+    second = columns(tmp_path / "again" / "trajectory.csv")
+    assert list(second) == list(found)
+    for name, values in found.items():
+        assert second[name] == pytest.approx(values, rel=1e-6, abs=1e-8), name
+
+
+def test_without_a_platform_of_signals_inputs_have_the_names_of_the_model(
+    call, tmp_path: Path
+) -> None:
+    path = tmp_path / "bare.toml"
+    path.write_text(UNDECLARED.partition('[[effects]]\neffect = "payload"')[0], encoding="utf-8")
+    done = call("simulate", "--platform", path, "--duration", 0.01, "--out", tmp_path / "out")
+    assert done.code == 0
+    assert "tau_tilt [N m]" in columns(tmp_path / "out" / "trajectory.csv")
+    wanted = "Not declared, default of the catalogue: J_pan = 0.00053 kg m^2, J_x_tilt = 0.00041 kg"
+    assert done.err.startswith(wanted)
+    assert done.err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--duration", "1e9"), "1e+12 samples, at most 5000000 are allowed; shorten the duration"),
+        (("--step", "1e-3"), "--step 0.001 is for --method fixed_step alone; add that, or leave"),
+        (("--step", "1e-3", "--method", "rosenbrock"), "--step 0.001 is for --method fixed_step"),
+        (("--every", "0"), "Output every 0 s; give a positive number of seconds"),
+        (("--initial", "theta_pan=high"), "give theta_pan=VALUE, a number in rad."),
+        (("--initial", "omega_pan"), "give omega_pan=VALUE, a number in rad/s."),
+        (("--initial", "omega_pan=nan"), "State 'omega_pan' starts at nan rad/s; give a finite"),
+        (("--initial", "teta_pan=1"), "Unknown state 'teta_pan': did you mean 'theta_pan'?"),
+        (("--input", "tau_pam=step:1@0"), "Unknown input 'tau_pam': did you mean 'tau_pan'?"),
+        (("--input", "tau_pan=step:nan@0.5"), "nan is no finite number; use one of constant:3"),
+    ],
+)
+def test_refusals(call, tmp_path: Path, arguments: tuple[str, ...], message: str) -> None:
+    done = call(*IDEAL, *arguments, "--out", tmp_path / "out")
+    assert done.code == 2
+    assert message in done.err
+    assert done.err.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_help_lists_every_profile(call) -> None:
+    for command in ("simulate", "sensitivity"):
+        text = call(command, "--help").out
+        for form in ("step:24@0.5", "ramp:0..24@0..10", "trapezoid:24,0.5,2.5,0.5", "multisine:"):
+            assert form in text
+
+
+def test_sensitivities_carry_units(call, tmp_path: Path) -> None:
+    wanted = ("--by", "b_pan", "--by-initial", "theta_tilt", "--duration", "0.01")
+    call("sensitivity", "--platform", "ideal", *wanted, "--out", tmp_path)
+    heads = list(columns(tmp_path / "sensitivity.csv"))
+    assert heads[:3] == [
+        "time [s]", "d theta_pan / d b_pan [rad/(N m s/rad)]", "d theta_pan / d theta_tilt [1]",
+    ]  # fmt: skip
+
+
+def test_inputs_are_written_as_they_are_held(call, tmp_path: Path) -> None:
+    call(*IDEAL, "--input", "tau_tilt=ramp:0..1@0..0.1", "--duration", 0.1, "--out", tmp_path)
+    time, inputs = read_inputs(tmp_path / "trajectory.csv", read_platform("thesis-ideal"))
+    assert inputs[:, 1] == pytest.approx(10.0 * time)
+
+
+def test_long_lists_of_defaults_are_cut(call, tmp_path: Path) -> None:
+    path = tmp_path / "bare.toml"
+    path.write_text(UNDECLARED, encoding="utf-8")
+    done = call("report", "derivation", "--platform", path, "--out", tmp_path / "out")
+    assert done.code == 0
+    assert done.err.count(" = ") == 6
+    assert done.err.endswith("m_payload = 4.992 kg, J_x_payload = 0.0053 kg m^2 and 5 more.\n")
