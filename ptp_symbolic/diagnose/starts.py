@@ -2,7 +2,8 @@
 
 Every candidate starts from its grid, with the declared parameters at their table start and at the
 declared optimum. The parameters of the candidate move alone first, so that the declared ones are
-not bent to stand in for an effect that is still far from its place. Starts are tried on the runs
+not bent to stand in for an effect that is still far from its place; from the table these follow
+soon, because far from the optimum no candidate by itself tells much. Starts are tried on the runs
 that tell most, and only the best go on to all runs.
 """
 
@@ -14,19 +15,21 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.lines import with_lines
-from ptp_symbolic.diagnose.trial import COARSE, Task, Trial, restarted
+from ptp_symbolic.diagnose.responses import most_promising
+from ptp_symbolic.diagnose.trial import COARSE, NEARBY_COUNTS, Task, Trial, restarted
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.fit import Effort, Fit, all_values_at_start, fit_parameters
 
 FloatArray = NDArray[np.float64]
 
 PROBE = Effort(1, 1e-2, COARSE, rejections=2)
-SEEK = Effort(2, 1e-2, COARSE, rejections=2)
-GO_ON = Effort(3, 1e-2, COARSE, rejections=2)
-CONFIRM = Effort(2, 1e-2, COARSE, rejections=2)
+SEEK = Effort(2, 1e-2, COARSE, 0.3, rejections=2)
+GO_ON = Effort(3, 1e-2, COARSE, 0.3, rejections=2)
+CONFIRM = Effort(2, 1e-2, COARSE, 0.3, rejections=2)
 PROBED_SHARE, TELLING_SHARE = 0.1, 0.4
 STARTS_KEPT, START_FACTOR = 2, 2.0
 SOUGHT, CONFIRMED, FAR_BEHIND = 10, 5, 50.0
+PROMISING = 4
 OPTIMUM, TABLE = "optimum", "table"
 
 
@@ -66,30 +69,44 @@ def first_round(
 
     Returns those worth going on with, fitted to all train runs, as one group per origin, and the
     rest, fitted to the runs that tell most. From the table a candidate may look worse and yet lead
-    to the better end, so the two origins do not compete here.
+    to the better end, so the two origins do not compete here. At an optimum near the floor its
+    response takes the place of a search (see `diagnose.responses`).
     """
     candidates = with_lines(task, bases[0].train, candidates)
+    near_floor = [base for base in bases if base.train.rms_counts() < NEARBY_COUNTS]
+    promising, rest = most_promising(task, near_floor, candidates, PROMISING)
     searches = [
         _Search(base, candidate, start, values, z, origin)
         for base in bases
         for candidate in candidates
         if candidate.key not in base.keys
         for origin, values, z in _origins(task, base, candidate, base is bases[0])
+        if origin == TABLE or base not in near_floor
         for start in candidate.starts
     ]
     task.progress(f"trying {len(candidates)} candidates from {len(searches)} starts")
     probed = _advance(task, searches, _telling_runs(bases[0].train, PROBED_SHARE), PROBE)
     telling = _telling_runs(bases[0].train, TELLING_SHARE)
-    sought = _leaders(_advance(task, _leaders(probed, STARTS_KEPT), telling, SEEK), 1)
-    groups: list[list[Trial]] = []
-    left: list[_Search] = []
+    kept = [_freed(s) if s.origin == TABLE else s for s in _leaders(probed, STARTS_KEPT)]
+    sought = _leaders(_advance(task, kept, telling, SEEK), 1)
+    groups, left = [promising], list[_Search]()
     for origin in (OPTIMUM, TABLE):
         near, behind = _split([s for s in sought if s.origin == origin], SOUGHT)
         best, others = _split(_advance(task, near, telling, GO_ON), CONFIRMED)
         left += [*others, *behind]
         confirmed = _advance(task, best, tuple(range(len(task.train))), CONFIRM)
         groups.append([t for search in confirmed for t in search.trial()])
-    return groups, [t for search in left for t in search.trial()]
+    return groups, [*(t for search in left for t in search.trial()), *rest]
+
+
+def _freed(search: _Search) -> _Search:
+    """The search with the parameters of its base free too, the declared ones from the table."""
+    own = {f.name for f in search.free}
+    others = [f for f in restarted(search.base.train) if f.name not in own]
+    begun = [f if f.table is None else replace(f, start=f.table) for f in others]
+    moving = {name for f in begun for name in (f.name, *f.tied)}
+    fixed = {name: value for name, value in search.fixed.items() if name not in moving}
+    return replace(search, free=(*begun, *search.free), fixed=fixed)
 
 
 def _telling_runs(fit: Fit, share: float) -> tuple[int, ...]:

@@ -1,0 +1,140 @@
+"""Near the floor: candidates ranked by what a finite amount of each would gain.
+
+There the declared parameters have bent as far as they can to stand in for what is missing, and an
+effect that acts through breakaways or bounces has no usable derivative: its response to its finite
+start, the declared parameters following, tells more than any search from that start.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.trial import COARSE, Task, Trial, fixed_values, restarted
+from ptp_symbolic.identify.coordinates import FreeParameter, limits, to_search, to_values
+from ptp_symbolic.identify.evaluate import evaluate
+from ptp_symbolic.identify.fit import Effort, all_values_at_start, fit_parameters
+from ptp_symbolic.identify.intervals import project_out
+
+FloatArray = NDArray[np.float64]
+
+AMOUNT = 0.02  # of a parameter that is free or declared already
+DAMPING, FARTHEST, LEAST, MOST = 1e-3, 0.5, 0.05, 5.0
+HERE = Effort(0, 1e-2, COARSE)
+
+
+@dataclass(frozen=True, eq=False)
+class _Response:
+    """A candidate at one start: by how much of it the residual is made least, and what is left."""
+
+    base: Trial
+    candidate: Candidate
+    start: tuple[FreeParameter, ...]
+    amount: float
+    shift: FloatArray
+    left: float
+
+
+def most_promising(
+    task: Task, bases: Sequence[Trial], candidates: Sequence[Candidate], count: int
+) -> tuple[list[Trial], list[Trial]]:
+    """The `count` best candidates as trials, each begun where its response promises most, and the
+    others begun likewise.
+    """
+    best: dict[tuple[str, ...], _Response] = {}
+    for base in bases:
+        for response in _responses(task, base, candidates):
+            key = tuple(sorted((*base.keys, response.candidate.key)))
+            if key not in best or response.left < best[key].left:
+                best[key] = response
+    ordered = sorted(best.values(), key=lambda response: response.left)
+    tried = [_begun(task, response) for response in ordered]
+    begun = [trial for trial in tried if np.isfinite(trial.train.cost)]
+    return begun[:count], begun[count:]
+
+
+def _responses(task: Task, base: Trial, candidates: Sequence[Candidate]) -> list[_Response]:
+    """The response of `base` to every start of every candidate that it does not have."""
+    fit, free = base.train, restarted(base.train)
+    phi, residual = to_search(free, fit.values), [e.residual for e in fit.evaluations]
+    steps = np.where(phi + AMOUNT <= limits(free)[1], AMOUNT, -AMOUNT)
+    columns = [
+        _change(task, base, residual, _with_tied(free, to_values(free, phi + step)))
+        for step in np.diag(steps)
+    ]
+    here = _projected(base, residual)
+    seen = np.array([c is not None for c in columns], dtype=np.bool_)
+    known = np.zeros((len(here), 0))
+    for step, column in zip(steps, columns, strict=True):
+        if column is not None:
+            known = np.column_stack([known, column / step])
+    found = []
+    for candidate in candidates:
+        for start in candidate.starts if candidate.key not in base.keys else ():
+            whole = {f.name: min(f.start * (1.0 + AMOUNT), f.upper) for f in start}
+            given = whole if candidate.is_declared_value else all_values_at_start(start)
+            change = _change(task, base, residual, given)
+            if change is None or not np.any(change):
+                continue
+            x, left = _least(here, np.column_stack([known, change]))
+            shift = np.zeros(len(free))
+            shift[seen] = np.clip(x[:-1], -FARTHEST, FARTHEST)
+            found.append(_Response(base, candidate, start, float(x[-1]), shift, left))
+    return found
+
+
+def _with_tied(free: Sequence[FreeParameter], values: Mapping[str, float]) -> dict[str, float]:
+    return {name: values[f.name] for f in free for name in (f.name, *f.tied)}
+
+
+def _change(
+    task: Task, base: Trial, residual: Sequence[FloatArray], values: Mapping[str, float]
+) -> FloatArray | None:
+    """How the residual of all runs changes with `values`, the starts following; None: it failed."""
+    p = task.model.parameter_vector({**base.train.values, **values})
+    none, pairs = np.zeros(0, dtype=np.int64), zip(base.train.runs, base.train.z, strict=True)
+    changed = list(
+        task.executor.map(lambda a: evaluate(task.model, a[0], p, a[1], none, False, COARSE), pairs)
+    )
+    if any(e.failed for e in changed):
+        return None
+    return _projected(base, [e.residual - r for e, r in zip(changed, residual, strict=True)])
+
+
+def _projected(base: Trial, columns: Sequence[FloatArray]) -> FloatArray:
+    """One column over all runs, without what the unknown starts can explain."""
+    parts = zip(columns, base.train.evaluations, strict=True)
+    return np.concatenate([project_out(c[:, None], e.by_start)[:, 0] for c, e in parts])
+
+
+def _least(residual: FloatArray, columns: FloatArray) -> tuple[FloatArray, float]:
+    """Amounts [n] of `columns` that make the residual least, and the sum of squares left."""
+    information = columns.T @ columns
+    information += DAMPING * np.diag(np.diag(information) + 1e-12)
+    x = np.asarray(np.linalg.solve(information, -columns.T @ residual), dtype=np.float64)
+    return x, float(np.sum((residual + columns @ x) ** 2))
+
+
+def _begun(task: Task, response: _Response) -> Trial:
+    """The trial at the amounts of `response`: what switches the effect on grows, the rest stays."""
+    base = response.base
+    free = restarted(base.train)
+    ahead = to_values(free, to_search(free, base.train.values) + response.shift)
+    begun = [replace(f, start=float(np.clip(ahead[f.name], f.lower, f.upper))) for f in free]
+    vanishes = {p.name: p.vanishes for p in task.model.parameters}
+    for f in response.start:
+        zero = f.start if response.candidate.is_declared_value else vanishes[f.name]
+        if response.candidate.is_declared_value:
+            start = f.start * (1.0 + AMOUNT * np.clip(response.amount, -MOST, MOST))
+        elif zero is None or f.start == zero:
+            start = f.start
+        else:
+            least = LEAST if f.logarithmic else -MOST
+            start = zero + np.clip(response.amount, least, MOST) * (f.start - zero)
+        begun.append(replace(f, start=float(np.clip(start, f.lower, f.upper))))
+    fit = fit_parameters(
+        task.model, task.train, begun, fixed_values(task, begun), base.train.z, HERE, task.executor
+    )
+    return Trial((*base.candidates, response.candidate), fit)
