@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ptp_symbolic import loop
-from ptp_symbolic.codegen.latex import effect_equations
+from ptp_symbolic.codegen.effect_equations import effect_equations
 from ptp_symbolic.codegen.module import module_text
 from ptp_symbolic.data import Log, read_logs
 from ptp_symbolic.derivation.assembly import assemble
@@ -36,6 +36,7 @@ from ptp_symbolic.platform import (
     platform_text,
 )
 from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
+from ptp_symbolic.report.latex_text import escaped
 from ptp_symbolic.runtime.model import Model
 
 Progress = Callable[[str], None]
@@ -163,10 +164,13 @@ def _json(value: object) -> str:
 
 
 def _equations_tex(equations: list[dict[str, Any]]) -> str:
-    """The added equations as a fragment to be included in a document."""
+    """The added equations as a fragment to be included in a document that loads amsmath."""
     if not equations:
         return "% No effect was added to the equations.\n"
-    return "".join(f"% {e['title']}\n\\[\n{e['latex']}\n\\]\n" for e in equations)
+    rows = [f"\\[\n{e['latex']}\n\\]\n" for e in equations]
+    titles = [escaped(f"{e['title'][:1].upper()}{e['title'][1:]}") for e in equations]
+    text = "\n".join(f"{title}:\n{row}" for title, row in zip(titles, rows, strict=True))
+    return f"% \\usepackage{{amsmath}}\n{text}"
 
 
 def _added(found: Diagnosis, after: Trial) -> list[dict[str, Any]]:

@@ -160,16 +160,22 @@ def _residual_maps(diagnosis: Mapping[str, Any], curves: Curves) -> list[dict[st
 
 
 def _equations(diagnosis: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Equations of the added effects; MathML is left out unless it is formula markup alone."""
+    """Equations of the added effects; MathML is left out unless it is formula markup alone.
+
+    Each of its lines becomes a formula of its own, so that a long equation wraps like text.
+    """
     found = []
     for equation in diagnosis.get("equations") or []:
         mathml = str(equation.get("mathml") or "").strip()
+        pieces = None
         if mathml and "<" not in _MATHML_TAG.sub("", mathml):
-            inner = re.sub(r"^<math[^>]*>|</math>$", "", mathml)
-            markup = Markup('<math display="block">{}</math>').format(Markup(inner))
-            found.append({**equation, "mathml": markup})
-        else:
-            found.append({**equation, "mathml": None})
+            pieces = [
+                Markup('<math displaystyle="true">{}</math>').format(
+                    Markup(re.sub(r"^<math[^>]*>|</math>$", "", line))
+                )
+                for line in mathml.splitlines()
+            ]
+        found.append({**equation, "mathml": pieces})
     return found
 
 

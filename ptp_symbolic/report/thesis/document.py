@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 
 from ptp_symbolic.codegen.latex import symbol_latex
-from ptp_symbolic.report.latex_text import PREAMBLE, escaped, formula, table
+from ptp_symbolic.report.latex_text import PREAMBLE, escaped, formulas, table
 from ptp_symbolic.report.thesis import (
     backlash,
     configurations,
@@ -103,8 +103,7 @@ def latex_text(
     count = summary(items)
     parts = [
         PREAMBLE,
-        r"\usepackage{graphicx,array}",
-        r"\newcolumntype{L}[1]{>{\raggedright\arraybackslash}p{#1}}",
+        r"\usepackage{graphicx}",
         r"\title{The pan-tilt thesis, recomputed}\author{}\date{}\begin{document}\maketitle",
         INTRODUCTION,
         rf"\par {count['items'] - count['errata']} results: {count['agree']} agree,"
@@ -151,7 +150,7 @@ def _equation_3_8(items: Sequence[Item]) -> str:
         f" printed one is {'zero' if equal else 'NOT zero'} in trigonometric normal form."
     )
     derived = configurations.derived_equation_3_8()
-    return text + "".join(formula("", derived[key], name) for key, name in names.items())
+    return text + formulas([(name, derived[key]) for key, name in names.items()])
 
 
 def _errata(items: Sequence[Item]) -> str:
