@@ -14,15 +14,16 @@ from ptp_symbolic.codegen.module import module_text
 from ptp_symbolic.data import Log, read_logs
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.diagnose.candidates import find_candidates, vanished
+from ptp_symbolic.diagnose.curves import curves_of
+from ptp_symbolic.diagnose.residual_tests import residual_tests
 from ptp_symbolic.diagnose.rounds import Diagnosis, diagnose
 from ptp_symbolic.diagnose.search import fit_declared
 from ptp_symbolic.diagnose.summary import (
-    curves_of,
+    cause,
     error_table,
     fit_table,
     headline,
     ranking,
-    residual_tests,
 )
 from ptp_symbolic.diagnose.trial import Task, Trial
 from ptp_symbolic.diagnose.verdict import EXPLAINED, PARTLY, UP_TO_GROUP
@@ -138,7 +139,7 @@ def _write_up(platform: Platform, found: Diagnosis) -> Output:
         "added": _added(found, after),
         "ranking": ranking(found),
         "error": error_table(found.base, after, found.verdict.floor),
-        "residual_tests": residual_tests(after),
+        "residual_tests": residual_tests(after, after.train.model.input_names),
         "fit": {
             "before": {"parameters": fit_table(found.base)},
             "after": {"parameters": fit_table(after)},
@@ -180,7 +181,7 @@ def _added(found: Diagnosis, after: Trial) -> list[dict[str, Any]]:
     return [
         {
             "effect": c.id,
-            "title": c.title,
+            "title": cause(c, after),
             "axis": c.axis,
             "parameters": {name: _value(values[name], units[name]) for name in c.parameters},
             "confusable_with": rivals if found.verdict.word == UP_TO_GROUP else [],

@@ -11,11 +11,14 @@ from ptp_symbolic.codegen.statements import Statement, statements, with_definiti
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.platform import Platform
 
+MANY_TERMS = 12
+
 
 def effect_equations(platform: Platform, effect: str, axis: str | None) -> list[dict[str, Any]]:
     """What one declared effect adds, and in whole every equation that it changes.
 
-    Rows of title, effect, latex, text and mathml. A friction law is shown with all its branches.
+    Rows of title, effect, latex, text, mathml, and whether it is a detail. A friction law is shown
+    with all its branches.
     """
     rest = tuple(e for e in platform.effects if (e.effect, e.axis) != (effect, axis))
     with_it = assemble(platform)
@@ -35,10 +38,13 @@ def effect_equations(platform: Platform, effect: str, axis: str | None) -> list[
     ]  # fmt: skip
     rows = []
     for s in with_definitions(shown, found):
-        if s.key in changed:
-            rows += [_row(effect, title, *printed) for title, *printed in _change(s, before)]
+        added = _change(s, before) if s.key in changed else []
+        rows += [_row(effect, *printed) for printed in added]
         title = s.name + (", in whole" if s.sums else "")
-        rows.append(_row(effect, title, s.latex, s.text, s.mathml))
+        # what a reader may skip: a long sum where what is added to it is shown, what names mean
+        long = s.key[0] == "mass" or len(sp.Add.make_args(s.right)) > MANY_TERMS
+        detail = s not in shown or bool(added and long)
+        rows.append(_row(effect, title, s.latex, s.text, s.mathml, detail))
     return rows
 
 
@@ -69,5 +75,10 @@ def _change(
     ]
 
 
-def _row(effect: str, title: str, latex: str, text: str, mathml: str) -> dict[str, Any]:
-    return {"title": title, "effect": effect, "latex": latex, "text": text, "mathml": mathml}
+def _row(
+    effect: str, title: str, latex: str, text: str, mathml: str, detail: bool = False
+) -> dict[str, Any]:
+    return {
+        "title": title, "effect": effect, "latex": latex, "text": text, "mathml": mathml,
+        "detail": detail,
+    }  # fmt: skip

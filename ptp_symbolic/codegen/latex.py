@@ -11,6 +11,7 @@ GREEK = {
 }  # fmt: skip
 DERIVATIVES = {"dc": r"\Delta c", "dF": r"\Delta F"}
 LINE_WIDTH = 92
+_SIGN = '<mo form="infix">{}</mo>'
 
 
 def symbol_latex(name: str) -> str:
@@ -88,8 +89,11 @@ def plain_text_of(expression: sp.Expr) -> str:
 
 
 def mathml_of(expression: sp.Expr) -> str:
-    """Presentation MathML of an expression."""
-    return str(mathml(_with_decimals(expression), printer="presentation", order="lex"))
+    """Presentation MathML of an expression; exponentials as a function, not as small type."""
+    written = _with_decimals(expression).replace(sp.exp, sp.Function("exp"))
+    text = str(mathml(written, printer="presentation", order="lex"))
+    text = text.replace("<mi>dc</mi>", "<mi>Δc</mi>").replace("<mi>dF</mi>", "<mi>ΔF</mi>")
+    return text.replace("<mo>-</mo>", "<mo>−</mo>")
 
 
 def mathml_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
@@ -100,6 +104,6 @@ def mathml_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
     pieces = []
     for number, term in enumerate(_terms(expression, room)):
         negative = term.could_extract_minus_sign()
-        sign = "<mo>-</mo>" if negative else "<mo>+</mo>" if number else ""
+        sign = _SIGN.format("−" if negative else "+") if number or negative else ""
         pieces.append(f"<mrow>{sign}{mathml_of(-term if negative else term)}</mrow>")
     return pieces
