@@ -23,7 +23,7 @@ def symbol_latex(name: str) -> str:
     trailing = re.fullmatch(r"([A-Za-z]+)(\d+)", letter)
     if trailing:
         letter, place = trailing[1], [trailing[2], *place]
-    word = letter if len(letter) == 1 else rf"\mathrm{{{letter}}}"
+    word = letter if len(letter) <= 1 else rf"\mathrm{{{letter}}}"
     head = DERIVATIVES.get(letter, rf"\{letter}" if letter in GREEK else word)
     return rf"{head}_{{\mathrm{{{','.join(place)}}}}}" if place else head
 

@@ -29,6 +29,7 @@ from ptp_symbolic.effects.effect import slide
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.derivation_symbols import frames, symbols
 from ptp_symbolic.report.latex_text import PREAMBLE, escaped, formulas, table
+from ptp_symbolic.report.source import THESIS
 from ptp_symbolic.simplify.base_parameters import BaseForm
 from ptp_symbolic.simplify.steps import SimplifiedEquations, simplify_rigid
 
@@ -163,7 +164,8 @@ def _effects(equations: Equations) -> str:
         [rf"\texttt{{{escaped(e.effect.id)}}}", e.axis or "", escaped(e.effect.reference)]
         for e in equations.effects
     ]
-    return r"\section{Effects}" + table("llL{80mm}", ["effect", "axis", "reference"], rows)
+    source = rf"\section{{Effects}} \emph{{The thesis}} is {THESIS}"
+    return source + table("llL{80mm}", ["effect", "axis", "reference"], rows)
 
 
 def _energy(equations: Equations) -> str:

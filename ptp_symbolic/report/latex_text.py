@@ -39,7 +39,7 @@ def table(columns: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> s
     lines = [" & ".join(row) + r" \\" for row in rows]
     title, columns = " & ".join(head) + r" \\ \midrule", rf"{{@{{}}{columns}@{{}}}}\toprule"
     if len(rows) <= SHORT_TABLE:
-        begin, end = r"\par\smallskip\begin{tabular}", r"\end{tabular}\par\medskip"
+        begin, end = r"\par\smallskip\begin{tabular}", r"\end{tabular}\par\medskip{}"
     else:
         title += r"\endhead"
         begin, end = r"\begin{longtable}[l]", r"\end{longtable}"
