@@ -5,6 +5,9 @@ import re
 import sympy as sp
 from sympy.printing.mathml import mathml
 
+from ptp_symbolic.effects.encoder_quantization import NearestCount
+
+HALF = sp.Rational(1, 2)
 GREEK = {
     "theta", "omega", "tau", "alpha", "beta", "gamma", "delta", "epsilon", "eta", "kappa", "lambda",
     "mu", "phi", "psi", "rho", "sigma", "zeta",
@@ -26,6 +29,12 @@ def symbol_latex(name: str) -> str:
     word = letter if len(letter) <= 1 else rf"\mathrm{{{letter}}}"
     head = DERIVATIVES.get(letter, rf"\{letter}" if letter in GREEK else word)
     return rf"{head}_{{\mathrm{{{','.join(place)}}}}}" if place else head
+
+
+def rate_latex(name: str) -> str:
+    """LaTeX of the time derivative of a symbol: a dot above its letter."""
+    head, line, place = symbol_latex(name).partition("_")
+    return rf"\dot{{{head}}}{line}{place}"
 
 
 def latex_of(expression: sp.Expr) -> str:
@@ -73,7 +82,11 @@ def _width(term: sp.Expr) -> int:
 
 
 def _with_decimals(expression: sp.Expr) -> sp.Expr:
-    """`expression` with measured numbers such as 981/100 as decimals; simple fractions stay."""
+    """`expression` with measured numbers such as 981/100 as decimals, and rounding as a floor.
+
+    Simple fractions stay.
+    """
+    expression = expression.replace(NearestCount, lambda x, q: q * sp.floor(x / q + HALF))
     return expression.xreplace(
         {
             number: sp.sign(number) * sp.Symbol(repr(float(abs(number))))

@@ -11,6 +11,7 @@ from ptp_symbolic.codegen.latex import (
     mathml_lines,
     mathml_of,
     plain_text_of,
+    rate_latex,
 )
 from ptp_symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.effects.effect import Friction, Sampler, slide
@@ -36,9 +37,16 @@ class Statement:
     part: str = ""
 
     @property
+    def left_latex(self) -> str:
+        """The left side in LaTeX; a rate of change with a dot."""
+        if isinstance(self.left, sp.Derivative):
+            return rate_latex(str(self.left.expr))
+        return latex_of(self.left)
+
+    @property
     def latex(self) -> str:
         """The equation in LaTeX, over several lines where it is long."""
-        return aligned(f"{latex_of(self.left)} {RELATIONS[self.relation][0]}", self.right)
+        return aligned(f"{self.left_latex} {RELATIONS[self.relation][0]}", self.right)
 
     @property
     def text(self) -> str:

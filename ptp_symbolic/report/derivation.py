@@ -8,13 +8,12 @@ from itertools import groupby
 import sympy as sp
 
 from ptp_symbolic.codegen.dynamics import solve_accelerations, state_rates
-from ptp_symbolic.codegen.latex import latex_of, symbol_latex
+from ptp_symbolic.codegen.latex import latex_of, rate_latex, symbol_latex
 from ptp_symbolic.codegen.statements import (
     RELATIONS,
     Statement,
     by_name,
     friction_statements,
-    rate_of,
     statements,
 )
 from ptp_symbolic.derivation.admissible import refuse_impossible
@@ -33,6 +32,7 @@ from ptp_symbolic.report.source import THESIS
 from ptp_symbolic.simplify.base_parameters import BaseForm
 from ptp_symbolic.simplify.steps import SimplifiedEquations, simplify_rigid
 
+LAST_LINES = 14  # on the last page at least
 ROUTES = (("Newton--Euler", newton_euler), ("Kane", kane), ("Lagrange", lagrange))
 
 
@@ -43,7 +43,8 @@ def render_derivation(platform: Platform) -> dict[str, str | bytes]:
     simplified = _simplified(equations)
     parts = [
         PREAMBLE,
-        rf"\title{{{escaped(platform.title)}\\\large Derivation of the equations of motion}}",
+        rf"\title{{\vspace{{-15mm}}{escaped(platform.title)}\\"
+        r"\large Derivation of the equations of motion}",
         r"\author{}\date{}\begin{document}\maketitle",
         frames(equations),
         symbols(equations, platform),
@@ -125,7 +126,7 @@ def _displayed(rows: Sequence[Statement]) -> str:
     """Statements one below another, each with its own relation."""
     groups = groupby(rows, key=lambda s: s.relation)
     return "".join(
-        formulas([(latex_of(s.left), s.right) for s in group], RELATIONS[relation][0])
+        formulas([(s.left_latex, s.right) for s in group], RELATIONS[relation][0])
         for relation, group in groups
     )
 
@@ -190,12 +191,13 @@ def _emitted(equations: Equations, form: BaseForm) -> str:
     lines += [line for line in solve.definitions if line[0] not in named]
     rows = [(symbol_latex(name), by_name(e, equations)) for name, e in lines]
     rates = zip(equations.state_symbols, state_rates(equations, solve), strict=True)
-    rows += [(latex_of(rate_of(symbol)), sp.sympify(e, strict=True)) for symbol, e in rates]
+    # what samplers set is held in between
+    rows += [(rate_latex(str(s)), sp.sympify(e, strict=True)) for s, e in rates if e != 0]
     return (
         r"\section{Final equations}The rate of change of every state as the emitted module"
         r" computes it: simplified, in base parameters and under its names. What the lines have in"
         r" common the module computes once; the functions named above it uses as they are."
-        + formulas(rows)
+        + formulas(rows, together=LAST_LINES)
     )
 
 

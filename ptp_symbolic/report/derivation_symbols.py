@@ -51,7 +51,7 @@ def symbols(equations: Equations, platform: Platform) -> str:
     return (
         r"\section{Symbols} Parameters:"
         + table("lL{62mm}lrl", ["symbol", "meaning", "unit", "value", ""], rows)
-        + r"\par\noindent Variables:"
+        + r"\par\noindent Variables:\nopagebreak"
         + table("lL{78mm}ll", ["symbol", "meaning", "unit", ""], others)
     )
 

@@ -11,7 +11,7 @@ PREAMBLE = r"""\documentclass[a4paper,10pt]{article}
 \usepackage[T1]{fontenc}
 \usepackage{lmodern}
 \usepackage{amsmath}
-\usepackage[margin=22mm]{geometry}
+\usepackage[margin=20mm]{geometry}
 \usepackage{longtable}
 \usepackage{booktabs}
 \usepackage{array}
@@ -19,6 +19,9 @@ PREAMBLE = r"""\documentclass[a4paper,10pt]{article}
 \setlength{\parindent}{0pt}
 \setlength{\parskip}{4pt}
 \allowdisplaybreaks
+\setlength{\jot}{1.5pt}
+\setlength{\LTpre}{4pt}
+\setlength{\LTpost}{6pt}
 \raggedbottom"""
 
 SPECIAL = {
@@ -46,8 +49,11 @@ def table(columns: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> s
     return "\n".join([begin + columns, title, *lines, rf"\bottomrule{end}"])
 
 
-def formulas(rows: Sequence[tuple[str, sp.Expr]], relation: str = "=") -> str:
-    """Displayed formulas one below another; a long sum breaks before its terms."""
+def formulas(rows: Sequence[tuple[str, sp.Expr]], relation: str = "=", together: int = 0) -> str:
+    """Displayed formulas one below another; a long sum breaks before its terms.
+
+    The last lines, as many as are to stay `together`, are not torn apart by the end of a page.
+    """
     if not rows:
         return ""
     widest = max(len(re.sub(r"\\[a-z]+|[{}_\\]", "", left)) for left, _ in rows)
@@ -55,7 +61,10 @@ def formulas(rows: Sequence[tuple[str, sp.Expr]], relation: str = "=") -> str:
     for left, right in rows:
         first, *more = latex_lines(right, LINE_WIDTH - max(0, widest - SHORT_NAME))
         lines += [f"{left} {relation}{{}}& {first}", *(f"& {line}" for line in more)]
-    return "\\begin{align*}\n" + " \\\\\n".join(lines) + "\n\\end{align*}\n"
+    free = max(len(lines) - together, 0)
+    ends = [r" \\" if k < free else r" \\*" for k in range(len(lines) - 1)]
+    text = "\n".join(f"{line}{end}" for line, end in zip(lines, [*ends, ""], strict=True))
+    return f"\\begin{{align*}}\n{text}\n\\end{{align*}}\n"
 
 
 def displayed(text: str) -> str:

@@ -14,6 +14,7 @@ from ptp_symbolic.platform import preset_names, read_platform
 from ptp_symbolic.report.derivation import has_warning, render_derivation
 from ptp_symbolic.report.derivation_symbols import CATALOGUE
 from ptp_symbolic.report.latex_text import escaped
+from ptp_symbolic.report.pdf import compile_pdf
 
 
 @pytest.mark.parametrize("name", preset_names())
@@ -76,4 +77,20 @@ def test_the_final_equations_give_the_rate_of_change_of_every_state() -> None:
     platform = read_platform("thesis-full")
     text = str(render_derivation(platform)["derivation.tex"])
     final = text[text.index(r"\section{Final equations}") :]
-    assert final.count(r"\frac{d}{d t}") == len(assemble(platform).state_symbols)
+    assert final.count(r"\dot{") == len(assemble(platform).state_symbols)
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_no_page_is_nearly_empty(name: str, tmp_path: Path) -> None:
+    if shutil.which("pdflatex") is None or shutil.which("pdftotext") is None:
+        pytest.skip("pdflatex or pdftotext is not installed")
+    pdf = compile_pdf(render_derivation(read_platform(name)), "derivation")
+    assert pdf is not None
+    (tmp_path / "derivation.pdf").write_bytes(pdf)
+    command = ["pdftotext", "-bbox", "derivation.pdf", "-"]
+    boxes = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    for page in boxes.split("<page ")[1:]:
+        height = float(re.search(r'height="([\d.]+)"', page)[1])
+        words = re.findall(r'yMax="([\d.]+)">(.*?)</word>', page)
+        lowest = max(float(y) for y, _ in words[:-1])  # the last word is the page number
+        assert lowest > 0.25 * height
