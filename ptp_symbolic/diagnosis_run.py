@@ -9,20 +9,21 @@ from pathlib import Path
 from typing import Any
 
 from ptp_symbolic import loop
-from ptp_symbolic.codegen.latex import effect_equations
+from ptp_symbolic.codegen.effect_equations import effect_equations
 from ptp_symbolic.codegen.module import module_text
 from ptp_symbolic.data import Log, read_logs, read_split_logs
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.diagnose.candidates import find_candidates, vanished
+from ptp_symbolic.diagnose.curves import curves_of
+from ptp_symbolic.diagnose.residual_tests import residual_tests
 from ptp_symbolic.diagnose.rounds import Diagnosis, diagnose
 from ptp_symbolic.diagnose.search import HELD_OUT, fit_declared
 from ptp_symbolic.diagnose.summary import (
-    curves_of,
+    cause,
     error_table,
     fit_table,
     headline,
     ranking,
-    residual_tests,
 )
 from ptp_symbolic.diagnose.trial import Task, Trial
 from ptp_symbolic.diagnose.verdict import EXPLAINED, PARTLY, UP_TO_GROUP
@@ -38,6 +39,7 @@ from ptp_symbolic.platform import (
     platform_text,
 )
 from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
+from ptp_symbolic.report.latex_text import escaped
 from ptp_symbolic.runtime.model import Model
 
 Progress = Callable[[str], None]
@@ -171,7 +173,7 @@ def _write_up(platform: Platform, found: Diagnosis) -> Output:
         "added": _added(found, after),
         "ranking": ranking(found),
         "error": error_table(found.base, after, found.verdict.floor),
-        "residual_tests": residual_tests(after),
+        "residual_tests": residual_tests(after, after.train.model.input_names),
         "fit": {
             "before": {"parameters": fit_table(found.base)},
             "after": {"parameters": fit_table(after)},
@@ -197,10 +199,13 @@ def _json(value: object) -> str:
 
 
 def _equations_tex(equations: list[dict[str, Any]]) -> str:
-    """The added equations as a fragment to be included in a document."""
+    """The added equations as a fragment to be included in a document that loads amsmath."""
     if not equations:
         return "% No effect was added to the equations.\n"
-    return "".join(f"% {e['title']}\n\\[\n{e['latex']}\n\\]\n" for e in equations)
+    rows = [f"\\[\n{e['latex']}\n\\]\n" for e in equations]
+    titles = [escaped(f"{e['title'][:1].upper()}{e['title'][1:]}") for e in equations]
+    text = "\n".join(f"{title}:\n{row}" for title, row in zip(titles, rows, strict=True))
+    return f"% \\usepackage{{amsmath}}\n{text}"
 
 
 def _added(found: Diagnosis, after: Trial) -> list[dict[str, Any]]:
@@ -210,7 +215,7 @@ def _added(found: Diagnosis, after: Trial) -> list[dict[str, Any]]:
     return [
         {
             "effect": c.id,
-            "title": c.title,
+            "title": cause(c, after),
             "axis": c.axis,
             "parameters": {name: _value(values[name], units[name]) for name in c.parameters},
             "confusable_with": rivals if found.verdict.word == UP_TO_GROUP else [],

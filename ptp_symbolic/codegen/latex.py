@@ -1,31 +1,40 @@
 """Formulas for documents: LaTeX, MathML and plain text, all printed from the expressions."""
 
 import re
-from dataclasses import replace
-from typing import Any
 
 import sympy as sp
 from sympy.printing.mathml import mathml
 
-from ptp_symbolic.derivation.assembly import assemble
-from ptp_symbolic.derivation.equations import Equations
-from ptp_symbolic.platform import Platform
+from ptp_symbolic.effects.encoder_quantization import NearestCount
 
-GREEK = {"theta", "omega", "tau", "alpha", "beta"}
+HALF = sp.Rational(1, 2)
+GREEK = {
+    "theta", "omega", "tau", "alpha", "beta", "gamma", "delta", "epsilon", "eta", "kappa", "lambda",
+    "mu", "phi", "psi", "rho", "sigma", "zeta",
+}  # fmt: skip
 DERIVATIVES = {"dc": r"\Delta c", "dF": r"\Delta F"}
+LINE_WIDTH = 92
+_SIGN = '<mo form="infix">{}</mo>'
 
 
 def symbol_latex(name: str) -> str:
-    """LaTeX of a symbol name: ``theta_gear_pan`` becomes a theta with an upright subscript."""
+    """LaTeX of a symbol name: ``theta_gear_pan`` becomes a theta with an upright subscript.
+
+    Letters are set in italics, words upright.
+    """
     letter, *place = name.split("_")
     trailing = re.fullmatch(r"([A-Za-z]+)(\d+)", letter)
     if trailing:
         letter, place = trailing[1], [trailing[2], *place]
-    head = DERIVATIVES.get(letter, rf"\{letter}" if letter in GREEK else letter)
-    if not place:
-        return head
-    words = ",".join(rf"\mathrm{{{word}}}" for word in place)
-    return f"{head}_{{{words}}}"
+    word = letter if len(letter) <= 1 else rf"\mathrm{{{letter}}}"
+    head = DERIVATIVES.get(letter, rf"\{letter}" if letter in GREEK else word)
+    return rf"{head}_{{\mathrm{{{','.join(place)}}}}}" if place else head
+
+
+def rate_latex(name: str) -> str:
+    """LaTeX of the time derivative of a symbol: a dot above its letter."""
+    head, line, place = symbol_latex(name).partition("_")
+    return rf"\dot{{{head}}}{line}{place}"
 
 
 def latex_of(expression: sp.Expr) -> str:
@@ -35,8 +44,49 @@ def latex_of(expression: sp.Expr) -> str:
     return str(sp.latex(expression, symbol_names=names, order="lex"))
 
 
+def latex_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
+    """LaTeX of an expression, the terms of a sum on as many lines as they need.
+
+    A term that is itself too long is multiplied out.
+    """
+    lines: list[str] = []
+    width = 0
+    for number, term in enumerate(_terms(expression, room)):
+        text = latex_of(term)
+        signed = text if number == 0 or text.startswith("-") else f"+ {text}"
+        size = _width(term)
+        if lines and width + size <= room:
+            lines[-1] += f" {signed}"
+            width += size
+        else:
+            lines.append(signed)
+            width = size
+    return lines
+
+
+def _terms(expression: sp.Expr, room: int) -> list[sp.Expr]:
+    """The terms of a sum in a fixed order; one wider than `room` is multiplied out if it can be."""
+    terms = []
+    for term in expression.as_ordered_terms(order="lex"):
+        parts = [term]
+        for multiplied_out in (sp.expand_mul(term, deep=False), sp.expand(term)):
+            if max(map(_width, parts)) > room:
+                parts = multiplied_out.as_ordered_terms(order="lex")
+        terms += parts
+    return terms
+
+
+def _width(term: sp.Expr) -> int:
+    """Printed width of a term, roughly, in characters: names count without their underscores."""
+    return len(sp.sstr(term).replace("_", "").replace("*", " ")) * 4 // 5 + 3
+
+
 def _with_decimals(expression: sp.Expr) -> sp.Expr:
-    """`expression` with measured numbers such as 981/100 as decimals; simple fractions stay."""
+    """`expression` with measured numbers such as 981/100 as decimals, and rounding as a floor.
+
+    Simple fractions stay.
+    """
+    expression = expression.replace(NearestCount, lambda x, q: q * sp.floor(x / q + HALF))
     return expression.xreplace(
         {
             number: sp.sign(number) * sp.Symbol(repr(float(abs(number))))
@@ -52,48 +102,21 @@ def plain_text_of(expression: sp.Expr) -> str:
 
 
 def mathml_of(expression: sp.Expr) -> str:
-    """Presentation MathML of an expression."""
-    return str(mathml(_with_decimals(expression), printer="presentation"))
+    """Presentation MathML of an expression; exponentials as a function, not as small type."""
+    written = _with_decimals(expression).replace(sp.exp, sp.Function("exp"))
+    text = str(mathml(written, printer="presentation", order="lex"))
+    text = text.replace("<mi>dc</mi>", "<mi>Δc</mi>").replace("<mi>dF</mi>", "<mi>ΔF</mi>")
+    return text.replace("<mo>-</mo>", "<mo>−</mo>")
 
 
-def effect_equations(platform: Platform, effect: str, axis: str | None) -> list[dict[str, Any]]:
-    """What one declared effect adds to the equations: the difference with and without it."""
-    rest = tuple(e for e in platform.effects if (e.effect, e.axis) != (effect, axis))
-    with_it = assemble(platform)
-    own = {n for e in with_it.effects if (e.effect.id, e.axis) == (effect, axis)
-           for n in e.parameters}  # fmt: skip
-    kept = tuple(p for p in platform.parameters if p.name not in own)
-    without = assemble(replace(platform, effects=rest, parameters=kept))
-    rows = []
-    for what, after, before in _pairs(with_it, without):
-        difference = sp.factor_terms(sp.expand(after - before))
-        if difference != 0:
-            rows.append(
-                {
-                    "title": f"added to {what}",
-                    "effect": effect,
-                    "latex": latex_of(difference),
-                    "text": plain_text_of(difference),
-                    "mathml": mathml_of(difference),
-                }
-            )
-    return rows
+def mathml_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
+    """Presentation MathML of the terms of a sum, each with its sign, to be set one after another.
 
-
-def _pairs(with_it: Equations, without: Equations) -> list[tuple[str, sp.Expr, sp.Expr]]:
-    pairs = [
-        (f"the torque on {rate}", a, b)
-        for rate, a, b in zip(with_it.rates, with_it.forcing, without.forcing, strict=True)
-    ]
-    size = len(with_it.rates)
-    pairs += [
-        (f"the mass matrix, entry {i + 1}, {j + 1}", with_it.mass_matrix[i, j],
-         without.mass_matrix[i, j])
-        for i in range(size) for j in range(i, size)
-    ]  # fmt: skip
-    for a, b in zip(with_it.frictions, without.frictions, strict=False):
-        pairs.append((f"the sliding friction on {a.rate}", a.level, b.level))
-        pairs.append((f"the breakaway torque on {a.rate}", a.breakaway, b.breakaway))
-    for c, d in zip(with_it.contacts, without.contacts, strict=False):
-        pairs.append((f"the half gap of {c.axis}", c.half_gap, d.half_gap))
-    return pairs
+    A reader may break the line between any two of them.
+    """
+    pieces = []
+    for number, term in enumerate(_terms(expression, room)):
+        negative = term.could_extract_minus_sign()
+        sign = _SIGN.format("−" if negative else "+") if number or negative else ""
+        pieces.append(f"<mrow>{sign}{mathml_of(-term if negative else term)}</mrow>")
+    return pieces

@@ -1,13 +1,11 @@
-"""A diagnosis as plain data: errors, ranking, parameters, residual tests, curves."""
+"""A diagnosis as plain data: headline, errors, ranking, parameters."""
 
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy import stats
 
-from ptp_symbolic.diagnose.candidates import DECLARED_VALUE
-from ptp_symbolic.diagnose.floor import floor_counts, residual_counts
+from ptp_symbolic.diagnose.candidates import DECLARED_VALUE, Candidate
+from ptp_symbolic.diagnose.floor import floor_counts, residual_counts, trimmed
 from ptp_symbolic.diagnose.rounds import Diagnosis
 from ptp_symbolic.diagnose.trial import Trial, held_out_cost
 from ptp_symbolic.diagnose.verdict import (
@@ -21,31 +19,64 @@ from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.intervals import estimates
 from ptp_symbolic.identify.run import Run
 
-FloatArray = NDArray[np.float64]
 Pair = tuple[Run, Evaluation]
-LAGS = 25
+SMALL_PERCENT = 1.0
+SMALL = "The deviation is statistically clear but small."
 
 
 def headline(found: Diagnosis) -> str:
-    """One sentence that says what was found."""
-    verdict = found.verdict
+    """What was found, in one or two sentences."""
+    verdict, accepted = found.verdict, found.verdict.accepted
     before = float(np.sqrt(held_out_cost(found.base)))
     if verdict.word == NOTHING_MISSING:
-        return f"Nothing is missing: {before:.3f} counts rms on held-out runs is the noise floor."
-    if verdict.word in (EXPLAINED, UP_TO_GROUP, PARTLY) and verdict.accepted is not None:
-        names = " and ".join(c.title for c in verdict.accepted.candidates)
-        after = float(np.sqrt(held_out_cost(verdict.accepted)))
-        sentence = f"Missing: {names}; held-out error {before:.3f} to {after:.3f} counts rms."
+        return f"Nothing is missing: {before:.3f} counts rms on validation runs is the noise floor."
+    if verdict.word in (EXPLAINED, UP_TO_GROUP, PARTLY) and accepted is not None:
+        after = float(np.sqrt(held_out_cost(accepted)))
+        causes = " and ".join(cause(c, accepted) for c in accepted.candidates)
+        declared = all(c.is_declared_value for c in accepted.candidates)
+        begin = f"{causes[:1].upper()}{causes[1:]}" if declared else f"Missing: {causes}"
+        sentences = [
+            f"{begin}; validation error {before:.3f} to {after:.3f} counts rms{_kept(found)}."
+        ]
+        sentences += [SMALL for c in accepted.candidates if _is_small(c, accepted)][:1]
         if verdict.word == UP_TO_GROUP:
             rivals = ", ".join(sorted({k for r in verdict.rivals for k in r.keys}))
-            return f"{sentence} These logs cannot tell it from: {rivals}."
+            sentences.append(f"These logs cannot tell it from: {rivals}.")
         if verdict.word == PARTLY:
-            return f"{sentence} A remainder is left unexplained."
-        return sentence
+            sentences.append("A remainder is left unexplained.")
+        return " ".join(sentences)
     return (
-        f"Something is missing that has no name here: {before:.3f} counts rms on held-out runs,"
+        f"Something is missing that has no name here: {before:.3f} counts rms on validation runs,"
         f" the floor is {verdict.floor:.3f}."
     )
+
+
+def cause(candidate: Candidate, trial: Trial) -> str:
+    """What `candidate` says is wrong with the declared machine; of a value also by how much."""
+    if not candidate.is_declared_value:
+        return candidate.title
+    name = candidate.parameters[0]
+    meaning = {p.name: p.meaning for p in trial.train.model.parameters}[name]
+    percent = deviation(candidate, trial)
+    written = f"{percent:+.1f}" if abs(percent) >= 10.0 else f"{percent:+.2g}"
+    return f"declared value of {name} is wrong by {written} % ({meaning})"
+
+
+def deviation(candidate: Candidate, trial: Trial) -> float:
+    """By how many percent the fit moved a declared value."""
+    (declared,) = candidate.starts[0]
+    return 100.0 * (trial.train.values[declared.name] - declared.start) / abs(declared.start)
+
+
+def _is_small(candidate: Candidate, trial: Trial) -> bool:
+    return candidate.is_declared_value and abs(deviation(candidate, trial)) < SMALL_PERCENT
+
+
+def _kept(found: Diagnosis) -> str:
+    """A note where the worst windows do not count."""
+    fit = found.base.validate
+    pairs = [] if fit is None else fit.pairs()
+    return "" if len(trimmed(pairs)) == len(pairs) else " without the worst tenth of the windows"
 
 
 def by_source(pairs: list[Pair]) -> dict[str, list[Pair]]:
@@ -101,20 +132,31 @@ def _error(pairs: list[Pair], floor: float | None) -> dict[str, float]:
 
 def fit_table(trial: Trial) -> dict[str, Any]:
     """Fitted parameters with intervals, starts, bounds hit and those the data cannot identify."""
-    units = trial.train.model.units
-    starts = {f.name: f.start if f.table is None else f.table for f in trial.train.free}
+    model = trial.train.model
+    meanings = {p.name: p.meaning for p in model.parameters}
     return {
         e.name: {
             "value": e.value,
             "ci95": [_finite(e.lower), _finite(e.upper)],
-            "unit": units[e.name],
-            "start": starts[e.name],
+            "unit": model.units[e.name],
+            "meaning": meanings[e.name],
+            "start": _start(trial, e.name),
             "at_bound": e.at_bound,
             "identified": e.identified,
             "only_with": list(e.only_with),
         }
         for e in estimates(trial.train)
     }
+
+
+def _start(trial: Trial, name: str) -> float | None:
+    """Where the search for a parameter began; None where it began at several places."""
+    declared = {f.name: f.table for f in trial.train.free}
+    if declared[name] is not None:
+        return declared[name]
+    began = {f.start for c in trial.candidates for start in c.starts for f in start
+             if f.name == name}  # fmt: skip
+    return began.pop() if len(began) == 1 else None
 
 
 def _finite(value: float) -> float | None:
@@ -136,9 +178,7 @@ def ranking(found: Diagnosis) -> list[dict[str, Any]]:
                 "p_value": score.p_value,
                 "train_error_after": _train_error(found, trial),
                 "validate_error_after": float(np.sqrt(held_out_cost(trial))) if judged else None,
-                "parameters": {
-                    n: trial.train.values[n] for c in trial.candidates for n in c.parameters
-                },
+                "parameters": _fitted(trial) if judged else {},
                 "accepted": accepted is not None and trial.keys == accepted.keys,
                 "why": _why(found, trial),
             }
@@ -156,6 +196,15 @@ def ranking(found: Diagnosis) -> list[dict[str, Any]]:
     return rows
 
 
+def _fitted(trial: Trial) -> dict[str, dict[str, Any]]:
+    units = trial.train.model.units
+    return {
+        name: {"value": trial.train.values[name], "unit": units[name]}
+        for candidate in trial.candidates
+        for name in candidate.parameters
+    }
+
+
 def _train_error(found: Diagnosis, trial: Trial) -> float | None:
     """Error on all train runs; None where a trial was dropped before it saw them all."""
     whole = len(trial.train.runs) == len(found.base.train.runs)
@@ -165,108 +214,14 @@ def _train_error(found: Diagnosis, trial: Trial) -> float | None:
 def _why(found: Diagnosis, trial: Trial) -> str:
     accepted = found.verdict.accepted
     if accepted is not None and trial.keys == accepted.keys:
-        return "smallest held-out error with the fewest parameters"
+        return "smallest validation error with the fewest parameters"
     if not np.isfinite(held_out_cost(trial)):
-        return "dropped: the fit to the train runs stayed far behind the best"
+        return "dropped early: after a few iterations its fit stayed far behind the best"
     before, after = held_out_cost(found.base), held_out_cost(trial)
     if after > 0.9 * before:
-        return "no clear gain on held-out runs"
+        return "no clear gain on validation runs"
     if any(trial.keys == rival.keys for rival in found.verdict.rivals):
-        return "as good as the best on held-out runs"
+        return "as good as the best on validation runs"
     if any(c.id.startswith(DECLARED_VALUE) for c in trial.candidates):
         return "a changed declared value explains less than the best"
-    return "held-out error above the best"
-
-
-def residual_tests(trial: Trial) -> list[dict[str, Any]]:
-    """Whiteness of the residual and its independence of the inputs, on held-out runs."""
-    assert trial.validate is not None
-    white, crossed, size = [], [], 0
-    for run, e in trial.validate.pairs():
-        residual = residual_counts(
-            run,
-            e,
-            int(np.flatnonzero(np.isfinite(run.counts))[0]) if np.isfinite(run.counts).any() else 0,
-        )
-        if residual.size <= 4 * LAGS:
-            continue
-        white.append(_correlation(residual, residual))
-        crossed.append(_correlation(residual, run.held_inputs[:, 0]))
-        size += residual.size
-    if not white:
-        return []
-    threshold = float(stats.norm.ppf(0.995) / np.sqrt(size))
-    signal = trial.validate.runs[0].signals[0]
-    rows = []
-    for name, values, skip, meaning in (
-        (
-            "whiteness",
-            white,
-            1,
-            "rounding and slow leftovers colour an output error residual",
-        ),
-        (
-            "independence of the input",
-            crossed,
-            0,
-            "what follows the input is a model error",
-        ),
-    ):
-        largest = float(np.max(np.abs(np.mean(values, axis=0)[skip:])))
-        rows.append(
-            {
-                "name": name, "signal": signal, "statistic": largest, "threshold": threshold,
-                "passed": largest <= threshold, "meaning": meaning,
-            }
-        )  # fmt: skip
-    return rows
-
-
-def _correlation(a: FloatArray, b: FloatArray) -> FloatArray:
-    a, b = a - a.mean(), b - b.mean()
-    scale = max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-300)
-    return np.array([float(a[k:] @ b[: b.size - k]) / scale for k in range(LAGS + 1)])
-
-
-def curves_of(base: Trial, after: Trial) -> dict[str, Any]:
-    """Measured and simulated signals of every run, windows joined."""
-    curves: dict[str, Any] = {}
-    for name in ("train", "validate"):
-        before_fit, after_fit = getattr(base, name), getattr(after, name)
-        groups = zip(
-            by_source(before_fit.pairs()).items(),
-            by_source(after_fit.pairs()).values(),
-            strict=True,
-        )
-        for (source, before), later in groups:
-            key = source if source not in curves else f"{source} ({name})"
-            curves[key] = _curve(name, before, later)
-    return curves
-
-
-def _curve(kind: str, before: list[Pair], after: list[Pair]) -> dict[str, Any]:
-    first = before[0][0]
-    signals: dict[str, dict[str, Any]] = {}
-    for column, signal in enumerate(first.signals):
-        picked = first.outputs[column]
-        count = first.counts[column]
-        signals[signal] = {
-            "unit": "rad" if signal.startswith("theta") else "",
-            "measured": _joined([r.measured[:, column] for r, _ in before]),
-            "before": _joined([e.outputs[:, picked] for _, e in before]),
-            "after": _joined([e.outputs[:, picked] for _, e in after]),
-            "counts": float(count) if np.isfinite(count) else None,
-        }
-    time = _joined([r.time for r, _ in before])
-    angle, rate = {}, {}
-    for signal, data in signals.items():
-        if signal.startswith("theta_"):
-            axis = signal.removeprefix("theta_")
-            angle[axis] = data["after"]
-            rate[axis] = np.gradient(data["after"], time)
-    return {"set": kind, "time": time, "signals": signals, "angle": angle, "rate": rate}
-
-
-def _joined(windows: list[FloatArray]) -> FloatArray:
-    """Windows end to end; each begins with the sample that ended the one before."""
-    return np.concatenate([windows[0], *(w[1:] for w in windows[1:])])
+    return "validation error above the best"

@@ -2,10 +2,20 @@
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import groupby
 
 import sympy as sp
 
-from ptp_symbolic.codegen.latex import latex_of, symbol_latex
+from ptp_symbolic.codegen.dynamics import solve_accelerations, state_rates
+from ptp_symbolic.codegen.latex import latex_of, rate_latex, symbol_latex
+from ptp_symbolic.codegen.statements import (
+    RELATIONS,
+    Statement,
+    by_name,
+    friction_statements,
+    statements,
+)
 from ptp_symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.derivation.equations import Contact, Equations
@@ -14,10 +24,15 @@ from ptp_symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.derivation.newton_euler import newton_euler
 from ptp_symbolic.derivation.proof import compare_numerically, prove_equal
 from ptp_symbolic.derivation.properties import energy_remainder, is_passive, is_symmetric
+from ptp_symbolic.effects.effect import slide
 from ptp_symbolic.platform import Platform
-from ptp_symbolic.report.latex_text import PREAMBLE, escaped, formula, table
-from ptp_symbolic.simplify.steps import simplify_rigid
+from ptp_symbolic.report.derivation_symbols import frames, symbols
+from ptp_symbolic.report.latex_text import PREAMBLE, escaped, formulas, table
+from ptp_symbolic.report.source import THESIS
+from ptp_symbolic.simplify.base_parameters import BaseForm
+from ptp_symbolic.simplify.steps import SimplifiedEquations, simplify_rigid
 
+LAST_LINES = 14  # on the last page at least
 ROUTES = (("Newton--Euler", newton_euler), ("Kane", kane), ("Lagrange", lagrange))
 
 
@@ -25,64 +40,23 @@ def render_derivation(platform: Platform) -> dict[str, str | bytes]:
     """Return the document as ``derivation.tex``; it needs no other file."""
     equations = assemble(platform)
     refuse_impossible(equations)
+    simplified = _simplified(equations)
     parts = [
         PREAMBLE,
-        rf"\title{{{escaped(platform.title)}\\\large Derivation of the equations of motion}}",
+        rf"\title{{\vspace{{-15mm}}{escaped(platform.title)}\\"
+        r"\large Derivation of the equations of motion}",
         r"\author{}\date{}\begin{document}\maketitle",
-        _frames(equations),
-        _symbols(equations, platform),
+        frames(equations),
+        symbols(equations, platform),
         _routes(equations),
         _results(equations),
-        _simplification(equations),
+        _simplification(simplified),
         _effects(equations),
         _energy(equations),
+        _emitted(equations, simplified.base_form),
         r"\end{document}",
     ]
     return {"derivation.tex": "\n\n".join(parts) + "\n"}
-
-
-def _frames(equations: Equations) -> str:
-    return (
-        r"""\section{Frames and signs}
-The pan frame turns about the vertical $z$ axis of the base by $\theta_{\mathrm{pan}}$; the tilt
-frame turns about the $y$ axis of the pan frame by $\theta_{\mathrm{tilt}}$. The boresight is the
-$x$ axis of the tilt frame, and a positive tilt angle lowers it. The axes cross in the origin.
-Gravity in the base frame is
-"""
-        + formula(r"\mathbf{g} = " + latex_of(equations.rigid.gravity))
-        + (
-            r"with the body rates $(-\omega_{\mathrm{pan}}\sin\theta_{\mathrm{tilt}},\;"
-            r"\omega_{\mathrm{tilt}},\;\omega_{\mathrm{pan}}\cos\theta_{\mathrm{tilt}})$ of the"
-            " tilt body (thesis Eq.~3.1)."
-            if len(equations.axes) == 2
-            else "in metres per second squared."
-        )
-    )
-
-
-def _symbols(equations: Equations, platform: Platform) -> str:
-    declared = {d.name: d for d in platform.parameters}
-    rows = []
-    for p in equations.parameters:
-        d = declared.get(p.name)
-        kind = "tied" if d and d.same_as else "free" if d and d.free else "known"
-        rows.append(
-            [
-                f"${symbol_latex(p.name)}$",
-                escaped(p.meaning),
-                escaped(p.unit),
-                f"{p.default:.6g}",
-                kind,
-            ]
-        )
-    states = [[f"${symbol_latex(str(s))}$", "state"] for s in equations.state_symbols]
-    inputs = [[f"${symbol_latex(i.name)}$", f"{escaped(i.meaning)} in {escaped(i.unit)}"]
-              for i in equations.inputs]  # fmt: skip
-    head = ["symbol", "meaning", "unit", "value", ""]
-    return (
-        r"\section{Symbols}" + table("lp{68mm}lrl", head, rows)
-        + r"\par\noindent " + table("ll", ["symbol", "meaning"], states + inputs)
-    )  # fmt: skip
 
 
 def _routes(equations: Equations) -> str:
@@ -95,16 +69,12 @@ def _routes(equations: Equations) -> str:
         worst = compare_numerically(derived[name], reference, numbers, states=10_000, seed=1)
         left = "0" if proof.equal else "not 0"
         rows.append([f"{name} -- Lagrange", f"${left}$", f"${_power(worst)}$"])
-    text = (
-        r"""\section{Three routes to the rigid equations}
+    text = r"""\section{Three routes to the rigid equations}
 \emph{Newton--Euler}: rates and accelerations of every body are carried outward along the axes,
 forces and moments inward; the joint torques are the moments about the axes. \emph{Kane}: partial
 velocities of every body project its inertia and gravity forces. \emph{Lagrange}: kinetic and
 potential energy give
-"""
-        + formula(rf"T = {latex_of(sp.expand(reference.kinetic))}", reference.kinetic, "T")
-        + formula(rf"V = {latex_of(reference.potential)}", reference.potential, "V")
-    )
+""" + formulas([("T", sp.expand(reference.kinetic)), ("V", reference.potential)])
     head = ["routes", "symbolic difference", "largest relative difference / cond"]
     claims = [
         f"The mass matrix is {'symmetric' if is_symmetric(reference) else 'not symmetric'}",
@@ -126,62 +96,57 @@ def _power(value: float) -> str:
 
 
 def _results(equations: Equations) -> str:
-    parts = [r"\section{Equations of motion}", r"$M(q)\,\dot\omega = f - $ friction, with"]
-    size = len(equations.rates)
-    for i in range(size):
-        for j in range(i, size):
-            entry = equations.mass_matrix[i, j]
-            if entry != 0:
-                parts.append(formula("", entry, f"M_{{{i + 1}{j + 1}}}"))
-    for i, rate in enumerate(equations.rates):
-        parts.append(formula("", equations.forcing[i], rf"f[{symbol_latex(str(rate))}]"))
-    for symbol, term in equations.terms:
-        parts.append(formula("", term, symbol_latex(str(symbol))))
+    found = statements(equations)
+    sums = [s for s in found if s.sums and s.right != 0]
+    parts = [r"\section{Equations of motion}", r"$M(q)\,\dot\omega = f$, with", _displayed(sums)]
     for friction in equations.frictions:
-        name = symbol_latex(str(friction.rate))
+        rate, direction = (symbol_latex(str(s)) for s in (friction.rate, slide(friction.axis)))
         parts.append(
-            rf"Dry friction acts on ${name}$ against the direction $s=\pm1$ of sliding and holds"
-            " at rest up to the breakaway torque:"
+            rf"Dry friction acts on ${rate}$ against the direction ${direction}=\pm1$ of sliding;"
+            rf" at rest, ${direction}=0$, it takes up the torque that acts, up to breakaway:"
         )
-        parts.append(formula("", friction.level, r"F_{\mathrm{sliding}}"))
-        parts.append(formula("", friction.breakaway, r"F_{\mathrm{breakaway}}"))
+        parts.append(_displayed(friction_statements(friction)))
     for contact in equations.contacts:
-        parts += _contact(contact)
-        parts.append(formula("", contact.half_gap, r"\tfrac12\,\mathrm{gap}"))
-    held = {str(symbol) for _, symbol, _ in equations.updates}
-    for state in (s for s in equations.extra_states if s.name not in held):
-        name = symbol_latex(state.name)
-        parts.append(
-            formula("", state.derivative, rf"\frac{{\mathrm{{d}}}}{{\mathrm{{d}}t}}{name}")
-        )
-    for sampler in equations.samplers:
-        parts.append("Held in between, and set anew at the instants")
-        start = sp.Symbol("k", real=True) + sampler.phase
-        parts.append(formula("", sampler.offset + start * sampler.period, "t_k"))
-        for symbol, term in sampler.terms.items():
-            parts.append(formula("", term, symbol_latex(str(symbol))))
-        for symbol, value in sampler.updates.items():
-            parts.append(formula("", value, rf"{symbol_latex(str(symbol))}\big|_{{t_k}}"))
+        own = [s for s in found if s.key[:2] == ("contact", contact.axis)]
+        parts += [_contact(contact), _displayed(own)]
+    for words, kinds in (
+        ("The functions named in these equations are", ("term",)),
+        ("Drives and effects have states of their own:", ("state",)),
+        ("Held in between, and set anew at the instants $t_k$, from the values before them:",
+         ("sampler",)),
+        ("Inputs that act late, and what sensors show:", ("input", "output")),
+    ):  # fmt: skip
+        own = [s for s in found if s.key[0] in kinds]
+        if own:
+            parts += [words, _displayed(own)]
     return "\n".join(parts)
 
 
-def _contact(contact: Contact) -> list[str]:
+def _displayed(rows: Sequence[Statement]) -> str:
+    """Statements one below another, each with its own relation."""
+    groups = groupby(rows, key=lambda s: s.relation)
+    return "".join(
+        formulas([(s.left_latex, s.right) for s in group], RELATIONS[relation][0])
+        for relation, group in groups
+    )
+
+
+def _contact(contact: Contact) -> str:
     if contact.restitution is None:
-        return [
-            rf"The shaft of the {contact.axis} axis has a dead zone; it cannot pull:",
-            formula("", contact.torque, r"T_{\mathrm{shaft}}"),
-        ]
+        return rf"The shaft of the {contact.axis} axis has a dead zone; it cannot pull:"
     held = ", where friction holds the joint" if contact.holds else ""
-    return [
+    return (
         rf"Gear output and joint of the {contact.axis} axis are rigid; they cross a gap{held},"
-        " strike with this restitution, and turn as one body while in contact:",
-        formula("", contact.restitution, "e"),
-    ]
+        " strike with this restitution, and turn as one body while in contact:"
+    )
 
 
-def _simplification(equations: Equations) -> str:
+def _simplified(equations: Equations) -> SimplifiedEquations:
     constant = equations.mass_matrix - equations.varying_inertia
-    found = simplify_rigid(equations.rigid_equations, constant, equations.forcing)
+    return simplify_rigid(equations.rigid_equations, constant, equations.forcing)
+
+
+def _simplification(found: SimplifiedEquations) -> str:
     rows = [
         [escaped(s.name), str(s.operations_before), str(s.operations_after),
          "yes" if s.proved else "no"]
@@ -189,10 +154,9 @@ def _simplification(equations: Equations) -> str:
     ]  # fmt: skip
     head = ["step", "operations before", "after", "proved"]
     parts = [r"\section{Simplification}", table("lrrl", head, rows)]
-    parts.append(r"\par\noindent The base parameters are")
-    for symbol, expression in found.base_form.base_parameters:
-        if symbol != expression:
-            parts.append(formula("", expression, rf"\mathrm{{{escaped(str(symbol))}}}"))
+    base = [(symbol_latex(str(s)), e) for s, e in found.base_form.base_parameters if s != e]
+    if base:
+        parts.append(r"\par\noindent The base parameters are" + formulas(base))
     return "\n".join(parts)
 
 
@@ -201,18 +165,40 @@ def _effects(equations: Equations) -> str:
         [rf"\texttt{{{escaped(e.effect.id)}}}", e.axis or "", escaped(e.effect.reference)]
         for e in equations.effects
     ]
-    return r"\section{Effects}" + table("llp{80mm}", ["effect", "axis", "reference"], rows)
+    source = rf"\section{{Effects}} \emph{{The thesis}} is {THESIS}"
+    return source + table("llL{80mm}", ["effect", "axis", "reference"], rows)
 
 
 def _energy(equations: Equations) -> str:
     ledger = equations.ledger
-    return r"\section{Energy}Stored energy, power in and dissipated power:" + "".join(
-        formula("", expression, name)
-        for name, expression in (
-            (r"E", ledger.stored), (r"P_{\mathrm{in}}", ledger.power_in),
-            (r"P_{\mathrm{diss}}", ledger.dissipated),
-        )
-    )  # fmt: skip
+    return r"\section{Energy}Stored energy, power in and dissipated power:" + formulas(
+        [
+            (r"E", by_name(ledger.stored, equations)),
+            (r"P_{\mathrm{in}}", by_name(ledger.power_in, equations)),
+            (r"P_{\mathrm{diss}}", by_name(ledger.dissipated, equations)),
+        ]
+    )
+
+
+def _emitted(equations: Equations, form: BaseForm) -> str:
+    """The assignments of the emitted module, before it shares what they have in common."""
+    regrouped = replace(
+        equations, mass_matrix=form.mass_matrix + equations.varying_inertia, forcing=form.forcing
+    )
+    solve = solve_accelerations(regrouped)
+    named = {str(symbol) for symbol, _ in equations.terms}
+    lines = [(str(s), e) for s, e in form.shared_terms if s != e]
+    lines += [line for line in solve.definitions if line[0] not in named]
+    rows = [(symbol_latex(name), by_name(e, equations)) for name, e in lines]
+    rates = zip(equations.state_symbols, state_rates(equations, solve), strict=True)
+    # what samplers set is held in between
+    rows += [(rate_latex(str(s)), sp.sympify(e, strict=True)) for s, e in rates if e != 0]
+    return (
+        r"\section{Final equations}The rate of change of every state as the emitted module"
+        r" computes it: simplified, in base parameters and under its names. What the lines have in"
+        r" common the module computes once; the functions named above it uses as they are."
+        + formulas(rows, together=LAST_LINES)
+    )
 
 
 def has_warning(log: str) -> bool:

@@ -16,7 +16,7 @@ from ptp_symbolic.report.tables import usable
 Curves = Mapping[str, Mapping[str, Any]]
 
 SHOWN_RUNS = 2
-POINTS_IN_ALL = 120_000  # of all lines together: about 1.7 MB of SVG
+POINTS_IN_ALL = 60_000  # of all lines together: about 0.9 MB of SVG
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ VERDICTS = {
 _MATHML_TAG = re.compile(
     r"</?(?:math|mrow|mi|mn|mo|mfrac|msup|msub|msubsup|msqrt|mroot|mtable|mtr|mtd|mtext|mstyle"
     r"|mover|munder|munderover|mspace)"
-    r'(?: (?:display|mathvariant|stretchy|xmlns|columnalign|width|accent)="[^"<>]*")* ?/?>'
+    r'(?: (?:display|mathvariant|stretchy|xmlns|columnalign|width|accent|form)="[^"<>]*")* ?/?>'
 )
 
 
@@ -77,17 +77,17 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
 
     curves: {run: {"set": "train" or "validate", "time": [n] s, "signals": {signal: {"unit",
     "measured", "before", "after" (or None): [n], "counts": size of one count or None}},
-    "angle": {axis: [n] rad}, "rate": {axis: [n] rad/s}}}. Loads nothing from elsewhere.
+    "angle": {axis: [n] rad}, "rate": {axis: [n] rad/s}, "borders": [k] s, the starts of windows
+    after the first (optional)}}. Loads nothing from elsewhere.
     """
     verdict = VERDICTS[diagnosis["verdict"]]
-    effects = [str(a.get("title") or a["effect"]) for a in diagnosis.get("added") or []]
     key, unit = tables.error_measure(diagnosis)
     shown, folded = _motion(diagnosis, curves, key)
     page = _environment().get_template("diagnosis.html.j2")
     return page.render(
         diagnosis=diagnosis,
         verdict=verdict,
-        heading=verdict.heading.format(effects=" and ".join(effects), s="s" * (len(effects) > 1)),
+        heading=_heading(diagnosis, verdict),
         colours=figures.COLOURS,
         key=key,
         unit=unit,
@@ -98,7 +98,28 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
         folded=folded,
         residual_maps=_residual_maps(diagnosis, curves),
         equations=_equations(diagnosis),
+        window=_window(curves),
     )
+
+
+def _heading(diagnosis: Mapping[str, Any], verdict: Verdict) -> str:
+    """The heading of the page; of values that are declared wrong it is their own sentence."""
+    added = diagnosis.get("added") or []
+    effects = [str(a.get("title") or a["effect"]) for a in added]
+    text = " and ".join(effects)
+    if added and all(str(a["effect"]).startswith("declared_value") for a in added):
+        return f"{text[:1].upper()}{text[1:]}"
+    return verdict.heading.format(effects=text, s="s" * (len(effects) > 1))
+
+
+def _window(curves: Curves) -> float | None:
+    """Usual length in s of the windows into which runs were cut; None where none was."""
+    lengths = [
+        np.diff([curve["time"][0], *curve["borders"], curve["time"][-1]])
+        for curve in curves.values()
+        if len(curve.get("borders") or ())
+    ]
+    return float(np.median(np.concatenate(lengths))) if lengths else None
 
 
 def _environment() -> jinja2.Environment:
@@ -160,16 +181,22 @@ def _residual_maps(diagnosis: Mapping[str, Any], curves: Curves) -> list[dict[st
 
 
 def _equations(diagnosis: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Equations of the added effects; MathML is left out unless it is formula markup alone."""
+    """Equations of the added effects; MathML is left out unless it is formula markup alone.
+
+    Each of its lines becomes a formula of its own, so that a long equation wraps like text.
+    """
     found = []
     for equation in diagnosis.get("equations") or []:
         mathml = str(equation.get("mathml") or "").strip()
+        pieces = None
         if mathml and "<" not in _MATHML_TAG.sub("", mathml):
-            inner = re.sub(r"^<math[^>]*>|</math>$", "", mathml)
-            markup = Markup('<math display="block">{}</math>').format(Markup(inner))
-            found.append({**equation, "mathml": markup})
-        else:
-            found.append({**equation, "mathml": None})
+            pieces = [
+                Markup('<math displaystyle="true">{}</math>').format(
+                    Markup(re.sub(r"^<math[^>]*>|</math>$", "", line))
+                )
+                for line in mathml.splitlines()
+            ]
+        found.append({**equation, "mathml": pieces})
     return found
 
 

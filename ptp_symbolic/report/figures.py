@@ -17,7 +17,10 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 MEASURED, BEFORE, AFTER, FLOOR = "#a9b1ba", "#c65d21", "#0d6a92", "#d3e4d8"
-COLOURS = {"measured": MEASURED, "before": BEFORE, "after": AFTER, "floor": FLOOR}
+BORDER = "#c3b8d6"
+COLOURS = {
+    "measured": MEASURED, "before": BEFORE, "after": AFTER, "floor": FLOOR, "border": BORDER,
+}  # fmt: skip
 STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "ptp-symbolic",
@@ -69,7 +72,8 @@ def motion_figure(curve: Mapping[str, Any], floor: float | None, points: int = 8
     """One run as SVG: every signal measured and simulated, and under it what is left over.
 
     `floor` in counts: rms noise floor, drawn as a band of twice its height either side of zero.
-    Each line is thinned to `points`, keeping its extremes.
+    Each line is thinned to `points`, keeping its extremes. Where the run was cut into windows, a
+    thin line marks every start of a new one.
     """
     time = np.asarray(curve["time"], float)
     panels = [
@@ -86,6 +90,7 @@ def motion_figure(curve: Mapping[str, Any], floor: float | None, points: int = 8
         )[:, 0]
         _set_margins(figure, len(panels), 1)
         for axes, (name, signal, kind) in zip(grid, panels, strict=True):
+            _draw_borders(axes, curve.get("borders"))
             if kind == "motion":
                 _draw_motion(axes, name, signal, time, points)
             else:
@@ -139,8 +144,18 @@ def _draw_residual(
         axes.plot(*_thinned(time, values, points), color=colour, linewidth=0.9)
         drawn.append(values)
     _set_limit(axes, np.concatenate(drawn), band)
-    what = "the same, after alone" if zoomed else "measured − simulated"
+    what = "measured − simulated" + (" with the added effect, enlarged" if zoomed else "")
     axes.set_title(f"{what} [{residual_unit(signal)}]")
+
+
+def _draw_borders(axes: Axes, borders: Any) -> None:
+    """Mark where a new window starts, over the whole height, as one path."""
+    if borders is None or not len(borders):
+        return
+    ends = [(time, height) for time in borders for height in (0.0, 1.0)]
+    lines = Path(np.array(ends), np.tile([Path.MOVETO, Path.LINETO], len(borders)))
+    across = axes.get_xaxis_transform()
+    axes.add_patch(PathPatch(lines, edgecolor=BORDER, linewidth=0.5, fill=False, transform=across))
 
 
 def _draw_floor(axes: Axes, floor: float | None) -> None:

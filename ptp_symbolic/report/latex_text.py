@@ -5,26 +5,31 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from ptp_symbolic.codegen.latex import latex_of
+from ptp_symbolic.codegen.latex import LINE_WIDTH, latex_lines
 
 PREAMBLE = r"""\documentclass[a4paper,10pt]{article}
 \usepackage[T1]{fontenc}
 \usepackage{lmodern}
 \usepackage{amsmath}
-\usepackage[margin=22mm]{geometry}
+\usepackage[margin=20mm]{geometry}
 \usepackage{longtable}
 \usepackage{booktabs}
+\usepackage{array}
+\newcolumntype{L}[1]{>{\raggedright\arraybackslash}p{#1}}
 \setlength{\parindent}{0pt}
 \setlength{\parskip}{4pt}
 \allowdisplaybreaks
+\setlength{\jot}{1.5pt}
+\setlength{\LTpre}{4pt}
+\setlength{\LTpost}{6pt}
 \raggedbottom"""
 
 SPECIAL = {
     "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_",
     "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}",
 }  # fmt: skip
-LINE_WIDTH = 92
 SHORT_NAME = 12
+SHORT_TABLE = 12
 
 
 def escaped(text: str) -> str:
@@ -33,47 +38,44 @@ def escaped(text: str) -> str:
 
 
 def table(columns: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A table that may break over pages."""
+    """A table; one with many rows may break over pages, a short one stays together."""
     lines = [" & ".join(row) + r" \\" for row in rows]
-    return "\n".join(
-        [
-            rf"\begin{{longtable}}[l]{{@{{}}{columns}@{{}}}}\toprule",
-            " & ".join(head) + r" \\ \midrule\endhead",
-            *lines,
-            r"\bottomrule\end{longtable}",
-        ]
-    )
+    title, columns = " & ".join(head) + r" \\ \midrule", rf"{{@{{}}{columns}@{{}}}}\toprule"
+    if len(rows) <= SHORT_TABLE:
+        begin, end = r"\par\smallskip\begin{tabular}", r"\end{tabular}\par\medskip{}"
+    else:
+        title += r"\endhead"
+        begin, end = r"\begin{longtable}[l]", r"\end{longtable}"
+    return "\n".join([begin + columns, title, *lines, rf"\bottomrule{end}"])
 
 
-def formula(text: str, expression: sp.Expr | None = None, name: str = "") -> str:
-    """A displayed formula; a long sum breaks before its terms."""
-    if expression is None:
-        return f"\\[\n{text}\n\\]\n"
-    if isinstance(expression, sp.MatrixBase):
-        return f"\\[\n{name} = {latex_of(expression)}\n\\]\n"
-    printed = re.sub(r"\\[a-z]+|[{}_\\]", "", name)
-    lines = _lines(sp.expand(expression), LINE_WIDTH - max(0, len(printed) - SHORT_NAME))
-    rows = [rf"{name} ={{}}& {lines[0]}", *(rf"& {line}" for line in lines[1:])]
-    return "\\begin{align*}\n" + " \\\\\n".join(rows) + "\n\\end{align*}\n"
+def formulas(rows: Sequence[tuple[str, sp.Expr]], relation: str = "=", together: int = 0) -> str:
+    """Displayed formulas one below another; a long sum breaks before its terms.
+
+    The last lines, as many as are to stay `together`, are not torn apart by the end of a page.
+    """
+    if not rows:
+        return ""
+    widest = max(len(re.sub(r"\\[a-z]+|[{}_\\]", "", left)) for left, _ in rows)
+    lines = []
+    for left, right in rows:
+        first, *more = latex_lines(right, LINE_WIDTH - max(0, widest - SHORT_NAME))
+        lines += [f"{left} {relation}{{}}& {first}", *(f"& {line}" for line in more)]
+    free = max(len(lines) - together, 0)
+    ends = [r" \\" if k < free else r" \\*" for k in range(len(lines) - 1)]
+    text = "\n".join(f"{line}{end}" for line, end in zip(lines, [*ends, ""], strict=True))
+    return f"\\begin{{align*}}\n{text}\n\\end{{align*}}\n"
 
 
-def _lines(expression: sp.Expr, room: int) -> list[str]:
-    """Terms of a sum, as many on a line as fit into `room`."""
-    lines: list[str] = []
-    width = 0
-    for number, term in enumerate(expression.as_ordered_terms(order="lex")):
-        text = latex_of(term)
-        signed = text if number == 0 or text.startswith("-") else f"+ {text}"
-        size = _width(term)
-        if lines and width + size <= room:
-            lines[-1] += f" {signed}"
-            width += size
-        else:
-            lines.append(signed)
-            width = size
-    return lines
+def displayed(text: str) -> str:
+    """LaTeX mathematics as a display of its own."""
+    return f"\\[\n{text}\n\\]\n"
 
 
-def _width(term: sp.Expr) -> int:
-    """Printed width of a term, roughly, in characters: names count without their underscores."""
-    return len(sp.sstr(term).replace("_", "").replace("*", " ")) * 4 // 5 + 3
+def unit_latex(unit: str) -> str:
+    """A unit set upright, with thin spaces and raised powers; empty for a pure number."""
+    if unit in ("", "1"):
+        return ""
+    words = re.sub(r"\^(-?\d+)", r"^{\1}", unit).replace(" ", r"\,")
+    words = re.sub(r"\bohm\b", r"\\Omega", words)
+    return rf"$\mathrm{{{words}}}$"

@@ -115,21 +115,35 @@ def parameter_rows(diagnosis: Record) -> list[dict[str, Any]]:
         change = None
         if old and new and old.get("value") and usable(new.get("value")):
             change = 100.0 * (new["value"] - old["value"]) / abs(old["value"])
+        last = new or old or {}
+        flagged = bool(last.get("at_bound")) or last.get("identified") is False
         rows.append(
-            {"name": name, "before": old, "after": new, "last": new or old or {}, "change": change}
-        )
+            {"name": name, "before": old, "after": new, "last": last, "change": change,
+             "flagged": flagged}
+        )  # fmt: skip
     return rows
 
 
 def ranking(diagnosis: Record, key: str) -> dict[str, Any]:
-    """Candidates in the order of their validation error, and the marks they are judged against."""
+    """Candidates in the order of their validation error, and the marks they are judged against.
+
+    Those without a validation error, which were dropped before, are apart. `clipped`: some error
+    lies beyond the right end of the axis.
+    """
     marks = {s: error_of(diagnosis, "validate", s).get(key) for s in ("before", "noise_floor")}
     rows = [dict(candidate) for candidate in diagnosis.get("ranking") or []]
-    errors = [row.get("validate_error_after") for row in rows]
+    judged = [row for row in rows if usable(row.get("validate_error_after"))]
+    judged.sort(key=lambda row: row["validate_error_after"])
+    errors = [row["validate_error_after"] for row in judged]
     # a refit that ran away must not squeeze all others into a corner
     ceiling = 4.0 * max([mark for mark in marks.values() if usable(mark)], default=math.inf)
-    axis = log_axis([*marks.values(), *[e for e in errors if usable(e) and e < ceiling]])
-    for row, error in zip(rows, errors, strict=True):
+    axis = log_axis([*marks.values(), *[e for e in errors if e < ceiling]])
+    for row, error in zip(judged, errors, strict=True):
         row["place"] = axis.place(error)
-    rows.sort(key=lambda row: row["validate_error_after"] if row["place"] is not None else math.inf)
-    return {"rows": rows, "place": {stage: axis.place(mark) for stage, mark in marks.items()}}
+    dropped = [row for row in rows if not usable(row.get("validate_error_after"))]
+    return {
+        "rows": judged,
+        "dropped": dropped,
+        "clipped": any(row["place"] == 100.0 for row in judged),
+        "place": {stage: axis.place(mark) for stage, mark in marks.items()},
+    }

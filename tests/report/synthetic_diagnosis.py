@@ -112,7 +112,9 @@ def ranking(winner: str | None, best: float) -> list[dict[str, Any]]:
             "p_value": 10.0 ** -(30 - 4 * k),
             "train_error_after": train,
             "validate_error_after": validate,
-            "parameters": ADDED["parameters"] if effect == "base_tilt" else {"k": 0.3},
+            "parameters": ADDED["parameters"]
+            if effect == "base_tilt"
+            else {"k": {"value": 0.3, "unit": "N m/rad"}},
             "accepted": effect == winner,
             "why": "explains 99 % of the excess" if effect == winner else "ends above the winner",
         }
@@ -127,13 +129,15 @@ def synthetic_diagnosis(verdict: str) -> dict[str, Any]:
     if verdict == "explained_up_to_group":
         added = [{**ADDED, "confusable_with": ["cable_spring", "constant_torque"]}]
     parameters = {
-        "J_pan": quantity(0.0912, 0.0011, "kg m^2", start=0.1, at_bound=False, identified=True),
+        "J_pan": quantity(0.0912, 0.0011, "kg m^2", start=0.1, at_bound=False, identified=True,
+                          meaning="inertia of the pan body"),
         "F_s_pan": quantity(0.0, 0.02, "N m", start=0.675, at_bound=True, identified=True),
         "d_shaft_pan": quantity(3.1, math.nan, "N m s/rad", start=1.0, identified=False),
     }  # fmt: skip
     fit: dict[str, Any] = {"before": {"parameters": parameters}}
     if added:
-        new = {"J_pan": quantity(0.0999, 0.0006, "kg m^2", start=0.1), **ADDED["parameters"]}
+        moved = quantity(0.0999, 0.0006, "kg m^2", start=0.1, meaning="inertia of the pan body")
+        new = {"J_pan": moved, **ADDED["parameters"]}
         fit["after"] = {"parameters": {**parameters, **new}}
     return {
         "schema_version": 1,

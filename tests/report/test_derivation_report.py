@@ -1,13 +1,20 @@
 """The derivation report: printed from the expressions, and LaTeX without a warning."""
 
+import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from ptp_symbolic.codegen.latex import symbol_latex
+from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.platform import preset_names, read_platform
 from ptp_symbolic.report.derivation import has_warning, render_derivation
+from ptp_symbolic.report.derivation_symbols import CATALOGUE
+from ptp_symbolic.report.latex_text import escaped
+from ptp_symbolic.report.pdf import compile_pdf
 
 
 @pytest.mark.parametrize("name", preset_names())
@@ -26,3 +33,64 @@ def test_compiles_without_a_warning(name: str, tmp_path: Path) -> None:
             cwd=tmp_path, capture_output=True, check=True,
         )  # fmt: skip
     assert not has_warning((tmp_path / "derivation.log").read_text(encoding="latin-1"))
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_every_symbol_of_the_equations_has_a_row_with_its_meaning(name: str) -> None:
+    platform = read_platform(name)
+    equations = assemble(platform)
+    text = str(render_derivation(platform)["derivation.tex"])
+    table = text[text.index("Variables:") : text.index(r"\section{Three routes")]
+    modes = [str(symbol) for symbol in equations.mode_symbols]
+    for symbol in [*map(str, equations.state_symbols), *modes, *(i.name for i in equations.inputs)]:
+        row = re.search(rf"\${re.escape(symbol_latex(symbol))}\$ & ([^&]+) &", table)
+        assert row is not None, symbol
+        assert len(row[1]) > 8
+        assert row[1] != "state"
+    for state in equations.extra_states:
+        assert escaped(state.meaning) in table
+    assert "kg m" not in text
+    assert "^2 &" not in text
+
+
+def test_a_tilt_only_platform_describes_only_its_own_frames() -> None:
+    text = str(render_derivation(read_platform("thesis-tilt-drive"))["derivation.tex"])
+    frames = text[text.index("Frames and signs") : text.index(r"\section{Symbols}")]
+    assert "pan" not in frames
+    assert "tilt frame" in frames
+    pan = str(render_derivation(read_platform("thesis-pan-drive"))["derivation.tex"])
+    frames = pan[pan.index("Frames and signs") : pan.index(r"\section{Symbols}")]
+    assert "tilt" not in frames
+
+
+def test_values_that_the_platform_does_not_declare_are_marked() -> None:
+    platform = read_platform("thesis-pan-drive")
+    kept = tuple(p for p in platform.parameters if p.name != "F_v_pan")
+    text = str(render_derivation(replace(platform, parameters=kept))["derivation.tex"])
+    rows = [line for line in text.splitlines() if line.startswith("$F_{")]
+    marked = [line for line in rows if CATALOGUE in line]
+    assert len(marked) == 1
+    assert symbol_latex("F_v_pan") in marked[0]
+
+
+def test_the_final_equations_give_the_rate_of_change_of_every_state() -> None:
+    platform = read_platform("thesis-full")
+    text = str(render_derivation(platform)["derivation.tex"])
+    final = text[text.index(r"\section{Final equations}") :]
+    assert final.count(r"\dot{") == len(assemble(platform).state_symbols)
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_no_page_is_nearly_empty(name: str, tmp_path: Path) -> None:
+    if shutil.which("pdflatex") is None or shutil.which("pdftotext") is None:
+        pytest.skip("pdflatex or pdftotext is not installed")
+    pdf = compile_pdf(render_derivation(read_platform(name)), "derivation")
+    assert pdf is not None
+    (tmp_path / "derivation.pdf").write_bytes(pdf)
+    command = ["pdftotext", "-bbox", "derivation.pdf", "-"]
+    boxes = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    for page in boxes.split("<page ")[1:]:
+        height = float(re.search(r'height="([\d.]+)"', page)[1])
+        words = re.findall(r'yMax="([\d.]+)">(.*?)</word>', page)
+        lowest = max(float(y) for y, _ in words[:-1])  # the last word is the page number
+        assert lowest > 0.25 * height

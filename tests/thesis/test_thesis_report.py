@@ -6,11 +6,13 @@ import shutil
 import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from ptp_symbolic.cli.report_thesis import thesis
 from ptp_symbolic.report.derivation import has_warning
+from ptp_symbolic.report.pdf import compile_pdf
 from ptp_symbolic.report.thesis import document
 from ptp_symbolic.report.thesis.errata import ERRATA
 
@@ -70,6 +72,51 @@ def test_every_figure_is_there_in_both_formats(files: dict[str, str | bytes]) ->
     assert set(included) == {n for n in files if n.endswith(".pdf")}
 
 
+def test_the_document_cites_the_thesis_and_shows_no_internal_name(
+    files: dict[str, str | bytes], rows: list[dict[str, object]]
+) -> None:
+    text = str(files["thesis.tex"])
+    assert text.count("Multi-Domain Modeling of Pan Tilt Platform") == 1
+    assert "August 2013" in text
+    without_figures = re.sub(r"\\includegraphics\[[^]]*\]\{[^}]*\}", "", text)
+    plain = without_figures.replace(r"\allowbreak{}", "").replace(r"\_", "_")
+    assert [r["id"] for r in rows if str(r["id"]) in plain] == []
+
+
+def test_every_row_names_the_note_that_says_how_it_was_computed(
+    files: dict[str, str | bytes], rows: list[dict[str, object]]
+) -> None:
+    sections = str(files["thesis.tex"]).split(r"\section{")
+    for part in dict.fromkeys(str(r["part"]) for r in rows if r["settled"] is None):
+        own = next(s for s in sections if s.startswith(document.escaped(part)))
+        notes = set(re.findall(r"\\item\[(\w)\]", own))
+        used = re.findall(r" & (\w) \\\\$", own, re.MULTILINE)
+        listed = [r for r in rows if r["part"] == part and not str(r["id"]).startswith("eq_3_8")]
+        assert len(used) == len(listed)
+        assert set(used) == notes
+        assert len(notes) == len({r["check"] for r in listed})
+
+
+def test_no_page_is_half_empty(files: dict[str, str | bytes], tmp_path: Path) -> None:
+    if shutil.which("pdflatex") is None or shutil.which("pdftoppm") is None:
+        pytest.skip("pdflatex or pdftoppm is not installed")
+    pdf = compile_pdf(files, "thesis")
+    assert pdf is not None
+    (tmp_path / "thesis.pdf").write_bytes(pdf)
+    command = ["pdftoppm", "-r", "20", "-gray", "thesis.pdf", "page"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    pages = [filled(path) for path in sorted(tmp_path.glob("page-*.pgm"))]
+    assert min(pages[:-1]) > 0.6, pages
+
+
+def filled(path: Path) -> float:
+    """How far down a page is printed, its number apart, as a share of its height."""
+    header, data = path.read_bytes().split(b"255\n", 1)
+    width, height = map(int, header.split()[1:3])
+    rows = np.frombuffer(data, np.uint8).reshape(height, width)[: int(0.92 * height)]
+    return float(np.flatnonzero(rows.min(axis=1) < 200)[-1]) / height
+
+
 def test_compiles_without_a_warning(files: dict[str, str | bytes], tmp_path: Path) -> None:
     if shutil.which("pdflatex") is None:
         pytest.skip("pdflatex is not installed")
@@ -89,7 +136,7 @@ def test_compiles_without_a_warning(files: dict[str, str | bytes], tmp_path: Pat
     [
         ("F_s < 5 % of kg m^2", r"$F_{\mathrm{s}}$ $<$ 5\,\% of kg m$^{2}$"),
         ("theta', psi', b_7", r"$\theta$', $\psi$', $b_{\mathrm{7}}$"),
-        ("a_long_word & 0.5", r"$a_{\mathrm{long},\mathrm{word}}$ \& 0.5"),
+        ("a_long_word & 0.5", r"$a_{\mathrm{long,word}}$ \& 0.5"),
     ],
 )
 def test_names_become_formulas(text: str, latex: str) -> None:

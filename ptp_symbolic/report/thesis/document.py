@@ -4,9 +4,11 @@ import json
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
+from string import ascii_lowercase
 
 from ptp_symbolic.codegen.latex import symbol_latex
-from ptp_symbolic.report.latex_text import PREAMBLE, escaped, formula, table
+from ptp_symbolic.report.latex_text import PREAMBLE, escaped, formulas, table, unit_latex
+from ptp_symbolic.report.source import THESIS
 from ptp_symbolic.report.thesis import (
     backlash,
     configurations,
@@ -23,19 +25,22 @@ from ptp_symbolic.report.thesis.figures import ThesisFigure, rendered
 from ptp_symbolic.report.thesis.items import Item, Value
 
 SCHEMA_VERSION = 1
-# below the id of an item, so that it does not lean on the next row
+# below a row of several lines, so that it does not lean on the next one
 STRUT = r"\rule[-5pt]{0pt}{0pt}"
 GREEK = "alpha|beta|omega|theta|phi|psi|tau"
 SYMBOL = re.compile(
     rf"\b(?P<name>[A-Za-z]{{1,2}}(?:_[A-Za-z0-9]+)+|(?:{GREEK})(?:_[A-Za-z0-9]+)*\b)"
     r"(?:\^(?P<power>-?\d+))?|\^(?P<alone>-?\d+)"
 )
-INTRODUCTION = r"""Every result that the thesis computes is computed here again. Printed values are
-taken over exactly, wrong ones included; computed values come out of this program or, where an
-independent one is asked for, out of SciPy. \emph{Agrees} means within the tolerance that the check
-or the last printed digit states; a number points to the erratum that explains a difference. A dash
-stands where there is nothing to compare: the thesis prints no value, or not the measurements
-behind it. The curves of the thesis are pictures, so the figures show the computed ones alone."""
+INTRODUCTION = (
+    rf"\emph{{The thesis}} is {THESIS}\par "
+    r"""Every result that it computes is computed here again. Printed values are taken over exactly,
+wrong ones included; computed values come out of this program or, where an independent one is asked
+for, out of SciPy. \emph{Agrees} means within the tolerance that the check or the last printed digit
+states; a number points to the erratum that explains a difference. A dash stands where there is
+nothing to compare: the thesis prints no value, or not the measurements behind it. The curves of the
+thesis are pictures, so the figures show the computed ones alone."""
+)
 
 
 PARTS: Mapping[str, tuple[Callable[[], list[Item]], ...]] = {
@@ -103,8 +108,7 @@ def latex_text(
     count = summary(items)
     parts = [
         PREAMBLE,
-        r"\usepackage{graphicx,array}",
-        r"\newcolumntype{L}[1]{>{\raggedright\arraybackslash}p{#1}}",
+        r"\usepackage{graphicx}",
         r"\title{The pan-tilt thesis, recomputed}\author{}\date{}\begin{document}\maketitle",
         INTRODUCTION,
         rf"\par {count['items'] - count['errata']} results: {count['agree']} agree,"
@@ -122,21 +126,21 @@ def latex_text(
 
 
 def _results(part: str, items: Sequence[Item]) -> str:
+    """The table of a part; the last column names the note below that says how it was computed."""
+    listed = [i for i in items if not i.id.startswith("eq_3_8")]
+    checks = list(dict.fromkeys(i.check for i in listed))
+    notes = {check: ascii_lowercase[k] for k, check in enumerate(checks)}
     rows = [
-        [
-            rf"{_text(i.title)}\newline {{\scriptsize\ttfamily {_identity(i.id)}}}" + STRUT,
-            _value(i.printed), _value(i.computed), _unit(i.unit), _verdict(i),
-        ]
-        for i in items
-        if not i.id.startswith("eq_3_8")
+        [_text(i.title) + STRUT, _value(i.printed), _value(i.computed), unit_latex(i.unit),
+         _verdict(i), notes[i.check]]
+        for i in listed
     ]  # fmt: skip
-    head = ["result", "printed", "computed", "unit", "verdict"]
-    text = rf"\section{{{escaped(part)}}}" + table("L{66mm}L{22mm}L{24mm}ll", head, rows)
-    checks = dict.fromkeys(i.check for i in items if not i.id.startswith("eq_3_8"))
-    listed = "".join(rf"\item {_text(check)}" + "\n" for check in checks)
-    text += rf"How they were computed:\begin{{itemize}}\setlength{{\itemsep}}{{0pt}}{listed}"
-    text += r"\end{itemize}"
-    return text + (_equation_3_8(items) if any(i.id.startswith("eq_3_8") for i in items) else "")
+    head = ["result", "printed", "computed", "unit", "verdict", "note"]
+    text = rf"\section{{{escaped(part)}}}" + table("L{59mm}L{22mm}L{23mm}lll", head, rows)
+    lines = "".join(rf"\item[{note}] {_text(check)}" + "\n" for check, note in notes.items())
+    text += r"Notes on how the rows with that letter were computed:"
+    text += rf"\begin{{itemize}}\setlength{{\itemsep}}{{0pt}}{lines}\end{{itemize}}"
+    return text + (_equation_3_8(items) if len(listed) < len(items) else "")
 
 
 def _equation_3_8(items: Sequence[Item]) -> str:
@@ -151,14 +155,14 @@ def _equation_3_8(items: Sequence[Item]) -> str:
         f" printed one is {'zero' if equal else 'NOT zero'} in trigonometric normal form."
     )
     derived = configurations.derived_equation_3_8()
-    return text + "".join(formula("", derived[key], name) for key, name in names.items())
+    return text + formulas([(name, derived[key]) for key, name in names.items()])
 
 
 def _errata(items: Sequence[Item]) -> str:
     rows = [
         [
             str(i.erratum), _text(i.title.partition(": ")[2]), _value(i.printed),
-            _value(i.computed) + (f" {_unit(i.unit)}" if isinstance(i.computed, float) else ""),
+            " ".join([_value(i.computed)] + [unit_latex(i.unit)] * isinstance(i.computed, float)),
             _text(i.check) + STRUT, "settled" if i.settled else "open",
         ]
         for i in items
@@ -183,10 +187,6 @@ def _value(value: Value) -> str:
     if value is None:
         return "--"
     return _text(value) if isinstance(value, str) else _number(float(value))
-
-
-def _unit(unit: str) -> str:
-    return "" if unit == "1" else _text(unit)
 
 
 def _number(value: float) -> str:
@@ -229,8 +229,3 @@ def _words(text: str) -> str:
         for number, piece in enumerate(pieces)
     ]  # fmt: skip
     return "".join(kept)
-
-
-def _identity(text: str) -> str:
-    """An item's id, which may break after its dots and underscores."""
-    return "".join(escaped(c) + (r"\allowbreak{}" if c in "._" else "") for c in text)

@@ -25,6 +25,8 @@ STYLE: dict[Any, Any] = {
     "pdf.fonttype": 42, "axes.formatter.useoffset": False,
 }  # fmt: skip
 INCH = 25.4
+# in mm by the number of panels: four figures of one panel fill a page, or two of three
+PANEL_HEIGHTS = {1: 47.0, 2: 40.0, 3: 35.0}
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,7 @@ def rendered(figure: ThesisFigure) -> dict[str, bytes]:
     """The figure as PDF and PNG, by file name."""
     files = {}
     with matplotlib.rc_context(STYLE):
-        height = 58.0 * len(figure.panels)
+        height = PANEL_HEIGHTS[len(figure.panels)] * len(figure.panels)
         page = Figure(figsize=(150.0 / INCH, height / INCH), layout="constrained")
         FigureCanvasAgg(page)
         for place, draw in enumerate(figure.panels, start=1):

@@ -1,0 +1,62 @@
+"""Measured and simulated signals of a diagnosis, run by run."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.diagnose.summary import Pair, by_source
+from ptp_symbolic.diagnose.trial import Trial
+
+FloatArray = NDArray[np.float64]
+
+
+def curves_of(base: Trial, after: Trial) -> dict[str, Any]:
+    """Measured and simulated signals of every run, its windows joined at the times `borders`."""
+    units = base.train.model.units
+    curves: dict[str, Any] = {}
+    for name in ("train", "validate"):
+        before_fit, after_fit = getattr(base, name), getattr(after, name)
+        groups = zip(
+            by_source(before_fit.pairs()).items(),
+            by_source(after_fit.pairs()).values(),
+            strict=True,
+        )
+        for (source, before), later in groups:
+            key = source if source not in curves else f"{source} ({name})"
+            curves[key] = _curve(name, before, later, units)
+    return curves
+
+
+def _curve(
+    kind: str, before: list[Pair], after: list[Pair], units: Mapping[str, str]
+) -> dict[str, Any]:
+    first = before[0][0]
+    signals: dict[str, dict[str, Any]] = {}
+    for column, signal in enumerate(first.signals):
+        picked = first.outputs[column]
+        count = first.counts[column]
+        signals[signal] = {
+            "unit": units[signal],
+            "measured": _joined([r.measured[:, column] for r, _ in before]),
+            "before": _joined([e.outputs[:, picked] for _, e in before]),
+            "after": _joined([e.outputs[:, picked] for _, e in after]),
+            "counts": float(count) if np.isfinite(count) else None,
+        }
+    time = _joined([r.time for r, _ in before])
+    angle, rate = {}, {}
+    for signal, data in signals.items():
+        if signal.startswith("theta_"):
+            axis = signal.removeprefix("theta_")
+            angle[axis] = data["after"]
+            rate[axis] = np.gradient(data["after"], time)
+    return {
+        "set": kind, "time": time, "signals": signals, "angle": angle, "rate": rate,
+        "borders": [float(r.time[0]) for r, _ in before[1:]],
+    }  # fmt: skip
+
+
+def _joined(windows: list[FloatArray]) -> FloatArray:
+    """Windows end to end; each begins with the sample that ended the one before."""
+    return np.concatenate([windows[0], *(w[1:] for w in windows[1:])])

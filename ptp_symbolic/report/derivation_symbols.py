@@ -1,0 +1,94 @@
+"""Frames and symbols of the derivation report: what every letter means, in which unit."""
+
+from collections.abc import Iterator
+
+from ptp_symbolic.codegen.latex import latex_of, symbol_latex
+from ptp_symbolic.derivation.equations import Equations
+from ptp_symbolic.effects.effect import slide
+from ptp_symbolic.parameters import Parameter
+from ptp_symbolic.platform import ParameterDeclaration, Platform
+from ptp_symbolic.report.latex_text import displayed, escaped, table, unit_latex
+
+PAN = r"The pan frame turns about the vertical $z$ axis of the base by $\theta_{\mathrm{pan}}$"
+TILT = r"the tilt frame turns about the $y$ axis of the {base} by $\theta_{{\mathrm{{tilt}}}}$"
+BORESIGHT = (
+    r" The boresight is the $x$ axis of the tilt frame, and a positive tilt angle lowers it."
+)
+BODY_RATES = (
+    r" The body rates of the tilt body are $(-\omega_{\mathrm{pan}}\sin\theta_{\mathrm{tilt}},\;"
+    r"\omega_{\mathrm{tilt}},\;\omega_{\mathrm{pan}}\cos\theta_{\mathrm{tilt}})$ (thesis Eq.~3.1)."
+)
+CATALOGUE = "default of the catalogue"
+
+
+def frames(equations: Equations) -> str:
+    """The frames that this platform has, and gravity in its base."""
+    if equations.axes == ("pan",):
+        text = f"{PAN}; the boresight is its $x$ axis."
+    elif equations.axes == ("tilt",):
+        base = TILT.format(base=r"base, which is level,")
+        text = f"{base[:1].upper()}{base[1:]}.{BORESIGHT}"
+    else:
+        text = f"{PAN}; {TILT.format(base='pan frame')}. The axes cross in the origin.{BORESIGHT}"
+        text += BODY_RATES
+    gravity = displayed(rf"\mathbf{{g}} = {latex_of(equations.rigid.gravity)}")
+    unit = unit_latex("m/s^2")
+    return rf"\section{{Frames and signs}}{text} Gravity in the base frame, in {unit}, is{gravity}"
+
+
+def symbols(equations: Equations, platform: Platform) -> str:
+    """Tables of the parameters, and of states, inputs, modes and named functions."""
+    declared = {d.name: d for d in platform.parameters}
+    rows = [
+        [f"${symbol_latex(p.name)}$", escaped(p.meaning), unit_latex(p.unit), f"{p.default:.6g}",
+         _origin(p, declared.get(p.name))]
+        for p in equations.parameters
+    ]  # fmt: skip
+    others = [
+        [f"${symbol_latex(name)}$", meaning, unit_latex(unit), kind]
+        for name, meaning, unit, kind in _variables(equations)
+    ]
+    return (
+        r"\section{Symbols} Parameters:"
+        + table("lL{62mm}lrl", ["symbol", "meaning", "unit", "value", ""], rows)
+        + r"\par\noindent Variables:\nopagebreak"
+        + table("lL{78mm}ll", ["symbol", "meaning", "unit", ""], others)
+    )
+
+
+def _origin(parameter: Parameter, declaration: ParameterDeclaration | None) -> str:
+    """Where the value of a parameter comes from."""
+    if declaration is None:
+        return CATALOGUE
+    if declaration.same_as is not None:
+        return f"same as ${symbol_latex(declaration.same_as)}$"
+    return "free, start value" if declaration.free else "known"
+
+
+def _variables(equations: Equations) -> Iterator[tuple[str, str, str, str]]:
+    """Name, meaning as LaTeX, unit and kind of every symbol that is no parameter."""
+    meanings = {s.name: (escaped(s.meaning), s.unit) for s in equations.extra_states}
+    for symbol in equations.state_symbols:
+        name = str(symbol)
+        yield name, *(meanings.get(name) or _joint_state(name)), "state"
+    for given in equations.inputs:
+        yield given.name, escaped(given.meaning), given.unit, "input"
+    for friction in equations.frictions:
+        rate = symbol_latex(str(friction.rate))
+        meaning = rf"direction in which the friction on ${rate}$ slides: $-1$, $1$, at rest 0"
+        yield str(slide(friction.axis)), meaning, "1", "mode"
+    for contact in equations.contacts:
+        face = f"face of the gap in the {contact.axis} drive that is touched: $-1$, $1$, none 0"
+        yield str(contact.side), face, "1", "mode"
+        yield str(contact.active), "1 while this face transmits torque, else 0", "1", "mode"
+    for symbol, _ in equations.terms:
+        yield str(symbol), "a function of those above, given with the equations", "1", "function"
+
+
+def _joint_state(name: str) -> tuple[str, str]:
+    """Meaning and unit of an angle or a rate, from its name."""
+    letter, *place = name.split("_")
+    where = f"{place[-1]} gear output" if place[0] == "gear" else f"{place[-1]} joint"
+    return (
+        (f"angle of the {where}", "rad") if letter == "theta" else (f"rate of the {where}", "rad/s")
+    )
