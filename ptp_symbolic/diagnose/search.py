@@ -32,7 +32,7 @@ from ptp_symbolic.diagnose.trial import (
 )
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.evaluate import evaluate
-from ptp_symbolic.identify.fit import Effort, all_values_at_start, fit_parameters
+from ptp_symbolic.identify.fit import Effort, all_values_at_start, fit_parameters, unblinded
 from ptp_symbolic.identify.run import Run
 
 FloatArray = NDArray[np.float64]
@@ -68,11 +68,13 @@ def _shifted(free: FreeParameter) -> FreeParameter:
 
 
 def judge(task: Task, trial: Trial) -> Trial:
-    """Fit only the starts of the held-out runs with the parameters of `trial`."""
+    """Fit only the starts of the held-out runs with the parameters of `trial`, and let it see what
+    its intervals need.
+    """
     held_out = fit_parameters(
         task.model, task.validate, (), trial.train.values, None, HELD_OUT, task.executor
     )
-    return replace(trial, validate=held_out)
+    return replace(trial, train=unblinded(trial.train, task.executor), validate=held_out)
 
 
 def try_candidates(

