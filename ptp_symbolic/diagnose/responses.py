@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.trial import COARSE, Task, Trial, fixed_values, restarted
 from ptp_symbolic.identify.coordinates import FreeParameter, limits, to_search, to_values
-from ptp_symbolic.identify.evaluate import evaluate
-from ptp_symbolic.identify.fit import Effort, all_values_at_start, fit_parameters
+from ptp_symbolic.identify.evaluate import Evaluation, evaluate
+from ptp_symbolic.identify.fit import Fit, all_values_at_start
 from ptp_symbolic.identify.intervals import project_out
+from ptp_symbolic.identify.run import Run
 
 FloatArray = NDArray[np.float64]
 
 AMOUNT = 0.02  # of a parameter that is free or declared already
 DAMPING, FARTHEST, LEAST, MOST = 1e-3, 0.5, 0.05, 5.0
-HERE = Effort(0, 1e-2, COARSE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,11 +93,7 @@ def _change(
     task: Task, base: Trial, residual: Sequence[FloatArray], values: Mapping[str, float]
 ) -> FloatArray | None:
     """How the residual of all runs changes with `values`, the starts following; None: it failed."""
-    p = task.model.parameter_vector({**base.train.values, **values})
-    none, pairs = np.zeros(0, dtype=np.int64), zip(base.train.runs, base.train.z, strict=True)
-    changed = list(
-        task.executor.map(lambda a: evaluate(task.model, a[0], p, a[1], none, False, COARSE), pairs)
-    )
+    changed = _simulated(task, base, {**base.train.values, **values})
     if any(e.failed for e in changed):
         return None
     return _projected(base, [e.residual - r for e, r in zip(changed, residual, strict=True)])
@@ -134,7 +130,30 @@ def _begun(task: Task, response: _Response) -> Trial:
             least = LEAST if f.logarithmic else -MOST
             start = zero + np.clip(response.amount, least, MOST) * (f.start - zero)
         begun.append(replace(f, start=float(np.clip(start, f.lower, f.upper))))
-    fit = fit_parameters(
-        task.model, task.train, begun, fixed_values(task, begun), base.train.z, HERE, task.executor
+    fixed = fixed_values(task, begun)
+    return Trial((*base.candidates, response.candidate), _unfitted(task, base, begun, fixed))
+
+
+def _unfitted(
+    task: Task, base: Trial, free: Sequence[FreeParameter], fixed: Mapping[str, float]
+) -> Fit:
+    """The residuals at the starts of `free`, without what takes much memory."""
+    values = {**fixed, **all_values_at_start(free)}
+    evaluations = tuple(
+        replace(e, outputs=e.outputs[:0], states=e.states[:0])
+        for e in _simulated(task, base, values)
     )
-    return Trial((*base.candidates, response.candidate), fit)
+    failed = next((e.failed for e in evaluations if e.failed), None)
+    cost = np.inf if failed else float(sum(e.residual @ e.residual for e in evaluations))
+    z = base.train.z
+    return Fit(task.model, task.train, tuple(free), values, z, cost, evaluations, failed)
+
+
+def _simulated(task: Task, base: Trial, values: Mapping[str, float]) -> list[Evaluation]:
+    """All train runs with `values`, begun where those of `base` begin; no derivatives."""
+    p, none = task.model.parameter_vector(dict(values)), np.zeros(0, dtype=np.int64)
+
+    def one(pair: tuple[Run, FloatArray]) -> Evaluation:
+        return evaluate(task.model, pair[0], p, pair[1], none, False, COARSE)
+
+    return list(task.executor.map(one, zip(base.train.runs, base.train.z, strict=True)))

@@ -29,7 +29,7 @@ CONFIRM = Effort(2, 1e-2, COARSE, 0.3, rejections=2)
 PROBED_SHARE, TELLING_SHARE = 0.1, 0.4
 STARTS_KEPT, START_FACTOR = 2, 2.0
 SOUGHT, CONFIRMED, FAR_BEHIND = 10, 5, 50.0
-PROMISING = 4
+PROMISING, BESIDE_PROMISING = 4, 2
 OPTIMUM, TABLE = "optimum", "table"
 
 
@@ -92,7 +92,8 @@ def first_round(
     groups, left = [promising], list[_Search]()
     for origin in (OPTIMUM, TABLE):
         near, behind = _split([s for s in sought if s.origin == origin], SOUGHT)
-        best, others = _split(_advance(task, near, telling, GO_ON), CONFIRMED)
+        count = BESIDE_PROMISING if near_floor else CONFIRMED
+        best, others = _split(_advance(task, near, telling, GO_ON), count)
         left += [*others, *behind]
         confirmed = _advance(task, best, tuple(range(len(task.train))), CONFIRM)
         groups.append([t for search in confirmed for t in search.trial()])
