@@ -80,7 +80,7 @@ def sensitivity(
         Accuracy(rtol, atol * tolerance_weights(model), largest_step), s, columns,
         delay_columns(model, columns),
     )  # fmt: skip
-    refuse_failure(model, found.status, found.reached, found.state)
+    refuse_failure(model, p, found.status, found.reached, found.state)
     y, signals = _measured(model, t, found.x, found.s, p, columns)
     return Sensitivities(t, found.x, y, (*wanted, *by_initial), found.s, signals)
 

@@ -45,7 +45,7 @@ def differentiate_guard(equations, inputs, t, x, watch):
     m, p, rates = watch.m, equations.p, equations.friction_rates
     call(equations.guards, t, x, inputs.u, p, m, watch.g)
     worst, element = -1e300, 0
-    for candidate in range(len(watch.at_end)):
+    for candidate in range(len(watch.at_end) - len(watch.limited)):
         value = violation(candidate, x, m, watch.g, rates)
         if value > worst:
             worst, element = value, candidate

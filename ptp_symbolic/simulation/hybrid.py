@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit, types
 
 from ptp_symbolic.simulation.crossing import cross, jump_by_delay
+from ptp_symbolic.simulation.domain import is_finite, is_outside
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.kernels import (
     CHATTERING,
@@ -25,6 +26,7 @@ from ptp_symbolic.simulation.kernels import (
     LARGEST_STATE,
     LENGTH,
     MATRIX,
+    OUTSIDE,
     SOURCES,
     STEPS,
     TABLE,
@@ -81,7 +83,7 @@ INSTANT_STEP = 1e-10  # s
 
 _V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
 _STEP = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V))
-_WATCH = types.Tuple((_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M))
+_WATCH = types.Tuple((_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M, _I, _M))
 _TANGENTS = types.Tuple((_V, _M, _I, _I, _M, _V, _V, _V, _C, _M, _M, _M, _M))
 _RECORD = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
 
@@ -106,6 +108,8 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
     """Take steps up to `stop`; returns a status."""
     clock, counts = record.clock, record.counts
     known = False
+    if is_outside(x, watch):
+        return OUTSIDE
     while stop - clock[TIME] > TIME_RESOLUTION:
         t = clock[TIME]
         if not known:
@@ -127,11 +131,15 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
             length = locate_event(method, equations, inputs, t, length, fraction, x, step, watch)
             t_new = t + length
             end_slope(method, equations, inputs, t_new, watch.m, step, watch.before)
+        if not is_finite(step.end, LARGEST_STATE):
+            return DIVERGED
         leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record)
         known = method == RUNGE_KUTTA
         if known:
             end_slope(method, equations, inputs, t_new, watch.m, step, step.slope)
         if fraction > 0.0:
+            if is_outside(x, watch):
+                return OUTSIDE
             counts[INSTANT] = counts[INSTANT] + 1 if length < INSTANT_STEP else 0
             if counts[INSTANT] > MAX_INSTANT_EVENTS or not cross(
                 equations, inputs, t_new, x, watch, tangents, record
@@ -142,9 +150,6 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
         else:
             counts[INSTANT] = 0
             copy(watch.at_end, watch.at_start)
-        for a in range(len(x)):
-            if not abs(x[a]) < LARGEST_STATE:
-                return DIVERGED
     clock[TIME] = stop
     return DONE
 

@@ -15,7 +15,7 @@ kernel = njit(**KERNEL)
 inlined = njit(forceinline=True, **KERNEL)
 
 SMALLEST = 1e-60
-DONE, DIVERGED, CHATTERING, UNDECIDED = 0, 1, 2, 3
+DONE, DIVERGED, CHATTERING, UNDECIDED, OUTSIDE = 0, 1, 2, 3, 4
 LARGEST_STATE = 1e12
 TIME, LENGTH = 0, 1
 OUTPUT, EVENTS, STEPS, INSTANT, SOURCES = 0, 1, 2, 3, 4
@@ -90,10 +90,11 @@ class Step(NamedTuple):
 class Watch(NamedTuple):
     """Guards g, modes m and m_before, and how far every element is past the end of its mode.
 
-    at_start, at_middle, at_end [elements] belong to the step; gx, gp, by_x [n], by_p [np]: the
-    derivatives of guards and of a violation; strike [c (n + 2)], strike_x, strike_p: as `impacts`
-    writes them, and their derivatives; lost [1]: energy that strikes have taken; energies
-    [2, 3]: two ledgers to compare.
+    at_start, at_middle, at_end [elements + limits] belong to the step, limits of the domain last;
+    gx, gp, by_x [n], by_p [np]: the derivatives of guards and of a violation; strike [c (n + 2)],
+    strike_x, strike_p: as `impacts` writes them, and their derivatives; lost [1]: energy that
+    strikes have taken; energies [2, 3]: two ledgers to compare; limited [limits]: index of every
+    state with bounds [limits, 2].
     """
 
     g: Any
@@ -113,6 +114,8 @@ class Watch(NamedTuple):
     strike_p: Any
     lost: Any
     energies: Any
+    limited: Any
+    bounds: Any
 
 
 class Tangents(NamedTuple):

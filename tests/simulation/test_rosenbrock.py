@@ -7,10 +7,11 @@ import pytest
 
 import ptp_symbolic
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.simulation.inputs import constant, multisine, step, table
-from ptp_symbolic.simulation.passage import default_method
+from ptp_symbolic.simulation.inputs import constant, multisine, stack, step, table
+from ptp_symbolic.simulation.kernels import DIVERGED
+from ptp_symbolic.simulation.passage import Accuracy, default_method, pass_through
 from ptp_symbolic.simulation.rodas5p import COUPLING, GAMMA, STAGES, A, C, D
-from tests.simulation.block import block
+from tests.simulation.block import J, block
 
 
 def test_coefficients_meet_the_order_conditions() -> None:
@@ -119,10 +120,34 @@ def test_the_model_chooses_its_method() -> None:
         ptp_symbolic.sensitivity(ptp_symbolic.load("payload"), 1.0, method="fixed_step")
 
 
-def test_a_state_that_diverges_is_reported_and_never_written() -> None:
-    body = block()
-    for method in ("rosenbrock", "runge_kutta", "fixed_step"):
-        with pytest.raises(InputError, match=r"Stopped at .* s with theta_pan .*: the state div"):
-            ptp_symbolic.simulate(
-                body, 400.0, {"tau_pan": constant(1e9)}, {"k": 0.0}, method=method, step=1e-2
-            )
+@pytest.mark.parametrize("method", ["rosenbrock", "runge_kutta", "fixed_step"])
+def test_a_state_that_diverges_is_reported_and_never_written(method: str) -> None:
+    body, inputs, soft = block(), {"tau_pan": constant(1e9)}, {"k": 0.0}
+    with pytest.raises(InputError, match=r"Stopped at .* s with theta_pan .*: the state div") as at:
+        ptp_symbolic.simulate(body, 400.0, inputs, soft, method=method, step=1e-2)
+    assert "nan" not in str(at.value) and "inf" not in str(at.value)
+    time = float(str(at.value).split()[2])
+    assert time == pytest.approx(math.sqrt(2e12 * J / 1e9), abs=0.11)
+    ends = ptp_symbolic.simulate(body, [0.0, time - 0.2], inputs, soft, method=method, step=1e-2)
+    assert np.all(np.isfinite(ends.x)) and np.all(np.isfinite(ends.stored))
+    if method != "fixed_step":
+        with pytest.raises(InputError, match="the state diverges; check inputs and parameters"):
+            ptp_symbolic.sensitivity(body, [0.0, 400.0], inputs, soft, None, ["J"], method=method)
+
+
+def test_a_pole_in_finite_time_is_reported_with_its_time() -> None:
+    """A spring that pulls outward with the cube of the way: theta = 1 / (1 - t)."""
+    body, start = block(), {"theta_pan": 1.0, "omega_pan": 1.0}
+    pole = {"k": 0.0, "F_c": 0.0, "F_s": 0.0, "k3": 1.0, "J": 0.5}
+    p = body.parameter_vector(pole)
+    p[4] = -2.0 * p[0]
+    ends = np.array([0.0, 2.0])
+    for method in ("rosenbrock", "runge_kutta"):
+        accuracy = Accuracy(1e-8, np.full(2, 1e-8), 0.1)
+        found = pass_through(
+            body, method, p, np.array(list(start.values())), stack([constant(0.0)]), True, ends,
+            ends, accuracy,
+        )  # fmt: skip
+        assert found.status == DIVERGED
+        assert found.reached == pytest.approx(1.0, abs=5e-6)
+        assert np.all(np.isfinite(found.state)) and np.all(np.isfinite(found.x))
