@@ -273,7 +273,7 @@ def pass_in_steps(
     )  # fmt: skip
     record = Record(
         grid, z((len(grid), n)), z((0, n, 0)), z((len(grid), 3)), z((event_room, 3)), z(3),
-        z((4, 3)), z(2), z(5, np.int64),
+        z((4, 3)), z(2), z(6, np.int64),
     )  # fmt: skip
     status = runner()(
         addresses(model.module), p, model.friction_rates, model.zero_at_rest, model.contacts,

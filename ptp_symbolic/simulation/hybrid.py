@@ -54,6 +54,7 @@ from ptp_symbolic.simulation.location import (
 from ptp_symbolic.simulation.modes import settle
 from ptp_symbolic.simulation.outputs import (
     fill_powers,
+    ledger_error,
     note_strikes,
     note_switches,
     work_done,
@@ -118,11 +119,16 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
         length = next_length(stop - t, limits[1], clock)
         counts[STEPS] += 1
         attempt(method, equations, inputs, t, length, x, watch.m, step)
-        if not accept(error_norm(method, length, x, step, limits[0], atol), length, clock):
+        error = error_norm(method, length, x, step, limits[0], atol)
+        if error <= 1.0:
+            fill_dense(method, length, x, step)
+            if len(record.ledger) > 0:
+                fill_powers(equations, inputs, t, length, watch.m, step, record)
+                error = max(error, ledger_error(length, limits[0], record))
+        if not accept(error, length, clock):
             if clock[LENGTH] < SHORTEST:
                 return DIVERGED
             continue
-        fill_dense(method, length, x, step)
         fraction = 0.0
         if len(watch.at_end) > 0:
             fraction = first_violation(equations, inputs, t, length, step, watch)
@@ -130,6 +136,11 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
         if fraction > 0.0:
             length = locate_event(method, equations, inputs, t, length, fraction, x, step, watch)
             t_new = t + length
+            if len(record.ledger) > 0:
+                fill_powers(equations, inputs, t, length, watch.m, step, record)
+                error = ledger_error(length, limits[0], record)
+                if error > 1.0 and not accept(error, length, clock):
+                    continue
             end_slope(method, equations, inputs, t_new, watch.m, step, watch.before)
         if not is_finite(step.end, LARGEST_STATE):
             return DIVERGED
@@ -200,8 +211,6 @@ def accept(error, length, clock):
 @kernel
 def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record):
     """Go to the end of an accepted step: outputs inside it, work done over it, tangents."""
-    if len(record.ledger) > 0:
-        fill_powers(equations, inputs, t, length, watch.m, step, record)
     write_inside(equations, inputs, t, length, t_new, watch.m, step, record)
     if len(record.ledger) > 0:
         for c in range(1, 3):

@@ -18,7 +18,7 @@ SMALLEST = 1e-60
 DONE, DIVERGED, CHATTERING, UNDECIDED, OUTSIDE = 0, 1, 2, 3, 4
 LARGEST_STATE = 1e12
 TIME, LENGTH = 0, 1
-OUTPUT, EVENTS, STEPS, INSTANT, SOURCES = 0, 1, 2, 3, 4
+OUTPUT, EVENTS, STEPS, INSTANT, SOURCES, UNBALANCED = 0, 1, 2, 3, 4, 5
 
 VECTOR, MATRIX = types.float64[::1], types.float64[:, ::1]
 CUBE, INTEGERS = types.float64[:, :, ::1], types.int64[::1]
@@ -145,8 +145,8 @@ class Record(NamedTuple):
     """Output at `times` [k]: x [k, n], s [k, n, ns], ledger [k, 3] (or no rows), events [c, 3].
 
     totals [3]: work so far; powers [4, 3]: stored energy, power in and dissipated power over the
-    step; clock [2]: time, next step length; counts [5]: outputs, events, steps, instant events, and
-    the stamp of the sources that the runner was compiled from.
+    step; clock [2]: time, next step length; counts [6]: outputs, events, steps, instant events, the
+    stamp of the sources that the runner was compiled from, steps whose ledger would not close.
     """
 
     times: Any

@@ -110,7 +110,7 @@ def pass_through(
     record = Record(
         times, np.zeros((len(times), n)), np.zeros((len(times), *s.shape)),
         np.zeros((len(times) if ledger else 0, 3)), np.zeros((event_room, 3)), np.zeros(3),
-        np.zeros((4, 3)), np.zeros(2), np.zeros(5, dtype=np.int64),
+        np.zeros((4, 3)), np.zeros(2), np.zeros(6, dtype=np.int64),
     )  # fmt: skip
     status = hybrid.runner()(
         METHODS[method], addresses(module), p, model.friction_rates, model.zero_at_rest,
