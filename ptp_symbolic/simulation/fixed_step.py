@@ -61,7 +61,7 @@ from ptp_symbolic.simulation.kernels import (
     source_stamp,
 )
 from ptp_symbolic.simulation.outputs import note_switches
-from ptp_symbolic.simulation.passage import limited_states
+from ptp_symbolic.simulation.passage import contact_table, limited_states
 from ptp_symbolic.simulation.sampling import (
     SAMPLING,
     Sampling,
@@ -97,7 +97,7 @@ def take_step(equations, inputs, t, t_end, x, m, work, record):
             if sweeps == 0:
                 return UNDECIDED
             record.counts[INSTANT] = max(record.counts[INSTANT], sweeps)
-            note_switches(t_end, m, work.was, len(rates), record)
+            note_switches(t_end, m, work.was, len(rates), equations.contacts, record)
     if not is_finite(work.end, LARGEST_STATE):
         return DIVERGED
     if is_outside(work.end, work):
@@ -276,7 +276,8 @@ def pass_in_steps(
         z((4, 3)), z(2), z(6, np.int64),
     )  # fmt: skip
     status = runner()(
-        addresses(model.module), p, model.friction_rates, model.zero_at_rest, model.contacts,
+        addresses(model.module), p, model.friction_rates, model.zero_at_rest,
+        contact_table(model),
         inputs.arrays, inputs.new_cursor(), inputs.held, z((2, nu)), x, m, float(step),
         tuple(work), tuple(record),
         tuple(new_sampling(model, p, x, times, 0)),

@@ -84,7 +84,9 @@ INSTANT_STEP = 1e-10  # s
 
 _V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
 _STEP = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V))
-_WATCH = types.Tuple((_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M, _I, _M))
+_WATCH = types.Tuple(
+    (_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M, _I, _M, _V, _V)
+)
 _TANGENTS = types.Tuple((_V, _M, _I, _I, _M, _V, _V, _V, _C, _M, _M, _M, _M))
 _RECORD = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
 
@@ -98,7 +100,9 @@ def enter(equations, inputs, t, x, watch, tangents, record):
     copy(watch.m, watch.m_before)
     if not settle(equations, t, x, inputs.u, watch, tangents):
         return False
-    note_switches(t, watch.m, watch.m_before, len(equations.friction_rates), record)
+    note_switches(
+        t, watch.m, watch.m_before, len(equations.friction_rates), equations.contacts, record
+    )
     note_strikes(watch, record)
     fill_violations(equations, inputs, t, x, watch, watch.at_start)
     return True

@@ -30,9 +30,9 @@ class Equations(NamedTuple):
     """The emitted functions of a model, its parameters p [np], and where its frictions act.
 
     friction_rates: state index of the rate of every friction; zero_at_rest [n]: per state the
-    friction that sets it to zero when it comes to rest, or -1; contacts [c, 3]: state index of the
-    rates at the gear output and at the joint, and 0 for a sprung contact, 1 for rigid bodies, 2 for
-    rigid bodies whose joint is held in the gap.
+    friction that sets it to zero when it comes to rest, or -1; contacts [c, 4]: state index of the
+    rates at the gear output and at the joint; 0 for a sprung contact, 1 for rigid bodies, 2 for
+    rigid bodies whose joint is held in the gap; 1 while such a joint is pressed, see `pressed`.
     """
 
     derivative: Any
@@ -94,7 +94,7 @@ class Watch(NamedTuple):
     gx, gp, by_x [n], by_p [np]: the derivatives of guards and of a violation; strike [c (n + 2)],
     strike_x, strike_p: as `impacts` writes them, and their derivatives; lost [1]: energy that
     strikes have taken; energies [2, 3]: two ledgers to compare; limited [limits]: index of every
-    state with bounds [limits, 2].
+    state with bounds [limits, 2]; m_kept, trial [n]: modes, and dx/dt in others tried instead.
     """
 
     g: Any
@@ -116,6 +116,8 @@ class Watch(NamedTuple):
     energies: Any
     limited: Any
     bounds: Any
+    m_kept: Any
+    trial: Any
 
 
 class Tangents(NamedTuple):

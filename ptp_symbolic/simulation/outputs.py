@@ -12,6 +12,7 @@ from ptp_symbolic.simulation.kernels import (
     kernel,
 )
 from ptp_symbolic.simulation.location import TIME_RESOLUTION
+from ptp_symbolic.simulation.pressed import PRESSED
 from ptp_symbolic.simulation.steps import curve
 
 OF_STEP, OF_RUN, INSIDE, ROUNDING = 10.0, 0.01, 20.0, 1e-14
@@ -134,7 +135,7 @@ def _write_ledger(equations, inputs, t, m, output, record):
 
 
 @inlined
-def note_switches(t, m, m_before, frictions, record):
+def note_switches(t, m, m_before, frictions, contacts, record):
     """Note every element whose mode changed; the count goes on past the room for events."""
     events = record.events
     for element in range(frictions + (len(m) - frictions) // 2):
@@ -146,6 +147,8 @@ def note_switches(t, m, m_before, frictions, record):
             mode = m[where] * (2.0 - m[where + 1])
             bounced = m_before[where] == 0.0 and m[where + 1] == 0.0
             mode = 3.0 * m[where] if bounced else mode
+            if contacts[element - frictions, PRESSED] == 1:
+                mode = 4.0 * m[where]
         if changed:
             count = record.counts[EVENTS]
             if count < len(events):

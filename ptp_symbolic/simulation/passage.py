@@ -114,7 +114,8 @@ def pass_through(
     )  # fmt: skip
     status = hybrid.runner()(
         METHODS[method], addresses(module), p, model.friction_rates, model.zero_at_rest,
-        model.contacts, inputs.arrays, cursor, held or not any(module.INPUT_ACTS), u, x, stops,
+        contact_table(model), inputs.arrays, cursor, held or not any(module.INPUT_ACTS), u, x,
+        stops,
         np.array([accuracy.relative, accuracy.largest_step]), accuracy.absolute,
         tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)), tuple(watch),
         tuple(tangents), tuple(record), tuple(new_sampling(model, p, x, stops, s.shape[1])),
@@ -134,6 +135,11 @@ def _step(n: int, nu: int, parameters: int, solved: int) -> Step:
     )  # fmt: skip
 
 
+def contact_table(model: Model) -> IntArray:
+    """Rates, rule and the flag PRESSED, which is not set yet, of every contact [c, 4]."""
+    return np.pad(model.contacts, ((0, 0), (0, 1)))
+
+
 def limited_states(model: Model) -> IntArray:
     """Index [limits] of the state of every limit of the domain."""
     return np.array([model.state_names.index(name) for name, _ in model.limits], np.int64)
@@ -150,7 +156,7 @@ def _watch(model: Model, n: int, p: FloatArray) -> Watch:
         z(guards), z(modes), z(modes), z(watched), z(watched), z(watched), z((guards, n)),
         z((guards, parameters)), z(n), z(parameters), z(n), z(n),
         z(strikes), z((strikes, n)), z((strikes, parameters)), z(1), z((2, 3)),
-        limited_states(model), model.domain(p),
+        limited_states(model), model.domain(p), z(modes), z(n),
     )  # fmt: skip
 
 

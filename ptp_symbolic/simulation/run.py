@@ -30,10 +30,10 @@ EVENT_CAPACITY = 100_000
 AT_BOUND = 1e-6  # rad; where the equations end, steps can become too short to go on
 SLIDING = {-1.0: "slides backward", 0.0: "sticks", 1.0: "slides forward"}
 TOUCHING = {
-    -3.0: "bounces off the lower face", -2.0: "lets go of the lower face",
-    -1.0: "touches the lower face", 0.0: "is in the gap",
+    -4.0: "leans on the lower face", -3.0: "bounces off the lower face",
+    -2.0: "lets go of the lower face", -1.0: "touches the lower face", 0.0: "is in the gap",
     1.0: "touches the upper face", 2.0: "lets go of the upper face",
-    3.0: "bounces off the upper face",
+    3.0: "bounces off the upper face", 4.0: "leans on the upper face",
 }  # fmt: skip
 
 
