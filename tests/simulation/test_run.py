@@ -90,7 +90,7 @@ def test_sensitivities_against_central_differences(drive) -> None:
             for s in (1.0, -1.0)
         ]
         difference = (ends[0] - ends[1]) / (2.0 * h)
-        assert found.states[-1, 0, index] == pytest.approx(difference, rel=2e-4)
+        assert found.states[-1, 0, index] == pytest.approx(difference, rel=1e-5)
 
 
 def test_bad_arguments_are_refused(drive) -> None:
