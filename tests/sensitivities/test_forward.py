@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ptp_symbolic
-from ptp_symbolic.simulation.inputs import multisine, ramp, step, table
+from ptp_symbolic.simulation.inputs import InputSignal, multisine, ramp, step, table
 from tests.simulation.block import F_C, F_S, J, K, block
 
 METHODS = ("rosenbrock", "runge_kutta")
@@ -50,6 +50,38 @@ def test_when_a_block_breaks_away_by_closed_form(method: str) -> None:
     ]
     assert found.x[-1, 0] == pytest.approx(angle(F_S, F_C), abs=1e-8)
     assert found.states[-1, 0] == pytest.approx(exact, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("signal", "end", "events"),
+    [(multisine([2.0], [0.15]), 5.0, 20), (multisine([5.0, 4.0, 3.0], [0.3, 0.9, 2.1]), 7.0, 100)],
+    ids=["crawl", "multisine"],
+)
+def test_differences_come_to_the_derivatives_through_vanishing_bounces(
+    drive, signal: InputSignal, end: float, events: int
+) -> None:
+    """No jump is missing: what differences miss falls with the square of their step.
+
+    The map bends sharply near bounces, so that a thousandth of the gap is too much for them.
+    """
+    times, inputs, name = np.linspace(0.0, end, 201), {"u_pan": signal}, "gap_pan"
+    tight = {"rtol": 1e-11, "atol": 1e-12}
+    found = ptp_symbolic.sensitivity(drive, times, inputs, by_parameters=[name], **tight)
+    exact = found.states[:, 0, 0]
+    assert len(ptp_symbolic.simulate(drive, end, inputs).events) > events
+    off = []
+    for relative in (1e-3, 1e-4, 1e-5):
+        h = relative * drive.defaults[name]
+        ends = [
+            ptp_symbolic.simulate(
+                drive, times, inputs, {name: drive.defaults[name] + s * h}, **tight
+            )["theta_pan"]
+            for s in (1.0, -1.0)
+        ]
+        off.append(np.abs((ends[0] - ends[1]) / (2.0 * h) - exact).max() / np.abs(exact).max())
+    assert off[0] > 5e-5
+    assert off[1] < 0.02 * off[0]
+    assert off[2] < 2e-6
 
 
 @pytest.mark.parametrize("method", METHODS)
