@@ -84,6 +84,23 @@ def test_differences_come_to_the_derivatives_through_vanishing_bounces(
     assert off[2] < 2e-6
 
 
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-12])
+def test_tangents_of_the_explicit_method_stay_below_its_limit_of_stability(
+    drive, tolerance: float
+) -> None:
+    """The winding's own motion, a thousand times faster, has died out in the states alone."""
+    names, end = ["F_c_pan", "R_pan", "F_v_pan"], 5.0
+    for signal in (ramp(0.0, 4.0, 0.0, 10.0), multisine([2.0], [0.15])):
+        one, other = (
+            ptp_symbolic.sensitivity(
+                drive, [0.0, end], {"u_pan": signal}, by_parameters=names, rtol=rtol,
+                atol=0.1 * rtol, method=method,
+            ).states[-1, 0]
+            for method, rtol in (("runge_kutta", tolerance), ("rosenbrock", 1e-11))
+        )  # fmt: skip
+        assert one == pytest.approx(other, rel=max(2e-6, 100.0 * tolerance))
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_six_parameters_through_stick_slip_and_gap(drive, method: str) -> None:
     """At 1e-6 relative, against differences of fourth order of runs a thousand times as exact."""
