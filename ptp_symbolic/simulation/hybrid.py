@@ -9,7 +9,6 @@ landing point lies just past the event. The step length is carried over stops an
 from collections.abc import Callable
 from functools import lru_cache
 
-import numpy as np
 from numba import njit, types
 
 from ptp_symbolic.simulation.crossing import cross, jump_by_delay
@@ -28,7 +27,6 @@ from ptp_symbolic.simulation.kernels import (
     MATRIX,
     OUTSIDE,
     SOURCES,
-    STEPS,
     TABLE,
     TABLE_OF_CONTACTS,
     TIME,
@@ -53,8 +51,6 @@ from ptp_symbolic.simulation.location import (
 )
 from ptp_symbolic.simulation.modes import settle
 from ptp_symbolic.simulation.outputs import (
-    fill_powers,
-    ledger_error,
     note_strikes,
     note_switches,
     work_done,
@@ -68,13 +64,11 @@ from ptp_symbolic.simulation.sampling import (
     next_stop,
     sample_with_tangents,
 )
+from ptp_symbolic.simulation.step_length import is_balanced, next_length, try_step
 from ptp_symbolic.simulation.steps import (
     RUNGE_KUTTA,
-    attempt,
     begin,
     end_slope,
-    error_norm,
-    fill_dense,
     push_tangents,
 )
 
@@ -121,15 +115,7 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
             begin(method, equations, inputs, t, x, watch.m, step)
             known = True
         length = next_length(stop - t, limits[1], clock)
-        counts[STEPS] += 1
-        attempt(method, equations, inputs, t, length, x, watch.m, step)
-        error = error_norm(method, length, x, step, limits[0], atol)
-        if error <= 1.0:
-            fill_dense(method, length, x, step)
-            if len(record.ledger) > 0:
-                fill_powers(equations, inputs, t, length, watch.m, step, record)
-                error = max(error, ledger_error(length, limits[0], record))
-        if not accept(error, length, clock):
+        if not try_step(method, equations, inputs, t, length, x, limits, atol, step, watch, record):
             if clock[LENGTH] < SHORTEST:
                 return DIVERGED
             continue
@@ -140,11 +126,8 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
         if fraction > 0.0:
             length = locate_event(method, equations, inputs, t, length, fraction, x, step, watch)
             t_new = t + length
-            if len(record.ledger) > 0:
-                fill_powers(equations, inputs, t, length, watch.m, step, record)
-                error = ledger_error(length, limits[0], record)
-                if error > 1.0 and not accept(error, length, clock):
-                    continue
+            if not is_balanced(equations, inputs, t, length, limits, step, watch, record):
+                continue
             end_slope(method, equations, inputs, t_new, watch.m, step, watch.before)
         if not is_finite(step.end, LARGEST_STATE):
             return DIVERGED
@@ -153,19 +136,29 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
         if known:
             end_slope(method, equations, inputs, t_new, watch.m, step, step.slope)
         if fraction > 0.0:
-            if is_outside(x, watch):
-                return OUTSIDE
-            counts[INSTANT] = counts[INSTANT] + 1 if length < INSTANT_STEP else 0
-            if counts[INSTANT] > MAX_INSTANT_EVENTS or not cross(
-                equations, inputs, t_new, x, watch, tangents, record
-            ):
-                return CHATTERING
-            fill_violations(equations, inputs, t_new, x, watch, watch.at_start)
+            status = pass_event(equations, inputs, t_new, length, x, watch, tangents, record)
+            if status != DONE:
+                return status
             known = False
         else:
             counts[INSTANT] = 0
             copy(watch.at_end, watch.at_start)
     clock[TIME] = stop
+    return DONE
+
+
+@inlined
+def pass_event(equations, inputs, t, length, x, watch, tangents, record):
+    """Stop outside the domain, else cross to the next modes; returns a status."""
+    counts = record.counts
+    if is_outside(x, watch):
+        return OUTSIDE
+    counts[INSTANT] = counts[INSTANT] + 1 if length < INSTANT_STEP else 0
+    if counts[INSTANT] > MAX_INSTANT_EVENTS:
+        return CHATTERING
+    if not cross(equations, inputs, t, x, watch, tangents, record):
+        return CHATTERING
+    fill_violations(equations, inputs, t, x, watch, watch.at_start)
     return DONE
 
 
@@ -189,27 +182,6 @@ def advance_by_samples(
         copy(inputs.ahead, inputs.u)
         if not enter(equations, inputs, target, x, watch, tangents, record):
             return CHATTERING
-
-
-@inlined
-def next_length(remaining, largest, clock):
-    """Length of the next attempt: as planned, but so that equal steps reach the stop."""
-    planned = min(clock[LENGTH], largest)
-    return remaining if planned >= remaining else remaining / np.ceil(remaining / planned)
-
-
-@inlined
-def accept(error, length, clock):
-    """Plan the next step from the error of an attempt; False when it must be repeated."""
-    if not error < 1e10:
-        error = 1e10
-    if error > 1.0:
-        clock[LENGTH] = length * max(0.2, 0.9 * error**-0.2)
-        return False
-    grow = 5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2)
-    if grow > 1.0 or clock[LENGTH] <= length:
-        clock[LENGTH] = length * grow
-    return True
 
 
 @kernel
