@@ -6,6 +6,7 @@ from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.kernels import clear, copy, inlined, kernel
 from ptp_symbolic.simulation.modes import settle, violation, violation_gradient
 from ptp_symbolic.simulation.outputs import note_strikes, note_switches
+from ptp_symbolic.simulation.pressed import PRESSED, derivative, fill_guards
 
 GRAZING = 1e-9  # a guard that is only touched has no event time to differentiate
 AHEAD = 1e-7  # s
@@ -25,11 +26,11 @@ def cross(equations, inputs, t, x, watch, tangents, record):
         follow_to_event(by_time, watch, tangents)
     if not settle(equations, t, x, inputs.u, watch, tangents):
         return False
-    note_switches(t, m, watch.m_before, frictions, record)
+    note_switches(t, m, watch.m_before, frictions, equations.contacts, record)
     note_strikes(watch, record)
     if ns == 0:
         return True
-    call(equations.derivative, t, x, inputs.u, equations.p, m, watch.after)
+    derivative(equations, t, x, inputs.u, m, watch.after)
     for a in range(len(x)):
         friction = equations.zero_at_rest[a]
         if friction >= 0 and m[friction] == 0.0 and watch.m_before[friction] != 0.0:
@@ -43,20 +44,25 @@ def cross(equations, inputs, t, x, watch, tangents, record):
 def differentiate_guard(equations, inputs, t, x, watch):
     """Write the gradient of the guard that ended its mode; returns its derivative by time."""
     m, p, rates = watch.m, equations.p, equations.friction_rates
-    call(equations.guards, t, x, inputs.u, p, m, watch.g)
+    fill_guards(equations, t, x, inputs.u, watch)
     worst, element = -1e300, 0
-    for candidate in range(len(watch.at_end)):
+    for candidate in range(len(watch.at_end) - len(watch.limited)):
         value = violation(candidate, x, m, watch.g, rates)
         if value > worst:
             worst, element = value, candidate
+    contact = element - len(rates)
+    if contact >= 0 and equations.contacts[contact, PRESSED] == 1:
+        clear(watch.by_x)  # it starts from rest without a jump
+        clear(watch.by_p)
+        return 0.0
     call(equations.guard_jacobian, t, x, inputs.u, p, m, watch.gx, watch.gp)
     violation_gradient(element, m, watch.g, watch.gx, watch.gp, rates, watch.by_x, watch.by_p)
     if inputs.held:
         return 0.0
     evaluate_inputs(t + AHEAD, 1, *inputs.table, inputs.cursor, inputs.ahead)
-    call(equations.guards, t, x, inputs.ahead, p, m, watch.g)
+    fill_guards(equations, t, x, inputs.ahead, watch)
     later = violation(element, x, m, watch.g, rates)
-    call(equations.guards, t, x, inputs.u, p, m, watch.g)
+    fill_guards(equations, t, x, inputs.u, watch)
     return (later - violation(element, x, m, watch.g, rates)) / AHEAD
 
 
@@ -104,9 +110,9 @@ def jump_by_delay(equations, inputs, t, x, u_before, watch, tangents):
         if column < 0 or u[j] == u_before[j]:
             continue
         now = u[j]
-        call(equations.derivative, t, x, u, equations.p, watch.m, watch.after)
+        derivative(equations, t, x, u, watch.m, watch.after)
         u[j] = u_before[j]
-        call(equations.derivative, t, x, u, equations.p, watch.m, watch.before)
+        derivative(equations, t, x, u, watch.m, watch.before)
         u[j] = now
         for a in range(len(x)):
             s[a, column] += watch.before[a] - watch.after[a]

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.simulation.domain import is_finite, is_outside, stop_at_bound
 from ptp_symbolic.simulation.emitted import addresses, call
 from ptp_symbolic.simulation.implicit_step import (
     StepWork,
@@ -42,6 +43,7 @@ from ptp_symbolic.simulation.kernels import (
     LARGEST_STATE,
     MATRIX,
     OUTPUT,
+    OUTSIDE,
     SMALLEST,
     SOURCES,
     STEPS,
@@ -59,6 +61,7 @@ from ptp_symbolic.simulation.kernels import (
     source_stamp,
 )
 from ptp_symbolic.simulation.outputs import note_switches
+from ptp_symbolic.simulation.passage import contact_table, limited_states
 from ptp_symbolic.simulation.sampling import (
     SAMPLING,
     Sampling,
@@ -72,13 +75,14 @@ FloatArray = NDArray[np.float64]
 MOST_STEPS = 1e9
 
 _V, _M, _I = VECTOR, MATRIX, INTEGERS
-_WORK = types.Tuple((_M, _M, _M, _M, _I, _V, _V, _V, _V, _V, types.int64[:, ::1]))
+_WORK = types.Tuple((_M, _M, _M, _M, _I, _V, _V, _V, _V, _V, types.int64[:, ::1], _I, _M))
 _RECORD = types.Tuple((_V, _M, CUBE, _M, _M, _V, _M, _V, _I))
 
 
 @kernel
 def take_step(equations, inputs, t, t_end, x, m, work, record):
     """Step from t to t_end in s; inputs.ahead holds the inputs at t. Returns a status."""
+    record.clock[TIME] = t
     h, rates, u = t_end - t, equations.friction_rates, inputs.u
     if not inputs.held:
         evaluate_inputs(t_end, -1, *inputs.table, inputs.cursor, u)
@@ -93,12 +97,15 @@ def take_step(equations, inputs, t, t_end, x, m, work, record):
             if sweeps == 0:
                 return UNDECIDED
             record.counts[INSTANT] = max(record.counts[INSTANT], sweeps)
-            note_switches(t_end, m, work.was, len(rates), record)
+            note_switches(t_end, m, work.was, len(rates), equations.contacts, record)
+    if not is_finite(work.end, LARGEST_STATE):
+        return DIVERGED
+    if is_outside(work.end, work):
+        stop_at_bound(t, h, x, work.end, work, record.clock)
+        return OUTSIDE
     if len(record.ledger) > 0:
         add_work(equations, t, t_end, x, inputs.ahead, u, m, work.end, record)
     for i in range(len(x)):
-        if not abs(work.end[i]) < LARGEST_STATE:
-            return DIVERGED
         x[i] = work.end[i] if abs(work.end[i]) > SMALLEST else 0.0
     copy(u, inputs.ahead)
     record.counts[STEPS] += 1
@@ -115,7 +122,6 @@ def take_steps(equations, inputs, begin, end, step, x, m, work, record):
         t_end = end if index + 1 == count else begin + (index + 1) * h
         status = take_step(equations, inputs, t, t_end, x, m, work, record)
         if status != DONE:
-            record.clock[TIME] = t
             return status
     return DONE
 
@@ -179,6 +185,9 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         inputs, work = Inputs(table, cursor, held, u[0], u[1]), StepWork(*work)
         sampling = Sampling(*sampling)
         times = record.times
+        record.clock[TIME] = times[0]
+        if is_outside(x, work):
+            return OUTSIDE
         for interval in range(len(times)):
             begin = times[interval]
             evaluate_inputs(begin, 1, *inputs.table, inputs.cursor, inputs.ahead)
@@ -260,13 +269,15 @@ def pass_in_steps(
     work = StepWork(
         z((n, n)), z((n, nu)), z((n, len(p))), z((n, n)), z(n, np.int64), z(n), z(n), z(n),
         z(modes), z(3 * frictions + 2 * (modes - frictions)), z((frictions, 2), np.int64),
+        limited_states(model), model.domain(p),
     )  # fmt: skip
     record = Record(
         grid, z((len(grid), n)), z((0, n, 0)), z((len(grid), 3)), z((event_room, 3)), z(3),
-        z((4, 3)), z(2), z(5, np.int64),
+        z((4, 3)), z(2), z(6, np.int64),
     )  # fmt: skip
     status = runner()(
-        addresses(model.module), p, model.friction_rates, model.zero_at_rest, model.contacts,
+        addresses(model.module), p, model.friction_rates, model.zero_at_rest,
+        contact_table(model),
         inputs.arrays, inputs.new_cursor(), inputs.held, z((2, nu)), x, m, float(step),
         tuple(work), tuple(record),
         tuple(new_sampling(model, p, x, times, 0)),

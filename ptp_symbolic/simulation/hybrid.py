@@ -9,10 +9,10 @@ landing point lies just past the event. The step length is carried over stops an
 from collections.abc import Callable
 from functools import lru_cache
 
-import numpy as np
 from numba import njit, types
 
 from ptp_symbolic.simulation.crossing import cross, jump_by_delay
+from ptp_symbolic.simulation.domain import is_finite, is_outside
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.kernels import (
     CHATTERING,
@@ -25,8 +25,8 @@ from ptp_symbolic.simulation.kernels import (
     LARGEST_STATE,
     LENGTH,
     MATRIX,
+    OUTSIDE,
     SOURCES,
-    STEPS,
     TABLE,
     TABLE_OF_CONTACTS,
     TIME,
@@ -51,7 +51,6 @@ from ptp_symbolic.simulation.location import (
 )
 from ptp_symbolic.simulation.modes import settle
 from ptp_symbolic.simulation.outputs import (
-    fill_powers,
     note_strikes,
     note_switches,
     work_done,
@@ -65,13 +64,11 @@ from ptp_symbolic.simulation.sampling import (
     next_stop,
     sample_with_tangents,
 )
+from ptp_symbolic.simulation.step_length import is_balanced, next_length, try_step
 from ptp_symbolic.simulation.steps import (
     RUNGE_KUTTA,
-    attempt,
     begin,
     end_slope,
-    error_norm,
-    fill_dense,
     push_tangents,
 )
 
@@ -81,7 +78,9 @@ INSTANT_STEP = 1e-10  # s
 
 _V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
 _STEP = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V))
-_WATCH = types.Tuple((_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M))
+_WATCH = types.Tuple(
+    (_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M, _I, _M, _V, _V)
+)
 _TANGENTS = types.Tuple((_V, _M, _I, _I, _M, _V, _V, _V, _C, _M, _M, _M, _M))
 _RECORD = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
 
@@ -95,7 +94,9 @@ def enter(equations, inputs, t, x, watch, tangents, record):
     copy(watch.m, watch.m_before)
     if not settle(equations, t, x, inputs.u, watch, tangents):
         return False
-    note_switches(t, watch.m, watch.m_before, len(equations.friction_rates), record)
+    note_switches(
+        t, watch.m, watch.m_before, len(equations.friction_rates), equations.contacts, record
+    )
     note_strikes(watch, record)
     fill_violations(equations, inputs, t, x, watch, watch.at_start)
     return True
@@ -106,19 +107,18 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
     """Take steps up to `stop`; returns a status."""
     clock, counts = record.clock, record.counts
     known = False
+    if is_outside(x, watch):
+        return OUTSIDE
     while stop - clock[TIME] > TIME_RESOLUTION:
         t = clock[TIME]
         if not known:
             begin(method, equations, inputs, t, x, watch.m, step)
             known = True
         length = next_length(stop - t, limits[1], clock)
-        counts[STEPS] += 1
-        attempt(method, equations, inputs, t, length, x, watch.m, step)
-        if not accept(error_norm(method, length, x, step, limits[0], atol), length, clock):
+        if not try_step(method, equations, inputs, t, length, x, limits, atol, step, watch, record):
             if clock[LENGTH] < SHORTEST:
                 return DIVERGED
             continue
-        fill_dense(method, length, x, step)
         fraction = 0.0
         if len(watch.at_end) > 0:
             fraction = first_violation(equations, inputs, t, length, step, watch)
@@ -126,26 +126,39 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
         if fraction > 0.0:
             length = locate_event(method, equations, inputs, t, length, fraction, x, step, watch)
             t_new = t + length
+            if not is_balanced(equations, inputs, t, length, limits, step, watch, record):
+                continue
             end_slope(method, equations, inputs, t_new, watch.m, step, watch.before)
+        if not is_finite(step.end, LARGEST_STATE):
+            return DIVERGED
         leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record)
         known = method == RUNGE_KUTTA
         if known:
             end_slope(method, equations, inputs, t_new, watch.m, step, step.slope)
         if fraction > 0.0:
-            counts[INSTANT] = counts[INSTANT] + 1 if length < INSTANT_STEP else 0
-            if counts[INSTANT] > MAX_INSTANT_EVENTS or not cross(
-                equations, inputs, t_new, x, watch, tangents, record
-            ):
-                return CHATTERING
-            fill_violations(equations, inputs, t_new, x, watch, watch.at_start)
+            status = pass_event(equations, inputs, t_new, length, x, watch, tangents, record)
+            if status != DONE:
+                return status
             known = False
         else:
             counts[INSTANT] = 0
             copy(watch.at_end, watch.at_start)
-        for a in range(len(x)):
-            if not abs(x[a]) < LARGEST_STATE:
-                return DIVERGED
     clock[TIME] = stop
+    return DONE
+
+
+@inlined
+def pass_event(equations, inputs, t, length, x, watch, tangents, record):
+    """Stop outside the domain, else cross to the next modes; returns a status."""
+    counts = record.counts
+    if is_outside(x, watch):
+        return OUTSIDE
+    counts[INSTANT] = counts[INSTANT] + 1 if length < INSTANT_STEP else 0
+    if counts[INSTANT] > MAX_INSTANT_EVENTS:
+        return CHATTERING
+    if not cross(equations, inputs, t, x, watch, tangents, record):
+        return CHATTERING
+    fill_violations(equations, inputs, t, x, watch, watch.at_start)
     return DONE
 
 
@@ -171,32 +184,9 @@ def advance_by_samples(
             return CHATTERING
 
 
-@inlined
-def next_length(remaining, largest, clock):
-    """Length of the next attempt: as planned, but so that equal steps reach the stop."""
-    planned = min(clock[LENGTH], largest)
-    return remaining if planned >= remaining else remaining / np.ceil(remaining / planned)
-
-
-@inlined
-def accept(error, length, clock):
-    """Plan the next step from the error of an attempt; False when it must be repeated."""
-    if not error < 1e10:
-        error = 1e10
-    if error > 1.0:
-        clock[LENGTH] = length * max(0.2, 0.9 * error**-0.2)
-        return False
-    grow = 5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2)
-    if grow > 1.0 or clock[LENGTH] <= length:
-        clock[LENGTH] = length * grow
-    return True
-
-
 @kernel
 def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record):
     """Go to the end of an accepted step: outputs inside it, work done over it, tangents."""
-    if len(record.ledger) > 0:
-        fill_powers(equations, inputs, t, length, watch.m, step, record)
     write_inside(equations, inputs, t, length, t_new, watch.m, step, record)
     if len(record.ledger) > 0:
         for c in range(1, 3):

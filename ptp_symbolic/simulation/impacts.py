@@ -8,10 +8,10 @@ Bodies that are joined by another rigid contact are struck as one.
 
 from ptp_symbolic.simulation.emitted import call
 from ptp_symbolic.simulation.kernels import clear, inlined, kernel
+from ptp_symbolic.simulation.pressed import HELD, PRESSED, RESTING_SPEED
 
-RESTING_SPEED = 1e-5  # rad/s
 DEAD_BAND = 1e-12  # rad/s
-SPRUNG, HELD = 0, 2
+SPRUNG = 0
 
 
 @kernel
@@ -110,6 +110,8 @@ def clear_resting(equations, m, s):
         joined = m[frictions + 2 * contact + 1] > 0.0
         if rule == HELD and not joined:
             clear(s[joint])
+        if equations.contacts[contact, PRESSED] == 1:
+            clear(s[gear])
         for f in range(frictions):
             if rule != SPRUNG and joined and m[f] == 0.0:
                 rate = equations.friction_rates[f]

@@ -19,7 +19,8 @@ GAMMA = 1.0 - math.sqrt(0.5)
 
 class StepWork(NamedTuple):
     """Room for one step: Jacobians fx [n, n], fu [n, nu], fp [n, np]; the factored matrix [n, n]
-    and its row exchanges; slopes k1, k2 and state end [n]; modes was; guards g; refused [f, 2].
+    and its row exchanges; slopes k1, k2 and state end [n]; modes was; guards g; refused [f, 2];
+    limited [limits]: index of every state with bounds [limits, 2].
     """
 
     fx: Any
@@ -33,6 +34,8 @@ class StepWork(NamedTuple):
     was: Any
     g: Any
     refused: Any
+    limited: Any
+    bounds: Any
 
 
 @kernel

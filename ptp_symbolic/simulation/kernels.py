@@ -15,10 +15,10 @@ kernel = njit(**KERNEL)
 inlined = njit(forceinline=True, **KERNEL)
 
 SMALLEST = 1e-60
-DONE, DIVERGED, CHATTERING, UNDECIDED = 0, 1, 2, 3
+DONE, DIVERGED, CHATTERING, UNDECIDED, OUTSIDE = 0, 1, 2, 3, 4
 LARGEST_STATE = 1e12
 TIME, LENGTH = 0, 1
-OUTPUT, EVENTS, STEPS, INSTANT, SOURCES = 0, 1, 2, 3, 4
+OUTPUT, EVENTS, STEPS, INSTANT, SOURCES, UNBALANCED = 0, 1, 2, 3, 4, 5
 
 VECTOR, MATRIX = types.float64[::1], types.float64[:, ::1]
 CUBE, INTEGERS = types.float64[:, :, ::1], types.int64[::1]
@@ -30,9 +30,9 @@ class Equations(NamedTuple):
     """The emitted functions of a model, its parameters p [np], and where its frictions act.
 
     friction_rates: state index of the rate of every friction; zero_at_rest [n]: per state the
-    friction that sets it to zero when it comes to rest, or -1; contacts [c, 3]: state index of the
-    rates at the gear output and at the joint, and 0 for a sprung contact, 1 for rigid bodies, 2 for
-    rigid bodies whose joint is held in the gap.
+    friction that sets it to zero when it comes to rest, or -1; contacts [c, 4]: state index of the
+    rates at the gear output and at the joint; 0 for a sprung contact, 1 for rigid bodies, 2 for
+    rigid bodies whose joint is held in the gap; 1 while such a joint is pressed, see `pressed`.
     """
 
     derivative: Any
@@ -90,10 +90,11 @@ class Step(NamedTuple):
 class Watch(NamedTuple):
     """Guards g, modes m and m_before, and how far every element is past the end of its mode.
 
-    at_start, at_middle, at_end [elements] belong to the step; gx, gp, by_x [n], by_p [np]: the
-    derivatives of guards and of a violation; strike [c (n + 2)], strike_x, strike_p: as `impacts`
-    writes them, and their derivatives; lost [1]: energy that strikes have taken; energies
-    [2, 3]: two ledgers to compare.
+    at_start, at_middle, at_end [elements + limits] belong to the step, limits of the domain last;
+    gx, gp, by_x [n], by_p [np]: the derivatives of guards and of a violation; strike [c (n + 2)],
+    strike_x, strike_p: as `impacts` writes them, and their derivatives; lost [1]: energy that
+    strikes have taken; energies [2, 3]: two ledgers to compare; limited [limits]: index of every
+    state with bounds [limits, 2]; m_kept, trial [n]: modes, and dx/dt in others tried instead.
     """
 
     g: Any
@@ -113,6 +114,10 @@ class Watch(NamedTuple):
     strike_p: Any
     lost: Any
     energies: Any
+    limited: Any
+    bounds: Any
+    m_kept: Any
+    trial: Any
 
 
 class Tangents(NamedTuple):
@@ -142,8 +147,8 @@ class Record(NamedTuple):
     """Output at `times` [k]: x [k, n], s [k, n, ns], ledger [k, 3] (or no rows), events [c, 3].
 
     totals [3]: work so far; powers [4, 3]: stored energy, power in and dissipated power over the
-    step; clock [2]: time, next step length; counts [5]: outputs, events, steps, instant events, and
-    the stamp of the sources that the runner was compiled from.
+    step; clock [2]: time, next step length; counts [6]: outputs, events, steps, instant events, the
+    stamp of the sources that the runner was compiled from, steps whose ledger would not close.
     """
 
     times: Any

@@ -1,9 +1,10 @@
-"""Find the end of a mode inside a step, and step to just past it."""
+"""Find the end of a mode or of the domain inside a step, and step to just past it."""
 
-from ptp_symbolic.simulation.emitted import call
+from ptp_symbolic.simulation.domain import past_bound
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.kernels import inlined, kernel
 from ptp_symbolic.simulation.modes import largest_violation, violation
+from ptp_symbolic.simulation.pressed import fill_guards
 from ptp_symbolic.simulation.steps import attempt, curve, fill_dense
 
 MISSES, NEAR_START = 4, 0.01
@@ -15,11 +16,15 @@ NEARLY = 0.25
 @inlined
 def fill_violations(equations, inputs, t, x, watch, out):
     """Write how far every element is past the end of its mode into out; returns the largest."""
-    call(equations.guards, t, x, inputs.u, equations.p, watch.m, watch.g)
+    fill_guards(equations, t, x, inputs.u, watch)
     worst = -1e300
-    for element in range(len(out)):
+    elements = len(out) - len(watch.limited)
+    for element in range(elements):
         out[element] = violation(element, x, watch.m, watch.g, equations.friction_rates)
         worst = max(worst, out[element])
+    for limit in range(len(watch.limited)):
+        out[elements + limit] = past_bound(limit, x, watch)
+        worst = max(worst, out[elements + limit])
     return worst
 
 
@@ -28,8 +33,11 @@ def violation_at(equations, inputs, t, x, watch):
     """The largest violation at time t in s and state x; inputs as they are before a jump at t."""
     if not inputs.held:
         evaluate_inputs(t, -1, *inputs.table, inputs.cursor, inputs.u)
-    call(equations.guards, t, x, inputs.u, equations.p, watch.m, watch.g)
-    return largest_violation(x, watch.m, watch.g, equations.friction_rates)
+    fill_guards(equations, t, x, inputs.u, watch)
+    worst = largest_violation(x, watch.m, watch.g, equations.friction_rates)
+    for limit in range(len(watch.limited)):
+        worst = max(worst, past_bound(limit, x, watch))
+    return worst
 
 
 @inlined
@@ -107,7 +115,7 @@ def locate_event(method, equations, inputs, t, h, fraction, x, step, watch):
         value = violation_at(equations, inputs, t + length, step.end, watch)
         rate = (value - before) / (length - last) if last >= 0.0 and length != last else 0.0
         before, last = value, length
-        if value > 0.0:
+        if not value <= 0.0:  # also when it is not a number
             high = length
             if high - low <= LANDING or (rate > 0.0 and value <= LANDING * rate):
                 break

@@ -7,9 +7,9 @@ holding torque, breakaway forward and backward; per contact separation, half gap
 the upper and lower face.
 """
 
-from ptp_symbolic.simulation.emitted import call
 from ptp_symbolic.simulation.impacts import rest_together, strike_faces
 from ptp_symbolic.simulation.kernels import inlined, kernel
+from ptp_symbolic.simulation.pressed import PRESSED, fill_guards, press
 
 REVERSAL_DEAD_BAND = 1e-13
 
@@ -89,9 +89,9 @@ def violation_gradient(element, m, g, gx, gp, friction_rates, by_x, by_p):
 
 
 @kernel
-def switch_contacts(m, g, friction_rates):
+def switch_contacts(equations, m, g):
     """Move every violated contact to its next mode."""
-    frictions = len(friction_rates)
+    frictions, contacts = len(equations.friction_rates), equations.contacts
     for contact in range((len(m) - frictions) // 2):
         at = 3 * frictions + 4 * contact
         where = frictions + 2 * contact
@@ -104,7 +104,11 @@ def switch_contacts(m, g, friction_rates):
                 m[where + 1] = 1.0 if pushing > 0.0 else 0.0
             continue
         pushing = side * (g[at + 2] if side > 0.0 else g[at + 3])
-        if m[where + 1] > 0.0:
+        if contacts[contact, PRESSED] == 1:
+            if pushing > 0.0 or g[at + 1] - side * g[at] > 0.0:
+                contacts[contact, PRESSED] = 0
+                m[where + 1] = 1.0 if pushing > 0.0 else 0.0
+        elif m[where + 1] > 0.0:
             if pushing < 0.0:
                 m[where + 1] = 0.0
         elif g[at + 1] - side * g[at] > 0.0:
@@ -121,7 +125,7 @@ def settle(equations, t, x, u, watch, tangents):
     strike, then the torque on every resting friction decides whether it sticks or slides. Ties end
     in sticking.
     """
-    guards, p, m, g = equations.guards, equations.p, watch.m, watch.g
+    m, g = watch.m, watch.g
     friction_rates, zero_at_rest = equations.friction_rates, equations.zero_at_rest
     frictions = len(friction_rates)
     for _ in range(20):
@@ -133,17 +137,18 @@ def settle(equations, t, x, u, watch, tangents):
                 for a in range(len(x)):
                     if zero_at_rest[a] == k:
                         x[a] = 0.0
-        call(guards, t, x, u, p, m, g)
-        switch_contacts(m, g, friction_rates)
+        fill_guards(equations, t, x, u, watch)
+        switch_contacts(equations, m, g)
         strike_faces(equations, t, x, u, watch, tangents)
-        call(guards, t, x, u, p, m, g)
+        press(equations, t, x, u, watch)
+        fill_guards(equations, t, x, u, watch)
         for k in range(frictions):
             if m[k] == 0.0:
                 if g[3 * k] > g[3 * k + 1]:
                     m[k] = 1.0
                 elif -g[3 * k] > g[3 * k + 2]:
                     m[k] = -1.0
-        call(guards, t, x, u, p, m, g)
+        fill_guards(equations, t, x, u, watch)
         if largest_violation(x, m, g, friction_rates) <= 0.0:
             return True
     return False

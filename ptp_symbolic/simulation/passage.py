@@ -103,18 +103,19 @@ def pass_through(
         np.full(nu, -1) if delay_column is None else delay_column, len(p), nu,
     )  # fmt: skip
     x, u, cursor = x.copy(), np.zeros((3, nu)), inputs.new_cursor()
-    watch = _watch(model, n, len(p))
+    watch = _watch(model, n, p)
     hybrid.evaluate_inputs(stops[0], 1, *inputs.arrays, cursor, u[0])
     module.initial_modes(stops[0], x, u[0], p, watch.m)
     refuse_start(model, x, u[0], p, watch)
     record = Record(
         times, np.zeros((len(times), n)), np.zeros((len(times), *s.shape)),
         np.zeros((len(times) if ledger else 0, 3)), np.zeros((event_room, 3)), np.zeros(3),
-        np.zeros((4, 3)), np.zeros(2), np.zeros(5, dtype=np.int64),
+        np.zeros((4, 3)), np.zeros(2), np.zeros(6, dtype=np.int64),
     )  # fmt: skip
     status = hybrid.runner()(
         METHODS[method], addresses(module), p, model.friction_rates, model.zero_at_rest,
-        model.contacts, inputs.arrays, cursor, held or not any(module.INPUT_ACTS), u, x, stops,
+        contact_table(model), inputs.arrays, cursor, held or not any(module.INPUT_ACTS), u, x,
+        stops,
         np.array([accuracy.relative, accuracy.largest_step]), accuracy.absolute,
         tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)), tuple(watch),
         tuple(tangents), tuple(record), tuple(new_sampling(model, p, x, stops, s.shape[1])),
@@ -134,15 +135,28 @@ def _step(n: int, nu: int, parameters: int, solved: int) -> Step:
     )  # fmt: skip
 
 
-def _watch(model: Model, n: int, parameters: int) -> Watch:
+def contact_table(model: Model) -> IntArray:
+    """Rates, rule and the flag PRESSED, which is not set yet, of every contact [c, 4]."""
+    return np.pad(model.contacts, ((0, 0), (0, 1)))
+
+
+def limited_states(model: Model) -> IntArray:
+    """Index [limits] of the state of every limit of the domain."""
+    return np.array([model.state_names.index(name) for name, _ in model.limits], np.int64)
+
+
+def _watch(model: Model, n: int, p: FloatArray) -> Watch:
+    parameters = len(p)
     frictions, modes = len(model.friction_rates), len(model.mode_names)
     elements = frictions + (modes - frictions) // 2
+    watched = elements + len(model.limits)
     guards, z = 3 * frictions + 4 * (elements - frictions), np.zeros
     strikes = (elements - frictions) * (n + 2)
     return Watch(
-        z(guards), z(modes), z(modes), z(elements), z(elements), z(elements), z((guards, n)),
+        z(guards), z(modes), z(modes), z(watched), z(watched), z(watched), z((guards, n)),
         z((guards, parameters)), z(n), z(parameters), z(n), z(n),
         z(strikes), z((strikes, n)), z((strikes, parameters)), z(1), z((2, 3)),
+        limited_states(model), model.domain(p), z(modes), z(n),
     )  # fmt: skip
 
 

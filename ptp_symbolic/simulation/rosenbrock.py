@@ -1,6 +1,5 @@
 """The implicit method for stiff machines: Rodas5P with the emitted Jacobian, and its tangents."""
 
-from ptp_symbolic.simulation.emitted import call
 from ptp_symbolic.simulation.input_values import evaluate_input_slopes, evaluate_inputs
 from ptp_symbolic.simulation.kernels import copy, copy_matrix, inlined, kernel
 from ptp_symbolic.simulation.linear import (
@@ -10,6 +9,7 @@ from ptp_symbolic.simulation.linear import (
     add_stages,
     invert,
 )
+from ptp_symbolic.simulation.pressed import PRESSED, derivative, jacobian
 from ptp_symbolic.simulation.rodas5p import COUPLING, GAMMA, STAGES, A, C, D, H
 from ptp_symbolic.simulation.runge_kutta import fill_drive
 
@@ -19,16 +19,16 @@ TIME_DIFFERENCE = 1e-5  # s
 @kernel
 def begin(equations, inputs, t, x, m, step):
     """Take slope, Jacobian and derivative by time at the start of a step."""
-    n, p = len(x), equations.p
-    call(equations.derivative, t, x, inputs.u, p, m, step.slope)
-    call(equations.jacobian, t, x, inputs.u, p, m, step.fx, step.fu, step.fp)
-    call(equations.derivative, t + TIME_DIFFERENCE, x, inputs.u, p, m, step.right)
+    n = len(x)
+    derivative(equations, t, x, inputs.u, m, step.slope)
+    jacobian(equations, t, x, inputs.u, m, step.fx, step.fu, step.fp)
+    derivative(equations, t + TIME_DIFFERENCE, x, inputs.u, m, step.right)
     moves = False
     for a in range(n):
         step.by_time[a] = 0.0
         moves = moves or step.right[a] != step.slope[a]
     if moves:
-        call(equations.derivative, t - TIME_DIFFERENCE, x, inputs.u, p, m, step.point)
+        derivative(equations, t - TIME_DIFFERENCE, x, inputs.u, m, step.point)
         for a in range(n):
             step.by_time[a] = (step.right[a] - step.point[a]) / (2.0 * TIME_DIFFERENCE)
     if not inputs.held:
@@ -56,7 +56,7 @@ def attempt(equations, inputs, t, h, x, m, step):
             if not inputs.held and i < 6:
                 side = -1 if C[i] == 1.0 else 1
                 evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
-            call(equations.derivative, t + C[i] * h, point, inputs.u, equations.p, m, step.right)
+            derivative(equations, t + C[i] * h, point, inputs.u, m, step.right)
         for a in range(n):
             right[a] += h * D[i] * step.by_time[a]
             step.k[i, a] = 0.0
@@ -67,6 +67,9 @@ def attempt(equations, inputs, t, h, x, m, step):
     for f in range(len(equations.friction_rates)):
         if m[f] == 0.0:
             step.end[equations.friction_rates[f]] = x[equations.friction_rates[f]]
+    for contact in range(len(equations.contacts)):
+        if equations.contacts[contact, PRESSED] == 1:
+            step.end[equations.contacts[contact, 0]] = x[equations.contacts[contact, 0]]
 
 
 @inlined
@@ -148,9 +151,9 @@ def fit_coefficients(equations, inputs, t, h, m, step, tangents):
             copy_matrix(step.fp, tangents.fp)
             copy_matrix(step.fx, tangents.fx[0])
         else:
-            call(
-                equations.jacobian, time, step.point, inputs.u, equations.p, m, tangents.fx[node],
-                tangents.fu, tangents.fp,
+            jacobian(
+                equations, time, step.point, inputs.u, m, tangents.fx[node], tangents.fu,
+                tangents.fp,
             )  # fmt: skip
         fill_drive(inputs, tangents, tangents.by[node])
     for a in range(n):

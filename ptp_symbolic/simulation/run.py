@@ -13,12 +13,13 @@ from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.delays import delayed, delays_of
 from ptp_symbolic.simulation.fixed_step import FixedPassage, pass_in_steps
 from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
-from ptp_symbolic.simulation.kernels import CHATTERING, DIVERGED, DONE, UNDECIDED
+from ptp_symbolic.simulation.kernels import CHATTERING, DIVERGED, DONE, OUTSIDE, UNDECIDED
 from ptp_symbolic.simulation.passage import (
     METHODS,
     Accuracy,
     Passage,
     default_method,
+    limited_states,
     pass_through,
     tolerance_weights,
 )
@@ -30,12 +31,13 @@ OUTPUT_STEP = 1e-3
 MOST_SAMPLES = 5_000_000
 FIXED_STEP = "fixed_step"
 EVENT_CAPACITY = 100_000
+AT_BOUND = 1e-6  # rad; where the equations end, steps can become too short to go on
 SLIDING = {-1.0: "slides backward", 0.0: "sticks", 1.0: "slides forward"}
 TOUCHING = {
-    -3.0: "bounces off the lower face", -2.0: "lets go of the lower face",
-    -1.0: "touches the lower face", 0.0: "is in the gap",
+    -4.0: "leans on the lower face", -3.0: "bounces off the lower face",
+    -2.0: "lets go of the lower face", -1.0: "touches the lower face", 0.0: "is in the gap",
     1.0: "touches the upper face", 2.0: "lets go of the upper face",
-    3.0: "bounces off the upper face",
+    3.0: "bounces off the upper face", 4.0: "leans on the upper face",
 }  # fmt: skip
 
 
@@ -113,8 +115,7 @@ def simulate(
             model, chosen, p, x, table, table.held, np.concatenate([t[:1], inner, t[-1:]]), t,
             accuracy, ledger=True, event_room=EVENT_CAPACITY,
         )  # fmt: skip
-    refuse_outside(model, p, t[t <= found.reached], found.x)
-    refuse_failure(model, found.status, found.reached, found.state)
+    refuse_failure(model, p, found.status, found.reached, found.state)
     return Trajectory(
         t, found.x, model.state_names, _named(model, found.events), found.ledger[:, 0],
         found.ledger[:, 1], found.ledger[:, 2], found.steps,
@@ -184,35 +185,39 @@ def start_of(model: Model, initial: Mapping[str, float]) -> FloatArray:
     return x
 
 
-def refuse_outside(model: Model, p: FloatArray, t: FloatArray, x: FloatArray) -> None:
-    """Raise SimulationError at the first of times t [k] at which x [k, n] is outside the domain."""
-    found = []
-    for (name, meaning), (lower, upper) in zip(model.limits, model.domain(p), strict=True):
-        values = x[: len(t), model.state_names.index(name)]
-        outside = np.flatnonzero((values < lower) | (values > upper))
-        if len(outside):
-            at, unit = outside[0], model.units[name]
-            text = (
-                f"Stopped at {t[at]:.6g} s with {name} = {values[at]:.6g} {unit}: past the"
-                f" {meaning}, which allows {lower:.6g} to {upper:.6g} {unit}; shorten the input,"
-                " start elsewhere or change the lengths."
-            )
-            found.append((at, text))
-    if found:
-        raise SimulationError(min(found, key=lambda each: each[0])[1])
+def refuse_failure(model: Model, p: FloatArray, status: int, reached: float, x: FloatArray) -> None:
+    """Raise SimulationError unless `status` says that the simulation reached its end.
 
-
-def refuse_failure(model: Model, status: int, reached: float, x: FloatArray) -> None:
-    """Raise SimulationError unless `status` says that the simulation reached its end."""
+    `reached` in s and x [n] are time and state where it stopped, at parameters p [np].
+    """
     if status == DONE:
         return
     state = ", ".join(f"{n} {v:.3g}" for n, v in zip(model.state_names, x, strict=True))
+    limit, past = _nearest_limit(model, p, x)
+    if status == OUTSIDE or (status == DIVERGED and past > -AT_BOUND):
+        name, meaning = model.limits[limit]
+        (lower, upper), unit = model.domain(p)[limit], model.units[name]
+        raise SimulationError(
+            f"Stopped at {reached:.6g} s with {name} = {x[model.state_names.index(name)]:.6g}"
+            f" {unit}: past the {meaning}, which allows {lower:.6g} to {upper:.6g} {unit}; shorten"
+            f" the input, start elsewhere or change the lengths. The state there: {state}."
+        )
     why = {
         DIVERGED: "the state diverges; check inputs and parameters",
         CHATTERING: "modes switch without end; loosen the tolerance or add damping",
         UNDECIDED: "no set of modes fits the end of the step; take a smaller step",
     }[status]
     raise SimulationError(f"Stopped at {reached:.6g} s with {state}: {why}.")
+
+
+def _nearest_limit(model: Model, p: FloatArray, x: FloatArray) -> tuple[int, float]:
+    """The limit that x [n] is furthest past, or nearest to, and how far (< 0: inside)."""
+    bounds, values = model.domain(p), x[limited_states(model)]
+    if not len(values):
+        return -1, -np.inf
+    past = np.maximum(bounds[:, 0] - values, values - bounds[:, 1])
+    limit = int(np.argmax(past))
+    return limit, float(past[limit])
 
 
 def _signal(model: Model, inputs: Mapping[str, InputSignal], name: str) -> InputSignal:

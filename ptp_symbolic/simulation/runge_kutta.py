@@ -1,9 +1,9 @@
 """The explicit method: Tsitouras's Runge-Kutta pair, its interpolant and its exact tangents."""
 
-from ptp_symbolic.simulation.emitted import call
 from ptp_symbolic.simulation.input_values import evaluate_input_slopes, evaluate_inputs
 from ptp_symbolic.simulation.kernels import copy, inlined, kernel
 from ptp_symbolic.simulation.linear import add_sparse_product, add_stages
+from ptp_symbolic.simulation.pressed import derivative, jacobian
 from ptp_symbolic.simulation.tableau import ERROR, INTERPOLANT, STAGES, WEIGHTS, A, C
 
 
@@ -22,7 +22,7 @@ def attempt(equations, inputs, t, h, x, m, step):
         if not inputs.held:
             side = -1 if C[i] == 1.0 else 1
             evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
-        call(equations.derivative, t + C[i] * h, step.stage[i], inputs.u, equations.p, m, step.k[i])
+        derivative(equations, t + C[i] * h, step.stage[i], inputs.u, m, step.k[i])
     copy(step.stage[STAGES - 1], step.end)
 
 
@@ -57,16 +57,8 @@ def push_tangents(equations, inputs, t, h, m, step, tangents):
             side = -1 if C[i] == 1.0 else 1
             evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
             evaluate_input_slopes(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.ahead)
-        call(
-            equations.jacobian,
-            t + C[i] * h,
-            step.stage[i],
-            inputs.u,
-            equations.p,
-            m,
-            step.fx,
-            tangents.fu,
-            tangents.fp,
+        jacobian(
+            equations, t + C[i] * h, step.stage[i], inputs.u, m, step.fx, tangents.fu, tangents.fp
         )
         fill_drive(inputs, tangents, tangents.k[i])
         add_sparse_product(step.fx, tangents.point, tangents.k[i])

@@ -16,6 +16,7 @@ from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.emitted import call, sampler_addresses
 from ptp_symbolic.simulation.input_values import evaluate_input_slopes, evaluate_inputs
 from ptp_symbolic.simulation.kernels import INTEGERS, MATRIX, VECTOR, copy, inlined, kernel
+from ptp_symbolic.simulation.pressed import derivative
 
 FloatArray = NDArray[np.float64]
 
@@ -136,11 +137,11 @@ def sample_with_tangents(equations, inputs, t, x, m, tangents, sampling):
         moves = _fill_shift(i, tangents, sampling)
         if not inputs.held:
             evaluate_inputs(t, -1, *inputs.table, inputs.cursor, inputs.u)
-        call(equations.derivative, t, x, inputs.u, equations.p, m, sampling.before)
+        derivative(equations, t, x, inputs.u, m, sampling.before)
         _fill_rows(i, inputs, t, tangents, sampling)
         _set_states(i, x, sampling)
         if moves:
-            call(equations.derivative, t, x, inputs.ahead, equations.p, m, sampling.after)
+            derivative(equations, t, x, inputs.ahead, m, sampling.after)
         _jump(i, moves, tangents, sampling)
 
 

@@ -1,9 +1,9 @@
 """One step by either method, behind one face: begin, attempt, error, curve, tangents."""
 
 from ptp_symbolic.simulation import rosenbrock, runge_kutta
-from ptp_symbolic.simulation.emitted import call
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.kernels import copy, inlined, kernel
+from ptp_symbolic.simulation.pressed import derivative
 
 RUNGE_KUTTA, ROSENBROCK = 0, 1
 
@@ -23,7 +23,7 @@ def begin(method, equations, inputs, t, x, m, step):
     if method == ROSENBROCK:
         _begin_implicit(equations, inputs, t, x, m, step)
     else:
-        call(equations.derivative, t, x, inputs.u, equations.p, m, step.slope)
+        derivative(equations, t, x, inputs.u, m, step.slope)
 
 
 @kernel
@@ -81,6 +81,6 @@ def push_tangents(method, equations, inputs, t, h, m, step, tangents):
 def end_slope(method, equations, inputs, t, m, step, out):
     """Write dx/dt at the end of an accepted attempt in the modes before any switch."""
     if method == ROSENBROCK:
-        call(equations.derivative, t, step.end, inputs.u, equations.p, m, out)
+        derivative(equations, t, step.end, inputs.u, m, out)
     else:
         copy(step.k[LAST_EXPLICIT], out)

@@ -261,7 +261,7 @@ def test_tangents_through_strikes(kind: str) -> None:
         )  # fmt: skip
         difference = (above - below) / (2.0 * h)
         size = np.abs(difference).max()
-        assert found.states[-1, :4, index] == pytest.approx(difference, abs=2e-5 * size)
+        assert found.states[-1, :4, index] == pytest.approx(difference, abs=2e-6 * size)
 
 
 def test_the_kind_is_read_and_written(tmp_path: Path) -> None:

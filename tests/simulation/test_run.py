@@ -45,19 +45,6 @@ def test_smooth_model_against_scipy(payload) -> None:
     assert np.abs(found.x - truth.y.T).max() < 1e-8
 
 
-def test_fixed_steps_converge_with_order_five(payload) -> None:
-    """The fifth-order coefficients are so small that the sixth order still shows (5.16)."""
-    times, start = [0.0, 1.0], {"theta_tilt": 0.5, "omega_pan": 1.0}
-    exact = ptp_symbolic.simulate(payload, times, initial=start, rtol=1e-13, atol=1e-14).x[-1]
-    errors = []
-    for size in (2.5e-3, 1.25e-3):
-        coarse = ptp_symbolic.simulate(
-            payload, times, initial=start, rtol=1e3, atol=1e3, largest_step=size
-        )
-        errors.append(np.abs(coarse.x[-1] - exact).max())
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(5.0, abs=0.2)
-
-
 def test_energy_is_kept_without_friction(payload) -> None:
     found = ptp_symbolic.simulate(
         payload, 60.0, parameters={"b_pan": 0.0, "b_tilt": 0.0},
@@ -103,7 +90,7 @@ def test_sensitivities_against_central_differences(drive) -> None:
             for s in (1.0, -1.0)
         ]
         difference = (ends[0] - ends[1]) / (2.0 * h)
-        assert found.states[-1, 0, index] == pytest.approx(difference, rel=2e-4)
+        assert found.states[-1, 0, index] == pytest.approx(difference, rel=1e-5)
 
 
 def test_bad_arguments_are_refused(drive) -> None:
