@@ -7,6 +7,7 @@ from scipy.integrate import solve_ivp
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.inputs import InputTable
+from ptp_symbolic.simulation.kernels import Equations
 from ptp_symbolic.simulation.modes import switch_contacts, violation
 
 FloatArray = NDArray[np.float64]
@@ -20,6 +21,9 @@ class EventMachine:
         """Start in the modes of the state at rest."""
         self.model, self.table, self.p = model, table, model.parameter_vector()
         self.m, self.u = np.zeros(len(model.mode_names)), np.zeros(len(model.input_names))
+        self.equations = Equations(
+            0, 0, 0, 0, 0, self.p, model.friction_rates, model.zero_at_rest, 0, 0, model.contacts
+        )
         frictions = len(model.friction_rates)
         elements = frictions + (len(self.m) - frictions) // 2
         self.g = np.zeros(3 * frictions + 4 * (elements - frictions))
@@ -51,7 +55,7 @@ class EventMachine:
         for _ in range(20):
             before = m.copy()
             self.model.module.guards(t, x, self.u, self.p, m, g)
-            switch_contacts(m, g, rates)
+            switch_contacts(self.equations, m, g)
             self.model.module.guards(t, x, self.u, self.p, m, g)
             for k in range(len(rates)):
                 held, forward, backward = g[3 * k : 3 * k + 3]

@@ -39,8 +39,8 @@ from ptp_symbolic.simulation.kernels import (
     Watch,
     copy,
     flush,
-    inlined,
     kernel,
+    merged,
     source_stamp,
 )
 from ptp_symbolic.simulation.location import (
@@ -85,7 +85,7 @@ _TANGENTS = types.Tuple((_V, _M, _I, _I, _M, _V, _V, _V, _C, _M, _M, _M, _M))
 _RECORD = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
 
 
-@inlined
+@merged
 def enter(equations, inputs, t, x, watch, tangents, record):
     """Settle modes that the inputs from t on have ended; False when that does not end."""
     elements = len(watch.at_end)
@@ -147,7 +147,7 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
     return DONE
 
 
-@inlined
+@merged
 def pass_event(equations, inputs, t, length, x, watch, tangents, record):
     """Stop outside the domain, else cross to the next modes; returns a status."""
     counts = record.counts
@@ -162,7 +162,7 @@ def pass_event(equations, inputs, t, length, x, watch, tangents, record):
     return DONE
 
 
-@inlined
+@merged
 def advance_by_samples(
     method, equations, inputs, stop, x, limits, atol, step, watch, tangents, record, sampling
 ):
@@ -184,7 +184,7 @@ def advance_by_samples(
             return CHATTERING
 
 
-@kernel
+@merged
 def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record):
     """Go to the end of an accepted step: outputs inside it, work done over it, tangents."""
     write_inside(equations, inputs, t, length, t_new, watch.m, step, record)
