@@ -2,8 +2,7 @@
 
 Every candidate starts from its grid, with the declared parameters at their table start and at the
 declared optimum. The parameters of the candidate move alone first, so that the declared ones are
-not bent to stand in for an effect that is still far from its place; from the table these follow
-soon, because far from the optimum no candidate by itself tells much. Starts are tried on the runs
+not bent to stand in for an effect that is still far from its place. Starts are tried on the runs
 that tell most, and only the best go on to all runs.
 """
 
@@ -23,9 +22,9 @@ from ptp_symbolic.identify.fit import Effort, Fit, all_values_at_start, fit_para
 FloatArray = NDArray[np.float64]
 
 PROBE = Effort(1, 1e-2, COARSE, rejections=2)
-SEEK = Effort(2, 1e-2, COARSE, 0.3, rejections=2)
-GO_ON = Effort(3, 1e-2, COARSE, 0.3, rejections=2)
-CONFIRM = Effort(2, 1e-2, COARSE, 0.3, rejections=2)
+SEEK = Effort(2, 1e-2, COARSE, rejections=2)
+GO_ON = Effort(3, 1e-2, COARSE, rejections=2)
+CONFIRM = Effort(2, 1e-2, COARSE, rejections=2)
 PROBED_SHARE, TELLING_SHARE = 0.1, 0.4
 STARTS_KEPT, START_FACTOR = 2, 2.0
 SOUGHT, CONFIRMED, FAR_BEHIND = 10, 5, 50.0
@@ -87,8 +86,7 @@ def first_round(
     task.progress(f"trying {len(candidates)} candidates from {len(searches)} starts")
     probed = _advance(task, searches, _telling_runs(bases[0].train, PROBED_SHARE), PROBE)
     telling = _telling_runs(bases[0].train, TELLING_SHARE)
-    kept = [_freed(s) if s.origin == TABLE else s for s in _leaders(probed, STARTS_KEPT)]
-    sought = _leaders(_advance(task, kept, telling, SEEK), 1)
+    sought = _leaders(_advance(task, _leaders(probed, STARTS_KEPT), telling, SEEK), 1)
     groups, left = [promising], list[_Search]()
     for origin in (OPTIMUM, TABLE):
         near, behind = _split([s for s in sought if s.origin == origin], SOUGHT)
@@ -98,16 +96,6 @@ def first_round(
         confirmed = _advance(task, best, tuple(range(len(task.train))), CONFIRM)
         groups.append([t for search in confirmed for t in search.trial()])
     return groups, [*(t for search in left for t in search.trial()), *rest]
-
-
-def _freed(search: _Search) -> _Search:
-    """The search with the parameters of its base free too, the declared ones from the table."""
-    own = {f.name for f in search.free}
-    others = [f for f in restarted(search.base.train) if f.name not in own]
-    begun = [f if f.table is None else replace(f, start=f.table) for f in others]
-    moving = {name for f in begun for name in (f.name, *f.tied)}
-    fixed = {name: value for name, value in search.fixed.items() if name not in moving}
-    return replace(search, free=(*begun, *search.free), fixed=fixed)
 
 
 def _telling_runs(fit: Fit, share: float) -> tuple[int, ...]:
