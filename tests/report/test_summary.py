@@ -62,7 +62,7 @@ def test_the_start_of_an_added_parameter_is_where_its_search_began(
 ) -> None:
     trial = _trial(_candidate("cable_spring", *starts), 0.3)
     estimate = SimpleNamespace(name="J_y_tilt", value=0.3, lower=0.2, upper=0.4, at_bound=False,
-                               identified=True)  # fmt: skip
+                               identified=True, only_with=())  # fmt: skip
     monkeypatch.setattr(summary, "estimates", lambda _: (estimate,))
     row = summary.fit_table(trial)["J_y_tilt"]
     assert row["start"] == shown
