@@ -1,5 +1,6 @@
 """The head of an emitted module: what it is, names, units, bounds, effects and equations."""
 
+import json
 import textwrap
 from collections.abc import Iterable
 
@@ -21,8 +22,8 @@ def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]
         "\n".join(
             [
                 f'MODEL_HASH = "{digest}"',
-                f'NAME = "{equations.name}"',
-                f'TITLE = "{equations.title}"',
+                f"NAME = {repr_text(equations.name)}",
+                f"TITLE = {repr_text(equations.title)}",
                 _tuple("AXES", map(repr_text, equations.axes)),
                 _tuple("STATE_NAMES", (f'"{s}"' for s in equations.state_symbols)),
                 _tuple("STATE_UNITS", map(repr_text, _state_units(equations))),
@@ -74,12 +75,13 @@ def _long_text(value: str) -> str:
 
 
 def repr_text(value: str) -> str:
-    """Return `value` as a double-quoted literal."""
-    return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    """Return `value` as a double-quoted literal, whatever it holds: titles come from files."""
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _docstring(equations: Equations, operations: tuple[int, int]) -> str:
-    lines = [f'"""{equations.title}: equations of motion, emitted; do not edit.', ""]
+    title = repr_text(equations.title)[1:-1]
+    lines = [f'"""{title}: equations of motion, emitted; do not edit.', ""]
     lines.append("M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:")
     lines.append("")
     n = len(equations.coordinates)
