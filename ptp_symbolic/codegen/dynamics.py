@@ -99,7 +99,7 @@ def solve_accelerations(equations: Equations) -> Solve:
         force[i] = sp.Symbol(f"force_{places[i]}", real=True)
     locks = _locks(equations, free)
     moved = moved_inertias(mass, locks)
-    inverses = _inverses(mass, moved, free, places, definitions)
+    inverses = _named_inverses(inverse_values(mass, moved, free), places, definitions)
     solve = Solve(
         tuple(definitions), (ZERO,) * n, mass, force, tuple(free), tuple(inverses), chain, moved,
         locks,
@@ -132,24 +132,27 @@ def moved_inertias(mass: sp.Matrix, locks: Sequence[Lock]) -> tuple[sp.Expr, ...
     return tuple(moved)
 
 
-def _inverses(
-    mass: sp.Matrix,
-    moved: Sequence[sp.Expr],
-    free: list[sp.Expr],
-    places: list[str],
-    definitions: list[Line],
+def inverse_values(
+    mass: sp.Matrix, moved: Sequence[sp.Expr], free: Sequence[sp.Expr]
+) -> list[tuple[int, sp.Expr]]:
+    """Per row its partner (itself where it has none) and 1 / inertia or 1 / determinant."""
+    values = []
+    for i in range(mass.rows):
+        partner = next((j for j in range(mass.rows) if j != i and mass[i, j] != 0), i)
+        product = moved[i]
+        if partner != i:
+            product = moved[i] * moved[partner] - (mass[i, partner] * free[i] * free[partner]) ** 2
+        values.append((partner, 1 / product))
+    return values
+
+
+def _named_inverses(
+    values: Sequence[tuple[int, sp.Expr]], places: Sequence[str], definitions: list[Line]
 ) -> list[sp.Expr]:
+    """Symbols for `values`, which join `definitions`; partners share theirs."""
     inverses = []
-    for i, place in enumerate(places):
-        partners = [j for j in range(mass.rows) if j != i and mass[i, j] != 0]
-        if not partners:
-            name = f"inverse_mass_{place}"
-            value = 1 / moved[i]
-        else:
-            j = partners[0]
-            name = "inverse_determinant"
-            coupling = mass[i, j] * free[i] * free[j]
-            value = 1 / (moved[i] * moved[j] - coupling**2)
+    for i, (partner, value) in enumerate(values):
+        name = f"inverse_mass_{places[i]}" if partner == i else "inverse_determinant"
         if name not in dict(definitions):
             definitions.append((name, value))
         inverses.append(sp.Symbol(name, real=True))

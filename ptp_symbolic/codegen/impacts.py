@@ -9,7 +9,7 @@ from dataclasses import replace
 import sympy as sp
 
 from ptp_symbolic import kinematics
-from ptp_symbolic.codegen.dynamics import Lock, Solve, moved_inertias
+from ptp_symbolic.codegen.dynamics import Lock, Solve, inverse_values, moved_inertias
 from ptp_symbolic.derivation.equations import Contact, Equations
 
 ZERO, ONE = sp.Integer(0), sp.Integer(1)
@@ -55,13 +55,5 @@ def _without_friction(equations: Equations, solve: Solve, own: Contact) -> Solve
         locks += [lock for lock in solve.locks if lock.joint == joint]
         free[joint] = contact.active if contact.holds else ONE
     moved = moved_inertias(mass, locks)
-    inverses = []
-    for i in range(mass.rows):
-        partners = [j for j in range(mass.rows) if j != i and mass[i, j] != 0]
-        product = moved[i]
-        for j in partners:
-            product = moved[i] * moved[j] - (mass[i, j] * free[i] * free[j]) ** 2
-        inverses.append(1 / product)
-    return replace(
-        solve, free=tuple(free), locks=tuple(locks), moved=moved, inverses=tuple(inverses)
-    )
+    inverses = tuple(value for _, value in inverse_values(mass, moved, free))
+    return replace(solve, free=tuple(free), locks=tuple(locks), moved=moved, inverses=inverses)

@@ -5,9 +5,6 @@ import re
 import sympy as sp
 from sympy.printing.mathml import mathml
 
-from ptp_symbolic.effects.encoder_quantization import NearestCount
-
-HALF = sp.Rational(1, 2)
 GREEK = {
     "theta", "omega", "tau", "alpha", "beta", "gamma", "delta", "epsilon", "eta", "kappa", "lambda",
     "mu", "phi", "psi", "rho", "sigma", "zeta",
@@ -86,7 +83,7 @@ def _with_decimals(expression: sp.Expr) -> sp.Expr:
 
     Simple fractions stay.
     """
-    expression = expression.replace(NearestCount, lambda x, q: q * sp.floor(x / q + HALF))
+    expression = expression.rewrite(sp.floor)
     return expression.xreplace(
         {
             number: sp.sign(number) * sp.Symbol(repr(float(abs(number))))

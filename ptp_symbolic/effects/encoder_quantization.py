@@ -28,9 +28,8 @@ class NearestCount(sp.Function):
         count = printer.parenthesize(self.args[1], PRECEDENCE["Func"], strict=True)
         return f"({count} * math.floor(({angle}) / {count} + 0.5))"
 
-    def _latex(self, printer: Printer, **_: object) -> str:
-        angle, count = (printer._print(a) for a in self.args)
-        return rf"{count} \left\lfloor \frac{{{angle}}}{{{count}}} + \frac{{1}}{{2}} \right\rfloor"
+    def _eval_rewrite_as_floor(self, angle: sp.Expr, count: sp.Expr, **_: object) -> sp.Expr:
+        return count * sp.floor(angle / count + sp.Rational(1, 2))
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:
