@@ -4,7 +4,7 @@ import json
 import os
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -78,6 +78,7 @@ def fit_platform(
     error = error_table(begun, trial, None)["train"]
     left, floor = (error[when]["total"]["rmse_counts"] for when in ("after", "noise_floor"))
     cut_up = len(task.train) > len(logs)
+    fitted = loop.extended(platform, (), trial.train.values, ())
     summary = {
         "schema_version": SCHEMA_VERSION,
         "platform": {"name": platform.name, "title": platform.title},
@@ -86,7 +87,7 @@ def fit_platform(
         "far_from_floor": trial.train.failed is not None or left > FAR_FROM_FLOOR * floor,
         "windows": {"count": len(task.train), "seconds": _mean_length(task)} if cut_up else None,
     }
-    files = {"fit.json": _json(summary), "platform.toml": platform_text(_fitted(platform, trial))}
+    files = {"fit.json": _json(summary), "platform.toml": platform_text(fitted)}
     return Output(summary, files)
 
 
@@ -100,14 +101,6 @@ def _as_declared(task: Task) -> Trial:
 
 def _mean_length(task: Task) -> float:
     return sum(float(run.time[-1] - run.time[0]) for run in task.train) / len(task.train)
-
-
-def _fitted(platform: Platform, trial: Trial) -> Platform:
-    """`platform` with every fitted value as the new start, within its bounds to the last bit."""
-    values = {
-        f.name: min(max(trial.train.values[f.name], f.lower), f.upper) for f in trial.train.free
-    }
-    return loop.extended(platform, (), values, ())
 
 
 def diagnose_platform(
@@ -141,7 +134,7 @@ def _task(
     executor: ThreadPoolExecutor,
     progress: Progress,
 ) -> Task:
-    progress("preparing the simulation (compiles for half a minute once on a new machine)")
+    progress("preparing the simulation (compiles for about a minute once on a new machine)")
     loop.refuse_unknown_signals(platform, model)
     free = loop.free_parameters(platform, model)
     fixed = {**model.defaults, **off, **loop.known_values(platform, model)}
@@ -235,7 +228,6 @@ def _extended(platform: Platform, after: Trial) -> Platform:
     """`platform` with the accepted effects, and every fitted value as the new start."""
     model = after.train.model
     bounds = {p.name: p for p in model.parameters}
-    declared = {d.name for d in platform.parameters}
     added = [
         EffectDeclaration(c.id, c.axis, None) for c in after.candidates if not c.is_declared_value
     ]
@@ -247,5 +239,4 @@ def _extended(platform: Platform, after: Trial) -> Platform:
         for c in after.candidates
         for name in c.parameters
     ]  # fmt: skip
-    values = {name: v for name, v in after.train.values.items() if name in declared}
-    return replace(loop.extended(platform, added, values, fitted), name=platform.name)
+    return loop.extended(platform, added, after.train.values, fitted)

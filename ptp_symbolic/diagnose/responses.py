@@ -12,12 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.trial import COARSE, Task, Trial, fixed_values, restarted
+from ptp_symbolic.diagnose.trial import Task, Trial, fixed_values, restarted, simulated
 from ptp_symbolic.identify.coordinates import FreeParameter, limits, to_search, to_values
-from ptp_symbolic.identify.evaluate import Evaluation, evaluate
-from ptp_symbolic.identify.fit import Fit, all_values_at_start
+from ptp_symbolic.identify.fit import Fit, all_values, all_values_at_start
 from ptp_symbolic.identify.intervals import project_out
-from ptp_symbolic.identify.run import Run
 
 FloatArray = NDArray[np.float64]
 
@@ -61,8 +59,7 @@ def _responses(task: Task, base: Trial, candidates: Sequence[Candidate]) -> list
     phi, residual = to_search(free, fit.values), [e.residual for e in fit.evaluations]
     steps = np.where(phi + AMOUNT <= limits(free)[1], AMOUNT, -AMOUNT)
     columns = [
-        _change(task, base, residual, _with_tied(free, to_values(free, phi + step)))
-        for step in np.diag(steps)
+        _change(task, base, residual, all_values(free, phi + step)) for step in np.diag(steps)
     ]
     here = _projected(base, residual)
     seen = np.array([c is not None for c in columns], dtype=np.bool_)
@@ -85,15 +82,11 @@ def _responses(task: Task, base: Trial, candidates: Sequence[Candidate]) -> list
     return found
 
 
-def _with_tied(free: Sequence[FreeParameter], values: Mapping[str, float]) -> dict[str, float]:
-    return {name: values[f.name] for f in free for name in (f.name, *f.tied)}
-
-
 def _change(
     task: Task, base: Trial, residual: Sequence[FloatArray], values: Mapping[str, float]
 ) -> FloatArray | None:
     """How the residual of all runs changes with `values`, the starts following; None: it failed."""
-    changed = _simulated(task, base, {**base.train.values, **values})
+    changed = simulated(task, base.train, values)
     if any(e.failed for e in changed):
         return None
     return _projected(base, [e.residual - r for e, r in zip(changed, residual, strict=True)])
@@ -141,19 +134,9 @@ def _unfitted(
     values = {**fixed, **all_values_at_start(free)}
     evaluations = tuple(
         replace(e, outputs=e.outputs[:0], states=e.states[:0])
-        for e in _simulated(task, base, values)
+        for e in simulated(task, base.train, values)
     )
     failed = next((e.failed for e in evaluations if e.failed), None)
     cost = np.inf if failed else float(sum(e.residual @ e.residual for e in evaluations))
     z = base.train.z
     return Fit(task.model, task.train, tuple(free), values, z, cost, evaluations, failed)
-
-
-def _simulated(task: Task, base: Trial, values: Mapping[str, float]) -> list[Evaluation]:
-    """All train runs with `values`, begun where those of `base` begin; no derivatives."""
-    p, none = task.model.parameter_vector(dict(values)), np.zeros(0, dtype=np.int64)
-
-    def one(pair: tuple[Run, FloatArray]) -> Evaluation:
-        return evaluate(task.model, pair[0], p, pair[1], none, False, COARSE)
-
-    return list(task.executor.map(one, zip(base.train.runs, base.train.z, strict=True)))

@@ -28,6 +28,7 @@ from ptp_symbolic.diagnose.trial import (
     fixed_values,
     held_out_cost,
     restarted,
+    simulated,
     start_afresh,
 )
 from ptp_symbolic.identify.coordinates import FreeParameter
@@ -138,19 +139,12 @@ def visible_candidates(
     def is_visible(candidate: Candidate) -> bool:
         if scored[candidate.key].share_left >= VISIBLE_SHARE:
             return True
-        values = {**base.train.values, **all_values_at_start(candidate.starts[0])}
-        p = task.model.parameter_vector(values)
-        none = np.zeros(0, dtype=np.int64)
-        changed = [
-            evaluate(task.model, run, p, z, none, False, COARSE)
-            for run, z in zip(base.train.runs, base.train.z, strict=True)
-        ]
+        changed = simulated(task, base.train, all_values_at_start(candidate.starts[0]))
         if any(e.failed for e in changed):
             return True
         return share_left(base.train, [e.residual for e in changed]) >= VISIBLE_SHARE
 
-    seen = list(task.executor.map(is_visible, candidates))
-    return [c for c, visible in zip(candidates, seen, strict=True) if visible]
+    return [c for c in candidates if is_visible(c)]
 
 
 def _freed(task: Task, group: Sequence[Trial]) -> list[list[Trial]]:

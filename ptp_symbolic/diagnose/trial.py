@@ -5,15 +5,17 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.scores import mean_square
 from ptp_symbolic.identify.coordinates import FreeParameter
-from ptp_symbolic.identify.evaluate import Tolerance
+from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.runtime.model import Model
 
+FloatArray = NDArray[np.float64]
 Progress = Callable[[str], None]
 
 NEARBY_COUNTS = 5.0
@@ -49,6 +51,18 @@ class Trial:
     def keys(self) -> tuple[str, ...]:
         """Keys of the candidates, sorted."""
         return tuple(sorted(c.key for c in self.candidates))
+
+
+def simulated(task: Task, fit: Fit, values: Mapping[str, float]) -> list[Evaluation]:
+    """All runs of `fit` with `values` in place of its own, begun where its runs begin; coarse and
+    without derivatives.
+    """
+    p, none = task.model.parameter_vector({**fit.values, **values}), np.zeros(0, dtype=np.int64)
+
+    def one(pair: tuple[Run, FloatArray]) -> Evaluation:
+        return evaluate(task.model, pair[0], p, pair[1], none, False, COARSE)
+
+    return list(task.executor.map(one, zip(fit.runs, fit.z, strict=True)))
 
 
 def held_out_cost(trial: Trial) -> float:

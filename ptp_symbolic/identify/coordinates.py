@@ -57,11 +57,12 @@ def to_search(free: Sequence[FreeParameter], values: Mapping[str, float]) -> Flo
 
 
 def to_values(free: Sequence[FreeParameter], phi: FloatArray) -> dict[str, float]:
-    """Parameter values of search coordinates [nf]."""
-    return {
-        f.name: float(f.start * np.exp(v)) if f.logarithmic else float(f.scale * v)
+    """Parameter values of search coordinates [nf], within their bounds to the last bit."""
+    given = [
+        f.start * np.exp(v) if f.logarithmic else f.scale * v
         for f, v in zip(free, phi, strict=True)
-    }
+    ]
+    return {f.name: float(np.clip(v, f.lower, f.upper)) for f, v in zip(free, given, strict=True)}
 
 
 def slopes(free: Sequence[FreeParameter], phi: FloatArray) -> FloatArray:

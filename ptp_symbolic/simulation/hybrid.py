@@ -275,5 +275,5 @@ def compiled_runner(sources: int) -> Callable[..., int]:
 
 @lru_cache(maxsize=1)
 def runner() -> Callable[..., int]:
-    """The runner, compiled when it is first needed: half a minute once on a new machine."""
+    """The runner, compiled when it is first needed: about a minute once on a new machine."""
     return compiled_runner(source_stamp())
