@@ -94,8 +94,13 @@ def block_mean_squares(pairs: Pairs) -> FloatArray:
 
 
 def share_improved(before: Pairs, after: Pairs, floor: float) -> float:
-    """Share of held-out blocks that improve, among those whose change can be seen (0.1 floor^2)."""
-    change = block_mean_squares(before) - block_mean_squares(after)
+    """Share of held-out blocks that improve, among those whose change can be seen (0.1 floor^2).
+
+    What lies below the floor counts as on it: there nothing is left to improve, and the rounding of
+    a joint at rest differs by chance.
+    """
+    excess = [np.maximum(block_mean_squares(pairs), floor**2) for pairs in (before, after)]
+    change = excess[0] - excess[1]
     seen = np.abs(change) > 0.1 * floor**2
     return float(np.mean(change[seen] > 0)) if seen.any() else 0.0
 
