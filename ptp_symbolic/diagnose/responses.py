@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
+from scipy.optimize import lsq_linear
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.trial import Task, Trial, fixed_values, restarted, simulated
@@ -20,17 +22,23 @@ from ptp_symbolic.identify.intervals import project_out
 FloatArray = NDArray[np.float64]
 
 AMOUNT = 0.02  # of a parameter that is free or declared already
+SHARE = 0.1  # of the scale of a parameter that begins where it vanishes
 DAMPING, FARTHEST, LEAST, MOST = 1e-3, 0.5, 0.05, 5.0
 
 
 @dataclass(frozen=True, eq=False)
 class _Response:
-    """A candidate at one start: by how much of it the residual is made least, and what is left."""
+    """A candidate at one start: what makes the residual least, and the sum of squares left.
+
+    `amounts` [1 + k] are those of the whole start and of each of its k parameters in `apart`, which
+    begin where they vanish; `shift` moves the declared parameters.
+    """
 
     base: Trial
     candidate: Candidate
     start: tuple[FreeParameter, ...]
-    amount: float
+    apart: tuple[str, ...]
+    amounts: FloatArray
     shift: FloatArray
     left: float
 
@@ -70,16 +78,43 @@ def _responses(task: Task, base: Trial, candidates: Sequence[Candidate]) -> list
     found = []
     for candidate in candidates:
         for start in candidate.starts if candidate.key not in base.keys else ():
-            whole = {f.name: min(f.start * (1.0 + AMOUNT), f.upper) for f in start}
-            given = whole if candidate.is_declared_value else all_values_at_start(start)
-            change = _change(task, base, residual, given)
-            if change is None or not np.any(change):
+            changes = _changes(task, base, residual, candidate, start)
+            if not any(map(np.any, changes.values())):
                 continue
-            x, left = _least(here, np.column_stack([known, change]))
+            added = np.column_stack([known, *changes.values()])
+            most = np.repeat([FARTHEST, MOST], [known.shape[1], len(changes)])
+            x, left = _least(here, added, most)
             shift = np.zeros(len(free))
-            shift[seen] = np.clip(x[:-1], -FARTHEST, FARTHEST)
-            found.append(_Response(base, candidate, start, float(x[-1]), shift, left))
+            shift[seen] = x[: known.shape[1]]
+            apart = tuple(changes)[1:]
+            amounts = x[known.shape[1] :]
+            found.append(_Response(base, candidate, start, apart, amounts, shift, left))
     return found
+
+
+def _changes(
+    task: Task,
+    base: Trial,
+    residual: Sequence[FloatArray],
+    candidate: Candidate,
+    start: Sequence[FreeParameter],
+) -> dict[str, FloatArray]:
+    """What `start` changes, and what each of its parameters that begins at zero adds to that, by
+    name ("" for the start as a whole); empty where the whole cannot be simulated.
+    """
+    given = all_values_at_start(start)
+    if candidate.is_declared_value:
+        given = {f.name: min(f.start * (1.0 + AMOUNT), f.upper) for f in start}
+    whole = _change(task, base, residual, given)
+    if whole is None:
+        return {}
+    changes = {"": whole}
+    for f in start:
+        if f.start == 0.0:
+            more = _change(task, base, residual, {**given, f.name: SHARE * f.scale})
+            if more is not None and np.any(more != whole):
+                changes[f.name] = more - whole
+    return changes
 
 
 def _change(
@@ -98,12 +133,16 @@ def _projected(base: Trial, columns: Sequence[FloatArray]) -> FloatArray:
     return np.concatenate([project_out(c[:, None], e.by_start)[:, 0] for c, e in parts])
 
 
-def _least(residual: FloatArray, columns: FloatArray) -> tuple[FloatArray, float]:
-    """Amounts [n] of `columns` that make the residual least, and the sum of squares left."""
-    information = columns.T @ columns
-    information += DAMPING * np.diag(np.diag(information) + 1e-12)
-    x = np.asarray(np.linalg.solve(information, -columns.T @ residual), dtype=np.float64)
-    return x, float(np.sum((residual + columns @ x) ** 2))
+def _least(residual: FloatArray, columns: FloatArray, most: FloatArray) -> tuple[FloatArray, float]:
+    """Amounts [n] of `columns`, at most `most` either way, that make the residual least, and the
+    sum of squares left.
+    """
+    information, gradient = columns.T @ columns, columns.T @ residual
+    damped = information + DAMPING * np.diag(np.diag(information) + 1e-12)
+    factor = np.linalg.cholesky(damped)
+    target = -solve_triangular(factor, gradient, lower=True)
+    x = np.asarray(lsq_linear(factor.T, target, (-most, most)).x, dtype=np.float64)
+    return x, float(residual @ residual + 2.0 * gradient @ x + x @ information @ x)
 
 
 def _begun(task: Task, response: _Response) -> Trial:
@@ -111,17 +150,20 @@ def _begun(task: Task, response: _Response) -> Trial:
     base = response.base
     free = restarted(base.train)
     ahead = to_values(free, to_search(free, base.train.values) + response.shift)
-    begun = [replace(f, start=float(np.clip(ahead[f.name], f.lower, f.upper))) for f in free]
+    begun = [replace(f, start=ahead[f.name]) for f in free]
     vanishes = {p.name: p.vanishes for p in task.model.parameters}
+    whole, apart = response.amounts[0], dict(zip(response.apart, response.amounts[1:], strict=True))
     for f in response.start:
         zero = f.start if response.candidate.is_declared_value else vanishes[f.name]
         if response.candidate.is_declared_value:
-            start = f.start * (1.0 + AMOUNT * np.clip(response.amount, -MOST, MOST))
+            start = f.start * (1.0 + AMOUNT * whole)
+        elif f.name in apart:
+            start = SHARE * f.scale * apart[f.name]
         elif zero is None or f.start == zero:
             start = f.start
         else:
             least = LEAST if f.logarithmic else -MOST
-            start = zero + np.clip(response.amount, least, MOST) * (f.start - zero)
+            start = zero + max(whole, least) * (f.start - zero)
         begun.append(replace(f, start=float(np.clip(start, f.lower, f.upper))))
     fixed = fixed_values(task, begun)
     return Trial((*base.candidates, response.candidate), _unfitted(task, base, begun, fixed))
