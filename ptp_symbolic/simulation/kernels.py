@@ -11,9 +11,10 @@ from typing import Any, NamedTuple
 from numba import njit, types
 
 KERNEL: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
-kernel = njit(**KERNEL)
-inlined = njit(forceinline=True, **KERNEL)
-merged = njit(inline="always", **KERNEL)  # for large ones: not compiled by itself as well
+INNER = KERNEL | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+kernel = njit(**INNER)
+inlined = njit(forceinline=True, **INNER)
+merged = njit(inline="always", **INNER)  # for large ones: not compiled by itself as well
 
 SMALLEST = 1e-60
 DONE, DIVERGED, CHATTERING, UNDECIDED, OUTSIDE = 0, 1, 2, 3, 4
