@@ -31,11 +31,7 @@ def assemble(platform: Platform) -> Equations:
     placed = place_effects(platform)
     parts = released(collect(platform.axes, placed))
     transmissions = [transmission(shaft, parts) for shaft in parts.shafts]
-    shaft_torques = {
-        quantity_symbol(f"shaft_torque_{s.axis}"): t.transmitted
-        for s, t in zip(parts.shafts, transmissions, strict=True)
-    }
-    parts = replace(parts, values={**parts.values, **shaft_torques})
+    parts = _with_shaft_torques(parts, transmissions)
     rigid = _rigid_configuration(platform, parts)
     rigid_equations = lagrange(rigid)
     full = _mechanics(platform, parts, transmissions, rigid_equations)
@@ -65,11 +61,7 @@ def assemble(platform: Platform) -> Equations:
         frictions=frictions,
         contacts=tuple(contacts),
         outputs=_outputs(platform, parts),
-        limits=tuple(
-            Limit(own.state, parts.resolve(own.lower), parts.resolve(own.upper), own.meaning)
-            for contribution in parts.contributions
-            for own in contribution.limits
-        ),
+        limits=_limits(parts),
         requirements=tuple(r for effect, place in placed for r in effect.requires(place)),
         ledger=replace(ledger, power_in=ledger.power_in + power),
         effects=tuple(
@@ -79,6 +71,23 @@ def assemble(platform: Platform) -> Equations:
         rigid_equations=rigid_equations,
     )
     return _with_parameters(equations, resolved_parameters(platform, placed))
+
+
+def _with_shaft_torques(parts: Parts, transmissions: Sequence[Transmission]) -> Parts:
+    """`parts` in which the torque of every shaft is a quantity."""
+    torques = {
+        quantity_symbol(f"shaft_torque_{s.axis}"): t.transmitted
+        for s, t in zip(parts.shafts, transmissions, strict=True)
+    }
+    return replace(parts, values={**parts.values, **torques})
+
+
+def _limits(parts: Parts) -> tuple[Limit, ...]:
+    return tuple(
+        Limit(own.state, parts.resolve(own.lower), parts.resolve(own.upper), own.meaning)
+        for contribution in parts.contributions
+        for own in contribution.limits
+    )
 
 
 def _mechanics(

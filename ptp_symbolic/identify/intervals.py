@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from ptp_symbolic.identify.coordinates import slopes, to_search, wrapped
+from ptp_symbolic.identify.coordinates import FreeParameter, slopes, to_search, wrapped
 from ptp_symbolic.identify.fit import Fit
 
 FloatArray = NDArray[np.float64]
@@ -18,6 +18,7 @@ FloatArray = NDArray[np.float64]
 BLOCK_SECONDS = 1.0
 UNIDENTIFIED = 1.0
 LOST_SHARE, INVOLVED = 1e-10, 1e-3
+WIDEST = 30.0  # of a logarithm
 
 
 @dataclass(frozen=True)
@@ -42,43 +43,41 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
     if not fit.free:
         return ()
     covariance, degrees, lost = sandwich(fit)
-    involved = lost**2 > INVOLVED
-    phi = to_search(fit.free, fit.values)
-    by_phi = slopes(fit.free, phi)
     reach = float(stats.t.ppf(0.975, max(degrees, 1)))
+    spreads = reach * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    units = np.abs(slopes(fit.free, to_search(fit.free, fit.values)))
+    involved = lost**2 > INVOLVED
     result = []
     for index, free in enumerate(fit.free):
-        spread = reach * float(np.sqrt(max(covariance[index, index], 0.0)))
         value = wrapped(free, fit.values[free.name])
-        if free.logarithmic and spread < 30.0:
-            low, high = value * np.exp(-spread), value * np.exp(spread)
-        else:
-            low, high = value - spread * abs(by_phi[index]), value + spread * abs(by_phi[index])
-        others: tuple[str, ...] = ()
+        partners: tuple[str, ...] = ()
         if involved[index].any():
-            low, high, spread = free.lower, free.upper, np.inf
-            partners = np.flatnonzero(involved[:, involved[index]].any(axis=1))
-            others = tuple(fit.free[i].name for i in partners if i != index)
-        if free.period is not None:
-            low, high = max(low, value - free.period / 2), min(high, value + free.period / 2)
+            others = np.flatnonzero(involved[:, involved[index]].any(axis=1))
+            partners = tuple(fit.free[i].name for i in others if i != index)
+            spreads[index] = np.inf
+        low, high, width = _interval(free, value, float(spreads[index]), float(units[index]))
         near = 1e-4 * max(abs(free.start), abs(value))
         at_bound = value - free.lower <= near or free.upper - value <= near
-        width = (
-            spread if free.logarithmic else spread * abs(by_phi[index]) / max(abs(value), 1e-300)
-        )
-        seen = bool(np.isfinite(spread) and width < UNIDENTIFIED)
-        result.append(
-            Estimate(
-                free.name,
-                value,
-                float(max(low, free.lower)) if free.period is None else float(low),
-                float(min(high, free.upper)) if free.period is None else float(high),
-                bool(at_bound),
-                seen,
-                others,
-            )
-        )
+        seen = bool(np.isfinite(width) and width < UNIDENTIFIED)
+        result.append(Estimate(free.name, value, low, high, bool(at_bound), seen, partners))
     return tuple(result)
+
+
+def _interval(
+    free: FreeParameter, value: float, spread: float, unit: float
+) -> tuple[float, float, float]:
+    """Ends of the interval of `spread` search coordinates about `value`, `unit` each, within the
+    bounds and one period; and its half width as a share of the value.
+    """
+    half = spread * unit if np.isfinite(spread) else np.inf
+    low, high = value - half, value + half
+    if free.logarithmic and spread < WIDEST:
+        low, high = value * np.exp(-spread), value * np.exp(spread)
+    width = spread if free.logarithmic else half / max(abs(value), 1e-300)
+    if free.period is None:
+        return float(max(low, free.lower)), float(min(high, free.upper)), width
+    ends = max(low, value - free.period / 2), min(high, value + free.period / 2)
+    return float(ends[0]), float(ends[1]), width
 
 
 def sandwich(fit: Fit) -> tuple[FloatArray, int, FloatArray]:
