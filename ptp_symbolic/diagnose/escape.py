@@ -4,6 +4,8 @@ Breakaways and bounces in a gap make the cost piecewise smooth, and two effects 
 stand in for one another: a search that gained little in two steps may still be far from its end.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from ptp_symbolic.diagnose.floor import floor_counts
@@ -18,9 +20,10 @@ from ptp_symbolic.diagnose.trial import (
     continue_fits,
     start_afresh,
 )
-from ptp_symbolic.identify.fit import Effort, Fit, run_counts
+from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, run_counts
 
 AGAIN, ROUNDS, SETTLED = Effort(8, 1e-3, FINE, secants=True), 4, 0.998
+PLACES = Effort(10, 1e-4, FINE)
 UNEVEN, NEAR, FAR = 1.2, 3.0, 30.0
 
 
@@ -33,6 +36,8 @@ def escape(task: Task, trial: Trial) -> Trial:
         return best
     for _ in range(ROUNDS):
         before = best.train.cost
+        if _is_uneven(best.train):
+            best = _with_new_places(task, best)
         best = continue_fits(task, [best], SMOOTH)[0]
         if _is_uneven(best.train):
             best = continue_fits(task, [best], AGAIN)[0]
@@ -50,6 +55,17 @@ def _from_table(task: Task, trial: Trial) -> Trial:
     if again.train.cost >= SETTLED * trial.train.cost:
         return trial
     return continue_fits(task, [again], LAST)[0]
+
+
+def _with_new_places(task: Task, trial: Trial) -> Trial:
+    """`trial` with every run begun where that run alone fits best, its place in a gap sought anew:
+    one that suited earlier parameters holds the others back.
+    """
+    fit = trial.train
+    alone = fit_parameters(task.model, task.train, (), fit.values, fit.z, PLACES, task.executor)
+    if alone.failed or alone.cost >= fit.cost:
+        return trial
+    return replace(trial, train=replace(fit, z=alone.z))
 
 
 def _is_uneven(fit: Fit, near: float = NEAR) -> bool:
