@@ -1,10 +1,11 @@
 """Planted and found: every effect that can be searched for, hidden in made logs, comes out by name.
 
 The logs are made by the fixed-step method, which shares neither events nor linear algebra with the
-one that fits, and are rounded to encoder counts. An effect that the declared parameters of one
-machine take up to the last count is looked for on the next machine.
+one that fits, and are rounded to encoder counts. An amount that the declared parameters of one
+machine take up to the last count is looked for on the next machine, then another amount.
 """
 
+import itertools
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -59,11 +60,11 @@ def machine_with(effect: Effect, name: str) -> tuple[Platform, Platform] | None:
     return (bare, replace(bare, effects=(*bare.effects, found[0]))) if found else None
 
 
-def planted_values(model: Model, platform: Platform) -> dict[str, float]:
-    """The declared values, and the last effect of `platform` at the last of its finite starts."""
+def planted_values(model: Model, platform: Platform, which: int) -> dict[str, float]:
+    """The declared values, and the last effect of `platform` at start `which` of its search."""
     planted = platform.effects[-1].effect
     own = {n for e in model.effects if e.key.partition("@")[0] == planted for n in e.parameters}
-    values = {p.name: p.starts[-1] for p in model.parameters if p.name in own and p.starts}
+    values = {p.name: p.starts[which] for p in model.parameters if p.name in own and p.starts}
     if not any(values.values()):
         values = dict.fromkeys(values, SMALL)
     return values | {d.name: d.value for d in platform.parameters}
@@ -118,10 +119,10 @@ def write_log(path: Path, header: str, rows: list[str]) -> None:
     path.write_text("\n".join([header, *rows, ""]))
 
 
-def write_runs(full: Platform, folder: Path) -> bool:
+def write_runs(full: Platform, which: int, folder: Path) -> bool:
     """Logs of `full`, train and validation; False where they are no test of a model."""
     model = loop.emit(full)
-    values = planted_values(model, full)
+    values = planted_values(model, full, which)
     if "u_pan" in model.input_names:
         return write_driven_runs(model, values, folder)
     write_tracked_runs(model, values, folder)
@@ -135,11 +136,11 @@ def diagnosed(bare: Platform, folder: Path) -> dict[str, Any]:
 @pytest.mark.long
 @pytest.mark.parametrize("effect", SEARCHED, ids=lambda effect: effect.id)
 def test_planted_effect_is_found(effect: Effect, tmp_path: Path) -> None:
-    for name in MACHINES:
-        machine = machine_with(effect, name)
-        if machine is None or not write_runs(machine[1], tmp_path / name):
+    for which, name in itertools.product((-1, 0), MACHINES):
+        machine, folder = machine_with(effect, name), tmp_path / f"{name}{which}"
+        if machine is None or not write_runs(machine[1], which, folder):
             continue
-        found = diagnosed(machine[0], tmp_path / name)
+        found = diagnosed(machine[0], folder)
         named = {a["effect"] for a in found["added"]}
         group = {k.partition("@")[0] for a in found["added"] for k in a["confusable_with"]}
         if found["verdict"] != NOTHING_MISSING:
