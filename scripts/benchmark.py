@@ -45,6 +45,7 @@ from ptp_symbolic.simulation.passage import Accuracy, Passage, pass_through, tol
 
 Row = dict[str, Any]
 END = 10.0
+TOLERANCES = (1e-6, 5e-7, 2e-7, 1e-7, 5e-8, 2e-8, 1e-8, 1e-9)
 CASES = {
     "step": step(0.0, 24.0, 0.5),
     "ramp": ramp(0.0, 4.0, 0.0, END),
@@ -172,7 +173,7 @@ def drive_cases(everything: bool) -> list[Row]:
     for name, signal in CASES.items():
         exact = run_drive(model, signal, 1e-12, method="runge_kutta")
         tolerance = next(
-            t for t in (1e-6, 1e-7, 1e-8, 1e-9)
+            t for t in TOLERANCES
             if _off(run_drive(model, signal, t).x[:, 0], exact.x[:, 0]) < 1e-8
         )  # fmt: skip
         whole, found = best(partial(run_drive, model, signal, tolerance))
