@@ -155,14 +155,10 @@ def _print_errors(errors: Mapping[str, Any]) -> None:
 
 
 def _print_parameters(parameters: Mapping[str, Any]) -> None:
+    from ptp_symbolic.report.tables import doubts
+
     for name, p in parameters.items():
         low, high = (f"{v:.5g}" if v is not None else "?" for v in p["ci95"])
-        notes = [
-            note
-            for key, wanted, note in (
-                ("at_bound", True, "at its bound"), ("identified", False, "not identified"),
-            )
-            if p.get(key) is wanted
-        ]  # fmt: skip
+        notes = doubts(p)
         more = f"  ({', '.join(notes)})" if notes else ""
         click.echo(f"  {name} = {p['value']:.6g} {p['unit']}  [{low}, {high}]{more}")

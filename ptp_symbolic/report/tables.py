@@ -105,6 +105,17 @@ def _error_row(run: str | None, errors: Mapping[str, Record], key: str, axis: Lo
     return ErrorRow(run, errors["before"], errors["after"], errors["noise_floor"], ratio, places)
 
 
+def doubts(parameter: Record) -> list[str]:
+    """What speaks against relying on a fitted parameter."""
+    partners = parameter.get("only_with") or []
+    found = ["at its bound"] if parameter.get("at_bound") else []
+    if partners:
+        found.append(f"seen only together with {', '.join(partners)}")
+    elif parameter.get("identified") is False:
+        found.append("not identified")
+    return found
+
+
 def parameter_rows(diagnosis: Record) -> list[dict[str, Any]]:
     """Every fitted parameter before and after, with its change in percent of the value before."""
     fit = diagnosis.get("fit") or {}
@@ -116,10 +127,9 @@ def parameter_rows(diagnosis: Record) -> list[dict[str, Any]]:
         if old and new and old.get("value") and usable(new.get("value")):
             change = 100.0 * (new["value"] - old["value"]) / abs(old["value"])
         last = new or old or {}
-        flagged = bool(last.get("at_bound")) or last.get("identified") is False
         rows.append(
             {"name": name, "before": old, "after": new, "last": last, "change": change,
-             "flagged": flagged}
+             "doubts": doubts(last)}
         )  # fmt: skip
     return rows
 

@@ -83,6 +83,7 @@ def test_a_diagnosis_prints_what_the_logs_do_not_settle(capsys) -> None:
         "F_s_pan": fitted(0.3, True, at_bound=True),
         "beta_base": fitted(0.07, True),
         "alpha_base": fitted(-0.6, False),
+        "F_v_pan": fitted(0.4, False) | {"only_with": ["b_pan"]},
     }
     error = {"total": {"rmse_counts": 0.3}, "by_run": {"log": {"rmse_counts": 0.3}}}
     errors = {"train": {"before": error, "after": error, "noise_floor": error}}
@@ -95,4 +96,5 @@ def test_a_diagnosis_prints_what_the_logs_do_not_settle(capsys) -> None:
     told = lines[lines.index("Declared parameters that these logs do not settle:") + 1 :]
     assert told[0] == "  F_c_pan = 0.2 N m  [0, 1]  (not identified)"
     assert told[1] == "  F_s_pan = 0.3 N m  [0, 1]  (at its bound)"
-    assert not any("b_pan" in line for line in lines)
+    assert told[2] == "  F_v_pan = 0.4 N m  [0, 1]  (seen only together with b_pan)"
+    assert not any("  b_pan" in line for line in lines)
