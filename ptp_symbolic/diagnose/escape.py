@@ -34,7 +34,7 @@ def escape(task: Task, trial: Trial) -> Trial:
     best = _from_table(task, trial)
     if best.train.rms_counts() > NEARBY_COUNTS:
         return best
-    for _ in range(ROUNDS):
+    for _ in range(ROUNDS * max(len(trial.candidates), 1)):
         before = best.train.cost
         if _is_uneven(best.train):
             best = _with_new_places(task, best)
