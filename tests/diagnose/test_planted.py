@@ -24,7 +24,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.inputs import constant, table
-from ptp_symbolic.simulation.run import simulate
+from ptp_symbolic.simulation.run import Trajectory, simulate
 from tests.independent import pan_logs, two_axis_logs
 
 PLATFORMS = Path(__file__).parents[1] / "platforms"
@@ -70,6 +70,16 @@ def planted_values(model: Model, platform: Platform, which: int) -> dict[str, fl
     return values | {d.name: d.value for d in platform.parameters}
 
 
+def outputs_along(
+    model: Model, values: dict[str, float], found: Trajectory, voltage: np.ndarray
+) -> dict[str, np.ndarray]:
+    """What the sensors of a pan axis read along `found`."""
+    p, y = model.parameter_vector(values), np.zeros((len(found.t), len(model.output_names)))
+    for k, (t, x) in enumerate(zip(found.t, found.x, strict=True)):
+        model.module.outputs(t, x, voltage[k : k + 1], p, y[k])
+    return dict(zip(model.output_names, y.T, strict=True))
+
+
 def write_driven_runs(model: Model, values: dict[str, float], folder: Path) -> bool:
     """Logs of a pan axis under voltage profiles; False where no simulation can repeat them."""
     worst = 0.0
@@ -80,8 +90,9 @@ def write_driven_runs(model: Model, values: dict[str, float], folder: Path) -> b
         found = simulate(model, t, drive, values, method="fixed_step", step=STEP)
         again = simulate(model, t, drive, values)
         worst = max(worst, float(np.std(found["theta_pan"] - again["theta_pan"])) / COUNT)
-        reading = np.rint(found["theta_pan"] / COUNT) * COUNT
-        current = found["i_pan"] + 0.004 * rng.standard_normal(len(t))
+        measured = outputs_along(model, values, found, voltage)
+        reading = np.rint(measured["theta_pan"] / COUNT) * COUNT
+        current = measured["i_pan"] + 0.004 * rng.standard_normal(len(t))
         columns = zip(t, voltage, current, reading, strict=True)
         write_log(
             folder / f"{run}.csv",
