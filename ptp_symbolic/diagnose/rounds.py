@@ -18,6 +18,8 @@ from ptp_symbolic.diagnose.search import (
 from ptp_symbolic.diagnose.trial import Task, Trial, held_out_cost
 from ptp_symbolic.diagnose.verdict import Verdict, decide, is_settled
 
+BASES, BETTER = 3, 0.9
+
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
@@ -30,14 +32,33 @@ class Diagnosis:
     verdict: Verdict
 
 
+def _better_base(task: Task, base: Trial, verdict: Verdict) -> Trial | None:
+    """The declared model begun where the accepted effect led, if it does better without the effect:
+    then `base` ended in a local minimum, and the effect has earned nothing yet.
+    """
+    best = verdict.accepted or next(iter(verdict.rivals), None)
+    if best is None or len(best.candidates) != 1:
+        return None
+    (alone,) = without_idle(task, best)
+    if alone.train.failed or alone.train.cost > BETTER * base.train.cost:
+        return None
+    task.progress(f"the declared model alone leaves {alone.train.rms_counts():.3f} counts rms")
+    return alone
+
+
 def diagnose(task: Task, candidates: Sequence[Candidate]) -> Diagnosis:
     """Find what the declared model lacks; at most two effects at once."""
-    base = fit_declared(task)
-    scored = scores(task, base, candidates)
-    visible = visible_candidates(task, base, candidates, scored)
+    base, better = fit_declared(task), None
+    for _ in range(BASES):
+        base = better or base
+        scored = scores(task, base, candidates)
+        visible = visible_candidates(task, base, candidates, scored)
+        trials = try_candidates(task, [base], visible)
+        verdict = decide(task, base, trials)
+        better = _better_base(task, base, verdict)
+        if better is None:
+            break
     invisible = tuple(c for c in candidates if c not in visible)
-    trials = try_candidates(task, [base], visible)
-    verdict = decide(task, base, trials)
     if not is_settled(verdict):
         effects = [c for c in visible if not c.is_declared_value]
         beam = [t for t in trials if np.isfinite(held_out_cost(t))][:BEAM]

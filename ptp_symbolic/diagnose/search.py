@@ -169,9 +169,9 @@ def _best(trials: Sequence[Trial], count: int, factor: float) -> list[Trial]:
 
 
 def without_idle(task: Task, trial: Trial) -> list[Trial]:
-    """Refits of a trial of several candidates with each one taken out, from the optimum found."""
+    """Refits of a trial with each of its candidates taken out, from the optimum found."""
     smaller = []
-    for idle in trial.candidates if len(trial.candidates) > 1 else ():
+    for idle in trial.candidates:
         kept = tuple(c for c in trial.candidates if c is not idle)
         free = tuple(f for f in restarted(trial.train) if f.name not in idle.parameters)
         fixed, z = fixed_values(task, free), trial.train.z

@@ -54,7 +54,10 @@ def test_two_hidden_effects_are_named(pair: tuple[str, str], tmp_path: Path) -> 
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("platform", "seed"), [("fieldlog_pan", 104), ("fieldlog_two_axis", 201)])
+@pytest.mark.parametrize(
+    ("platform", "seed"),
+    [("fieldlog_pan", 104), ("fieldlog_two_axis", 201), ("fieldlog_two_axis", 309)],
+)
 def test_a_log_without_a_hidden_effect_names_none(platform: str, seed: int, tmp_path: Path) -> None:
     assert diagnosed(platform, "nothing", seed, tmp_path) == ("nothing_missing", set())
 
