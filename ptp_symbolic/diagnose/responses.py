@@ -22,7 +22,8 @@ from ptp_symbolic.identify.intervals import project_out
 FloatArray = NDArray[np.float64]
 
 AMOUNT = 0.02  # of a parameter that is free or declared already
-SHARE = 0.1  # of the scale of a parameter that begins where it vanishes
+SHARE = 0.1  # of the scale of a parameter that begins at zero, less where that changes
+REACH, SHRINKS = 3.0, 6  # more than so many times the residual; a tenth each time
 DAMPING, FARTHEST, LEAST, MOST = 1e-3, 0.5, 0.05, 5.0
 
 
@@ -30,15 +31,14 @@ DAMPING, FARTHEST, LEAST, MOST = 1e-3, 0.5, 0.05, 5.0
 class _Response:
     """A candidate at one start: what makes the residual least, and the sum of squares left.
 
-    `amounts` [1 + k] are those of the whole start and of each of its k parameters in `apart`, which
-    begin where they vanish; `shift` moves the declared parameters.
+    `amounts` are that of the whole start, under "", and values of its parameters that begin at
+    zero; `shift` moves the declared parameters.
     """
 
     base: Trial
     candidate: Candidate
     start: tuple[FreeParameter, ...]
-    apart: tuple[str, ...]
-    amounts: FloatArray
+    amounts: Mapping[str, float]
     shift: FloatArray
     left: float
 
@@ -79,16 +79,17 @@ def _responses(task: Task, base: Trial, candidates: Sequence[Candidate]) -> list
     for candidate in candidates:
         for start in candidate.starts if candidate.key not in base.keys else ():
             changes = _changes(task, base, residual, candidate, start)
-            if not any(map(np.any, changes.values())):
+            columns_of = [column for _, column in changes.values()]
+            if not any(map(np.any, columns_of)):
                 continue
-            added = np.column_stack([known, *changes.values()])
+            added = np.column_stack([known, *columns_of])
             most = np.repeat([FARTHEST, MOST], [known.shape[1], len(changes)])
             x, left = _least(here, added, most)
             shift = np.zeros(len(free))
             shift[seen] = x[: known.shape[1]]
-            apart = tuple(changes)[1:]
-            amounts = x[known.shape[1] :]
-            found.append(_Response(base, candidate, start, apart, amounts, shift, left))
+            sizes = zip(changes.items(), x[known.shape[1] :], strict=True)
+            amounts = {name: float(amount * step) for (name, (step, _)), amount in sizes}
+            found.append(_Response(base, candidate, start, amounts, shift, left))
     return found
 
 
@@ -98,9 +99,9 @@ def _changes(
     residual: Sequence[FloatArray],
     candidate: Candidate,
     start: Sequence[FreeParameter],
-) -> dict[str, FloatArray]:
-    """What `start` changes, and what each of its parameters that begins at zero adds to that, by
-    name ("" for the start as a whole); empty where the whole cannot be simulated.
+) -> dict[str, tuple[float, FloatArray]]:
+    """What `start` changes as a whole (name "", step 1), and per parameter that begins at zero a
+    step and what it adds to that; empty where the whole cannot be simulated.
     """
     given = all_values_at_start(start)
     if candidate.is_declared_value:
@@ -108,13 +109,17 @@ def _changes(
     whole = _change(task, base, residual, given)
     if whole is None:
         return {}
-    changes = {"": whole}
+    changes = {"": (1.0, whole)}
+    most = REACH * float(np.sqrt(base.train.cost))
     for f in start:
-        if f.start == 0.0:
-            more = _change(task, base, residual, {**given, f.name: SHARE * f.scale})
-            if more is not None and np.any(more != whole):
-                changes[f.name] = more - whole
-    return changes
+        step = SHARE * f.scale
+        for _ in range(SHRINKS if f.start == 0.0 else 0):
+            more = _change(task, base, residual, {**given, f.name: step})
+            if more is not None and np.linalg.norm(more - whole) <= most:
+                changes[f.name] = step, more - whole
+                break
+            step *= 0.1
+    return {name: change for name, change in changes.items() if not name or np.any(change[1])}
 
 
 def _change(
@@ -152,13 +157,13 @@ def _begun(task: Task, response: _Response) -> Trial:
     ahead = to_values(free, to_search(free, base.train.values) + response.shift)
     begun = [replace(f, start=ahead[f.name]) for f in free]
     vanishes = {p.name: p.vanishes for p in task.model.parameters}
-    whole, apart = response.amounts[0], dict(zip(response.apart, response.amounts[1:], strict=True))
+    whole = response.amounts[""]
     for f in response.start:
         zero = f.start if response.candidate.is_declared_value else vanishes[f.name]
         if response.candidate.is_declared_value:
             start = f.start * (1.0 + AMOUNT * whole)
-        elif f.name in apart:
-            start = SHARE * f.scale * apart[f.name]
+        elif f.name in response.amounts:
+            start = response.amounts[f.name]
         elif zero is None or f.start == zero:
             start = f.start
         else:
