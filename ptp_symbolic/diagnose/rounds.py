@@ -6,19 +6,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.escape import escape
 from ptp_symbolic.diagnose.scores import Score
 from ptp_symbolic.diagnose.search import (
     BEAM,
     fit_declared,
+    judge,
     scores,
     try_candidates,
     visible_candidates,
-    without_idle,
+    without,
 )
-from ptp_symbolic.diagnose.trial import Task, Trial, held_out_cost
+from ptp_symbolic.diagnose.trial import COARSE, LAST, Task, Trial, continue_fits, held_out_cost
 from ptp_symbolic.diagnose.verdict import Verdict, decide, is_settled
+from ptp_symbolic.identify.fit import Effort
 
 BASES, BETTER = 3, 0.9
+GLANCE = Effort(3, 1e-2, COARSE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,11 +43,12 @@ def _better_base(task: Task, base: Trial, verdict: Verdict) -> Trial | None:
     best = verdict.accepted or next(iter(verdict.rivals), None)
     if best is None or len(best.candidates) != 1:
         return None
-    (alone,) = without_idle(task, best)
+    alone = without(task, best, best.candidates[0], GLANCE)
     if alone.train.failed or alone.train.cost > BETTER * base.train.cost:
         return None
-    task.progress(f"the declared model alone leaves {alone.train.rms_counts():.3f} counts rms")
-    return alone
+    found = judge(task, escape(task, continue_fits(task, [alone], LAST)[0]))
+    task.progress(f"the declared model alone leaves {found.train.rms_counts():.3f} counts rms")
+    return found
 
 
 def diagnose(task: Task, candidates: Sequence[Candidate]) -> Diagnosis:
@@ -65,7 +70,7 @@ def diagnose(task: Task, candidates: Sequence[Candidate]) -> Diagnosis:
         trials += try_candidates(task, beam, effects)
         pairs = [t for t in trials if len(t.candidates) > 1 and np.isfinite(held_out_cost(t))]
         for pair in sorted(pairs, key=held_out_cost)[:1]:
-            trials += without_idle(task, pair)
+            trials += [judge(task, without(task, pair, c, LAST)) for c in pair.candidates]
         verdict = decide(task, base, trials)
     ordered = sorted(trials, key=lambda t: (held_out_cost(t), t.train.cost))
     unique = {t.keys: t for t in reversed(ordered)}

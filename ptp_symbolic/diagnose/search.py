@@ -168,13 +168,10 @@ def _best(trials: Sequence[Trial], count: int, factor: float) -> list[Trial]:
     return [t for t in ordered[:count] if t.train.cost <= factor * ordered[0].train.cost]
 
 
-def without_idle(task: Task, trial: Trial) -> list[Trial]:
-    """Refits of a trial with each of its candidates taken out, from the optimum found."""
-    smaller = []
-    for idle in trial.candidates:
-        kept = tuple(c for c in trial.candidates if c is not idle)
-        free = tuple(f for f in restarted(trial.train) if f.name not in idle.parameters)
-        fixed, z = fixed_values(task, free), trial.train.z
-        fit = fit_parameters(task.model, task.train, free, fixed, z, LAST, task.executor)
-        smaller.append(judge(task, Trial(kept, fit)))
-    return smaller
+def without(task: Task, trial: Trial, idle: Candidate, effort: Effort) -> Trial:
+    """Refit of a trial with one of its candidates taken out, from the optimum found."""
+    kept = tuple(c for c in trial.candidates if c is not idle)
+    free = tuple(f for f in restarted(trial.train) if f.name not in idle.parameters)
+    fixed, z = fixed_values(task, free), trial.train.z
+    fit = fit_parameters(task.model, task.train, free, fixed, z, effort, task.executor)
+    return Trial(kept, fit)

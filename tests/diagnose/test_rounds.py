@@ -32,7 +32,10 @@ def diagnosed(monkeypatch: pytest.MonkeyPatch, without: float) -> tuple[Any, lis
     monkeypatch.setattr(rounds, "scores", lambda *_: {})
     monkeypatch.setattr(rounds, "visible_candidates", lambda *_: [])
     monkeypatch.setattr(rounds, "try_candidates", lambda *_: [trial(1.0, "effect")])
-    monkeypatch.setattr(rounds, "without_idle", lambda *_: [trial(without)])
+    monkeypatch.setattr(rounds, "without", lambda *_: trial(without))
+    monkeypatch.setattr(rounds, "continue_fits", lambda task, trials, effort: trials)
+    monkeypatch.setattr(rounds, "escape", lambda task, trial: trial)
+    monkeypatch.setattr(rounds, "judge", lambda task, trial: trial)
     monkeypatch.setattr(rounds, "decide", decide)
     task: Any = SimpleNamespace(progress=lambda text: None)
     return rounds.diagnose(task, ()), bases
