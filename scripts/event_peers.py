@@ -1,17 +1,30 @@
 """The pan drive by scipy's integrators: the same jitted functions, events found by `solve_ivp`."""
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.inputs import InputTable
-from ptp_symbolic.simulation.kernels import Equations
+from ptp_symbolic.simulation.kernels import KERNEL, Equations
 from ptp_symbolic.simulation.modes import switch_contacts, violation
 
 FloatArray = NDArray[np.float64]
 PAST = 1e-11  # s; how far a peer is carried past an event, so that the mode has really ended
+
+
+@njit(**KERNEL)
+def switched_contacts(equations, m, g):  # type: ignore[no-untyped-def]
+    """Kernels of the package have no way in from Python: this is one."""
+    switch_contacts(equations, m, g)
+
+
+@njit(**KERNEL)
+def past_end(element, x, m, g, friction_rates):  # type: ignore[no-untyped-def]
+    """By how much the mode of `element` has ended."""
+    return violation(element, x, m, g, friction_rates)
 
 
 class EventMachine:
@@ -55,7 +68,7 @@ class EventMachine:
         for _ in range(20):
             before = m.copy()
             self.model.module.guards(t, x, self.u, self.p, m, g)
-            switch_contacts(self.equations, m, g)
+            switched_contacts(self.equations, m, g)
             self.model.module.guards(t, x, self.u, self.p, m, g)
             for k in range(len(rates)):
                 held, forward, backward = g[3 * k : 3 * k + 3]
@@ -68,7 +81,7 @@ class EventMachine:
         def past(t: float, x: FloatArray) -> float:
             evaluate_inputs(t, 1, *self.table.arrays, self.cursor, self.u)
             self.model.module.guards(t, x, self.u, self.p, self.m, self.g)
-            return float(violation(element, x, self.m, self.g, self.model.friction_rates))
+            return float(past_end(element, x, self.m, self.g, self.model.friction_rates))
 
         past.terminal, past.direction = True, 1.0  # type: ignore[attr-defined]
         return past

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from numba import njit, types
 
 KERNEL: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+# Inner kernels are called by kernels alone: from Python a call crashes, for there is no way in.
 INNER = KERNEL | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 kernel = njit(**INNER)
 inlined = njit(forceinline=True, **INNER)
