@@ -20,9 +20,10 @@ from ptp_symbolic.diagnose.trial import (
     continue_fits,
     start_afresh,
 )
+from ptp_symbolic.diagnose.verdict import AT_FLOOR
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, run_counts
 
-AGAIN, ROUNDS, SETTLED = Effort(8, 1e-3, FINE, secants=True), 4, 0.998
+AGAIN, ROUNDS, SETTLED = Effort(8, 1e-3, FINE, secants=True), 4, 0.97
 PLACES = Effort(10, 1e-4, FINE)
 UNEVEN, NEAR, FAR = 1.2, 3.0, 30.0
 
@@ -69,9 +70,11 @@ def _with_new_places(task: Task, trial: Trial) -> Trial:
 
 
 def _is_uneven(fit: Fit, near: float = NEAR) -> bool:
-    """Near the floor in total, but not in every run."""
+    """Near the floor in total, but not on it in every run."""
     floor = floor_counts(fit.pairs())
     if fit.rms_counts() > near * floor:
         return False
+    if fit.rms_counts() > AT_FLOOR * floor:
+        return True
     worst = max(float(np.sqrt(np.mean(run_counts(r, e) ** 2))) for r, e in fit.pairs())
     return worst > UNEVEN * floor
