@@ -167,18 +167,24 @@ def _weigh(problem: Problem, at: _Point) -> _Weights:
 def _better(
     problem: Problem, at: _Point, weights: _Weights, damping: float, cost: float, rejections: int
 ) -> tuple[_Point, float, float] | None:
-    """The first of ever shorter steps that gains, its cost and the next damping; None if none."""
-    for _ in range(rejections):
+    """The first of ever shorter steps that gains, its cost and the next damping; None if none.
+
+    After a rejection the next step is tried without derivatives: most of them are rejected too.
+    """
+    for attempt in range(rejections):
         step, steps_z = _step(problem, at, damping, weights)
         phi = np.clip(at.phi + step, problem.lower, problem.upper)
         if problem.allow is not None:
             phi = problem.allow(at.phi, phi)
         bounds = zip(at.z, steps_z, problem.start_lower, problem.start_upper, strict=True)
         z = [np.clip(a + b, low, high) for a, b, low, high in bounds]
-        trial = _Point(phi, z, problem.evaluate(phi, z, True))
-        after = cost_of(problem, trial.evaluations, z, weights.bend, weights.scale)
-        priors = [_prior(problem, weights.prior, p) for p in (at.phi, phi)]
-        if after - cost < priors[0] - priors[1]:
+        enough = cost + _prior(problem, weights.prior, at.phi) - _prior(problem, weights.prior, phi)
+        for tangents in (True,) if attempt == 0 else (False, True):
+            trial = _Point(phi, z, problem.evaluate(phi, z, tangents))
+            after = cost_of(problem, trial.evaluations, z, weights.bend, weights.scale)
+            if not after < enough:
+                break
+        else:
             return trial, after, max(damping / 10.0, 1e-12)
         damping *= 10.0
     return None
