@@ -4,7 +4,10 @@ It locates no events. A step keeps its modes when they still hold at its end: th
 two-stage Rosenbrock method of Verwer et al. (SIAM J. Sci. Comput. 20, 1999), L-stable, order 2 with
 any Jacobian. Otherwise it is repeated as a linearly implicit Euler step whose modes are unknowns:
 one element after the other changes, and the linear system is solved anew, until every mode fits the
-end of the step (Murty, Opsearch 11, 1974; time stepping after Moreau, 1988).
+end of the step (Murty, Opsearch 11, 1974).
+
+Rigid faces that have closed by the end of a step strike there, as speeds tell, not depth (time
+stepping after Moreau, 1988); bodies whose next bounce would not outlast a step stay together.
 
 Order 2 in smooth motion, 1 across mode changes: an event takes effect up to one step late or early.
 A bounce shorter than a step is missed. Work per step is bounded, and nothing is allocated in it.
@@ -22,6 +25,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.domain import is_finite, is_outside, stop_at_bound
 from ptp_symbolic.simulation.emitted import addresses, call
+from ptp_symbolic.simulation.impacts import SETTLING, SPRUNG
 from ptp_symbolic.simulation.implicit_step import (
     StepWork,
     allow_all,
@@ -33,7 +37,6 @@ from ptp_symbolic.simulation.implicit_step import (
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.inputs import InputTable
 from ptp_symbolic.simulation.kernels import (
-    CUBE,
     DIVERGED,
     DONE,
     EVENTS,
@@ -44,24 +47,36 @@ from ptp_symbolic.simulation.kernels import (
     MATRIX,
     OUTPUT,
     OUTSIDE,
+    RECORD_TYPE,
     SMALLEST,
     SOURCES,
     STEPS,
     TABLE,
     TABLE_OF_CONTACTS,
+    TANGENTS_TYPE,
     TIME,
     UNDECIDED,
     VECTOR,
+    WATCH_TYPE,
     Equations,
     Inputs,
     Record,
+    Tangents,
+    Watch,
     copy,
     inlined,
     kernel,
     source_stamp,
 )
-from ptp_symbolic.simulation.outputs import note_switches
-from ptp_symbolic.simulation.passage import contact_table, limited_states
+from ptp_symbolic.simulation.modes import largest_violation, settle
+from ptp_symbolic.simulation.outputs import note_strikes, note_switches
+from ptp_symbolic.simulation.passage import (
+    contact_table,
+    new_tangents,
+    new_watch,
+    refuse_start,
+)
+from ptp_symbolic.simulation.pressed import fill_guards
 from ptp_symbolic.simulation.sampling import (
     SAMPLING,
     Sampling,
@@ -75,36 +90,28 @@ FloatArray = NDArray[np.float64]
 MOST_STEPS = 1e9
 
 _V, _M, _I = VECTOR, MATRIX, INTEGERS
-_WORK = types.Tuple((_M, _M, _M, _M, _I, _V, _V, _V, _V, _V, types.int64[:, ::1], _I, _M))
-_RECORD = types.Tuple((_V, _M, CUBE, _M, _M, _V, _M, _V, _I))
+_WORK = types.Tuple((_M, _M, _M, _M, _I, _V, _V, _V, types.int64[:, ::1]))
 
 
 @kernel
-def take_step(equations, inputs, t, t_end, x, m, work, record):
+def take_step(equations, inputs, t, t_end, x, watch, tangents, work, record):
     """Step from t to t_end in s; inputs.ahead holds the inputs at t. Returns a status."""
     record.clock[TIME] = t
-    h, rates, u = t_end - t, equations.friction_rates, inputs.u
+    h, u, m, rigid = t_end - t, inputs.u, watch.m, is_rigid(equations.contacts)
     if not inputs.held:
         evaluate_inputs(t_end, -1, *inputs.table, inputs.cursor, u)
     fixed_mode_step(equations, t, h, x, inputs.ahead, u, m, work)
-    if len(m) > 0:
-        call(equations.guards, t_end, work.end, u, equations.p, m, work.g)
-        copy(m, work.was)
-        allow_all(work.refused)
-        if correct_a_mode(work.end, m, work.g, rates, work.refused):
-            copy(work.was, m)
-            sweeps = mode_finding_step(equations, t, h, x, u, m, work)
-            if sweeps == 0:
-                return UNDECIDED
-            record.counts[INSTANT] = max(record.counts[INSTANT], sweeps)
-            note_switches(t_end, m, work.was, len(rates), equations.contacts, record)
+    if len(m) > 0 and not rigid and not find_modes(equations, t, h, x, u, watch, work, record):
+        return UNDECIDED
     if not is_finite(work.end, LARGEST_STATE):
         return DIVERGED
-    if is_outside(work.end, work):
-        stop_at_bound(t, h, x, work.end, work, record.clock)
+    if is_outside(work.end, watch):
+        stop_at_bound(t, h, x, work.end, watch, record.clock)
         return OUTSIDE
     if len(record.ledger) > 0:
         add_work(equations, t, t_end, x, inputs.ahead, u, m, work.end, record)
+    if rigid and not land(equations, t_end, work.end, u, watch, tangents, record):
+        return UNDECIDED
     for i in range(len(x)):
         x[i] = work.end[i] if abs(work.end[i]) > SMALLEST else 0.0
     copy(u, inputs.ahead)
@@ -113,14 +120,61 @@ def take_step(equations, inputs, t, t_end, x, m, work, record):
 
 
 @inlined
-def take_steps(equations, inputs, begin, end, step, x, m, work, record):
+def find_modes(equations, t, h, x, u, watch, work, record):
+    """Repeat a step whose modes do not fit its end, with modes that do; False if none do."""
+    m, rates = watch.m, equations.friction_rates
+    call(equations.guards, t + h, work.end, u, equations.p, m, watch.g)
+    copy(m, watch.m_before)
+    allow_all(work.refused)
+    if not correct_a_mode(work.end, m, watch.g, rates, work.refused):
+        return True
+    copy(watch.m_before, m)
+    sweeps = mode_finding_step(equations, t, h, x, u, watch, work)
+    if sweeps == 0:
+        return False
+    record.counts[INSTANT] = max(record.counts[INSTANT], sweeps)
+    note_switches(t + h, m, watch.m_before, len(rates), equations.contacts, record)
+    return True
+
+
+@inlined
+def is_rigid(contacts):
+    """Whether some bodies are rigid where they meet."""
+    found = False
+    for contact in range(len(contacts)):
+        found = found or contacts[contact, 2] != SPRUNG
+    return found
+
+
+@inlined
+def land(equations, t, x, u, watch, tangents, record):
+    """Let faces that have closed by t strike, and friction follow; False when that does not end.
+
+    Faces that have let go and approach again before the gap has opened would bounce for ever.
+    """
+    m, frictions, contacts = watch.m, len(equations.friction_rates), equations.contacts
+    fill_guards(equations, t, x, u, watch)
+    if largest_violation(x, m, watch.g, equations.friction_rates) <= 0.0:
+        return True
+    for contact in range(len(contacts)):
+        contacts[contact, SETTLING] = 1 if m[frictions + 2 * contact] != 0.0 else 0
+    copy(m, watch.m_before)
+    if not settle(equations, t, x, u, watch, tangents):
+        return False
+    note_switches(t, m, watch.m_before, frictions, contacts, record)
+    note_strikes(watch, record)
+    return True
+
+
+@inlined
+def take_steps(equations, inputs, begin, end, step, x, watch, tangents, work, record):
     """Go from begin to end in equal steps of at most `step` s. Returns a status."""
     count = max(1, int(np.ceil((end - begin) / step - 1e-9)))
     h = (end - begin) / count
     for index in range(count):
         t = begin + index * h
         t_end = end if index + 1 == count else begin + (index + 1) * h
-        status = take_step(equations, inputs, t, t_end, x, m, work, record)
+        status = take_step(equations, inputs, t, t_end, x, watch, tangents, work, record)
         if status != DONE:
             return status
     return DONE
@@ -147,6 +201,14 @@ def write_output(equations, t, x, u, m, record):
     record.counts[OUTPUT] = output + 1
 
 
+@inlined
+def begin_modes(equations, t, x, u, watch, tangents, work, record):
+    """Find the modes of the start; those of rigid contacts come with it. False when none fit."""
+    if is_rigid(equations.contacts):
+        return land(equations, t, x, u, watch, tangents, record)
+    return choose_start_modes(equations, t, x, u, watch, work)
+
+
 def compiled_runner(sources: int) -> Callable[..., int]:
     """The compiled runner, stamped with the `sources` it comes from (see `source_stamp`)."""
 
@@ -162,18 +224,19 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             types.boolean,  # inputs are held between times
             _M,  # inputs: at the end and at the start of a step [2, nu]
             _V,  # x, changed in place
-            _V,  # modes, changed in place
             types.float64,  # longest step in s: every interval is cut into equal ones
+            WATCH_TYPE,
+            TANGENTS_TYPE,
             _WORK,
-            _RECORD,
+            RECORD_TYPE,
             SAMPLING,
         ),
         cache=True,
         **KERNEL,
     )
     def run_fixed(
-        functions, p, friction_rates, zero_at_rest, contacts, table, cursor, held, u, x, m, step,
-        work, record, sampling,
+        functions, p, friction_rates, zero_at_rest, contacts, table, cursor, held, u, x, step,
+        watch, tangents, work, record, sampling,
     ):  # fmt: skip
         """Integrate from the first to the last output time; inputs jump at no other time."""
         record = Record(*record)
@@ -183,16 +246,18 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             zero_at_rest, functions[5], functions[6], contacts,
         )  # fmt: skip
         inputs, work = Inputs(table, cursor, held, u[0], u[1]), StepWork(*work)
-        sampling = Sampling(*sampling)
-        times = record.times
+        watch, tangents, sampling = Watch(*watch), Tangents(*tangents), Sampling(*sampling)
+        m, times = watch.m, record.times
         record.clock[TIME] = times[0]
-        if is_outside(x, work):
+        if is_outside(x, watch):
             return OUTSIDE
         for interval in range(len(times)):
             begin = times[interval]
             evaluate_inputs(begin, 1, *inputs.table, inputs.cursor, inputs.ahead)
             sample_now(equations, inputs.ahead, begin, x, m, sampling)
-            if interval == 0 and not choose_start_modes(equations, begin, x, inputs.ahead, m, work):
+            if interval == 0 and not begin_modes(
+                equations, begin, x, inputs.ahead, watch, tangents, work, record
+            ):
                 return UNDECIDED
             write_output(equations, begin, x, inputs.ahead, m, record)
             if interval + 1 == len(times):
@@ -202,7 +267,9 @@ def compiled_runner(sources: int) -> Callable[..., int]:
                 if begin > times[interval]:
                     sample_now(equations, inputs.ahead, begin, x, m, sampling)
                 end = next_stop(times[interval + 1], sampling)
-                status = take_steps(equations, inputs, begin, end, step, x, m, work, record)
+                status = take_steps(
+                    equations, inputs, begin, end, step, x, watch, tangents, work, record
+                )
                 if status != DONE:
                     return status
                 begin = end
@@ -248,13 +315,8 @@ def pass_in_steps(
     """Simulate `model` from x [n] in steps of at most `step` s; outputs at `times` [k] in s.
 
     Every output time and every jump of an input is the end of a step. Raises InputError for a step
-    that is no positive time or makes too many steps, and for rigid bodies that strike each other.
+    that is no positive time or makes too many steps, and as `refuse_start` does.
     """
-    if model.contacts[:, 2].any():
-        raise InputError(
-            "Method 'fixed_step' locates no impacts of rigid faces; choose rosenbrock or"
-            " runge_kutta, or backlash of the kind dead_zone."
-        )
     duration = times[-1] - times[0]
     if not 0.0 < step < np.inf or duration / step > MOST_STEPS:
         raise InputError(
@@ -263,13 +325,16 @@ def pass_in_steps(
         )
     inner = inputs.stops[(inputs.stops > times[0]) & (inputs.stops < times[-1])]
     grid = np.unique(np.concatenate([times, inner]))
-    n, nu, modes, z = len(x), len(model.input_names), len(model.mode_names), np.zeros
-    frictions = len(model.friction_rates)
-    x, m = x.copy(), z(modes)
+    n, nu, z = len(x), len(model.input_names), np.zeros
+    x, u, none = x.copy(), z((2, nu)), z(0, np.int64)
+    watch, tangents = new_watch(model, n, p), new_tangents(z((n, 0)), none, z(nu, np.int64), 0, nu)
+    if model.contacts[:, 2].any():
+        evaluate_inputs(times[0], 1, *inputs.arrays, inputs.new_cursor(), u[0])
+        model.module.initial_modes(times[0], x, u[0], p, watch.m)
+        refuse_start(model, x, u[0], p, watch)
     work = StepWork(
         z((n, n)), z((n, nu)), z((n, len(p))), z((n, n)), z(n, np.int64), z(n), z(n), z(n),
-        z(modes), z(3 * frictions + 2 * (modes - frictions)), z((frictions, 2), np.int64),
-        limited_states(model), model.domain(p),
+        z((len(model.friction_rates), 2), np.int64),
     )  # fmt: skip
     record = Record(
         grid, z((len(grid), n)), z((0, n, 0)), z((len(grid), 3)), z((event_room, 3)), z(3),
@@ -278,8 +343,8 @@ def pass_in_steps(
     status = runner()(
         addresses(model.module), p, model.friction_rates, model.zero_at_rest,
         contact_table(model),
-        inputs.arrays, inputs.new_cursor(), inputs.held, z((2, nu)), x, m, float(step),
-        tuple(work), tuple(record),
+        inputs.arrays, inputs.new_cursor(), inputs.held, u, x, float(step),
+        tuple(watch), tuple(tangents), tuple(work), tuple(record),
         tuple(new_sampling(model, p, x, times, 0)),
     )  # fmt: skip
     kept, counts = np.searchsorted(grid, times), record.counts

@@ -16,7 +16,6 @@ from ptp_symbolic.simulation.domain import is_finite, is_outside
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.kernels import (
     CHATTERING,
-    CUBE,
     DIVERGED,
     DONE,
     INSTANT,
@@ -26,11 +25,15 @@ from ptp_symbolic.simulation.kernels import (
     LENGTH,
     MATRIX,
     OUTSIDE,
+    RECORD_TYPE,
     SOURCES,
+    STEP_TYPE,
     TABLE,
     TABLE_OF_CONTACTS,
+    TANGENTS_TYPE,
     TIME,
     VECTOR,
+    WATCH_TYPE,
     Equations,
     Inputs,
     Record,
@@ -39,7 +42,6 @@ from ptp_symbolic.simulation.kernels import (
     Watch,
     copy,
     flush,
-    kernel,
     merged,
     source_stamp,
 )
@@ -76,13 +78,7 @@ MAX_INSTANT_EVENTS = 100
 SHORTEST = 1e-11  # s
 INSTANT_STEP = 1e-10  # s
 
-_V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
-_STEP = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V))
-_WATCH = types.Tuple(
-    (_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M, _I, _M, _V, _V)
-)
-_TANGENTS = types.Tuple((_V, _M, _I, _I, _M, _V, _V, _V, _C, _M, _M, _M, _M))
-_RECORD = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
+_V, _M, _I = VECTOR, MATRIX, INTEGERS
 
 
 @merged
@@ -102,7 +98,7 @@ def enter(equations, inputs, t, x, watch, tangents, record):
     return True
 
 
-@kernel
+@merged
 def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tangents, record):
     """Take steps up to `stop`; returns a status."""
     clock, counts = record.clock, record.counts
@@ -218,10 +214,10 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             _V,  # stops, the first is the start
             _V,  # rtol, largest step
             _V,  # atol
-            _STEP,
-            _WATCH,
-            _TANGENTS,
-            _RECORD,
+            STEP_TYPE,
+            WATCH_TYPE,
+            TANGENTS_TYPE,
+            RECORD_TYPE,
             SAMPLING,
         ),
         cache=True,

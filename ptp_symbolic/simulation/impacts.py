@@ -12,6 +12,7 @@ from ptp_symbolic.simulation.pressed import HELD, PRESSED, RESTING_SPEED
 
 DEAD_BAND = 1e-12  # rad/s
 SPRUNG = 0
+SETTLING = 4  # flag of a contact whose next bounce would be shorter than a step of fixed length
 
 
 @kernel
@@ -48,7 +49,9 @@ def strike(contact, equations, t, x, u, watch, tangents):
     m[where + 1] = 0.0
     call(equations.impacts, t, x, u, equations.p, m, changes)
     speed = abs(x[equations.contacts[contact, 0]] - x[equations.contacts[contact, 1]])
-    restitution = changes[at + n] if changes[at + n] * speed > RESTING_SPEED else 0.0
+    bounces = equations.contacts[contact, SETTLING] == 0
+    bounces = bounces and changes[at + n] * speed > RESTING_SPEED
+    restitution = changes[at + n] if bounces else 0.0
     if tangents.table.shape[1] > 0:
         call(equations.impact_jacobian, t, x, u, equations.p, m, watch.strike_x, watch.strike_p)
         strike_tangents(at, restitution, watch, tangents)

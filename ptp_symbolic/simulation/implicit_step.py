@@ -12,6 +12,7 @@ import numpy as np
 from ptp_symbolic.simulation.emitted import call
 from ptp_symbolic.simulation.kernels import copy, inlined, kernel
 from ptp_symbolic.simulation.linear import factor, solve
+from ptp_symbolic.simulation.pressed import derivative, jacobian
 
 MOST_SWEEPS = 30
 GAMMA = 1.0 - math.sqrt(0.5)
@@ -19,8 +20,7 @@ GAMMA = 1.0 - math.sqrt(0.5)
 
 class StepWork(NamedTuple):
     """Room for one step: Jacobians fx [n, n], fu [n, nu], fp [n, np]; the factored matrix [n, n]
-    and its row exchanges; slopes k1, k2 and state end [n]; modes was; guards g; refused [f, 2];
-    limited [limits]: index of every state with bounds [limits, 2].
+    and its row exchanges; slopes k1, k2 and state end [n]; refused [f, 2].
     """
 
     fx: Any
@@ -31,18 +31,14 @@ class StepWork(NamedTuple):
     k1: Any
     k2: Any
     end: Any
-    was: Any
-    g: Any
     refused: Any
-    limited: Any
-    bounds: Any
 
 
 @kernel
 def factor_step(equations, reach, t, x, u, m, work):
     """Factor the matrix of an implicit step of length `reach` in s; sticking rates are pinned."""
     n, a = len(x), work.matrix
-    call(equations.jacobian, t, x, u, equations.p, m, work.fx, work.fu, work.fp)
+    jacobian(equations, t, x, u, m, work.fx, work.fu, work.fp)
     for i in range(n):
         for j in range(n):
             a[i, j] = -reach * work.fx[i, j]
@@ -69,12 +65,12 @@ def fixed_mode_step(equations, t, h, x, u_start, u_end, m, work):
     """Write the state after a step of order 2 in the modes m into `work.end` [n]."""
     n, k1, k2, end = len(x), work.k1, work.k2, work.end
     factor_step(equations, GAMMA * h, t, x, u_start, m, work)
-    call(equations.derivative, t, x, u_start, equations.p, m, k1)
+    derivative(equations, t, x, u_start, m, k1)
     rest(equations, m, k1)
     solve(work.matrix, work.order, k1)
     for i in range(n):
         end[i] = x[i] + h * k1[i]
-    call(equations.derivative, t + h, end, u_end, equations.p, m, k2)
+    derivative(equations, t + h, end, u_end, m, k2)
     for i in range(n):
         k2[i] -= 2.0 * k1[i]
     rest(equations, m, k2)
@@ -84,17 +80,17 @@ def fixed_mode_step(equations, t, h, x, u_start, u_end, m, work):
 
 
 @kernel
-def mode_finding_step(equations, t, h, x, u, m, work):
-    """Write the state after an implicit Euler step into `work.end` [n] and its modes into m.
+def mode_finding_step(equations, t, h, x, u, watch, work):
+    """Write the state after an implicit Euler step into `work.end` [n], its modes into `watch.m`.
 
     Returns the number of mode sets tried, or 0 when none of MOST_SWEEPS sets is consistent.
     """
-    rates, k, end = equations.friction_rates, work.k1, work.end
-    copy(m, work.was)
+    rates, k, end, m = equations.friction_rates, work.k1, work.end, watch.m
+    copy(m, watch.m_before)
     allow_all(work.refused)
     for sweep in range(1, MOST_SWEEPS + 1):
         factor_step(equations, h, t + h, x, u, m, work)
-        call(equations.derivative, t + h, x, u, equations.p, m, k)
+        derivative(equations, t + h, x, u, m, k)
         for i in range(len(x)):
             k[i] *= h
         for f in range(len(rates)):
@@ -104,10 +100,10 @@ def mode_finding_step(equations, t, h, x, u, m, work):
         for i in range(len(x)):
             end[i] = x[i] + k[i]
             friction = equations.zero_at_rest[i]
-            if friction >= 0 and m[friction] == 0.0 and work.was[friction] != 0.0:
+            if friction >= 0 and m[friction] == 0.0 and watch.m_before[friction] != 0.0:
                 end[i] = 0.0
-        call(equations.guards, t + h, end, u, equations.p, m, work.g)
-        if not correct_a_mode(end, m, work.g, rates, work.refused):
+        call(equations.guards, t + h, end, u, equations.p, m, watch.g)
+        if not correct_a_mode(end, m, watch.g, rates, work.refused):
             return sweep
     return 0
 
@@ -176,15 +172,16 @@ def correct_contact(contact, frictions, m, g):
 
 
 @kernel
-def choose_start_modes(equations, t, x, u, m, work):
-    """Write the modes that fit the state at the start into m; False when none do."""
+def choose_start_modes(equations, t, x, u, watch, work):
+    """Write the modes that fit the state at the start into `watch.m`; False when none do."""
+    m = watch.m
     for i in range(len(m)):
         m[i] = 0.0
     for f in range(len(equations.friction_rates)):
         m[f] = np.sign(x[equations.friction_rates[f]])
     allow_all(work.refused)
     for _ in range(MOST_SWEEPS):
-        call(equations.guards, t, x, u, equations.p, m, work.g)
-        if not correct_a_mode(x, m, work.g, equations.friction_rates, work.refused):
+        call(equations.guards, t, x, u, equations.p, m, watch.g)
+        if not correct_a_mode(x, m, watch.g, equations.friction_rates, work.refused):
             return True
     return False

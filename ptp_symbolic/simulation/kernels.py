@@ -33,9 +33,10 @@ class Equations(NamedTuple):
     """The emitted functions of a model, its parameters p [np], and where its frictions act.
 
     friction_rates: state index of the rate of every friction; zero_at_rest [n]: per state the
-    friction that sets it to zero when it comes to rest, or -1; contacts [c, 4]: state index of the
+    friction that sets it to zero when it comes to rest, or -1; contacts [c, 5]: state index of the
     rates at the gear output and at the joint; 0 for a sprung contact, 1 for rigid bodies, 2 for
-    rigid bodies whose joint is held in the gap; 1 while such a joint is pressed, see `pressed`.
+    rigid bodies whose joint is held in the gap; 1 while such a joint is pressed, see `pressed`; 1
+    while strikes do not bounce, see `fixed_step`.
     """
 
     derivative: Any
@@ -163,6 +164,15 @@ class Record(NamedTuple):
     powers: Any
     clock: Any
     counts: Any
+
+
+_V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
+STEP_TYPE = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V))
+WATCH_TYPE = types.Tuple(
+    (_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M, _I, _M, _V, _V)
+)
+TANGENTS_TYPE = types.Tuple((_V, _M, _I, _I, _M, _V, _V, _V, _C, _M, _M, _M, _M))
+RECORD_TYPE = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
 
 
 def source_stamp() -> int:

@@ -2,7 +2,7 @@
 
 from ptp_symbolic.simulation.domain import past_bound
 from ptp_symbolic.simulation.input_values import evaluate_inputs
-from ptp_symbolic.simulation.kernels import inlined, kernel
+from ptp_symbolic.simulation.kernels import inlined, kernel, merged
 from ptp_symbolic.simulation.modes import largest_violation, violation
 from ptp_symbolic.simulation.pressed import fill_guards
 from ptp_symbolic.simulation.steps import attempt, curve, fill_dense
@@ -98,7 +98,7 @@ def root_on_curve(equations, inputs, t, h, high, step, watch):
     return high
 
 
-@kernel
+@merged
 def locate_event(method, equations, inputs, t, h, fraction, x, step, watch):
     """Length of the step that lands just past the first event; the attempt is left at that step.
 

@@ -98,12 +98,12 @@ def pass_through(
     n, nu, module = len(x), len(model.input_names), model.module
     none = np.zeros(0, dtype=np.int64)
     s = np.zeros((n, 0)) if s is None else s.copy()
-    tangents = _tangents(
+    tangents = new_tangents(
         s, none if columns is None else columns,
         np.full(nu, -1) if delay_column is None else delay_column, len(p), nu,
     )  # fmt: skip
     x, u, cursor = x.copy(), np.zeros((3, nu)), inputs.new_cursor()
-    watch = _watch(model, n, p)
+    watch = new_watch(model, n, p)
     hybrid.evaluate_inputs(stops[0], 1, *inputs.arrays, cursor, u[0])
     module.initial_modes(stops[0], x, u[0], p, watch.m)
     refuse_start(model, x, u[0], p, watch)
@@ -136,8 +136,8 @@ def _step(n: int, nu: int, parameters: int, solved: int) -> Step:
 
 
 def contact_table(model: Model) -> IntArray:
-    """Rates, rule and the flag PRESSED, which is not set yet, of every contact [c, 4]."""
-    return np.pad(model.contacts, ((0, 0), (0, 1)))
+    """Rates and rule of every contact [c, 5], and the flags PRESSED and SETTLING, not set yet."""
+    return np.pad(model.contacts, ((0, 0), (0, 2)))
 
 
 def limited_states(model: Model) -> IntArray:
@@ -145,7 +145,8 @@ def limited_states(model: Model) -> IntArray:
     return np.array([model.state_names.index(name) for name, _ in model.limits], np.int64)
 
 
-def _watch(model: Model, n: int, p: FloatArray) -> Watch:
+def new_watch(model: Model, n: int, p: FloatArray) -> Watch:
+    """Room for the guards of a machine of n states, with the bounds of its domain at p [np]."""
     parameters = len(p)
     frictions, modes = len(model.friction_rates), len(model.mode_names)
     elements = frictions + (modes - frictions) // 2
@@ -180,9 +181,10 @@ def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watc
             )
 
 
-def _tangents(
+def new_tangents(
     s: FloatArray, columns: IntArray, delay_column: IntArray, parameters: int, nu: int
 ) -> Tangents:
+    """Room for the tangents s [n, ns]; see `pass_through`."""
     (n, ns), z = s.shape, np.zeros
     return Tangents(
         s.reshape(-1), s, columns, delay_column, z((STAGES, n * ns)), z(n * ns), z(n * ns),

@@ -2,7 +2,7 @@
 
 from ptp_symbolic.simulation import rosenbrock, runge_kutta
 from ptp_symbolic.simulation.input_values import evaluate_inputs
-from ptp_symbolic.simulation.kernels import copy, inlined, kernel
+from ptp_symbolic.simulation.kernels import copy, inlined, kernel, merged
 from ptp_symbolic.simulation.pressed import derivative
 
 RUNGE_KUTTA, ROSENBROCK = 0, 1
@@ -68,7 +68,7 @@ def curve(fraction, step, out):
         out[a] = d[0, a] + fraction * (d[1, a] + fraction * high)
 
 
-@kernel
+@merged
 def push_tangents(method, equations, inputs, t, h, m, step, tangents):
     """Carry the tangents over an accepted step."""
     if method == ROSENBROCK:
