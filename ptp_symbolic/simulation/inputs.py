@@ -7,6 +7,7 @@ which is what an integration step that ends at the jump must see.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -56,6 +57,19 @@ class InputSignal:
         _refuse_unsorted(self.breaks, "break times")
         if np.any(self.sweep[:, 3] >= self.sweep[:, 4]):
             raise InputError("Input signal: a sine sweep ends before it starts; give t0 < t1.")
+
+    @cached_property
+    def jumps(self) -> FloatArray:
+        """Times at which the value or a derivative differs before and after."""
+        c0, c1, c2, c3 = self.coefficients.T
+        s = np.diff(self.breaks)
+        values, slopes = c0 + s * (c1 + s * (c2 + s * c3)), c1 + s * (2 * c2 + 3 * s * c3)
+        ends = np.array([values, slopes, c2 + 3 * s * c3, c3]).T
+        outside = np.zeros((1, 4))
+        left = np.concatenate([outside, ends])
+        right = np.concatenate([self.coefficients, outside])
+        left[0, 0], right[-1, 0] = c0[0], ends[-1, 0]
+        return np.append(self.breaks[np.any(left != right, axis=1)], self.sweep[:, 3:])
 
 
 def _refuse_unsorted(times: FloatArray, what: str) -> None:
@@ -231,20 +245,7 @@ def stack(signals: Sequence[InputSignal]) -> InputTable:
         np.cumsum([0, *[len(parts[i]) for parts in lists]], dtype=np.int64) for i in range(3)
     )
     breaks = np.concatenate([np.empty(0), *[s.breaks for s in signals]])
-    stops = np.unique(np.concatenate([np.empty(0), *[_jumps(s) for s in signals]]))
+    stops = np.unique(np.concatenate([np.empty(0), *[s.jumps for s in signals]]))
     return InputTable(
         breaks, coefficients, offsets, sines, sine_offsets, sweeps, sweep_offsets, stops
     )
-
-
-def _jumps(signal: InputSignal) -> FloatArray:
-    """Times at which the value or a derivative of the signal differs before and after."""
-    c0, c1, c2, c3 = signal.coefficients.T
-    s = np.diff(signal.breaks)
-    values, slopes = c0 + s * (c1 + s * (c2 + s * c3)), c1 + s * (2 * c2 + 3 * s * c3)
-    ends = np.array([values, slopes, c2 + 3 * s * c3, c3]).T
-    outside = np.zeros((1, 4))
-    left = np.concatenate([outside, ends])
-    right = np.concatenate([signal.coefficients, outside])
-    left[0, 0], right[-1, 0] = c0[0], ends[-1, 0]
-    return np.append(signal.breaks[np.any(left != right, axis=1)], signal.sweep[:, 3:])

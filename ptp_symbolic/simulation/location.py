@@ -11,6 +11,7 @@ MISSES, NEAR_START = 4, 0.01
 TIME_RESOLUTION = 1e-12  # s
 LANDING = 2e-12  # s; how far past an event a step may end
 NEARLY = 0.25
+NEARBY = 1e-3
 
 
 @inlined
@@ -103,17 +104,22 @@ def locate_event(method, equations, inputs, t, h, fraction, x, step, watch):
     """Length of the step that lands just past the first event; the attempt is left at that step.
 
     The root on the curve is only as good as the curve: the step itself is repeated until it ends
-    past the event and no more than LANDING after it. Where a few such steps end before any event,
-    the last of them is taken: the next step begins nearer and its curve is better. Only near the
-    start of a step the search strides ahead, or no progress would be made.
+    past the event and no more than LANDING after it; how fast the mode ends, the curve tells too.
+    Where a few such steps end before any event, the last of them is taken: the next step begins
+    nearer and its curve is better. Only near the start of a step the search strides ahead, or no
+    progress would be made.
     """
-    length = root_on_curve(equations, inputs, t, h, fraction, step, watch) * h
+    root = root_on_curve(equations, inputs, t, h, fraction, step, watch)
+    before = on_curve(equations, inputs, t, h, (1.0 - NEARBY) * root, step, watch)
+    after = on_curve(equations, inputs, t, h, root, step, watch)
+    length, rate = root * h, (after - before) / (NEARBY * root * h)
     low, high = 0.0, h
-    before, last, reach, misses = 0.0, -1.0, LANDING, 0
+    last, reach, misses = -1.0, LANDING, 0
     for _ in range(60):
         attempt(method, equations, inputs, t, length, x, watch.m, step)
         value = violation_at(equations, inputs, t + length, step.end, watch)
-        rate = (value - before) / (length - last) if last >= 0.0 and length != last else 0.0
+        if last >= 0.0:
+            rate = (value - before) / (length - last) if length != last else 0.0
         before, last = value, length
         if not value <= 0.0:  # also when it is not a number
             high = length

@@ -137,7 +137,10 @@ def _step(n: int, nu: int, parameters: int, solved: int) -> Step:
 
 def contact_table(model: Model) -> IntArray:
     """Rates and rule of every contact [c, 5], and the flags PRESSED and SETTLING, not set yet."""
-    return np.pad(model.contacts, ((0, 0), (0, 2)))
+    rules = model.contacts
+    table = np.zeros((len(rules), 5), dtype=np.int64)
+    table[:, :3] = rules
+    return table
 
 
 def limited_states(model: Model) -> IntArray:
