@@ -29,18 +29,18 @@ UNEVEN, NEAR, FAR = 1.2, 3.0, 30.0
 
 
 def escape(task: Task, trial: Trial) -> Trial:
-    """Go on until nothing is gained; where some run is worse than rounding alone explains, with
-    derivatives over finite steps too.
+    """Go on until nothing is gained; several effects, or a run that is worse than rounding alone
+    explains, with derivatives over finite steps too.
     """
     best = _from_table(task, trial)
     if best.train.rms_counts() > NEARBY_COUNTS:
         return best
     for _ in range(ROUNDS * max(len(trial.candidates), 1)):
-        before = best.train.cost
-        if _is_uneven(best.train):
+        before, several = best.train.cost, len(best.candidates) > 1
+        if several or _is_uneven(best.train):
             best = _with_new_places(task, best)
         best = continue_fits(task, [best], SMOOTH)[0]
-        if _is_uneven(best.train):
+        if several or _is_uneven(best.train):
             best = continue_fits(task, [best], AGAIN)[0]
             task.progress(f"leaving a local minimum: {best.train.rms_counts():.3f} counts rms")
         if best.train.cost > SETTLED * before:
