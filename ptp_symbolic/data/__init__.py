@@ -1,5 +1,6 @@
 """Measured logs: read, checked and converted to SI units."""
 
-from ptp_symbolic.data.log import Log, read_inputs, read_log, read_logs, read_split_logs
+from ptp_symbolic.data.log import Log, read_inputs, read_log, read_logs
+from ptp_symbolic.data.split import read_split_logs
 
 __all__ = ["Log", "read_inputs", "read_log", "read_logs", "read_split_logs"]

@@ -78,7 +78,7 @@ def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...
     Logs of the same file name are told apart by their folder (`train/crawl`). Raises InputError as
     `read_log` does, for a folder without logs, and for a log that is given twice.
     """
-    files = [file for path in paths for file in _csv_files(Path(path))]
+    files = [file for path in paths for file in csv_files(Path(path))]
     if not files:
         raise InputError("No log is given; name at least one CSV or a folder of them.")
     places = [file.resolve() for file in files]
@@ -96,35 +96,8 @@ def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...
     return tuple(logs)
 
 
-def read_split_logs(
-    train: Iterable[Path | str], validate: Iterable[Path | str], platform: Platform
-) -> tuple[tuple[Log, ...], tuple[Log, ...]]:
-    """Read the logs to fit and those to judge by, which must be other runs.
-
-    Raises InputError as `read_logs` does, and for a run that is in both, under whatever name.
-    """
-    places = [[f for path in paths for f in _csv_files(Path(path))] for paths in (train, validate)]
-    fitted, judging = (read_logs(files, platform) for files in places)
-    for file, log in zip(places[1], judging, strict=True):
-        for other, known in zip(places[0], fitted, strict=True):
-            if _same_run(log, known):
-                raise InputError(
-                    f"{file}: holds the same run as {other}, which is given to be fitted; a fit is"
-                    " judged by runs that it has never seen: give others to --validate."
-                )
-    return fitted, judging
-
-
-def _same_run(log: Log, other: Log) -> bool:
-    """Whether both hold the same samples, wherever their clocks started."""
-    return (
-        np.array_equal(log.outputs, other.outputs)
-        and np.array_equal(log.inputs, other.inputs)
-        and np.allclose(log.time - log.time[0], other.time - other.time[0])
-    )
-
-
-def _csv_files(path: Path) -> list[Path]:
+def csv_files(path: Path) -> list[Path]:
+    """The logs at `path`: itself, or those of a folder. Raises InputError where it has none."""
     if not path.is_dir():
         return [path]
     files = sorted(file for file in path.glob("*.csv") if not file.name.startswith("."))

@@ -81,7 +81,11 @@ def judge(task: Task, trial: Trial) -> Trial:
 def try_candidates(
     task: Task, bases: Sequence[Trial], candidates: Sequence[Candidate]
 ) -> list[Trial]:
-    """Refit every base with each candidate added; the best are polished and judged, best first."""
+    """Refit every base with each candidate added; the best are polished and judged, best first.
+
+    Of several effects at once more are polished: in their flat valleys the order is late to show.
+    """
+    effects = len(bases[0].candidates) + 1
     groups, left = first_round(task, bases, candidates)
     second = [freed for group in groups for freed in _freed(task, group)]
     third = _distinct(
@@ -92,10 +96,11 @@ def try_candidates(
         ]
     )
     task.progress("polishing the best candidates")
-    polished = continue_fits(task, _best(third, FINISHED, CLOSE_FACTOR), LAST)
-    polished = continue_fits(task, polished, SMOOTH)
-    polished = [escape(task, t) if t is polished[0] else t for t in polished]
-    judged = [judge(task, trial) for trial in polished]
+    chosen = _best(third, FINISHED * effects, CLOSE_FACTOR**effects)
+    polished = continue_fits(task, chosen, LAST)
+    best = continue_fits(task, polished[:FINISHED], SMOOTH)
+    best[:1] = [escape(task, trial) for trial in best[:1]]
+    judged = [judge(task, trial) for trial in (*best, *polished[FINISHED:])]
     for trial in sorted(judged, key=held_out_cost):
         error = np.sqrt(held_out_cost(trial))
         task.progress(f"{' + '.join(trial.keys)}: {error:.3f} counts rms on held-out runs")

@@ -1,5 +1,6 @@
 """A run that is fitted judges nothing, under whatever name it comes."""
 
+import math
 from pathlib import Path
 
 import pytest
@@ -47,3 +48,27 @@ def test_runs_that_differ_in_one_sample_are_two(tmp_path: Path) -> None:
     first, other = write(tmp_path, "first.csv", text()), write(tmp_path, "other.csv", text(4.51))
     fitted, judging = read_split_logs([other], [first], PLATFORM)
     assert [log.name for log in (*fitted, *judging)] == ["other", "first"]
+
+
+def swing(frequency: float, first: int = 0, count: int = 400) -> str:
+    """A machine at rest for half a second, then swinging; the samples from `first` on."""
+    rows = []
+    for k in range(first, first + count):
+        phase = frequency * 0.005 * max(k - 100, 0)
+        angle = round(math.sin(phase) * 7200) / 7200
+        rows.append(f"{0.005 * (k - first):.4f},{math.cos(phase):.6f},{angle:.9f}")
+    return "\n".join(["time [s],pan_voltage [V],pan_angle [rad]", *rows, ""])
+
+
+def test_a_part_of_a_fitted_run_judges_nothing(tmp_path: Path) -> None:
+    whole = write(tmp_path, "whole.csv", swing(3.0))
+    for name, first, count in (("middle", 150, 60), ("end", 320, 200), ("start", 0, 200)):
+        part = write(tmp_path, f"{name}.csv", swing(3.0, first, count))
+        with pytest.raises(InputError, match=f"{name}.csv: holds samples of .*whole.csv, which"):
+            read_split_logs([whole], [part], PLATFORM)
+
+
+def test_runs_that_rest_alike_are_two(tmp_path: Path) -> None:
+    whole = write(tmp_path, "whole.csv", swing(3.0))
+    for name, content in (("other", swing(3.1)), ("resting", swing(3.0, 0, 100))):
+        read_split_logs([whole], [write(tmp_path, f"{name}.csv", content)], PLATFORM)
