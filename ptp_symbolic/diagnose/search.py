@@ -83,7 +83,7 @@ def try_candidates(
 ) -> list[Trial]:
     """Refit every base with each candidate added; the best are polished and judged, best first.
 
-    Of several effects at once more are polished: in their flat valleys the order is late to show.
+    Of several effects at once more are pursued: in their flat valleys the order is late to show.
     """
     effects = len(bases[0].candidates) + 1
     groups, left = first_round(task, bases, candidates)
@@ -92,7 +92,7 @@ def try_candidates(
         [
             trial
             for group in second
-            for trial in continue_fits(task, _best(group, PURSUED, DROP_FACTOR), NEXT)
+            for trial in continue_fits(task, _best(group, PURSUED * effects, DROP_FACTOR), NEXT)
         ]
     )
     task.progress("polishing the best candidates")

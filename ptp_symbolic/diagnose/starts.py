@@ -71,9 +71,10 @@ def first_round(
     to the better end, so the two origins do not compete here. At an optimum near the floor its
     response takes the place of a search (see `diagnose.responses`).
     """
+    effects = len(bases[0].candidates) + 1
     candidates = with_lines(task, bases[0].train, candidates)
     near_floor = [base for base in bases if base.train.rms_counts() < NEARBY_COUNTS]
-    promising, rest = most_promising(task, near_floor, candidates, PROMISING)
+    promising, rest = most_promising(task, near_floor, candidates, PROMISING * effects)
     searches = [
         _Search(base, candidate, start, values, z, origin)
         for base in bases
