@@ -23,14 +23,15 @@ from ptp_symbolic.diagnose.trial import (
 from ptp_symbolic.diagnose.verdict import AT_FLOOR
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, run_counts
 
-AGAIN, ROUNDS, SETTLED = Effort(8, 1e-3, FINE, secants=True), 4, 0.97
+AGAIN, ROUNDS, SETTLED = Effort(8, 1e-3, FINE, secants=True), 4, 0.998
 PLACES = Effort(10, 1e-4, FINE)
 UNEVEN, NEAR, FAR = 1.2, 3.0, 30.0
+DECLARED_SETTLED = 0.97  # the declared model is begun again from where effects lead
 
 
 def escape(task: Task, trial: Trial) -> Trial:
-    """Go on until nothing is gained; several effects, or a run that is worse than rounding alone
-    explains, with derivatives over finite steps too.
+    """Go on until nothing is gained: by derivatives over finite steps too for several effects, and
+    where a run is worse than rounding alone explains.
     """
     best = _from_table(task, trial)
     if best.train.rms_counts() > NEARBY_COUNTS:
@@ -43,7 +44,7 @@ def escape(task: Task, trial: Trial) -> Trial:
         if several or _is_uneven(best.train):
             best = continue_fits(task, [best], AGAIN)[0]
             task.progress(f"leaving a local minimum: {best.train.rms_counts():.3f} counts rms")
-        if best.train.cost > SETTLED * before:
+        if best.train.cost > (SETTLED if best.candidates else DECLARED_SETTLED) * before:
             break
     return best
 

@@ -36,7 +36,7 @@ class Equations(NamedTuple):
     friction that sets it to zero when it comes to rest, or -1; contacts [c, 5]: state index of the
     rates at the gear output and at the joint; 0 for a sprung contact, 1 for rigid bodies, 2 for
     rigid bodies whose joint is held in the gap; 1 while such a joint is pressed, see `pressed`; 1
-    while strikes do not bounce, see `fixed_step`.
+    while strikes do not bounce, see `fixed_runner`.
     """
 
     derivative: Any
