@@ -18,15 +18,18 @@ from ptp_symbolic.diagnose.trial import (
     Task,
     Trial,
     continue_fits,
+    fixed_values,
+    restarted,
     start_afresh,
 )
 from ptp_symbolic.diagnose.verdict import AT_FLOOR
+from ptp_symbolic.identify.coordinates import to_search, to_values
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, run_counts
 
-AGAIN, ROUNDS, SETTLED = Effort(8, 1e-3, FINE, secants=True), 4, 0.998
+AGAIN, ROUNDS, SETTLED = Effort(8, 1e-3, FINE, secants=True), 4, 0.97
 PLACES = Effort(10, 1e-4, FINE)
 UNEVEN, NEAR, FAR = 1.2, 3.0, 30.0
-DECLARED_SETTLED = 0.97  # the declared model is begun again from where effects lead
+HOP, HOPS = 0.02, 3
 
 
 def escape(task: Task, trial: Trial) -> Trial:
@@ -36,17 +39,42 @@ def escape(task: Task, trial: Trial) -> Trial:
     best = _from_table(task, trial)
     if best.train.rms_counts() > NEARBY_COUNTS:
         return best
-    for _ in range(ROUNDS * max(len(trial.candidates), 1)):
-        before, several = best.train.cost, len(best.candidates) > 1
-        if several or _is_uneven(best.train):
+    for index in range(ROUNDS * max(len(trial.candidates), 1)):
+        before = best.train.cost
+        if _is_open(best):
             best = _with_new_places(task, best)
         best = continue_fits(task, [best], SMOOTH)[0]
-        if several or _is_uneven(best.train):
+        if _is_open(best):
             best = continue_fits(task, [best], AGAIN)[0]
             task.progress(f"leaving a local minimum: {best.train.rms_counts():.3f} counts rms")
-        if best.train.cost > (SETTLED if best.candidates else DECLARED_SETTLED) * before:
+        if best.train.cost > SETTLED * before and best.candidates and _is_uneven(best.train):
+            best = _hopped(task, best, index)
+        if best.train.cost > SETTLED * before:
             break
     return best
+
+
+def _is_open(trial: Trial) -> bool:
+    """Whether there may be more to gain."""
+    return len(trial.candidates) > 1 or _is_uneven(trial.train)
+
+
+def _hopped(task: Task, trial: Trial, seed: int) -> Trial:
+    """`trial` refitted from starts a little way off in every parameter, or itself if that is worse.
+
+    One breakaway at the wrong sample is a minimum of its own; which way leads out, nobody knows.
+    """
+    chance = np.random.default_rng(seed)
+    for _ in range(HOPS):
+        free = restarted(trial.train)
+        phi = to_search(free, trial.train.values) + HOP * chance.choice([-1.0, 1.0], len(free))
+        ahead = to_values(free, phi)
+        begun = [replace(f, start=ahead[f.name]) for f in free]
+        fixed, z = fixed_values(task, begun), trial.train.z
+        fit = fit_parameters(task.model, task.train, begun, fixed, z, LAST, task.executor)
+        if fit.cost < SETTLED * trial.train.cost:
+            return replace(trial, train=fit)
+    return trial
 
 
 def _from_table(task: Task, trial: Trial) -> Trial:
