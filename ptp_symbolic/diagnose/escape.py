@@ -48,7 +48,7 @@ def escape(task: Task, trial: Trial) -> Trial:
             best = continue_fits(task, [best], AGAIN)[0]
             task.progress(f"leaving a local minimum: {best.train.rms_counts():.3f} counts rms")
         if best.train.cost > SETTLED * before and best.candidates and _is_uneven(best.train):
-            best = _hopped(task, best, index)
+            best = _hopped(task, best, index + 1)
         if best.train.cost > SETTLED * before:
             break
     return best
