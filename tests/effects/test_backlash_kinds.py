@@ -26,6 +26,8 @@ REDUCED = JOINT * GEAR / (JOINT + GEAR)
 BODIES = {"J_pan": JOINT, "J_motor_pan": GEAR, "N_pan": 1.0, "gap_pan": GAP, "L_pan": 1e-3}
 FREE = {**BODIES, "K_t_pan": 1e-9}
 DRIVEN = {**BODIES, "K_t_pan": 0.1, "R_pan": 1.0, "b_pan": 0.02}
+UNDAMPED = {name: value for name, value in DRIVEN.items() if name != "b_pan"}
+DRY = UNDAMPED | {"F_c_pan": 0.05, "F_s_pan": 0.08, "F_v_pan": 0.01, "v_s_pan": 0.05}
 PUSHED = {**BODIES, "K_t_pan": 1e-3, "R_pan": 10.0}
 VOLTAGE = {"u_pan": multisine([6.0, 3.0], [0.7, 1.9])}
 PAYLOAD = {
@@ -173,8 +175,7 @@ def test_a_held_load_is_the_play_operator(method: str) -> None:
 def test_a_coasting_load_follows_a_piecewise_integration(method: str) -> None:
     """Equation 2.18 with erratum 29: joined while the torque pushes, of one speed when struck."""
     model = loop.emit(platform("hysteresis_inertia"))
-    parameters = {name: value for name, value in DRIVEN.items() if name != "b_pan"}
-    found = simulate(model, [0.0, 3.0], VOLTAGE, parameters, method=method, rtol=1e-10, atol=1e-11)
+    found = simulate(model, [0.0, 3.0], VOLTAGE, UNDAMPED, method=method, rtol=1e-10, atol=1e-11)
     side, t, x = 0, 0.0, np.zeros(5)
 
     def voltage(t: float) -> float:
@@ -209,13 +210,11 @@ def test_a_coasting_load_follows_a_piecewise_integration(method: str) -> None:
 def test_dry_friction_beside_rigid_faces(kind: str, site: str) -> None:
     """Bodies that rest are struck loose and come to rest again; both methods see the same."""
     model = loop.emit(platform(kind, "csvs_friction", site=site))
-    friction = {"F_c_pan": 0.05, "F_s_pan": 0.08, "F_v_pan": 0.01, "v_s_pan": 0.05}
-    parameters = {k: v for k, v in DRIVEN.items() if k != "b_pan"} | friction
-    runs = [simulate(model, 4.0, VOLTAGE, parameters, method=method) for method in METHODS]
+    runs = [simulate(model, 4.0, VOLTAGE, DRY, method=method) for method in METHODS]
     for found in runs:
         assert_sound(found)
     assert runs[0].x[-1, :4] == pytest.approx(runs[1].x[-1, :4], abs=1e-5)
-    pressed = simulate(model, 50.0, {"u_pan": constant(0.4)}, parameters)
+    pressed = simulate(model, 50.0, {"u_pan": constant(0.4)}, DRY)
     assert site == "gear" or pressed.events[-1].mode == "sticks"
     assert np.ptp(pressed["theta_pan"][10000:]) == 0.0
 
@@ -227,7 +226,7 @@ def test_strikes_on_one_axis_reach_the_play_of_the_other(kind: str) -> None:
     tilt += (EffectDeclaration("backlash", "tilt", None, "elastic_impact"),)
     model = loop.emit(replace(given, effects=(*given.effects, *tilt)))
     axes = {"N_tilt": 1.0, "J_motor_tilt": 0.03, "K_t_tilt": 0.3, "gap_tilt": 0.02, "R_tilt": 1.0}
-    parameters = {n: v for n, v in DRIVEN.items() if n != "b_pan"} | PAYLOAD | axes
+    parameters = UNDAMPED | PAYLOAD | axes
     inputs = VOLTAGE | {"u_tilt": multisine([9.0, 4.0], [0.8, 2.3])}
     runs = [
         simulate(model, 1.0, inputs, parameters, method=method, rtol=1e-10, atol=1e-11)

@@ -6,7 +6,7 @@ import pytest
 from ptp_symbolic import loop, simulate
 from ptp_symbolic.simulation.inputs import constant
 from tests.effects.test_backlash_kinds import (
-    DRIVEN,
+    DRY,
     FREE,
     GAP,
     KINDS,
@@ -54,19 +54,15 @@ def test_bounces_that_end_leave_the_faces_together(e: float) -> None:
 @pytest.mark.parametrize("site", ["gear", "joint"])
 def test_dry_friction_beside_rigid_faces(kind: str, site: str) -> None:
     model = loop.emit(platform(kind, "csvs_friction", site=site))
-    friction = {"F_c_pan": 0.05, "F_s_pan": 0.08, "F_v_pan": 0.01, "v_s_pan": 0.05}
-    parameters = {k: v for k, v in DRIVEN.items() if k != "b_pan"} | friction
-    located = simulate(model, 4.0, VOLTAGE, parameters)
+    located = simulate(model, 4.0, VOLTAGE, DRY)
     angles, missing = [], []
     for step in (1e-4, 1e-5):
-        found = simulate(model, 4.0, VOLTAGE, parameters, method="fixed_step", step=step)
+        found = simulate(model, 4.0, VOLTAGE, DRY, method="fixed_step", step=step)
         angles.append(np.abs(found.x - located.x)[:, [0, 2]].max())
         ledger = found.stored - found.stored[0] - found.supplied + found.dissipated
         missing.append(np.abs(ledger).max() / found.supplied.max())
         assert np.diff(found.dissipated).min() >= 0.0
     assert angles[1] < min(2e-4, 0.2 * angles[0])
     assert missing[1] < min(1e-8, 0.2 * missing[0])
-    pressed = simulate(
-        model, 20.0, {"u_pan": constant(0.4)}, parameters, method="fixed_step", step=1e-3
-    )
+    pressed = simulate(model, 20.0, {"u_pan": constant(0.4)}, DRY, method="fixed_step", step=1e-3)
     assert np.ptp(pressed["theta_pan"][-1000:]) == 0.0
