@@ -10,10 +10,8 @@ from ptp_symbolic.data.log import Log, csv_files, read_logs
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import Platform
 
-EXCERPT, CHANGES = (
-    50,
-    10,
-)  # samples in a row; how often a signal changes in them, or they say little
+EXCERPT = 50  # samples in a row
+CHANGES = 10  # of them differ from the one before, or they say little
 
 
 def read_split_logs(

@@ -19,11 +19,10 @@ from ptp_symbolic.diagnose.trial import (
     Trial,
     continue_fits,
     fixed_values,
-    restarted,
+    moved,
     start_afresh,
 )
 from ptp_symbolic.diagnose.verdict import AT_FLOOR
-from ptp_symbolic.identify.coordinates import to_search, to_values
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, run_counts
 
 AGAIN, ROUNDS, SETTLED = Effort(8, 1e-3, FINE, secants=True), 4, 0.97
@@ -66,10 +65,7 @@ def _hopped(task: Task, trial: Trial, seed: int) -> Trial:
     """
     chance = np.random.default_rng(seed)
     for _ in range(HOPS):
-        free = restarted(trial.train)
-        phi = to_search(free, trial.train.values) + HOP * chance.choice([-1.0, 1.0], len(free))
-        ahead = to_values(free, phi)
-        begun = [replace(f, start=ahead[f.name]) for f in free]
+        begun = moved(trial.train, HOP * chance.choice([-1.0, 1.0], len(trial.train.free)))
         fixed, z = fixed_values(task, begun), trial.train.z
         fit = fit_parameters(task.model, task.train, begun, fixed, z, LAST, task.executor)
         if fit.cost < SETTLED * trial.train.cost:

@@ -14,8 +14,8 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.trial import Task, Trial, fixed_values, restarted, simulated
-from ptp_symbolic.identify.coordinates import FreeParameter, limits, to_search, to_values
+from ptp_symbolic.diagnose.trial import Task, Trial, fixed_values, moved, restarted, simulated
+from ptp_symbolic.identify.coordinates import FreeParameter, limits, to_search
 from ptp_symbolic.identify.fit import Fit, all_values, all_values_at_start
 from ptp_symbolic.identify.intervals import project_out
 
@@ -153,9 +153,7 @@ def _least(residual: FloatArray, columns: FloatArray, most: FloatArray) -> tuple
 def _begun(task: Task, response: _Response) -> Trial:
     """The trial at the amounts of `response`: what switches the effect on grows, the rest stays."""
     base = response.base
-    free = restarted(base.train)
-    ahead = to_values(free, to_search(free, base.train.values) + response.shift)
-    begun = [replace(f, start=ahead[f.name]) for f in free]
+    begun = moved(base.train, response.shift)
     vanishes = {p.name: p.vanishes for p in task.model.parameters}
     whole = response.amounts[""]
     for f in response.start:

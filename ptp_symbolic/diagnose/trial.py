@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.scores import mean_square
-from ptp_symbolic.identify.coordinates import FreeParameter
+from ptp_symbolic.identify.coordinates import FreeParameter, to_search, to_values
 from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters
 from ptp_symbolic.identify.run import Run
@@ -79,6 +79,13 @@ def restarted(fit: Fit) -> tuple[FreeParameter, ...]:
                 float(np.clip(fit.values[f.name], f.lower, f.upper)))
         for f in fit.free
     )  # fmt: skip
+
+
+def moved(fit: Fit, shift: FloatArray) -> list[FreeParameter]:
+    """The free parameters of `fit`, started `shift` [nf] search coordinates from where it ended."""
+    free = restarted(fit)
+    ahead = to_values(free, to_search(free, fit.values) + shift)
+    return [replace(f, start=ahead[f.name]) for f in free]
 
 
 def fixed_values(task: Task, free: Sequence[FreeParameter]) -> dict[str, float]:

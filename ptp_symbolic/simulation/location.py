@@ -11,7 +11,7 @@ MISSES, NEAR_START = 4, 0.01
 TIME_RESOLUTION = 1e-12  # s
 LANDING = 2e-12  # s; how far past an event a step may end
 NEARLY = 0.25
-NEARBY = 1e-3
+NEARBY = 1e-3  # of the way to the root: where the curve is asked how fast a mode ends
 
 
 @inlined
