@@ -38,6 +38,7 @@ from ptp_symbolic.simulation.kernels import (
     INTEGERS,
     KERNEL,
     LARGEST_STATE,
+    MACHINE_TYPES,
     MATRIX,
     OUTPUT,
     OUTSIDE,
@@ -45,19 +46,17 @@ from ptp_symbolic.simulation.kernels import (
     SMALLEST,
     SOURCES,
     STEPS,
-    TABLE,
-    TABLE_OF_CONTACTS,
     TANGENTS_TYPE,
     TIME,
     UNDECIDED,
     VECTOR,
     WATCH_TYPE,
-    Equations,
     Inputs,
     Record,
     Tangents,
     Watch,
     copy,
+    equations_at,
     inlined,
     kernel,
     source_stamp,
@@ -197,14 +196,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
 
     @njit(
         types.int64(
-            _I,  # addresses of the emitted functions
-            _V,  # parameters
-            _I,  # state index of the rate of every friction
-            _I,  # per state the friction that sets it to zero when it comes to rest, or -1
-            TABLE_OF_CONTACTS,
-            TABLE,
-            _I,  # cursor [nu]
-            types.boolean,  # inputs are held between times
+            *MACHINE_TYPES,
             _M,  # inputs: at the end and at the start of a step [2, nu]
             _V,  # x, changed in place
             types.float64,  # longest step in s: every interval is cut into equal ones
@@ -224,10 +216,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         """Integrate from the first to the last output time; inputs jump at no other time."""
         record = Record(*record)
         record.counts[SOURCES] = sources
-        equations = Equations(
-            functions[0], functions[1], functions[2], functions[3], functions[4], p, friction_rates,
-            zero_at_rest, functions[5], functions[6], contacts,
-        )  # fmt: skip
+        equations = equations_at(functions, p, friction_rates, zero_at_rest, contacts)
         inputs, work = Inputs(table, cursor, held, u[0], u[1]), StepWork(*work)
         watch, tangents, sampling = Watch(*watch), Tangents(*tangents), Sampling(*sampling)
         m, times = watch.m, record.times

@@ -23,24 +23,23 @@ from ptp_symbolic.simulation.kernels import (
     KERNEL,
     LARGEST_STATE,
     LENGTH,
+    MACHINE_TYPES,
     MATRIX,
     OUTSIDE,
     RECORD_TYPE,
     SOURCES,
     STEP_TYPE,
-    TABLE,
-    TABLE_OF_CONTACTS,
     TANGENTS_TYPE,
     TIME,
     VECTOR,
     WATCH_TYPE,
-    Equations,
     Inputs,
     Record,
     Step,
     Tangents,
     Watch,
     copy,
+    equations_at,
     flush,
     merged,
     source_stamp,
@@ -201,14 +200,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
     @njit(
         types.int64(
             types.int64,  # method
-            _I,  # addresses of the emitted functions
-            _V,  # parameters
-            _I,  # state index of the rate of every friction
-            _I,  # per state the friction that zeroes it when it comes to rest, or -1
-            TABLE_OF_CONTACTS,
-            TABLE,
-            _I,  # cursor [nu]
-            types.boolean,  # inputs are held between stops
+            *MACHINE_TYPES,
             _M,  # inputs: now, ahead, before [3, nu]
             _V,  # x, changed in place
             _V,  # stops, the first is the start
@@ -230,19 +222,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         """Integrate from the first to the last stop; returns a status, the rest is in `record`."""
         record = Record(*record)
         record.counts[SOURCES] = sources
-        equations = Equations(
-            functions[0],
-            functions[1],
-            functions[2],
-            functions[3],
-            functions[4],
-            p,
-            friction_rates,
-            zero_at_rest,
-            functions[5],
-            functions[6],
-            contacts,
-        )
+        equations = equations_at(functions, p, friction_rates, zero_at_rest, contacts)
         inputs, step, watch = Inputs(table, cursor, held, u[0], u[1]), Step(*step), Watch(*watch)
         tangents, sampling = Tangents(*tangents), Sampling(*sampling)
         record.clock[TIME], record.clock[LENGTH] = stops[0], limits[1]

@@ -167,6 +167,16 @@ class Record(NamedTuple):
 
 
 _V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
+MACHINE_TYPES = (
+    _I,  # addresses of the emitted functions
+    _V,  # parameters
+    _I,  # state index of the rate of every friction
+    _I,  # per state the friction that zeroes it when it comes to rest, or -1
+    TABLE_OF_CONTACTS,
+    TABLE,
+    _I,  # cursor [nu]
+    types.boolean,  # inputs are held between stops
+)
 STEP_TYPE = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V))
 WATCH_TYPE = types.Tuple(
     (_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M, _I, _M, _V, _V)
@@ -185,6 +195,19 @@ def source_stamp() -> int:
     for path in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(path.read_bytes())
     return int.from_bytes(digest.digest()[:7], "big")
+
+
+@inlined
+def equations_at(functions, p, friction_rates, zero_at_rest, contacts):
+    """Equations of the model whose emitted functions have the addresses `functions` [7]."""
+    derivative, jacobian, guards, guard_jacobian, energy, impacts, impact_jacobian = (
+        functions[0], functions[1], functions[2], functions[3], functions[4], functions[5],
+        functions[6],
+    )  # fmt: skip
+    return Equations(
+        derivative, jacobian, guards, guard_jacobian, energy, p, friction_rates, zero_at_rest,
+        impacts, impact_jacobian, contacts,
+    )  # fmt: skip
 
 
 @inlined
