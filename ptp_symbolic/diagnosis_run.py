@@ -2,11 +2,14 @@
 
 import json
 import os
-from collections.abc import Callable, Iterable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from threadpoolctl import threadpool_limits
 
 from ptp_symbolic import loop
 from ptp_symbolic.codegen.effect_equations import effect_equations
@@ -55,6 +58,15 @@ class Output:
     files: Mapping[str, str | bytes]
 
 
+@contextmanager
+def _workers() -> Iterator[Executor]:
+    """One thread per core for runs side by side; threads of the linear algebra would be in their
+    way.
+    """
+    with threadpool_limits(limits=1), ThreadPoolExecutor(os.cpu_count()) as executor:
+        yield executor
+
+
 def effect_keys(platform: Platform) -> list[str]:
     """Keys of the declared effects, ``effect`` or ``effect@axis``."""
     return [e.effect if e.axis is None else f"{e.effect}@{e.axis}" for e in platform.effects]
@@ -71,7 +83,7 @@ def fit_platform(
     """
     logs = read_logs(paths, platform)
     model = loop.emit(platform)
-    with ThreadPoolExecutor(os.cpu_count()) as executor:
+    with _workers() as executor:
         task = _task(platform, model, logs, logs, {}, executor, progress)
         begun = _as_declared(task)
         trial = fit_declared(task) if task.free else begun
@@ -119,7 +131,7 @@ def diagnose_platform(
     declared = effect_keys(platform)
     known = loop.known_values(platform, model)
     off = vanished(model, declared)
-    with ThreadPoolExecutor(os.cpu_count()) as executor:
+    with _workers() as executor:
         task = _task(platform, model, train_logs, validate_logs, off, executor, progress)
         found = diagnose(task, find_candidates(model, declared, known))
     return _write_up(platform, found)
@@ -131,7 +143,7 @@ def _task(
     train: Iterable[Log],
     validate: Iterable[Log],
     off: Mapping[str, float],
-    executor: ThreadPoolExecutor,
+    executor: Executor,
     progress: Progress,
 ) -> Task:
     progress("preparing the simulation (compiles for about a minute once on a new machine)")

@@ -26,7 +26,7 @@ MOST_FREQUENCIES = 1000
 
 def with_lines(task: Task, fit: Fit, candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
     """`candidates` with locked frequencies started at the strongest residual lines of `fit`."""
-    return tuple(_placed(task, fit, candidate) for candidate in candidates)
+    return tuple(task.executor.map(lambda candidate: _placed(task, fit, candidate), candidates))
 
 
 def _placed(task: Task, fit: Fit, candidate: Candidate) -> Candidate:

@@ -27,6 +27,7 @@ FloatArray = NDArray[np.float64]
 DEFAULT_TOLERANCE = Tolerance()
 BLIND = 0.2
 GAP_PLACES, TRIED_PLACES = (-0.9, -0.45, 0.45, 0.9), 3
+ROUNDED = 1.1  # mean square residual over that of rounding alone: no other place fits better
 
 
 @dataclass(frozen=True)
@@ -233,7 +234,8 @@ def _fit_starts(
 ) -> Fit:
     """Runs that share no free parameter are independent: fit the start of each by itself.
 
-    The place in a gap is hard to find from afar: the search begins at the best of several places.
+    The place in a gap is hard to find from afar: the search begins at the best of several places,
+    and then at the next, unless nothing but rounding is left.
     """
     nothing = np.zeros(0)
 
@@ -249,7 +251,11 @@ def _fit_starts(
                 ]
                 begins = [places[i] for i in np.argsort(costs, kind="stable")[:TRIED_PLACES]]
                 start = begins[0]
-        found = [minimise(problem, nothing, [b], effort.iterations, effort.gain) for b in begins]
+        found: list[Optimum] = []
+        for begin in begins:
+            found.append(minimise(problem, nothing, [begin], effort.iterations, effort.gain))
+            if found[-1].cost <= ROUNDED * run.size:
+                break
         return min(found, key=lambda optimum: optimum.cost)
 
     pairs = list(zip(runs, z, strict=True))

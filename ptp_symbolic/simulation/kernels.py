@@ -68,11 +68,12 @@ class Inputs(NamedTuple):
 class Step(NamedTuple):
     """What is known at the start of a step, what an attempt found, and the curve between.
 
-    slope, by_time [n]: dx/dt at the start and its derivative by time alone; stage, k [8, n];
-    end [n]; dense [5, n]: the state as a polynomial in the fraction of the step; fx [n, n],
+    Rows have a width w of n rounded up to a multiple of LANES (see `lanes`), zero beyond n.
+    slope, by_time [w]: dx/dt at the start and its derivative by time alone; stage, k [8, w];
+    end [n]; dense [5, w]: the state as a polynomial in the fraction of the step; fx [n, n],
     fu [n, nu], fp [n, np] at the start; inverse of the matrix of the implicit stages, also by
-    columns, and its row exchanges `order` [n]: [n, n] with tangents, else without the states that
-    are held; point, right [n]: scratch.
+    columns [n, w], with no tangents without the states that are held, and its row exchanges
+    `order` [n]; point, right, added [w]: scratch.
     """
 
     slope: Any
@@ -89,6 +90,7 @@ class Step(NamedTuple):
     order: Any
     point: Any
     right: Any
+    added: Any
 
 
 class Watch(NamedTuple):
@@ -127,9 +129,10 @@ class Watch(NamedTuple):
 class Tangents(NamedTuple):
     """Derivatives of the state: first by the parameters `columns`, then by others.
 
-    s [n * ns] row by row, and the same as `table` [n, ns]; delay_column [nu]: per input the column
-    of its delay, or -1; k [8, n * ns], point, right, along [n * ns]: stages; fx [3, n, n],
-    by [3, n * ns], matrix [n, n], fu, fp: the variational equation along the step.
+    s [n * ns] row by row, and the same as `table` [n, ns], ns rounded up to a multiple of LANES;
+    delay_column [nu]: per input the column of its delay, or -1; k [8, n * ns], point, right,
+    along [n * ns]: stages; fx [3, n, n], by [3, n * ns], matrix [n, n], fu, fp: the variational
+    equation along the step.
     """
 
     s: Any
@@ -177,7 +180,7 @@ MACHINE_TYPES = (
     _I,  # cursor [nu]
     types.boolean,  # inputs are held between stops
 )
-STEP_TYPE = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V))
+STEP_TYPE = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V, _V))
 WATCH_TYPE = types.Tuple(
     (_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M, _I, _M, _V, _V)
 )

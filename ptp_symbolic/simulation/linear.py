@@ -5,46 +5,46 @@ product of such rows would let the rest creep.
 """
 
 from ptp_symbolic.simulation.kernels import inlined, kernel
+from ptp_symbolic.simulation.lanes import LANES, load, nothing, plus_times, store
+
+
+@inlined
+def weighted(weights, row, count, k, e):
+    """Elements e .. e + 3 of the sum of the first `count` stages k [8, w] by one row of weights."""
+    total = nothing()
+    for j in range(count):
+        total = plus_times(total, weights[row, j], load(k[j], e))
+    return total
 
 
 @inlined
 def add_stages(i, weights, scale, k, out):
-    """Add the stages k [8, length] before i with their weights [8, 8] to out [length].
-
-    Four at a time: weights past the diagonal are zero.
-    """
-    for j in range(0, i, 4):
-        a, b = scale * weights[i, j], scale * weights[i, j + 1]
-        c, d = scale * weights[i, j + 2], scale * weights[i, j + 3]
-        ka, kb, kc, kd = k[j], k[j + 1], k[j + 2], k[j + 3]
-        for e in range(len(out)):
-            out[e] += (a * ka[e] + b * kb[e]) + (c * kc[e] + d * kd[e])
+    """Add the stages k [8, w] before i with their weights [8, 8], times scale, to out [w]."""
+    for e in range(0, len(out), LANES):
+        store(plus_times(load(out, e), scale, weighted(weights, i, i, k, e)), out, e)
 
 
 @inlined
-def add_columns(matrix, vector, out):
-    """Add the columns of a matrix, given as rows [m, n], weighted by vector [m], to out [n]."""
-    count = len(vector)
-    for j in range(0, count - 3, 4):
-        a, b, c, d = vector[j], vector[j + 1], vector[j + 2], vector[j + 3]
-        ma, mb, mc, md = matrix[j], matrix[j + 1], matrix[j + 2], matrix[j + 3]
-        for e in range(len(out)):
-            out[e] += (a * ma[e] + b * mb[e]) + (c * mc[e] + d * md[e])
-    for j in range(count - count % 4, count):
-        a, ma = vector[j], matrix[j]
-        if a != 0.0:
-            for e in range(len(out)):
-                out[e] += a * ma[e]
+def multiply(columns, vector, out):
+    """Write the sum of columns [m, w] weighted by the first m of a vector into out [w]."""
+    for e in range(0, len(out), LANES):
+        total = nothing()
+        for j in range(columns.shape[0]):
+            total = plus_times(total, vector[j], load(columns[j], e))
+        store(total, out, e)
 
 
 @inlined
 def add_product(matrix, vectors, out):
-    """Add matrix [n, n] times vectors to out, both [n * columns] row by row."""
+    """Add matrix [n, n or more] times vectors to out, both [n * columns] row by row."""
     n = matrix.shape[0]
     width = len(out) // n
-    rows = vectors.reshape(n, width)
     for a in range(n):
-        add_columns(rows, matrix[a], out[a * width : (a + 1) * width])
+        for c in range(0, width, LANES):
+            total = load(out, a * width + c)
+            for b in range(n):
+                total = plus_times(total, matrix[a, b], load(vectors, b * width + c))
+            store(total, out, a * width + c)
 
 
 @inlined
@@ -53,13 +53,17 @@ def add_sparse_product(matrix, vectors, out):
     n = matrix.shape[0]
     width = len(out) // n
     for a in range(n):
-        row = out[a * width : (a + 1) * width]
         for b in range(n):
-            factor = matrix[a, b]
-            if factor != 0.0:
-                column = vectors[b * width : (b + 1) * width]
-                for c in range(width):
-                    row[c] += factor * column[c]
+            if matrix[a, b] != 0.0:
+                add_scaled(matrix[a, b], vectors, b * width, out, a * width, width)
+
+
+@inlined
+def add_scaled(factor, source, first, target, at, count):
+    """Add factor times `count` elements of a vector from `first` on to those of another."""
+    for e in range(0, count, LANES):
+        total = plus_times(load(target, at + e), factor, load(source, first + e))
+        store(total, target, at + e)
 
 
 @inlined
@@ -73,12 +77,12 @@ def _is_coupled(a, row):
 
 @kernel
 def invert(fx, rate, a, order, transposed):
-    """Write the inverse of rate I - fx into a [n, n] and, by columns, into transposed [n, n].
+    """Write the inverse of rate I - fx into a [n, w] and, by columns, into transposed [n, w].
 
     Eight products follow with every inverse: for a dozen states they cost less than
     substitutions, which wait for one division after the other.
     """
-    n = a.shape[0]
+    n, width = a.shape
     for i in range(n):
         for j in range(n):
             a[i, j] = -fx[i, j]
@@ -95,14 +99,13 @@ def invert(fx, rate, a, order, transposed):
                 a[c, j], a[pivot, j] = a[pivot, j], a[c, j]
         scale = 1.0 / a[c, c]
         a[c, c] = 1.0
-        for j in range(n):
-            a[c, j] *= scale
+        for e in range(0, width, LANES):
+            store(plus_times(nothing(), scale, load(a[c], e)), a[c], e)
         for i in range(n):
             factor = a[i, c]
             if i != c and factor != 0.0:
                 a[i, c] = 0.0
-                for j in range(n):
-                    a[i, j] -= factor * a[c, j]
+                add_scaled(-factor, a[c], 0, a[i], 0, width)
     for c in range(n - 1, -1, -1):
         if order[c] != c:
             for i in range(n):

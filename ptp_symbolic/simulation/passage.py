@@ -12,6 +12,7 @@ from ptp_symbolic.simulation.emitted import addresses
 from ptp_symbolic.simulation.impacts import HELD
 from ptp_symbolic.simulation.inputs import InputTable
 from ptp_symbolic.simulation.kernels import EVENTS, STEPS, TIME, Record, Step, Tangents, Watch
+from ptp_symbolic.simulation.lanes import padded
 from ptp_symbolic.simulation.rodas5p import STAGES
 from ptp_symbolic.simulation.sampling import new_sampling
 from ptp_symbolic.simulation.steps import ROSENBROCK, RUNGE_KUTTA
@@ -97,7 +98,7 @@ def pass_through(
     """
     n, nu, module = len(x), len(model.input_names), model.module
     none = np.zeros(0, dtype=np.int64)
-    s = np.zeros((n, 0)) if s is None else s.copy()
+    s = np.zeros((n, 0)) if s is None else s
     tangents = new_tangents(
         s, none if columns is None else columns,
         np.full(nu, -1) if delay_column is None else delay_column, len(p), nu,
@@ -118,7 +119,7 @@ def pass_through(
         stops,
         np.array([accuracy.relative, accuracy.largest_step]), accuracy.absolute,
         tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)), tuple(watch),
-        tuple(tangents), tuple(record), tuple(new_sampling(model, p, x, stops, s.shape[1])),
+        tuple(tangents), tuple(record), tuple(new_sampling(model, p, x, stops, padded(s.shape[1]))),
     )  # fmt: skip
     return Passage(
         status, float(record.clock[TIME]), x, record.x, record.s, record.ledger,
@@ -127,11 +128,11 @@ def pass_through(
 
 
 def _step(n: int, nu: int, parameters: int, solved: int) -> Step:
-    z = np.zeros
+    z, width = np.zeros, padded(n)
     return Step(
-        z(n), z(n), z((STAGES, n)), z((STAGES, n)), z(n), z((5, n)), z((n, n)), z((n, nu)),
-        z((n, parameters)), z((solved, solved)), z((solved, solved)), z(n, dtype=np.int64), z(n),
-        z(n),
+        z(width), z(width), z((STAGES, width)), z((STAGES, width)), z(n), z((5, width)),
+        z((n, n)), z((n, nu)), z((n, parameters)), z((solved, width)), z((solved, width)),
+        z(n, dtype=np.int64), z(width), z(width), z(width),
     )  # fmt: skip
 
 
@@ -188,8 +189,10 @@ def new_tangents(
     s: FloatArray, columns: IntArray, delay_column: IntArray, parameters: int, nu: int
 ) -> Tangents:
     """Room for the tangents s [n, ns]; see `pass_through`."""
-    (n, ns), z = s.shape, np.zeros
+    (n, ns), z = (len(s), padded(s.shape[1])), np.zeros
+    table = z((n, ns))
+    table[:, : s.shape[1]] = s
     return Tangents(
-        s.reshape(-1), s, columns, delay_column, z((STAGES, n * ns)), z(n * ns), z(n * ns),
+        table.reshape(-1), table, columns, delay_column, z((STAGES, n * ns)), z(n * ns), z(n * ns),
         z(n * ns), z((3, n, n)), z((3, n * ns)), z((n, n)), z((n, nu)), z((n, parameters)),
     )  # fmt: skip

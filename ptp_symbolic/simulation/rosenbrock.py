@@ -2,12 +2,15 @@
 
 from ptp_symbolic.simulation.input_values import evaluate_input_slopes, evaluate_inputs
 from ptp_symbolic.simulation.kernels import copy, copy_matrix, inlined, kernel
+from ptp_symbolic.simulation.lanes import LANES, load, nothing, plus_times, store
 from ptp_symbolic.simulation.linear import (
-    add_columns,
     add_product,
+    add_scaled,
     add_sparse_product,
     add_stages,
     invert,
+    multiply,
+    weighted,
 )
 from ptp_symbolic.simulation.pressed import PRESSED, derivative, jacobian
 from ptp_symbolic.simulation.rodas5p import COUPLING, GAMMA, STAGES, A, C, D, H
@@ -45,23 +48,23 @@ def attempt(equations, inputs, t, h, x, m, step):
     Resting frictions are copied back, or rounding would make them creep. States that samplers hold
     come last; the inverse may leave them out.
     """
-    n, point = step.inverse.shape[0], step.point
-    right = step.right[:n]
+    n, point, right, added = step.inverse.shape[0], step.point, step.right, step.added
     invert(step.fx, 1.0 / (h * GAMMA), step.inverse, step.order, step.columns)
     for i in range(STAGES):
+        for e in range(0, len(added), LANES):
+            by_time = plus_times(nothing(), h * D[i], load(step.by_time, e))
+            store(plus_times(by_time, 1.0 / h, weighted(COUPLING, i, i, step.k, e)), added, e)
         if i == 0:
-            copy(step.slope, step.right)
+            copy(step.slope, right)
         else:
             place_stage(i, x, step.k, point)
             if not inputs.held and i < 6:
                 side = -1 if C[i] == 1.0 else 1
                 evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
-            derivative(equations, t + C[i] * h, point, inputs.u, m, step.right)
+            derivative(equations, t + C[i] * h, point, inputs.u, m, right)
         for a in range(n):
-            right[a] += h * D[i] * step.by_time[a]
-            step.k[i, a] = 0.0
-        add_stages(i, COUPLING, 1.0 / h, step.k, right)
-        add_columns(step.columns, right, step.k[i, :n])
+            right[a] += added[a]
+        multiply(step.columns, right, step.k[i])
     for a in range(len(x)):
         step.end[a] = point[a] + step.k[STAGES - 1, a]
     for f in range(len(equations.friction_rates)):
@@ -79,24 +82,27 @@ def place_stage(i, x, k, point):
         for a in range(len(x)):
             point[a] += k[i - 1, a]
         return
-    copy(x, point)
-    add_stages(i, A, 1.0, k, point)
+    for e in range(0, len(point), LANES):
+        store(weighted(A, i, i, k, e), point, e)
+    for a in range(len(x)):
+        point[a] += x[a]
 
 
 @inlined
 def fill_dense(x, step):
     """Write the interpolant of the step as a polynomial in the fraction of the step."""
+    d = step.dense
+    for e in range(0, d.shape[1], LANES):
+        first = weighted(H, 0, STAGES, step.k, e)
+        second = weighted(H, 1, STAGES, step.k, e)
+        third = weighted(H, 2, STAGES, step.k, e)
+        store(first, d[1], e)
+        store(plus_times(second, -1.0, first), d[2], e)
+        store(plus_times(third, -1.0, second), d[3], e)
+        store(plus_times(nothing(), -1.0, third), d[4], e)
     for a in range(len(x)):
-        h0, h1, h2 = 0.0, 0.0, 0.0
-        for i in range(STAGES):
-            h0 += H[0, i] * step.k[i, a]
-            h1 += H[1, i] * step.k[i, a]
-            h2 += H[2, i] * step.k[i, a]
-        step.dense[0, a] = x[a]
-        step.dense[1, a] = step.end[a] - x[a] + h0
-        step.dense[2, a] = h1 - h0
-        step.dense[3, a] = h2 - h1
-        step.dense[4, a] = -h2
+        d[0, a] = x[a]
+        d[1, a] += step.end[a] - x[a]
 
 
 @kernel
@@ -116,20 +122,21 @@ def push_tangents(equations, inputs, t, h, m, step, tangents):
     for i in range(STAGES):
         k = tangents.k[i]
         if i > 5:
-            for e in range(len(s)):
-                point[e] += tangents.k[i - 1, e]
+            add_scaled(1.0, tangents.k[i - 1], 0, point, 0, len(s))
         else:
             copy(s, point)
             add_stages(i, A, 1.0, tangents.k, point)
         place_coefficients(C[i], tangents)
-        for e in range(len(s)):
-            right[e] += D[i] * along[e] + rate * point[e]
-            k[e] = -point[e]
+        for e in range(0, len(s), LANES):
+            here = load(point, e)
+            driven = plus_times(load(right, e), D[i], load(along, e))
+            store(plus_times(driven, rate, here), right, e)
+            store(plus_times(nothing(), -1.0, here), k, e)
         add_sparse_product(tangents.matrix, point, right)
         add_stages(i, COUPLING, 1.0 / h, tangents.k, right)
         add_product(step.inverse, right, k)
-    for e in range(len(s)):
-        s[e] = point[e] + tangents.k[STAGES - 1, e]
+    copy(point, s)
+    add_scaled(1.0, tangents.k[STAGES - 1], 0, s, 0, len(s))
 
 
 @inlined
@@ -175,8 +182,9 @@ def place_coefficients(fraction, tangents):
     """Write the change of fx and what drives the tangents at a fraction of the step."""
     square = fraction * fraction
     start, first, second = tangents.by[0], tangents.by[1], tangents.by[2]
-    for e in range(len(start)):
-        tangents.right[e] = start[e] + fraction * first[e] + square * second[e]
+    for e in range(0, len(start), LANES):
+        rising = plus_times(load(start, e), fraction, load(first, e))
+        store(plus_times(rising, square, load(second, e)), tangents.right, e)
     for a in range(tangents.matrix.shape[0]):
         first, second = tangents.fx[1, a], tangents.fx[2, a]
         for b in range(len(first)):

@@ -2,23 +2,25 @@
 
 from ptp_symbolic.simulation.input_values import evaluate_input_slopes, evaluate_inputs
 from ptp_symbolic.simulation.kernels import copy, inlined, kernel
-from ptp_symbolic.simulation.linear import add_sparse_product, add_stages
+from ptp_symbolic.simulation.lanes import LANES, nothing, plus_times, store
+from ptp_symbolic.simulation.linear import add_sparse_product, add_stages, weighted
 from ptp_symbolic.simulation.pressed import derivative, jacobian
-from ptp_symbolic.simulation.tableau import ERROR, INTERPOLANT, STAGES, WEIGHTS, A, C
+from ptp_symbolic.simulation.tableau import ERROR, INTERPOLANT, STAGES, WEIGHTS, C
 
 
 @kernel
 def attempt(equations, inputs, t, h, x, m, step):
     """Try a step of length h in s: fill stages, slopes k and the end point."""
     n = len(x)
-    copy(x, step.stage[0])
+    for a in range(n):
+        step.stage[0, a] = x[a]
     copy(step.slope, step.k[0])
     for i in range(1, STAGES):
+        for e in range(0, step.stage.shape[1], LANES):
+            change = plus_times(nothing(), h, weighted(WEIGHTS, i, i, step.k, e))
+            store(change, step.stage[i], e)
         for a in range(n):
-            total = 0.0
-            for j in range(i):
-                total += A[i, j] * step.k[j, a]
-            step.stage[i, a] = x[a] + h * total
+            step.stage[i, a] += x[a]
         if not inputs.held:
             side = -1 if C[i] == 1.0 else 1
             evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
@@ -40,11 +42,10 @@ def fill_dense(h, x, step):
     """Write the interpolant of the step as a polynomial in the fraction of the step."""
     for a in range(len(x)):
         step.dense[0, a] = x[a]
-        for power in range(4):
-            total = 0.0
-            for i in range(STAGES):
-                total += INTERPOLANT[power, i] * step.k[i, a]
-            step.dense[power + 1, a] = h * total
+    for power in range(4):
+        for e in range(0, step.dense.shape[1], LANES):
+            total = weighted(INTERPOLANT, power, STAGES, step.k, e)
+            store(plus_times(nothing(), h, total), step.dense[power + 1], e)
 
 
 @kernel
