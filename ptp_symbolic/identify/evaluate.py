@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.delays import delay_columns, delayed, delays_of
+from ptp_symbolic.simulation.emitted import call, output_addresses
 from ptp_symbolic.simulation.kernels import DONE
 from ptp_symbolic.simulation.passage import Accuracy, default_method, pass_through
 
@@ -49,10 +50,11 @@ class Evaluation:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _compare(
-    outputs, output_jacobian, time, x, s, u, p, measured, columns, picked, weight, y, r, j
-):
-    """Fill outputs y [k, ny], residuals r and their derivatives j; u is the held input."""
+def _compare(functions, time, x, s, u, p, measured, columns, picked, weight, y, r, j):
+    """Fill outputs y [k, ny], residuals r and their derivatives j; u is the held input.
+
+    `functions` [2] are the addresses of the model's outputs and of their Jacobian.
+    """
     k, n = x.shape
     ns = s.shape[2]
     total = len(y[0])
@@ -60,10 +62,11 @@ def _compare(
     yx, yp = np.zeros((total, n)), np.zeros((total, len(p)))
     ny = len(picked)
     for i in range(k):
-        outputs(time[i], x[i], u[i], p, buffer)
-        y[i] = buffer
+        call(functions[0], time[i], x[i], u[i], p, buffer)
+        for o in range(total):
+            y[i, o] = buffer[o]
         if ns > 0:
-            output_jacobian(time[i], x[i], u[i], p, yx, yp)
+            call(functions[1], time[i], x[i], u[i], p, yx, yp)
         for o in range(ny):
             row = i * ny + o
             r[row] = weight[o] * (measured[i, o] - buffer[picked[o]])
@@ -125,13 +128,13 @@ def evaluate(
         Accuracy(tolerance.relative, tolerance.absolute(model), 1.0),
         s if tangents else None, columns, delay_columns(model, columns),
     )  # fmt: skip
-    steps, ns, module = len(run.time), found.s.shape[2], model.module
+    steps, ns = len(run.time), found.s.shape[2]
     y = np.zeros((steps, len(model.output_names)))
     r, j = np.zeros(run.size), np.zeros((run.size, ns))
     failed = None if found.status == DONE else f"{run.name}: stopped at {found.reached:.4f} s"
     if failed is None:
         _compare(
-            module.outputs, module.output_jacobian, run.time, found.x, found.s, run.held_inputs, p,
+            output_addresses(model.module), run.time, found.x, found.s, run.held_inputs, p,
             run.measured, columns, run.outputs, run.weight, y, r, j,
         )  # fmt: skip
         if not np.all(np.isfinite(r)):

@@ -27,6 +27,10 @@ SAMPLER_SIGNATURES = {
     "sample": SIGNATURES["mode_derivative"],
     "sample_jacobian": SIGNATURES["jacobian"],
 }
+OUTPUT_SIGNATURES = {
+    "outputs": types.void(*_AT[:-1], _VECTOR),
+    "output_jacobian": types.void(*_AT[:-1], _MATRIX, _MATRIX),
+}
 DERIVATIVE, JACOBIAN, GUARDS, GUARD_JACOBIAN, ENERGY = range(5)
 IMPACT_SIGNATURES = {
     "impacts": types.void(*_AT, _VECTOR),
@@ -51,6 +55,12 @@ def sampler_addresses(module: ModuleType) -> NDArray[np.int64]:
     return _compiled(module, SAMPLER_SIGNATURES)
 
 
+@lru_cache(maxsize=256)
+def output_addresses(module: ModuleType) -> NDArray[np.int64]:
+    """Addresses [2] of `outputs` and `output_jacobian` of an emitted module."""
+    return _compiled(module, OUTPUT_SIGNATURES)
+
+
 def _compiled(module: ModuleType, signatures: dict[str, Any]) -> NDArray[np.int64]:
     found = []
     for name, signature in signatures.items():
@@ -65,9 +75,9 @@ def _compiled(module: ModuleType, signatures: dict[str, Any]) -> NDArray[np.int6
 
 @intrinsic
 def call(typing_context: Any, address: Any, *arguments: Any) -> Any:
-    """Call the compiled function at `address` with (t, x, u, p, m, outputs...)."""
+    """Call the compiled function at `address` with (t, x, u, p, m, outputs...), m where it asks."""
     signature = types.void(*arguments)
-    if signature not in SIGNATURES.values():
+    if signature not in (*SIGNATURES.values(), *OUTPUT_SIGNATURES.values()):
         raise TypeError(f"no emitted function takes {signature}")
 
     def generate(context: Any, builder: Any, _: Any, values: Any) -> Any:
