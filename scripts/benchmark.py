@@ -157,8 +157,7 @@ def run_drive(
 ) -> Passage:
     """10 s of the pan drive at a tolerance; without `outputs` the final state alone."""
     table, method = stack([signal]), rest.pop("method", "rosenbrock")
-    inner = table.stops[(table.stops > 0.0) & (table.stops < END)]
-    stops = np.concatenate([[0.0], inner, [END]])
+    stops = table.with_stops(np.array([0.0, END]))
     times = np.linspace(0.0, END, 10001) if outputs else stops[[0, -1]]
     accuracy = Accuracy(tolerance, 0.1 * tolerance * tolerance_weights(model), 0.1)
     return pass_through(

@@ -15,52 +15,69 @@ TEXT_WIDTH = 80
 
 def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]) -> str:
     """Return docstring, imports and constants of the module of `equations`."""
-    parameters = equations.parameters
-    sections = [
-        _docstring(equations, operations),
-        _imports(equations),
-        "\n".join(
-            [
-                f'MODEL_HASH = "{digest}"',
-                f"NAME = {repr_text(equations.name)}",
-                f"TITLE = {repr_text(equations.title)}",
-                _tuple("AXES", map(repr_text, equations.axes)),
-                _tuple("STATE_NAMES", (f'"{s}"' for s in equations.state_symbols)),
-                _tuple("STATE_UNITS", map(repr_text, _state_units(equations))),
-                _tuple("STATE_INITIAL", map(repr, _state_initial(equations))),
-                _tuple("INPUT_NAMES", (f'"{i.name}"' for i in equations.inputs)),
-                _tuple("INPUT_UNITS", (f'"{i.unit}"' for i in equations.inputs)),
-                "# Per input: index of the parameter by which it is late, or -1.",
-                _tuple("INPUT_DELAYS", map(str, _delays(equations))),
-                "# Per input: whether motion depends on it, and not samplers alone.",
-                _tuple("INPUT_ACTS", map(str, _acting(equations))),
-                _tuple("OUTPUT_NAMES", (f'"{name}"' for name, _, _ in equations.outputs)),
-                _tuple("OUTPUT_UNITS", (f'"{unit}"' for _, unit, _ in equations.outputs)),
-                _tuple("MODE_NAMES", (f'"{m}"' for m in equations.mode_symbols)),
-                *_friction_rates(equations),
-                "# Per state: the friction that sets it to zero when it comes to rest, or -1.",
-                _tuple("ZERO_AT_REST", map(str, _zero_at_rest(equations))),
-                "# Samplers: parameters of the period. Sampled: sampler and state of each update.",
-                _tuple("SAMPLERS", _samplers(equations)),
-                _tuple("SAMPLED", _sampled(equations)),
-                "# Per contact: state index of the angle at the gear output and at the joint.",
-                _tuple("CONTACT_ANGLES", _contact_states(equations)),
-                *_rigid_contacts(equations),
-                "# Limits of the equations: state, meaning; `domain` gives the bounds.",
-                _tuple("DOMAIN", _domain(equations)),
-                "# Relations: parameters, rule, strict; `margins` gives what is at least zero.",
-                _tuple("REQUIREMENTS", _requirements(equations)),
-                "# Parameters: name, unit, default, lower and upper bound, meaning.",
-                _tuple("PARAMETERS", map(_parameter, parameters)),
-                "# Searching them: name, value at which the effect vanishes (None: any), starts,",
-                "# period, what a frequency is locked to.",
-                _tuple("SEARCH", [_search(p) for p in parameters if _is_searched(p)]),
-                "# Effects: id, axis, parameters, title, reference, separating experiment.",
-                _tuple("EFFECTS", _effects(equations)),
-            ]
-        ),
+    constants = [
+        f'MODEL_HASH = "{digest}"',
+        f"NAME = {repr_text(equations.name)}",
+        f"TITLE = {repr_text(equations.title)}",
+        *_signal_lines(equations),
+        *_motion_lines(equations),
+        *_parameter_lines(equations),
     ]
-    return "\n\n".join(sections)
+    return "\n\n".join(
+        [_docstring(equations, operations), _imports(equations), "\n".join(constants)]
+    )
+
+
+def _signal_lines(equations: Equations) -> list[str]:
+    """Names and units of what goes in, what moves and what comes out."""
+    return [
+        _tuple("AXES", map(repr_text, equations.axes)),
+        _tuple("STATE_NAMES", (f'"{s}"' for s in equations.state_symbols)),
+        _tuple("STATE_UNITS", map(repr_text, _state_units(equations))),
+        _tuple("STATE_INITIAL", map(repr, _state_initial(equations))),
+        _tuple("INPUT_NAMES", (f'"{i.name}"' for i in equations.inputs)),
+        _tuple("INPUT_UNITS", (f'"{i.unit}"' for i in equations.inputs)),
+        "# Per input: index of the parameter by which it is late, or -1.",
+        _tuple("INPUT_DELAYS", map(str, _delays(equations))),
+        "# Per input: whether motion depends on it, and not samplers alone.",
+        _tuple("INPUT_ACTS", map(str, _acting(equations))),
+        _tuple("OUTPUT_NAMES", (f'"{name}"' for name, _, _ in equations.outputs)),
+        _tuple("OUTPUT_UNITS", (f'"{unit}"' for _, unit, _ in equations.outputs)),
+    ]
+
+
+def _motion_lines(equations: Equations) -> list[str]:
+    """Modes, samplers, contacts and limits: what a simulation must watch."""
+    return [
+        _tuple("MODE_NAMES", (f'"{m}"' for m in equations.mode_symbols)),
+        *_friction_rates(equations),
+        "# Per state: the friction that sets it to zero when it comes to rest, or -1.",
+        _tuple("ZERO_AT_REST", map(str, _zero_at_rest(equations))),
+        "# Samplers: parameters of the period. Sampled: sampler and state of each update.",
+        _tuple("SAMPLERS", _samplers(equations)),
+        _tuple("SAMPLED", _sampled(equations)),
+        "# Per contact: state index of the angle at the gear output and at the joint.",
+        _tuple("CONTACT_ANGLES", _contact_states(equations)),
+        *_rigid_contacts(equations),
+        "# Limits of the equations: state, meaning; `domain` gives the bounds.",
+        _tuple("DOMAIN", _domain(equations)),
+    ]
+
+
+def _parameter_lines(equations: Equations) -> list[str]:
+    """Parameters, what relates them, how they are searched, and the effects that they belong to."""
+    parameters = equations.parameters
+    return [
+        "# Relations: parameters, rule, strict; `margins` gives what is at least zero.",
+        _tuple("REQUIREMENTS", _requirements(equations)),
+        "# Parameters: name, unit, default, lower and upper bound, meaning.",
+        _tuple("PARAMETERS", map(_parameter, parameters)),
+        "# Searching them: name, value at which the effect vanishes (None: any), starts,",
+        "# period, what a frequency is locked to.",
+        _tuple("SEARCH", [_search(p) for p in parameters if _is_searched(p)]),
+        "# Effects: id, axis, parameters, title, reference, separating experiment.",
+        _tuple("EFFECTS", _effects(equations)),
+    ]
 
 
 def _imports(equations: Equations) -> str:

@@ -121,10 +121,9 @@ def evaluate(
     x, s = start_state(model, run, p, z, columns)
     late = delays_of(model, p)
     table = delayed(run.inputs, late)
-    inner = table.stops[(table.stops > run.time[0]) & (table.stops < run.time[-1])]
     found = pass_through(
         model, default_method(model), p, x, table, True,
-        np.union1d(run.time, inner) if np.any(late) else run.time, run.time,
+        table.with_stops(run.time) if np.any(late) else run.time, run.time,
         Accuracy(tolerance.relative, tolerance.absolute(model), 1.0),
         s if tangents else None, columns, delay_columns(model, columns),
     )  # fmt: skip

@@ -18,7 +18,7 @@ from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.least_squares import Optimum, Problem, cost_of, minimise
 from ptp_symbolic.identify.requirements import keep_possible
 from ptp_symbolic.identify.run import Run
-from ptp_symbolic.identify.secants import secants
+from ptp_symbolic.identify.secants import Secants
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
@@ -209,7 +209,7 @@ def _problem(
         [np.array([u.sigma for u in run.unknowns]) for run in runs],
         centre,
         precision,
-        secants(simulations.residual, upper, executor) if effort.secants else None,
+        Secants(simulations.residual, upper, executor) if effort.secants else None,
         keep_possible(model, free, simulations.parameters),
     )
 
@@ -242,17 +242,8 @@ def _fit_starts(
     def one(pair: tuple[Run, FloatArray]) -> Optimum:
         run, start = pair
         problem = _problem(model, [run], (), fixed, effort, None)
-        begins = [start]
-        for index, unknown in enumerate(run.unknowns):
-            if unknown.contact is not None:
-                places = [_moved(start, index, value) for value in (start[index], *GAP_PLACES)]
-                costs = [
-                    cost_of(problem, problem.evaluate(nothing, [p], False), [p]) for p in places
-                ]
-                begins = [places[i] for i in np.argsort(costs, kind="stable")[:TRIED_PLACES]]
-                start = begins[0]
         found: list[Optimum] = []
-        for begin in begins:
+        for begin in _places(problem, run, start):
             found.append(minimise(problem, nothing, [begin], effort.iterations, effort.gain))
             if found[-1].cost <= ROUNDED * run.size:
                 break
@@ -265,6 +256,17 @@ def _fit_starts(
         float(sum(b.cost for b in best)), tuple(b.evaluations[0] for b in best),
         next((b.failed for b in best if b.failed), None),
     )  # fmt: skip
+
+
+def _places(problem: Problem, run: Run, start: FloatArray) -> list[FloatArray]:
+    """The best few starts of `run` that differ from `start` in the place in a gap, best first."""
+    nothing, best = np.zeros(0), [start]
+    for index, unknown in enumerate(run.unknowns):
+        if unknown.contact is not None:
+            places = [_moved(best[0], index, v) for v in (best[0][index], *GAP_PLACES)]
+            costs = [cost_of(problem, problem.evaluate(nothing, [p], False), [p]) for p in places]
+            best = [places[i] for i in np.argsort(costs, kind="stable")[:TRIED_PLACES]]
+    return best
 
 
 def _moved(start: FloatArray, index: int, value: float) -> FloatArray:

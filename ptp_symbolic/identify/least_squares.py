@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.identify.evaluate import Evaluation
 from ptp_symbolic.identify.requirements import Allow
-from ptp_symbolic.identify.secants import Refine
+from ptp_symbolic.identify.secants import Secants
 
 FloatArray = NDArray[np.float64]
 Evaluate = Callable[[FloatArray, Sequence[FloatArray], bool], list[Evaluation]]
@@ -41,7 +41,7 @@ class Problem:
     start_sigma: Sequence[FloatArray]
     prior_centre: FloatArray
     prior_precision: FloatArray
-    refine: Refine | None = None
+    refine: Secants | None = None
     allow: Allow | None = None
 
 

@@ -7,7 +7,7 @@ a gap that appear and vanish do the same. A difference over a finite step sees b
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,57 +17,50 @@ from ptp_symbolic.identify.evaluate import Evaluation
 FloatArray = NDArray[np.float64]
 Shift = tuple[int, int]
 Residual = Callable[[int, FloatArray, FloatArray], FloatArray | None]
-Refine = Callable[[FloatArray, Sequence[FloatArray], list[Evaluation]], list[Evaluation]]
 
 STEP = 0.02
 MISLEADING = 0.25
 
 
-def secants(
-    residual: Residual,
-    upper: FloatArray,
-    executor: Executor | None = None,
-) -> Refine:
-    """Return a function that replaces misleading derivatives by phi with differences.
+@dataclass(eq=False)
+class Secants:
+    """Replaces misleading derivatives by phi with differences.
 
-    `residual(run, phi, z)` simulates one run (None: it failed); `upper` [nf] bounds phi. On
-    its first call the function compares every column of every run, later only those that misled.
+    `residual(run, phi, z)` simulates one run (None: it failed); `upper` [nf] bounds phi. The first
+    call compares every column of every run, later ones only those that misled, `chosen`.
     """
+
+    residual: Residual
+    upper: FloatArray
+    executor: Executor | None = None
     chosen: list[Shift] | None = None
 
-    def difference(
-        phi: FloatArray, z: Sequence[FloatArray], evaluations: Sequence[Evaluation], shift: Shift
-    ) -> FloatArray:
-        run, column = shift
-        step = STEP if phi[column] + STEP <= upper[column] else -STEP
-        moved = phi.copy()
-        moved[column] += step
-        after = residual(run, moved, z[run])
-        if after is None:
-            return evaluations[run].by_parameter[:, column]
-        return (after - evaluations[run].residual) / step
-
-    def refine(
-        phi: FloatArray, z: Sequence[FloatArray], evaluations: list[Evaluation]
+    def __call__(
+        self, phi: FloatArray, z: Sequence[FloatArray], evaluations: Sequence[Evaluation]
     ) -> list[Evaluation]:
-        nonlocal chosen
-        first = chosen is None
-        shifts = [(r, c) for r in range(len(evaluations)) for c in range(len(phi))]
-        shifts = shifts if chosen is None else chosen
+        """`evaluations` at (phi, z) with their derivatives by phi mended."""
+        every = [(r, c) for r in range(len(evaluations)) for c in range(len(phi))]
+        shifts = every if self.chosen is None else self.chosen
 
-        def at(shift: Shift) -> FloatArray:
-            return difference(phi, z, evaluations, shift)
+        def difference(shift: Shift) -> FloatArray:
+            run, column = shift
+            step = STEP if phi[column] + STEP <= self.upper[column] else -STEP
+            moved = phi.copy()
+            moved[column] += step
+            after = self.residual(run, moved, z[run])
+            if after is None:
+                return evaluations[run].by_parameter[:, column]
+            return (after - evaluations[run].residual) / step
 
-        columns = list(executor.map(at, shifts) if executor else map(at, shifts))
-        if first:
-            chosen = [
+        run_each = self.executor.map if self.executor else map
+        columns = list(run_each(difference, shifts))
+        if self.chosen is None:
+            self.chosen = [
                 (r, c)
                 for (r, c), column in zip(shifts, columns, strict=True)
                 if _misleads(evaluations[r].by_parameter[:, c], column)
             ]
         return _replaced(evaluations, shifts, columns)
-
-    return refine
 
 
 def _misleads(tangent: FloatArray, secant: FloatArray) -> bool:

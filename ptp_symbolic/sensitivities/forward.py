@@ -80,14 +80,11 @@ def sensitivity(
     s = np.zeros((len(x), len(columns) + len(by_initial)))
     for offset, name in enumerate(by_initial):
         s[_index(model.state_names, name, "state"), len(columns) + offset] = 1.0
-    stops = np.unique(
-        np.concatenate([t, table.stops[(table.stops > t[0]) & (table.stops < t[-1])]])
-    )
     chosen = chosen_method(model, method, tuple(METHODS))
     if chosen == EXPLICIT:
         largest_step = min(largest_step, stable_step(model, p, x))
     found = pass_through(
-        model, chosen, p, x, table, table.held, stops, t,
+        model, chosen, p, x, table, table.held, table.with_stops(t), t,
         Accuracy(rtol, atol * tolerance_weights(model), largest_step), s, columns,
         delay_columns(model, columns),
     )  # fmt: skip

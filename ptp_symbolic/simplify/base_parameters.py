@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import combinations_with_replacement
 
 import sympy as sp
 
@@ -80,12 +81,7 @@ def base_form(
     mass = sp.Matrix(rigid.mass_matrix if mass_matrix is None else mass_matrix)
     force = sp.Matrix(rigid.forcing if forcing is None else forcing)
     taken = {str(s) for entry in (*mass, *force) for s in entry.free_symbols}
-    places = [place_of(coordinate) for coordinate in rigid.coordinates]
-    titles = {
-        (i, j): f"inertia_{places[i]}" if i == j else "coupling"
-        for i in range(n)
-        for j in range(i, n)
-    }
+    titles = _titles(rigid)
     entries = [(title, mass[cell]) for cell, title in titles.items()]
     entries += [("gravity", torque) for torque in rigid.forcing]
     rows, base_parameters = _combined(rigid, entries, taken)
@@ -101,6 +97,13 @@ def base_form(
         sp.ImmutableMatrix(mass).xreplace(opened),
         sp.ImmutableMatrix(force).xreplace(opened),
     )
+
+
+def _titles(rigid: RigidEquations) -> dict[tuple[int, int], str]:
+    """Name of every entry of the mass matrix on and above its diagonal."""
+    places = [place_of(coordinate) for coordinate in rigid.coordinates]
+    cells = combinations_with_replacement(range(len(places)), 2)
+    return {(i, j): f"inertia_{places[i]}" if i == j else "coupling" for i, j in cells}
 
 
 def _functions_of_time(rigid: RigidEquations) -> dict[sp.Expr, sp.Symbol]:

@@ -64,8 +64,7 @@ def pass_in_steps(
             f"Step {step:g} s for {duration:g} s; give a positive number of seconds that makes at"
             f" most {MOST_STEPS:g} steps."
         )
-    inner = inputs.stops[(inputs.stops > times[0]) & (inputs.stops < times[-1])]
-    grid = np.unique(np.concatenate([times, inner]))
+    grid = inputs.with_stops(times)
     n, nu, z = len(x), len(model.input_names), np.zeros
     x, u, none = x.copy(), z((2, nu)), z(0, np.int64)
     watch, tangents = new_watch(model, n, p), new_tangents(z((n, 0)), none, z(nu, np.int64), 0, nu)

@@ -229,6 +229,11 @@ class InputTable:
         moving = len(self.sines) or len(self.sweeps) or np.any(self.coefficients[:, 1:])
         return not moving
 
+    def with_stops(self, times: FloatArray) -> FloatArray:
+        """`times` [k] in s together with the stops between the first and the last, sorted."""
+        inner = (self.stops > times[0]) & (self.stops < times[-1])
+        return np.union1d(times, self.stops[inner])
+
     def new_cursor(self) -> IntArray:
         """Where each signal was found last, [nu]; one per integration, evaluate_inputs moves it."""
         return np.zeros(len(self.offsets) - 1, dtype=np.int64)

@@ -109,11 +109,10 @@ def simulate(
     if chosen == FIXED_STEP:
         found = pass_in_steps(model, p, x, table, t, step, EVENT_CAPACITY)
     else:
-        inner = table.stops[(table.stops > t[0]) & (table.stops < t[-1])]
         accuracy = Accuracy(rtol, atol * tolerance_weights(model), largest_step)
         found = pass_through(
-            model, chosen, p, x, table, table.held, np.concatenate([t[:1], inner, t[-1:]]), t,
-            accuracy, ledger=True, event_room=EVENT_CAPACITY,
+            model, chosen, p, x, table, table.held, table.with_stops(t[[0, -1]]), t, accuracy,
+            ledger=True, event_room=EVENT_CAPACITY,
         )  # fmt: skip
     refuse_failure(model, p, found.status, found.reached, found.state)
     return Trajectory(

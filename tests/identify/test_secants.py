@@ -5,7 +5,7 @@ import pytest
 
 from ptp_symbolic.identify.evaluate import Evaluation
 from ptp_symbolic.identify.least_squares import Problem, minimise
-from ptp_symbolic.identify.secants import STEP, secants
+from ptp_symbolic.identify.secants import STEP, Secants
 from tests.identify.curves import Floats, evaluation
 
 TREAD, TARGET, ROWS = 0.01, np.array([0.7357, 0.3333]), 400
@@ -38,7 +38,7 @@ NO_STARTS = [np.zeros(0), np.zeros(0)]
 
 
 def test_the_difference_replaces_what_misleads_from_the_second_call_on() -> None:
-    refine = secants(residual, FAR)
+    refine = Secants(residual, FAR)
     refine(np.array([0.5, 0.6]), NO_STARTS, evaluate(np.array([0.5, 0.6])))
     phi = np.array([0.6049, 0.5])
     before = evaluate(phi)
@@ -61,7 +61,7 @@ def test_the_first_call_compares_every_column_and_returns_the_differences() -> N
         asked.append((run, tuple(np.flatnonzero(moved != phi))))
         return residual(run, moved, z)
 
-    refine = secants(counted, FAR)
+    refine = Secants(counted, FAR)
     after = refine(phi, NO_STARTS, evaluate(phi))
     assert sorted(asked) == [(0, (0,)), (0, (1,)), (1, (0,)), (1, (1,))]
     assert after[1].by_parameter[:, 1] == pytest.approx(WAVE, abs=1e-12)
@@ -81,7 +81,7 @@ def test_a_derivative_misleads_when_it_is_wrong_by_more_than_a_quarter(
         return 3.0 * moved[0] * np.ones(5)
 
     runs = [evaluation(line(0, phi, phi), np.full((5, 1), 3.0 * (1 + error)), np.zeros((5, 0)))]
-    refine = secants(line, FAR[:1])
+    refine = Secants(line, FAR[:1])
     refine(phi, NO_STARTS[:1], runs)
     second = refine(phi, NO_STARTS[:1], runs)
     expected = 3.0 if replaced else 3.0 * (1 + error)
@@ -97,14 +97,14 @@ def test_at_the_upper_bound_the_step_goes_down() -> None:
         return np.array([moved[0] ** 3])
 
     runs = [evaluation(np.ones(1), np.zeros((1, 1)), np.zeros((1, 0)))]
-    (after,) = secants(cube, np.array([1.01]))(phi, NO_STARTS[:1], runs)
+    (after,) = Secants(cube, np.array([1.01]))(phi, NO_STARTS[:1], runs)
     assert asked == [pytest.approx(1.0 - STEP)]
     assert after.by_parameter[0, 0] == pytest.approx((1.0 - (1.0 - STEP) ** 3) / STEP)
 
 
 def test_where_the_shifted_simulation_fails_the_derivative_stays() -> None:
     runs = [evaluation(np.ones(3), np.full((3, 1), 2.0), np.zeros((3, 0)))]
-    refine = secants(lambda run, phi, z: None, FAR[:1])
+    refine = Secants(lambda run, phi, z: None, FAR[:1])
     for _ in range(2):
         (after,) = refine(np.array([0.5]), NO_STARTS[:1], runs)
         assert np.all(after.by_parameter == 2.0)
@@ -116,7 +116,7 @@ def test_a_search_climbs_down_the_staircase_only_with_differences() -> None:
         lambda phi, z, tangents: evaluate(phi),
         *bounds, *[NO_STARTS] * 3, np.zeros(2), np.zeros(2),
     )  # fmt: skip
-    mended = Problem(**{**vars(problem), "refine": secants(residual, FAR)})
+    mended = Problem(**{**vars(problem), "refine": Secants(residual, FAR)})
     begin = np.array([0.3, 0.9])
     without = minimise(problem, begin, NO_STARTS)
     assert without.phi[0] == begin[0]
