@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.summary import Pair, by_source
 from ptp_symbolic.diagnose.trial import Trial
+from ptp_symbolic.identify.evaluate import simulated_signals
 
 FloatArray = NDArray[np.float64]
 
@@ -35,13 +36,12 @@ def _curve(
     first = before[0][0]
     signals: dict[str, dict[str, Any]] = {}
     for column, signal in enumerate(first.signals):
-        picked = first.outputs[column]
         count = first.counts[column]
         signals[signal] = {
             "unit": units[signal],
             "measured": _joined([r.measured[:, column] for r, _ in before]),
-            "before": _joined([e.outputs[:, picked] for _, e in before]),
-            "after": _joined([e.outputs[:, picked] for _, e in after]),
+            "before": _joined([simulated_signals(r, e)[:, column] for r, e in before]),
+            "after": _joined([simulated_signals(r, e)[:, column] for r, e in after]),
             "counts": float(count) if np.isfinite(count) else None,
         }
     time = _joined([r.time for r, _ in before])

@@ -175,12 +175,9 @@ def _begun(task: Task, response: _Response) -> Trial:
 def _unfitted(
     task: Task, base: Trial, free: Sequence[FreeParameter], fixed: Mapping[str, float]
 ) -> Fit:
-    """The residuals at the starts of `free`, without what takes much memory."""
+    """The residuals at the starts of `free`."""
     values = {**fixed, **all_values_at_start(free)}
-    evaluations = tuple(
-        replace(e, outputs=e.outputs[:0], states=e.states[:0])
-        for e in simulated(task, base.train, values)
-    )
+    evaluations = tuple(simulated(task, base.train, values))
     failed = next((e.failed for e in evaluations if e.failed), None)
     cost = np.inf if failed else float(sum(e.residual @ e.residual for e in evaluations))
     z = base.train.z

@@ -44,27 +44,28 @@ class Evaluation:
     residual: FloatArray
     by_parameter: FloatArray
     by_start: FloatArray
-    outputs: FloatArray
-    states: FloatArray
     failed: str | None = None
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _compare(functions, time, x, s, u, p, measured, columns, picked, weight, y, r, j):
-    """Fill outputs y [k, ny], residuals r and their derivatives j; u is the held input.
+def simulated_signals(run: Run, evaluation: Evaluation) -> FloatArray:
+    """The measured signals [k, ny] of `run` as they were simulated."""
+    return run.measured - evaluation.residual.reshape(run.measured.shape) / run.weight
 
-    `functions` [2] are the addresses of the model's outputs and of their Jacobian.
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _compare(functions, signals, time, x, s, u, p, measured, columns, picked, weight, r, j):
+    """Fill residuals r and their derivatives j; u is the held input.
+
+    `functions` [2] are the addresses of the model's outputs, so many `signals`, and of their
+    Jacobian.
     """
     k, n = x.shape
     ns = s.shape[2]
-    total = len(y[0])
-    buffer = np.zeros(total)
-    yx, yp = np.zeros((total, n)), np.zeros((total, len(p)))
+    buffer = np.zeros(signals)
+    yx, yp = np.zeros((signals, n)), np.zeros((signals, len(p)))
     ny = len(picked)
     for i in range(k):
         call(functions[0], time[i], x[i], u[i], p, buffer)
-        for o in range(total):
-            y[i, o] = buffer[o]
         if ns > 0:
             call(functions[1], time[i], x[i], u[i], p, yx, yp)
         for o in range(ny):
@@ -127,16 +128,14 @@ def evaluate(
         Accuracy(tolerance.relative, tolerance.absolute(model), 1.0),
         s if tangents else None, columns, delay_columns(model, columns),
     )  # fmt: skip
-    steps, ns = len(run.time), found.s.shape[2]
-    y = np.zeros((steps, len(model.output_names)))
-    r, j = np.zeros(run.size), np.zeros((run.size, ns))
+    r, j = np.zeros(run.size), np.zeros((run.size, found.s.shape[2]))
     failed = None if found.status == DONE else f"{run.name}: stopped at {found.reached:.4f} s"
     if failed is None:
         _compare(
-            output_addresses(model.module), run.time, found.x, found.s, run.held_inputs, p,
-            run.measured, columns, run.outputs, run.weight, y, r, j,
+            output_addresses(model.module), len(model.output_names), run.time, found.x, found.s,
+            run.held_inputs, p, run.measured, columns, run.outputs, run.weight, r, j,
         )  # fmt: skip
         if not np.all(np.isfinite(r)):
             failed = f"{run.name}: not finite"
     split = len(columns)
-    return Evaluation(r, j[:, :split], j[:, split:], y, found.x, failed)
+    return Evaluation(r, j[:, :split], j[:, split:], failed)

@@ -48,6 +48,8 @@ def test_files_are_complete_and_the_extended_platform_reads(sample, tmp_path) ->
         ("log-b", "fieldlog_pan", ["cable_spring"]),
         ("log-c", "fieldlog_pan", ["direction_dependent_friction"]),
         ("log-d", "fieldlog_pan", []),
+        ("log-e", "fieldlog_pan_dc", ["rate_dependent_breakaway"]),
+        ("log-f", "fieldlog_pan_dc", ["winding_heating"]),
         ("log-g", "fieldlog_two_axis", ["payload_com_offset"]),
     ],
 )

@@ -23,9 +23,8 @@ PRIOR = 0.8  # of every start unknown
 
 
 def evaluation(residual: Floats, by_phi: Floats, by_z: Floats, failed: str | None = None):
-    """What a simulation would return, without its states."""
-    nothing = np.zeros((len(residual), 0))
-    return Evaluation(residual, by_phi, by_z, nothing, nothing, failed)
+    """What a simulation would return."""
+    return Evaluation(residual, by_phi, by_z, failed)
 
 
 @dataclass(frozen=True)
