@@ -14,13 +14,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import unknown
 from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.delays import delay_columns, delayed, delays_of
-from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
+from ptp_symbolic.simulation.delays import delay_columns
+from ptp_symbolic.simulation.inputs import InputSignal
 from ptp_symbolic.simulation.passage import METHODS, Accuracy, pass_through, tolerance_weights
-from ptp_symbolic.simulation.profile_text import as_signals
 from ptp_symbolic.simulation.run import (
     checked_parameters,
     chosen_method,
+    input_table,
     output_times,
     refuse_failure,
     start_of,
@@ -68,12 +68,8 @@ def sensitivity(
     converge to these derivatives, until rounding spoils them. Raises InputError for unknown names
     and SimulationError when the simulation cannot go on.
     """
-    t = output_times(times)
-    given = as_signals(model.input_names, inputs or {}, float(t[-1]))
-    p = checked_parameters(model, parameters or {})
-    table = delayed(
-        stack([given.get(name, constant(0.0)) for name in model.input_names]), delays_of(model, p)
-    )
+    t, p = output_times(times), checked_parameters(model, parameters or {})
+    table = input_table(model, inputs or {}, p, float(t[-1]))
     wanted = tuple(model.parameter_names if by_parameters is None else by_parameters)
     columns = np.array([_index(model.parameter_names, n, "parameter") for n in wanted], np.int64)
     x = start_of(model, initial or {})

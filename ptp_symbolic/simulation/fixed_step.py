@@ -12,9 +12,10 @@ from ptp_symbolic.simulation.emitted import addresses
 from ptp_symbolic.simulation.implicit_step import StepWork
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.inputs import InputTable
-from ptp_symbolic.simulation.kernels import EVENTS, INSTANT, STEPS, TIME, Record
+from ptp_symbolic.simulation.kernels import EVENTS, INSTANT, STEPS, TIME
 from ptp_symbolic.simulation.passage import (
     contact_table,
+    new_record,
     new_tangents,
     new_watch,
     refuse_start,
@@ -76,10 +77,7 @@ def pass_in_steps(
         z((n, n)), z((n, nu)), z((n, len(p))), z((n, n)), z(n, np.int64), z(n), z(n), z(n),
         z((len(model.friction_rates), 2), np.int64),
     )  # fmt: skip
-    record = Record(
-        grid, z((len(grid), n)), z((0, n, 0)), z((len(grid), 3)), z((event_room, 3)), z(3),
-        z((4, 3)), z(2), z(6, np.int64),
-    )  # fmt: skip
+    record = new_record(grid, n, 0, len(grid), event_room)
     status = fixed_runner.runner()(
         addresses(model.module), p, model.friction_rates, model.zero_at_rest,
         contact_table(model),

@@ -108,11 +108,7 @@ def pass_through(
     hybrid.evaluate_inputs(stops[0], 1, *inputs.arrays, cursor, u[0])
     module.initial_modes(stops[0], x, u[0], p, watch.m)
     refuse_start(model, x, u[0], p, watch)
-    record = Record(
-        times, np.zeros((len(times), n)), np.zeros((len(times), *s.shape)),
-        np.zeros((len(times) if ledger else 0, 3)), np.zeros((event_room, 3)), np.zeros(3),
-        np.zeros((4, 3)), np.zeros(2), np.zeros(6, dtype=np.int64),
-    )  # fmt: skip
+    record = new_record(times, n, s.shape[1], len(times) if ledger else 0, event_room)
     status = hybrid.runner()(
         METHODS[method], addresses(module), p, model.friction_rates, model.zero_at_rest,
         contact_table(model), inputs.arrays, cursor, held or not any(module.INPUT_ACTS), u, x,
@@ -124,6 +120,15 @@ def pass_through(
     return Passage(
         status, float(record.clock[TIME]), x, record.x, record.s, record.ledger,
         record.events[: record.counts[EVENTS]], int(record.counts[STEPS]),
+    )  # fmt: skip
+
+
+def new_record(times: FloatArray, n: int, ns: int, ledger: int, event_room: int) -> Record:
+    """Room for what a run leaves at `times` [k]: n states, ns tangents, `ledger` rows, events."""
+    z = np.zeros
+    return Record(
+        times, z((len(times), n)), z((len(times), n, ns)), z((ledger, 3)), z((event_room, 3)), z(3),
+        z((4, 3)), z(2), z(6, dtype=np.int64),
     )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.delays import delayed, delays_of
 from ptp_symbolic.simulation.fixed_step import FixedPassage, pass_in_steps
-from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
+from ptp_symbolic.simulation.inputs import InputSignal, InputTable, constant, stack
 from ptp_symbolic.simulation.kernels import CHATTERING, DIVERGED, DONE, OUTSIDE, UNDECIDED
 from ptp_symbolic.simulation.passage import (
     METHODS,
@@ -99,11 +99,8 @@ def simulate(
     SimulationError when the state diverges or modes switch without end.
     """
     t = output_times(times)
-    given = as_signals(model.input_names, inputs or {}, float(t[-1]))
     x, p = start_of(model, initial or {}), checked_parameters(model, parameters or {})
-    table = delayed(
-        stack([_signal(model, given, n) for n in model.input_names]), delays_of(model, p)
-    )
+    table = input_table(model, inputs or {}, p, float(t[-1]))
     chosen = chosen_method(model, method)
     found: Passage | FixedPassage
     if chosen == FIXED_STEP:
@@ -119,6 +116,18 @@ def simulate(
         t, found.x, model.state_names, _named(model, found.events), found.ledger[:, 0],
         found.ledger[:, 1], found.ledger[:, 2], found.steps,
     )  # fmt: skip
+
+
+def input_table(
+    model: Model, inputs: Mapping[str, InputSignal | str], p: FloatArray, end: float
+) -> InputTable:
+    """`inputs` from 0 to `end` s as the model sees them, late where parameters p [np] say so.
+
+    Inputs that are not given stay zero. Raises InputError for unknown names and profiles.
+    """
+    given = as_signals(model.input_names, inputs, end)
+    signals = [given.get(name, constant(0.0)) for name in model.input_names]
+    return delayed(stack(signals), delays_of(model, p))
 
 
 def chosen_method(
@@ -217,10 +226,6 @@ def _nearest_limit(model: Model, p: FloatArray, x: FloatArray) -> tuple[int, flo
     past = np.maximum(bounds[:, 0] - values, values - bounds[:, 1])
     limit = int(np.argmax(past))
     return limit, float(past[limit])
-
-
-def _signal(model: Model, inputs: Mapping[str, InputSignal], name: str) -> InputSignal:
-    return inputs[name] if name in inputs else constant(0.0)
 
 
 def _refuse_unknown(what: str, given: Mapping[str, object], known: Sequence[str]) -> None:
