@@ -53,11 +53,13 @@ def decide(task: Task, base: Trial, trials: Sequence[Trial]) -> Verdict:
     seen = clear and _away_from_zero(winner)
     if before <= AT_FLOOR * floor and not seen:
         return Verdict(NOTHING_MISSING, None, (), floor, improved, explained)
-    if not seen or explained < PARTLY_SHARE or final > LEFT_TO_PARTLY * floor:
+    if not seen or final > LEFT_TO_PARTLY * floor:
         return Verdict(UNEXPLAINED, None, tuple(judged[:1]), floor, improved, explained)
     if final <= AT_FLOOR * floor or (explained >= EXPLAINED_SHARE and final <= NEAR_FLOOR * floor):
         word = UP_TO_GROUP if rivals else EXPLAINED
         return Verdict(word, winner, rivals, floor, improved, explained)
+    if explained < PARTLY_SHARE:
+        return Verdict(UNEXPLAINED, None, tuple(judged[:1]), floor, improved, explained)
     return Verdict(PARTLY, winner, rivals, floor, improved, explained)
 
 

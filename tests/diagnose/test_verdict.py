@@ -1,0 +1,46 @@
+"""The verdict, as a table of errors on held-out runs in counts; the floor is 0.29."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from ptp_symbolic.diagnose import scores, verdict
+from ptp_symbolic.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED
+
+FLOOR = 0.29
+
+
+def trial(rms: float, *keys: str) -> Any:
+    judged = SimpleNamespace(pairs=lambda: rms, failed=None)
+    return SimpleNamespace(
+        candidates=keys, keys=keys, validate=judged, train=SimpleNamespace(free=keys)
+    )
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "improved", "word"),
+    [
+        (31.0, 0.29, 1.0, EXPLAINED),
+        (31.0, 0.40, 1.0, EXPLAINED),
+        (0.40, 0.30, 0.9, EXPLAINED),
+        (0.280, 0.247, 1.0, EXPLAINED),  # a joint at rest is known better than the floor
+        (0.280, 0.275, 1.0, NOTHING_MISSING),
+        (0.280, 0.247, 0.7, NOTHING_MISSING),
+        (1.00, 0.55, 1.0, PARTLY),
+        (31.0, 0.70, 1.0, UNEXPLAINED),
+        (31.0, 0.29, 0.7, UNEXPLAINED),
+        (0.40, 0.379, 1.0, UNEXPLAINED),
+    ],
+)
+def test_word(
+    monkeypatch: pytest.MonkeyPatch, before: float, after: float, improved: float, word: str
+) -> None:
+    monkeypatch.setattr(scores, "mean_square", lambda rms: rms**2)
+    monkeypatch.setattr(verdict, "held_out_cost", lambda t: t.validate.pairs() ** 2)
+    monkeypatch.setattr(verdict, "share_improved", lambda *_: improved)
+    monkeypatch.setattr(verdict, "_noise_floor", lambda *_: FLOOR)
+    monkeypatch.setattr(verdict, "_away_from_zero", lambda _: True)
+    found = verdict.decide(SimpleNamespace(), trial(before), [trial(after, "effect")])  # type: ignore[arg-type]
+    assert found.word == word
+    assert (found.accepted is None) == (word in (NOTHING_MISSING, UNEXPLAINED))
