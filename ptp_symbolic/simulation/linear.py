@@ -25,12 +25,15 @@ def add_stages(i, weights, scale, k, out):
 
 
 @inlined
-def multiply(columns, vector, out):
-    """Write the sum of columns [m, w] weighted by the first m of a vector into out [w]."""
+def multiply(columns, vector, added, out):
+    """Write the sum of columns [m, w] weighted by the first m of vector + added into out [w].
+
+    The two are added one by one: what has just been stored singly is slow to be loaded in fours.
+    """
     for e in range(0, len(out), LANES):
         total = nothing()
         for j in range(columns.shape[0]):
-            total = plus_times(total, vector[j], load(columns[j], e))
+            total = plus_times(total, vector[j] + added[j], load(columns[j], e))
         store(total, out, e)
 
 
@@ -98,14 +101,14 @@ def invert(fx, rate, a, order, transposed):
             for j in range(n):
                 a[c, j], a[pivot, j] = a[pivot, j], a[c, j]
         scale = 1.0 / a[c, c]
-        a[c, c] = 1.0
         for e in range(0, width, LANES):
             store(plus_times(nothing(), scale, load(a[c], e)), a[c], e)
         for i in range(n):
             factor = a[i, c]
             if i != c and factor != 0.0:
-                a[i, c] = 0.0
                 add_scaled(-factor, a[c], 0, a[i], 0, width)
+                a[i, c] = -factor * scale  # last: four at once are slow to see a single one
+        a[c, c] = scale
     for c in range(n - 1, -1, -1):
         if order[c] != c:
             for i in range(n):

@@ -48,7 +48,7 @@ def attempt(equations, inputs, t, h, x, m, step):
     Resting frictions are copied back, or rounding would make them creep. States that samplers hold
     come last; the inverse may leave them out.
     """
-    n, point, right, added = step.inverse.shape[0], step.point, step.right, step.added
+    point, right, added = step.point, step.right, step.added
     invert(step.fx, 1.0 / (h * GAMMA), step.inverse, step.order, step.columns)
     for i in range(STAGES):
         for e in range(0, len(added), LANES):
@@ -62,9 +62,7 @@ def attempt(equations, inputs, t, h, x, m, step):
                 side = -1 if C[i] == 1.0 else 1
                 evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
             derivative(equations, t + C[i] * h, point, inputs.u, m, right)
-        for a in range(n):
-            right[a] += added[a]
-        multiply(step.columns, right, step.k[i])
+        multiply(step.columns, right, added, step.k[i])
     for a in range(len(x)):
         step.end[a] = point[a] + step.k[STAGES - 1, a]
     for f in range(len(equations.friction_rates)):

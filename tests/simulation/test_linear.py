@@ -31,7 +31,7 @@ def sums(count, weights, scale, k, start):
 def products(matrix, columns, vector, vectors, start):
     """Columns times a vector; a matrix times vectors added to `start`, twice."""
     single = np.zeros(columns.shape[1])
-    linear.multiply(columns, vector, single)
+    linear.multiply(columns, vector, 0.5 * vector, single)
     full, sparse = start.copy(), start.copy()
     linear.add_product(matrix, vectors, full)
     linear.add_sparse_product(matrix, vectors, sparse)
@@ -79,7 +79,7 @@ def test_products_are_those_of_numpy(n, width):
     columns, vector = CHANCE.normal(size=(n, padded(n))), CHANCE.normal(size=n)
     vectors, start = CHANCE.normal(size=(n, width)), CHANCE.normal(size=(n, width))
     single, full, sparse = products(matrix, columns, vector, vectors.ravel(), start.ravel())
-    np.testing.assert_allclose(single, vector @ columns, rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(single, 1.5 * vector @ columns, rtol=1e-12, atol=1e-14)
     exact = (start + matrix @ vectors).ravel()
     np.testing.assert_allclose(full, exact, rtol=1e-12, atol=1e-14)
     np.testing.assert_allclose(sparse, exact, rtol=1e-12, atol=1e-14)
