@@ -21,7 +21,7 @@ from ptp_symbolic.diagnose.trial import COARSE, LAST, Task, Trial, continue_fits
 from ptp_symbolic.diagnose.verdict import Verdict, decide, is_settled
 from ptp_symbolic.identify.fit import Effort
 
-BASES, BETTER = 3, 0.9
+BASES, PAIR_ROUNDS, BETTER = 3, 2, 0.9
 GLANCE = Effort(3, 1e-2, COARSE)
 
 
@@ -52,8 +52,8 @@ def _better_base(task: Task, base: Trial, verdict: Verdict) -> Trial | None:
 
 
 def _members(task: Task, trials: Sequence[Trial]) -> list[Trial]:
-    """Each effect of the best pair alone, from where the pair led it: often a better place than its
-    own search found.
+    """Each effect of the best pair alone, from where the pair led it: where the other has earned
+    nothing, and often a better place than its own search found.
     """
     pairs = [t for t in trials if len(t.candidates) > 1 and np.isfinite(held_out_cost(t))]
     best = sorted(pairs, key=held_out_cost)[:1]
@@ -74,17 +74,16 @@ def diagnose(task: Task, candidates: Sequence[Candidate]) -> Diagnosis:
         if better is None:
             break
     invisible = tuple(c for c in candidates if c not in visible)
-    if not is_settled(verdict):
-        effects = [c for c in visible if not c.is_declared_value]
-        beam = [t for t in trials if np.isfinite(held_out_cost(t))][:BEAM]
+    beam = [t for t in trials if np.isfinite(held_out_cost(t))][:BEAM]
+    effects = [c for c in visible if not c.is_declared_value]
+    for _ in range(PAIR_ROUNDS):
+        if is_settled(verdict) or not beam:
+            break
         trials += try_candidates(task, beam, effects)
-        alone = _members(task, trials)
-        verdict = decide(task, base, trials + alone)
-        led = [t for t in alone if held_out_cost(t) < BETTER * held_out_cost(beam[0])]
-        if led and not is_settled(verdict):
-            alone += try_candidates(task, led[:1], effects)
-            verdict = decide(task, base, trials + alone)
+        alone, before = _members(task, trials), held_out_cost(beam[0])
         trials += alone
+        verdict = decide(task, base, trials)
+        beam = [t for t in alone if held_out_cost(t) < BETTER * before][:1]
     ordered = sorted(trials, key=lambda t: (held_out_cost(t), t.train.cost))
     unique = {t.keys: t for t in reversed(ordered)}
     kept = sorted(unique.values(), key=lambda t: (held_out_cost(t), t.train.cost))

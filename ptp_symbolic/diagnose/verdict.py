@@ -1,13 +1,14 @@
 """The verdict: nothing missing, explained (up to a group, partly), or unexplained."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.floor import floor_counts
 from ptp_symbolic.diagnose.scores import share_explained, share_improved
-from ptp_symbolic.diagnose.trial import Task, Trial, held_out_cost
+from ptp_symbolic.diagnose.trial import Task, Trial, held_out_cost, simulated
 from ptp_symbolic.identify.intervals import estimates
 from ptp_symbolic.identify.windows import propagated_noise
 
@@ -22,6 +23,7 @@ IMPROVED, EXPLAINED_SHARE, PARTLY_SHARE = 0.85, 0.90, 0.30
 TIE = 1.02
 CLEAR_GAIN = 0.9
 SECOND_LEAVES = 0.3
+FELT = 1.02  # of the sum of squares, once an effect is switched off
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,13 +46,13 @@ def decide(task: Task, base: Trial, trials: Sequence[Trial]) -> Verdict:
     if not judged:
         word = NOTHING_MISSING if before <= AT_FLOOR * floor else UNEXPLAINED
         return Verdict(word, None, (), floor, 0.0, 0.0)
-    winner, rivals = _choose(judged, floor)
+    winner, rivals = _choose(task, judged, floor)
     assert base.validate is not None and winner.validate is not None
     improved = share_improved(base.validate.pairs(), winner.validate.pairs(), floor)
     explained = share_explained(base.validate.pairs(), winner.validate.pairs(), floor)
     final = float(np.sqrt(held_out_cost(winner)))
     clear = held_out_cost(winner) < CLEAR_GAIN * held_out_cost(base) and improved >= IMPROVED
-    seen = clear and _away_from_zero(winner)
+    seen = clear and _away_from_zero(task, winner)
     if before <= AT_FLOOR * floor and not seen:
         return Verdict(NOTHING_MISSING, None, (), floor, improved, explained)
     if not seen or final > LEFT_TO_PARTLY * floor:
@@ -63,7 +65,7 @@ def decide(task: Task, base: Trial, trials: Sequence[Trial]) -> Verdict:
     return Verdict(PARTLY, winner, rivals, floor, improved, explained)
 
 
-def _choose(judged: Sequence[Trial], floor: float) -> tuple[Trial, tuple[Trial, ...]]:
+def _choose(task: Task, judged: Sequence[Trial], floor: float) -> tuple[Trial, tuple[Trial, ...]]:
     """The best trial of one effect, unless one of two effects removes most of what that leaves."""
     chosen: tuple[Trial, tuple[Trial, ...]] | None = None
     for size in sorted({len(t.candidates) for t in judged}):
@@ -74,7 +76,7 @@ def _choose(judged: Sequence[Trial], floor: float) -> tuple[Trial, tuple[Trial, 
         left = max(held_out_cost(chosen[0]) - floor**2, 0.0)
         open_ = float(np.sqrt(held_out_cost(chosen[0]))) > AT_FLOOR * floor
         most = held_out_cost(best) - floor**2 <= SECOND_LEAVES * left
-        if open_ and most and _away_from_zero(best):
+        if open_ and most and _away_from_zero(task, best):
             chosen = best, rivals
     assert chosen is not None
     return chosen
@@ -105,17 +107,30 @@ def _simplest(judged: Sequence[Trial]) -> tuple[Trial, tuple[Trial, ...]]:
     return winner, tuple(r for r in rivals if not set(winner.keys) <= set(r.keys))
 
 
-def _away_from_zero(trial: Trial) -> bool:
-    """Every candidate of `trial` has a parameter whose interval leaves its vanishing value."""
+def _away_from_zero(task: Task, trial: Trial) -> bool:
+    """Every candidate of `trial` has a parameter whose interval leaves its vanishing value, and is
+    felt there: the interval of a logarithm never reaches zero.
+    """
     found = {e.name: e for e in estimates(trial.train)}
-    vanishes = {p.name: p.vanishes for p in trial.train.model.parameters}
-    starts = {f.name: f.start for c in trial.candidates for f in c.starts[0]}
     for candidate in trial.candidates:
-        off = []
-        for name in candidate.parameters:
-            zero = starts[name] if candidate.is_declared_value else vanishes[name]
-            if zero is not None:
-                off.append(not found[name].lower <= zero <= found[name].upper)
-        if not any(off):
+        off = _switched_off(trial, candidate)
+        if all(found[name].lower <= zero <= found[name].upper for name, zero in off.items()):
+            return False
+        if _squares(task, trial, off) < FELT * _squares(task, trial, {}):
             return False
     return True
+
+
+def _switched_off(trial: Trial, candidate: Candidate) -> dict[str, float]:
+    """Values of the parameters of `candidate` at which it vanishes."""
+    if candidate.is_declared_value:
+        return {f.name: f.start for f in candidate.starts[0]}
+    vanishes = {p.name: p.vanishes for p in trial.train.model.parameters}
+    zeros = {name: vanishes[name] for name in candidate.parameters}
+    return {name: zero for name, zero in zeros.items() if zero is not None}
+
+
+def _squares(task: Task, trial: Trial, values: Mapping[str, float]) -> float:
+    """Sum of squares over the train runs of `trial` with some `values` in place of its own."""
+    changed = simulated(task, trial.train, values)
+    return float(sum(np.inf if e.failed else e.residual @ e.residual for e in changed))

@@ -80,8 +80,10 @@ def test_an_effect_that_a_pair_led_to_a_better_place_is_tried_with_the_others_ag
     monkeypatch.setattr(rounds, "scores", lambda *_: {})
     monkeypatch.setattr(rounds, "visible_candidates", lambda *_: [a, b, c])
     monkeypatch.setattr(rounds, "try_candidates", try_candidates)
-    left = {"b": trial(70.0, c), "c": trial(10.0, b)}
-    monkeypatch.setattr(rounds, "without", lambda task, pair, idle, effort: left[idle.key])
+    alone = {"bb": trial(70.0, c), "bc": trial(10.0, b), "aa": trial(9.0, b), "ab": trial(50.0, a)}
+    monkeypatch.setattr(
+        rounds, "without", lambda task, pair, idle, _: alone[pair.keys[0] + idle.key]
+    )
     monkeypatch.setattr(rounds, "judge", lambda task, trial: trial)
     monkeypatch.setattr(rounds, "held_out_cost", lambda trial: trial.train.cost)
     monkeypatch.setattr(rounds, "decide", decide)

@@ -3,12 +3,14 @@
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from ptp_symbolic.diagnose import scores, verdict
 from ptp_symbolic.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED
 
 FLOOR = 0.29
+TASK: Any = SimpleNamespace()
 
 
 def trial(rms: float, *keys: str) -> Any:
@@ -40,7 +42,32 @@ def test_word(
     monkeypatch.setattr(verdict, "held_out_cost", lambda t: t.validate.pairs() ** 2)
     monkeypatch.setattr(verdict, "share_improved", lambda *_: improved)
     monkeypatch.setattr(verdict, "_noise_floor", lambda *_: FLOOR)
-    monkeypatch.setattr(verdict, "_away_from_zero", lambda _: True)
-    found = verdict.decide(SimpleNamespace(), trial(before), [trial(after, "effect")])  # type: ignore[arg-type]
+    monkeypatch.setattr(verdict, "_away_from_zero", lambda *_: True)
+    found = verdict.decide(TASK, trial(before), [trial(after, "effect")])
     assert found.word == word
     assert (found.accepted is None) == (word in (NOTHING_MISSING, UNEXPLAINED))
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "without", "away"),
+    [
+        (0.9, 1.1, 5.0, True),
+        (-0.1, 1.1, 5.0, False),
+        (4.0e-12, 4.4e-12, 1.0, False),  # the logarithm of nothing has an interval too
+    ],
+)
+def test_an_effect_is_away_from_zero_where_it_is_felt(
+    monkeypatch: pytest.MonkeyPatch, lower: float, upper: float, without: float, away: bool
+) -> None:
+    """`without`: sum of squares with the effect switched off, 1 with it."""
+    model = SimpleNamespace(parameters=[SimpleNamespace(name="c", vanishes=0.0)])
+    candidate = SimpleNamespace(is_declared_value=False, parameters=("c",))
+    fitted: Any = SimpleNamespace(train=SimpleNamespace(model=model), candidates=(candidate,))
+
+    def simulated(task: Any, fit: Any, values: Any) -> list[Any]:
+        return [SimpleNamespace(failed=None, residual=np.sqrt([without if values else 1.0]))]
+
+    interval = SimpleNamespace(name="c", lower=lower, upper=upper)
+    monkeypatch.setattr(verdict, "estimates", lambda _: (interval,))
+    monkeypatch.setattr(verdict, "simulated", simulated)
+    assert verdict._away_from_zero(TASK, fitted) == away
