@@ -28,7 +28,7 @@ from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, run_counts
 AGAIN, ROUNDS, SETTLED = Effort(8, 1e-3, FINE, secants=True), 4, 0.97
 PLACES = Effort(10, 1e-4, FINE)
 UNEVEN, NEAR, FAR = 1.2, 3.0, 30.0
-HOP, HOPS = 0.02, 3
+HOP, HOPS = 0.05, 6
 
 
 def escape(task: Task, trial: Trial) -> Trial:

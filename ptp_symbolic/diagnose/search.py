@@ -105,7 +105,7 @@ def try_candidates(
         error = np.sqrt(held_out_cost(trial))
         task.progress(f"{' + '.join(trial.keys)}: {error:.3f} counts rms on held-out runs")
     dropped = [
-        t
+        replace(t, train=t.train.lightened())
         for t in (*third, *(t for group in second for t in group))
         if t.keys not in {j.keys for j in judged}
     ]

@@ -141,7 +141,7 @@ def _advance(
         z = list(search.z)
         for index, found in zip(runs, fit.z, strict=True):
             z[index] = found
-        return replace(search, free=restarted(fit), z=tuple(z), fit=fit)
+        return replace(search, free=restarted(fit), z=tuple(z), fit=fit.lightened())
 
     return list(task.executor.map(go_on, searches))
 

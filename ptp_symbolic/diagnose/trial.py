@@ -112,7 +112,8 @@ def continue_fits(task: Task, trials: Sequence[Trial], effort: Effort) -> list[T
             chosen,
             task.executor,
         )
-        kept = fit if fit.cost <= 1.02 * trial.train.cost else trial.train
+        is_better = fit.cost <= 1.02 * trial.train.cost or not trial.train.is_differentiated
+        kept = fit if is_better else trial.train
         continued.append(replace(trial, train=kept))
     return sorted(continued, key=lambda trial: trial.train.cost)
 

@@ -138,4 +138,4 @@ def evaluate(
         if not np.all(np.isfinite(r)):
             failed = f"{run.name}: not finite"
     split = len(columns)
-    return Evaluation(r, j[:, :split], j[:, split:], failed)
+    return Evaluation(r, j[:, :split], j[:, split:].copy(), failed)

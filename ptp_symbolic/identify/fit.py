@@ -65,6 +65,19 @@ class Fit:
         squares = np.concatenate([run_counts(r, e) for r, e in self.pairs()])
         return float(np.sqrt(np.mean(squares**2)))
 
+    @property
+    def is_differentiated(self) -> bool:
+        """Whether the evaluations hold derivatives by the free parameters."""
+        return all(e.by_parameter.shape[1] == len(self.free) for e in self.evaluations)
+
+    def lightened(self) -> "Fit":
+        """This fit without derivatives, which take most of its memory."""
+        kept = tuple(
+            replace(e, by_parameter=e.by_parameter[:, :0].copy(), by_start=e.by_start[:, :0].copy())
+            for e in self.evaluations
+        )
+        return replace(self, evaluations=kept)
+
     def pairs(self) -> list[tuple[Run, Evaluation]]:
         """Runs with their evaluations."""
         return list(zip(self.runs, self.evaluations, strict=True))
