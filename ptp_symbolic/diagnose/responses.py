@@ -14,7 +14,15 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.trial import Task, Trial, fixed_values, moved, restarted, simulated
+from ptp_symbolic.diagnose.trial import (
+    Task,
+    Trial,
+    fixed_values,
+    moved,
+    restarted,
+    simulated,
+    squares,
+)
 from ptp_symbolic.identify.coordinates import FreeParameter, limits, to_search
 from ptp_symbolic.identify.fit import Fit, all_values, all_values_at_start
 from ptp_symbolic.identify.intervals import project_out
@@ -179,6 +187,5 @@ def _unfitted(
     values = {**fixed, **all_values_at_start(free)}
     evaluations = tuple(simulated(task, base.train, values))
     failed = next((e.failed for e in evaluations if e.failed), None)
-    cost = np.inf if failed else float(sum(e.residual @ e.residual for e in evaluations))
-    z = base.train.z
+    z, cost = base.train.z, squares(evaluations)
     return Fit(task.model, task.train, tuple(free), values, z, cost, evaluations, failed)

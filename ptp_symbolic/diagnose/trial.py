@@ -65,6 +65,11 @@ def simulated(task: Task, fit: Fit, values: Mapping[str, float]) -> list[Evaluat
     return list(task.executor.map(one, zip(fit.runs, fit.z, strict=True)))
 
 
+def squares(evaluations: Sequence[Evaluation]) -> float:
+    """Sum of the squared residuals of all runs; infinite where one has failed."""
+    return float(sum(np.inf if e.failed else e.residual @ e.residual for e in evaluations))
+
+
 def held_out_cost(trial: Trial) -> float:
     """Mean square of the held-out residuals; infinite when not judged."""
     if trial.validate is None or trial.validate.failed:

@@ -1,6 +1,6 @@
 """The verdict: nothing missing, explained (up to a group, partly), or unexplained."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.floor import floor_counts
 from ptp_symbolic.diagnose.scores import share_explained, share_improved
-from ptp_symbolic.diagnose.trial import Task, Trial, held_out_cost, simulated
+from ptp_symbolic.diagnose.trial import Task, Trial, held_out_cost, simulated, squares
 from ptp_symbolic.identify.intervals import estimates
 from ptp_symbolic.identify.windows import propagated_noise
 
@@ -116,7 +116,8 @@ def _away_from_zero(task: Task, trial: Trial) -> bool:
         off = _switched_off(trial, candidate)
         if all(found[name].lower <= zero <= found[name].upper for name, zero in off.items()):
             return False
-        if _squares(task, trial, off) < FELT * _squares(task, trial, {}):
+        without, with_it = (squares(simulated(task, trial.train, v)) for v in (off, {}))
+        if without < FELT * with_it:
             return False
     return True
 
@@ -128,9 +129,3 @@ def _switched_off(trial: Trial, candidate: Candidate) -> dict[str, float]:
     vanishes = {p.name: p.vanishes for p in trial.train.model.parameters}
     zeros = {name: vanishes[name] for name in candidate.parameters}
     return {name: zero for name, zero in zeros.items() if zero is not None}
-
-
-def _squares(task: Task, trial: Trial, values: Mapping[str, float]) -> float:
-    """Sum of squares over the train runs of `trial` with some `values` in place of its own."""
-    changed = simulated(task, trial.train, values)
-    return float(sum(np.inf if e.failed else e.residual @ e.residual for e in changed))

@@ -1,8 +1,8 @@
 """Arithmetic on four neighbouring elements of a vector at once.
 
-The rows of a step are so short (four to twelve states) that a compiler's own vector loops spend
-more time on their beginning and end than on their middle, and a minute on being compiled. Rows that
-are worked on here have room for a multiple of LANES elements; what is beyond the states stays zero.
+The rows of a step are so short (four to twelve states) that a compiler's own vector loops would be
+little but beginning and end. Rows that are worked on here have room for a multiple of LANES
+elements; what is beyond the states stays zero.
 """
 
 from typing import Any

@@ -19,7 +19,7 @@ def weighted(weights, row, count, k, e):
 
 @inlined
 def add_stages(i, weights, scale, k, out):
-    """Add the stages k [8, w] before i with their weights [8, 8], times scale, to out [w]."""
+    """Add the stages k [8, w] before i with row i of their weights, times scale, to out [w]."""
     for e in range(0, len(out), LANES):
         store(plus_times(load(out, e), scale, weighted(weights, i, i, k, e)), out, e)
 

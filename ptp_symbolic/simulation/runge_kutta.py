@@ -5,7 +5,7 @@ from ptp_symbolic.simulation.kernels import copy, inlined, kernel
 from ptp_symbolic.simulation.lanes import LANES, nothing, plus_times, store
 from ptp_symbolic.simulation.linear import add_sparse_product, add_stages, weighted
 from ptp_symbolic.simulation.pressed import derivative, jacobian
-from ptp_symbolic.simulation.tableau import ERROR, INTERPOLANT, STAGES, WEIGHTS, C
+from ptp_symbolic.simulation.tableau import ERROR, INTERPOLANT, STAGES, A, C
 
 
 @kernel
@@ -17,7 +17,7 @@ def attempt(equations, inputs, t, h, x, m, step):
     copy(step.slope, step.k[0])
     for i in range(1, STAGES):
         for e in range(0, step.stage.shape[1], LANES):
-            change = plus_times(nothing(), h, weighted(WEIGHTS, i, i, step.k, e))
+            change = plus_times(nothing(), h, weighted(A, i, i, step.k, e))
             store(change, step.stage[i], e)
         for a in range(n):
             step.stage[i, a] += x[a]
@@ -53,7 +53,7 @@ def push_tangents(equations, inputs, t, h, m, step, tangents):
     """Carry the tangents over an accepted step: the derivative of the step itself."""
     for i in range(STAGES - 1):
         copy(tangents.s, tangents.point)
-        add_stages(i, WEIGHTS, h, tangents.k, tangents.point)
+        add_stages(i, A, h, tangents.k, tangents.point)
         if not inputs.held:
             side = -1 if C[i] == 1.0 else 1
             evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
@@ -63,7 +63,7 @@ def push_tangents(equations, inputs, t, h, m, step, tangents):
         )
         fill_drive(inputs, tangents, tangents.k[i])
         add_sparse_product(step.fx, tangents.point, tangents.k[i])
-    add_stages(STAGES - 1, WEIGHTS, h, tangents.k, tangents.s)
+    add_stages(STAGES - 1, A, h, tangents.k, tangents.s)
 
 
 @inlined

@@ -30,8 +30,6 @@ A[6, :6] = [
     -3.290069515436081,
     2.324710524099774,
 ]
-WEIGHTS = np.zeros((8, 8))  # A, with room to be read four at a time
-WEIGHTS[:STAGES, :STAGES] = A
 ERROR = np.array(
     [
         -0.00178001105222577714,
