@@ -89,12 +89,12 @@ class EventMachine:
 
 def simulate_with_scipy(
     model: Model, table: InputTable, end: float, method: str, rtol: float, atol: FloatArray
-) -> tuple[FloatArray, int]:
-    """Final state [n] of a run from rest over `end` s, and the number of events."""
+) -> tuple[FloatArray, FloatArray, int]:
+    """Times [k] and states [k, n] at the steps of a run from rest over `end` s, and its events."""
     machine, x, count = EventMachine(model, table), np.zeros(len(model.state_names)), 0
     stops = [s for s in table.stops if 0.0 < s < end] + [end]
     extra = {"jac": machine.jacobian} if method in ("LSODA", "Radau") else {}
-    t = 0.0
+    t, times, states = 0.0, [], []
     for stop in stops:
         machine.settle(t, x)
         while t < stop:
@@ -102,6 +102,8 @@ def simulate_with_scipy(
                 machine.rhs, (t, stop), x, method=method, rtol=rtol, atol=atol,
                 events=machine.events, **extra,
             )  # fmt: skip
+            times.append(found.t[1:])
+            states.append(found.y[:, 1:].T)
             t, x = float(found.t[-1]), found.y[:, -1].copy()
             if found.status != 1:
                 break
@@ -109,4 +111,4 @@ def simulate_with_scipy(
             t = min(t + PAST, stop)
             machine.settle(t, x)
             count += 1
-    return x, count
+    return np.concatenate(times), np.concatenate(states), count

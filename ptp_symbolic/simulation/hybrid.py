@@ -13,6 +13,7 @@ from numba import njit, types
 
 from ptp_symbolic.simulation.crossing import cross, jump_by_delay
 from ptp_symbolic.simulation.domain import is_finite, is_outside
+from ptp_symbolic.simulation.exponential_step import PROPAGATOR, Propagator, reach_sample
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.kernels import (
     CHATTERING,
@@ -63,10 +64,11 @@ from ptp_symbolic.simulation.sampling import (
     Sampling,
     is_due,
     next_stop,
-    sample_with_tangents,
+    sample_at,
 )
 from ptp_symbolic.simulation.step_length import is_balanced, next_length, try_step
 from ptp_symbolic.simulation.steps import (
+    ROSENBROCK,
     RUNGE_KUTTA,
     begin,
     end_slope,
@@ -159,18 +161,27 @@ def pass_event(equations, inputs, t, length, x, watch, tangents, record):
 
 @merged
 def advance_by_samples(
-    method, equations, inputs, stop, x, limits, atol, step, watch, tangents, record, sampling
-):
-    """Advance to `stop`, running the samplers that come due until then and there."""
+    method, equations, inputs, stop, x, limits, atol, step, watch, tangents, record, sampling,
+    propagator,
+):  # fmt: skip
+    """Advance to `stop`, running the samplers that come due until then and there.
+
+    The explicit method shares nothing with the exponential step: each checks the other.
+    """
+    plain = method == ROSENBROCK and len(sampling.due) > 0 and inputs.held
+    plain = plain and tangents.table.shape[1] == 0 and len(record.ledger) == 0
     while True:
         target = next_stop(stop, sampling)
-        status = advance(
-            method, equations, inputs, target, x, limits, atol, step, watch, tangents, record
-        )
-        if status != DONE:
-            return status
+        if not plain or not reach_sample(
+            equations, inputs, target, x, limits, atol, step, watch, record, propagator
+        ):
+            status = advance(
+                method, equations, inputs, target, x, limits, atol, step, watch, tangents, record
+            )
+            if status != DONE:
+                return status
         if is_due(target, sampling):
-            sample_with_tangents(equations, inputs, target, x, watch.m, tangents, sampling)
+            sample_at(equations, inputs, target, x, watch.m, tangents, sampling)
         if target == stop:
             return DONE
         write_here(equations, inputs, target, x, watch.m, tangents, record)
@@ -211,13 +222,14 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             TANGENTS_TYPE,
             RECORD_TYPE,
             SAMPLING,
+            PROPAGATOR,
         ),
         cache=True,
         **KERNEL,
     )
     def run(
         method, functions, p, friction_rates, zero_at_rest, contacts, table, cursor, held, u, x,
-        stops, limits, atol, step, watch, tangents, record, sampling,
+        stops, limits, atol, step, watch, tangents, record, sampling, propagator,
     ):  # fmt: skip
         """Integrate from the first to the last stop; returns a status, the rest is in `record`."""
         record = Record(*record)
@@ -225,9 +237,10 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         equations = equations_at(functions, p, friction_rates, zero_at_rest, contacts)
         inputs, step, watch = Inputs(table, cursor, held, u[0], u[1]), Step(*step), Watch(*watch)
         tangents, sampling = Tangents(*tangents), Sampling(*sampling)
+        propagator = Propagator(*propagator)
         record.clock[TIME], record.clock[LENGTH] = stops[0], limits[1]
         if is_due(stops[0], sampling):
-            sample_with_tangents(equations, inputs, stops[0], x, watch.m, tangents, sampling)
+            sample_at(equations, inputs, stops[0], x, watch.m, tangents, sampling)
         evaluate_inputs(stops[0], 1, *inputs.table, inputs.cursor, inputs.u)
         write_here(equations, inputs, stops[0], x, watch.m, tangents, record)
         for index in range(1, len(stops)):
@@ -239,7 +252,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
                 return CHATTERING
             status = advance_by_samples(
                 method, equations, inputs, stops[index], x, limits, atol, step, watch, tangents,
-                record, sampling,
+                record, sampling, propagator,
             )  # fmt: skip
             if status != DONE:
                 return status

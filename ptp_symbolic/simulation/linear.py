@@ -26,11 +26,11 @@ def add_stages(i, weights, scale, k, out):
 
 @inlined
 def multiply(columns, vector, added, out):
-    """Write the sum of columns [m, w] weighted by the first m of vector + added into out [w].
+    """Write the sum of columns [m, w] weighted by the first m of vector + added into w of out.
 
     The two are added one by one: what has just been stored singly is slow to be loaded in fours.
     """
-    for e in range(0, len(out), LANES):
+    for e in range(0, columns.shape[1], LANES):
         total = nothing()
         for j in range(columns.shape[0]):
             total = plus_times(total, vector[j] + added[j], load(columns[j], e))

@@ -65,14 +65,21 @@ def first_violation(equations, inputs, t, h, step, watch):
     for element in range(len(watch.at_end)):
         start, end = watch.at_start[element], watch.at_end[element]
         middle = watch.at_middle[element]
-        bend, rise = 2.0 * (start + end) - 4.0 * middle, 4.0 * middle - 3.0 * start - end
-        if bend < 0.0 < rise < -2.0 * bend:
-            summit = -0.5 * rise / bend
-            size = abs(middle - start) + abs(end - middle)
-            near = start + summit * (rise + summit * bend) > -NEARLY * size
-            if near and on_curve(equations, inputs, t, h, summit, step, watch) > 0.0:
-                return summit
+        highest = summit(start, middle, end)
+        if highest > 0.0 and on_curve(equations, inputs, t, h, highest, step, watch) > 0.0:
+            return highest
     return 1.0 if ended else 0.0
+
+
+@inlined
+def summit(start, middle, end):
+    """Fraction of a step where the parabola through three violations comes near zero, or 0."""
+    bend, rise = 2.0 * (start + end) - 4.0 * middle, 4.0 * middle - 3.0 * start - end
+    if not bend < 0.0 < rise < -2.0 * bend:
+        return 0.0
+    highest = -0.5 * rise / bend
+    size = abs(middle - start) + abs(end - middle)
+    return highest if start + highest * (rise + highest * bend) > -NEARLY * size else 0.0
 
 
 @kernel

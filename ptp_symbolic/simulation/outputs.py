@@ -1,5 +1,7 @@
 """What a run leaves behind: states at the output times, the energy ledger, events."""
 
+import numpy as np
+
 from ptp_symbolic.simulation.emitted import call
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.kernels import (
@@ -114,9 +116,22 @@ def write_inside(equations, inputs, t, h, t_new, m, step, record):
     record.counts[OUTPUT] = output
 
 
-@kernel
+@inlined
+def next_output(record):
+    """Time of the next output in s; endless after the last."""
+    output = record.counts[OUTPUT]
+    return record.times[output] if output < len(record.times) else np.inf
+
+
+@inlined
 def write_here(equations, inputs, t, x, m, tangents, record):
     """Write the outputs that lie at time t, a stop, with their tangents."""
+    if next_output(record) <= t + TIME_RESOLUTION:
+        _write_here(equations, inputs, t, x, m, tangents, record)
+
+
+@kernel
+def _write_here(equations, inputs, t, x, m, tangents, record):
     output = record.counts[OUTPUT]
     while output < len(record.times) and record.times[output] <= t + TIME_RESOLUTION:
         copy(x, record.x[output])

@@ -9,6 +9,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation import hybrid
 from ptp_symbolic.simulation.emitted import addresses
+from ptp_symbolic.simulation.exponential_step import new_propagator
 from ptp_symbolic.simulation.impacts import HELD
 from ptp_symbolic.simulation.inputs import InputTable
 from ptp_symbolic.simulation.kernels import EVENTS, STEPS, TIME, Record, Step, Tangents, Watch
@@ -116,6 +117,7 @@ def pass_through(
         np.array([accuracy.relative, accuracy.largest_step]), accuracy.absolute,
         tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)), tuple(watch),
         tuple(tangents), tuple(record), tuple(new_sampling(model, p, x, stops, padded(s.shape[1]))),
+        tuple(new_propagator(len(model.mode_names), model.moving, n)),
     )  # fmt: skip
     return Passage(
         status, float(record.clock[TIME]), x, record.x, record.s, record.ledger,

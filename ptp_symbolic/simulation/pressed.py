@@ -35,18 +35,35 @@ def jacobian(equations, t, x, u, m, fx, fu, fp):
             clear(fp[gear])
 
 
-@kernel
-def fill_guards(equations, t, x, u, watch):
-    """Write the guards; those of a contact that is pressed say whether one gets away."""
-    g, frictions = watch.g, len(equations.friction_rates)
-    call(equations.guards, t, x, u, equations.p, watch.m, g)
+@inlined
+def hold_at_rest(equations, m, x, end):
+    """Put back what rests at the start x of a step: rounding would make it creep."""
+    for f in range(len(equations.friction_rates)):
+        if m[f] == 0.0:
+            end[equations.friction_rates[f]] = x[equations.friction_rates[f]]
     for contact in range(len(equations.contacts)):
         if equations.contacts[contact, PRESSED] == 1:
-            at, side = 3 * frictions + 4 * contact, watch.m[frictions + 2 * contact]
-            g[at] = side * acceleration(contact, 0.0, equations, t, x, u, watch)
-            g[at + 1] = 0.0
-            g[at + 2] = side * acceleration(contact, 1.0, equations, t, x, u, watch)
-            g[at + 3] = g[at + 2]
+            end[equations.contacts[contact, 0]] = x[equations.contacts[contact, 0]]
+
+
+@inlined
+def fill_guards(equations, t, x, u, watch):
+    """Write the guards; those of a contact that is pressed say whether one gets away."""
+    call(equations.guards, t, x, u, equations.p, watch.m, watch.g)
+    for contact in range(len(equations.contacts)):
+        if equations.contacts[contact, PRESSED] == 1:
+            fill_guards_of_pressed(contact, equations, t, x, u, watch)
+
+
+@kernel
+def fill_guards_of_pressed(contact, equations, t, x, u, watch):
+    """Write the guards of a contact that is pressed."""
+    frictions = len(equations.friction_rates)
+    at, side = 3 * frictions + 4 * contact, watch.m[frictions + 2 * contact]
+    watch.g[at] = side * acceleration(contact, 0.0, equations, t, x, u, watch)
+    watch.g[at + 1] = 0.0
+    watch.g[at + 2] = side * acceleration(contact, 1.0, equations, t, x, u, watch)
+    watch.g[at + 3] = watch.g[at + 2]
 
 
 @kernel

@@ -12,7 +12,7 @@ from ptp_symbolic.simulation.linear import (
     multiply,
     weighted,
 )
-from ptp_symbolic.simulation.pressed import PRESSED, derivative, jacobian
+from ptp_symbolic.simulation.pressed import derivative, hold_at_rest, jacobian
 from ptp_symbolic.simulation.rodas5p import COUPLING, GAMMA, STAGES, A, C, D, H
 from ptp_symbolic.simulation.runge_kutta import fill_drive
 
@@ -45,8 +45,7 @@ def begin(equations, inputs, t, x, m, step):
 def attempt(equations, inputs, t, h, x, m, step):
     """Try a step of length h in s: fill the increments k and the end point.
 
-    Resting frictions are copied back, or rounding would make them creep. States that samplers hold
-    come last; the inverse may leave them out.
+    States that samplers hold come last; the inverse may leave them out.
     """
     point, right, added = step.point, step.right, step.added
     invert(step.fx, 1.0 / (h * GAMMA), step.inverse, step.order, step.columns)
@@ -65,12 +64,7 @@ def attempt(equations, inputs, t, h, x, m, step):
         multiply(step.columns, right, added, step.k[i])
     for a in range(len(x)):
         step.end[a] = point[a] + step.k[STAGES - 1, a]
-    for f in range(len(equations.friction_rates)):
-        if m[f] == 0.0:
-            step.end[equations.friction_rates[f]] = x[equations.friction_rates[f]]
-    for contact in range(len(equations.contacts)):
-        if equations.contacts[contact, PRESSED] == 1:
-            step.end[equations.contacts[contact, 0]] = x[equations.contacts[contact, 0]]
+    hold_at_rest(equations, m, x, step.end)
 
 
 @inlined

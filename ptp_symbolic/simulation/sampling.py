@@ -107,6 +107,19 @@ def is_due(t, sampling):
     return found
 
 
+@inlined
+def sample_at(equations, inputs, t, x, m, tangents, sampling):
+    """Run every sampler that is due at t, and let the tangents jump, where there are any.
+
+    inputs.u is as before t, inputs.ahead will be as after it.
+    """
+    evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.ahead)
+    if tangents.table.shape[1] == 0:
+        sample_now(equations, inputs.ahead, t, x, m, sampling)
+    else:
+        sample_with_tangents(equations, inputs, t, x, m, tangents, sampling)
+
+
 @kernel
 def sample_now(equations, u, t, x, m, sampling):
     """Run every sampler that is due at t, with inputs u after a jump there."""
@@ -117,18 +130,11 @@ def sample_now(equations, u, t, x, m, sampling):
 
 @kernel
 def sample_with_tangents(equations, inputs, t, x, m, tangents, sampling):
-    """Run every sampler that is due at t, and let the tangents jump.
-
-    inputs.u is as before t, inputs.ahead will be as after it.
-    """
-    evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.ahead)
+    """Run every sampler that is due at t, and let the tangents jump; see `sample_at`."""
     for i in range(len(sampling.due)):
         if sampling.due[i] > t + COINCIDENT:
             continue
         if not _comes(i, equations, inputs.ahead, t, x, m, sampling):
-            continue
-        if tangents.table.shape[1] == 0:
-            _set_states(i, x, sampling)
             continue
         call(
             sampling.functions[1], t, x, inputs.ahead, equations.p, m, sampling.zx, sampling.zu,

@@ -44,10 +44,16 @@ def error_norm(method, h, x, step, rtol, atol):
             e = step.k[LAST_IMPLICIT, a]
         else:
             e = _error_explicit(h, a, step)
-        ratio = abs(e) / (atol[a] + rtol * max(abs(x[a]), abs(step.end[a])))
+        ratio = over_tolerance(e, x[a], step.end[a], rtol, atol[a])
         if not ratio <= worst:  # also when it is not a number
             worst = ratio
     return worst
+
+
+@inlined
+def over_tolerance(error, start, end, rtol, atol):
+    """An error of a state over what is allowed between its values at both ends of a step."""
+    return abs(error) / (atol + rtol * max(abs(start), abs(end)))
 
 
 @kernel

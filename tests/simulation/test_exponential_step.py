@@ -1,0 +1,101 @@
+"""The exponential step of sampled machines: matrices against SciPy, runs against another way."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numba import njit
+from scipy.linalg import expm
+
+from ptp_symbolic import loop
+from ptp_symbolic.platform import ParameterDeclaration, read_platform
+from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.simulation.inputs import InputSignal, ramp, stack, step
+from ptp_symbolic.simulation.kernels import DONE, KERNEL
+from ptp_symbolic.simulation.passage import Accuracy, Passage, pass_through, tolerance_weights
+from ptp_symbolic.simulation.phi_functions import double, fill_phi_functions
+
+END = 4.0
+CLOSE, LATE = 1e-7, 1e-5  # rad; s: what 1e-7 rad is at 0.01 rad/s
+
+
+@njit(**KERNEL)
+def phi_functions(matrix, scale, twice, phi0, phi1, phi2, product):  # type: ignore[no-untyped-def]
+    fill_phi_functions(matrix, scale, phi0, phi1, phi2, product)
+    if twice:
+        double(phi0, phi1, phi2, product)
+
+
+@pytest.mark.parametrize("twice", [False, True])
+@pytest.mark.parametrize("size", [1e-9, 0.3, 40.0, 3e4])
+def test_phi_functions_are_blocks_of_the_exponential_of_a_larger_matrix(
+    size: float, twice: bool
+) -> None:
+    """Sidje (ACM Trans. Math. Softw. 24, 1998): exp([[A, 1, 0], [0, 0, 1], [0, 0, 0]])."""
+    random, k = np.random.default_rng(3), 5
+    basis = random.standard_normal((k, k))
+    matrix = basis @ np.diag(-random.uniform(0.1, 1.0, k)) @ np.linalg.inv(basis)  # decays
+    matrix[2] = 0.0  # a body at rest
+    found = [np.zeros((k, k)) for _ in range(4)]
+    phi_functions(matrix, size, twice, *found)
+    zero, one = np.zeros((k, k)), np.eye(k)
+    whole = size * (2.0 if twice else 1.0) * matrix
+    exact = expm(np.block([[whole, one, zero], [zero, zero, one], [zero, zero, zero]]))
+    for i, phi in enumerate(found[:3]):
+        expected = exact[:k, i * k : (i + 1) * k]
+        np.testing.assert_allclose(phi, expected, rtol=1e-9, atol=1e-11 * np.abs(expected).max())
+    np.testing.assert_array_equal(found[0][2], one[2])
+
+
+@pytest.fixture(scope="module")
+def servo() -> Model:
+    """The pan servo of the thesis with its controller at 1 kHz."""
+    platform = read_platform("thesis-pan-servo")
+    kept = tuple(p for p in platform.parameters if p.name != "t_sample_pan")
+    fast = ParameterDeclaration("t_sample_pan", "s", 1e-3)
+    return loop.emit(replace(platform, parameters=(*kept, fast)))
+
+
+def passage(
+    model: Model, goal: InputSignal, method: str, tolerance: float, times: np.ndarray,
+    ledger: bool = False,
+) -> Passage:  # fmt: skip
+    """A run from rest."""
+    table, weights = stack([goal]), tolerance_weights(model)
+    found = pass_through(
+        model, method, model.parameter_vector(), np.zeros(len(model.state_names)), table,
+        table.held, table.with_stops(np.array([0.0, END])), times,
+        Accuracy(tolerance, 0.1 * tolerance * weights, 0.1), ledger=ledger, event_room=500,
+    )  # fmt: skip
+    assert found.status == DONE
+    return found
+
+
+@pytest.mark.parametrize("goal", [ramp(0.0, 0.5, 0.0, 2.0), step(0.0, 0.02, 0.1)])
+def test_a_servo_moves_as_the_explicit_method_says_with_a_step_per_sample(
+    servo: Model, goal: InputSignal
+) -> None:
+    samples = np.linspace(0.0, END, 4001)
+    exact = passage(servo, goal, "runge_kutta", 1e-11, samples)
+    found = passage(servo, goal, "rosenbrock", 1e-7, samples)
+    assert np.max(np.abs(found.x[:, 0] - exact.x[:, 0])) < CLOSE
+    assert len(found.events) == len(exact.events) >= 2
+    np.testing.assert_array_equal(found.events[:, 1:], exact.events[:, 1:])
+    np.testing.assert_allclose(found.events[:, 0], exact.events[:, 0], rtol=0.0, atol=LATE)
+    careful = passage(servo, goal, "rosenbrock", 1e-7, samples, ledger=True)
+    assert found.steps < min(1.05 * 4000, careful.steps)
+
+
+def test_outputs_between_samples_are_those_of_the_adaptive_method(servo: Model) -> None:
+    goal, between = ramp(0.0, 0.5, 0.0, 2.0), np.linspace(0.0, END, 9001)
+    exact = passage(servo, goal, "runge_kutta", 1e-11, between)
+    found = passage(servo, goal, "rosenbrock", 1e-6, between)
+    assert np.max(np.abs(found.x[:, 0] - exact.x[:, 0])) < CLOSE
+    assert np.max(np.abs(found.x[:, 4] - exact.x[:, 4])) < 1e-4  # A
+
+
+def test_a_body_at_rest_does_not_creep_from_sample_to_sample(servo: Model) -> None:
+    """A goal too small to break friction loose: the load stays where it was to the last bit."""
+    found = passage(servo, step(0.0, 1e-9, 0.1), "rosenbrock", 1e-5, np.linspace(0.0, END, 4001))
+    assert np.all(found.x[:, 0] == 0.0)
+    assert found.steps <= 4001
