@@ -1,6 +1,7 @@
 """What every test may ask for."""
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -31,3 +32,33 @@ def shared(checkout: Path) -> Path:
     if not (folder / "fieldlogs").is_dir():
         pytest.skip(f"no field logs in {folder}: set PTP_SYMBOLIC_SHARED to the folder of the data")
     return folder
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add `--figures`."""
+    parser.addoption("--figures", action="store_true", help="print the figures that proofs rest on")
+
+
+@pytest.fixture
+def figure(record_property: Callable[[str, object], None]) -> Callable[[str, float], float]:
+    """Notes a number under a name, for `--figures`, and returns it: assert figure(...) < bound."""
+
+    def note(what: str, value: float) -> float:
+        record_property(what, float(value))
+        return value
+
+    return note
+
+
+def pytest_terminal_summary(
+    terminalreporter: pytest.TerminalReporter, config: pytest.Config
+) -> None:
+    """Print the figures of all tests that ran, a line each."""
+    if not config.getoption("figures"):
+        return
+    terminalreporter.section("figures")
+    for outcome in ("passed", "failed"):
+        for report in terminalreporter.stats.get(outcome, []):
+            for what, value in report.user_properties:
+                name = report.nodeid.rpartition("/")[2]
+                terminalreporter.line(f"{value:10.3g}  {what}  ({name}, {outcome})")

@@ -5,15 +5,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numba import njit
+from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from ptp_symbolic import loop
-from ptp_symbolic.platform import ParameterDeclaration, read_platform
+from ptp_symbolic.platform import (
+    EffectDeclaration,
+    ParameterDeclaration,
+    Platform,
+    read_platform,
+)
 from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import InputSignal, ramp, stack, step
+from ptp_symbolic.simulation.inputs import InputSignal, constant, ramp, stack, step
 from ptp_symbolic.simulation.kernels import DONE, KERNEL
 from ptp_symbolic.simulation.passage import Accuracy, Passage, pass_through, tolerance_weights
 from ptp_symbolic.simulation.phi_functions import double, fill_phi_functions
+from tests.effects import test_pid_controller as pid
 
 END = 4.0
 CLOSE, LATE = 1e-7, 1e-5  # rad; s: what 1e-7 rad is at 0.01 rad/s
@@ -58,13 +65,14 @@ def servo() -> Model:
 
 def passage(
     model: Model, goal: InputSignal, method: str, tolerance: float, times: np.ndarray,
-    ledger: bool = False,
+    ledger: bool = False, parameters: dict[str, float] | None = None, start: float = 0.0,
 ) -> Passage:  # fmt: skip
-    """A run from rest."""
-    table, weights = stack([goal]), tolerance_weights(model)
+    """A run from the first to the last of `times`, from rest but for the rate of the load."""
+    table, weights, x = stack([goal]), tolerance_weights(model), np.zeros(len(model.state_names))
+    x[1] = start
     found = pass_through(
-        model, method, model.parameter_vector(), np.zeros(len(model.state_names)), table,
-        table.held, table.with_stops(np.array([0.0, END])), times,
+        model, method, model.parameter_vector(parameters), x, table, table.held,
+        table.with_stops(times[[0, -1]]), times,
         Accuracy(tolerance, 0.1 * tolerance * weights, 0.1), ledger=ledger, event_room=500,
     )  # fmt: skip
     assert found.status == DONE
@@ -84,6 +92,48 @@ def test_a_servo_moves_as_the_explicit_method_says_with_a_step_per_sample(
     np.testing.assert_allclose(found.events[:, 0], exact.events[:, 0], rtol=0.0, atol=LATE)
     careful = passage(servo, goal, "rosenbrock", 1e-7, samples, ledger=True)
     assert found.steps < min(1.05 * 4000, careful.steps)
+
+
+def test_a_linear_servo_moves_as_the_exponential_says(figure) -> None:
+    """The hand-written loop of the controller's tests, exact from sample to sample."""
+    period, goal = 1e-3, step(0.0, 0.2, 0.0)
+    model, given = pid.servo(), pid.GAINS | pid.FINE | {"t_sample_pan": period}
+    found = passage(model, goal, "rosenbrock", 1e-6, np.arange(2001) * period, parameters=given)
+    controller = pid.Controller(300.0, 900.0, 4.0, period)
+    exact = pid.exact(controller, goal, 2000)
+    assert figure("error, rad", np.abs(found.x[:, 0] - exact[:, 0]).max()) < 1e-12
+    assert found.steps < 2010  # the first sample tells the period, by the adaptive method
+
+
+def test_the_order_is_two_in_what_is_not_linear(figure) -> None:
+    """A load flies in the gap on a hardening cable wrap; the controller does nothing."""
+    names = (
+        "dc_motor", "csvs_friction", "backlash", "shaft_compliance", "cable_spring",
+        "pid_controller",
+    )  # fmt: skip
+    bodies, more = EffectDeclaration("rigid_bodies", None, None), (
+        EffectDeclaration(name, "pan", None) for name in names
+    )  # fmt: skip
+    model = loop.emit(Platform("flight", "Flight", ("pan",), 9.81, (bodies, *more), (), ()))
+    load = {"J_pan": 100.0, "gap_pan": 1.0, "k3_cable_pan": 40.0, "K_p_pan": 0.0}
+    speed, end = 0.1, 24.0
+    exact = solve_ivp(
+        lambda t, x: [x[1], -load["k3_cable_pan"] * x[0] ** 3 / load["J_pan"]], (0.0, end),
+        [0.0, speed], "DOP853", rtol=1e-13, atol=1e-15,
+    ).y[0, -1]  # fmt: skip
+
+    def error(period: float) -> float:
+        found = passage(
+            model, constant(0.0), "rosenbrock", 1e9, np.array([0.0, end]),
+            parameters=load | {"t_sample_pan": period}, start=speed,
+        )  # fmt: skip
+        assert found.steps == round(end / period)
+        return float(abs(found.x[-1, 0] - exact))
+
+    periods = np.array([0.08, 0.06, 0.04, 0.03])
+    errors = [error(period) for period in periods]
+    found = figure("order, 2 expected", np.polyfit(np.log(periods), np.log(errors), 1)[0])
+    assert found == pytest.approx(2.0, abs=0.1)
 
 
 def test_outputs_between_samples_are_those_of_the_adaptive_method(servo: Model) -> None:

@@ -81,7 +81,7 @@ def simulate_with_mujoco(step: float, ends: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
-def test_mujoco_converges_to_the_located_events() -> None:
+def test_mujoco_converges_to_the_located_events(figure) -> None:
     ends = np.linspace(0.0, 2.6, 27)
     inputs = {f"tau_{axis}": table(TIMES, torque, "hold") for axis, torque in TORQUES.items()}
     ours = simulate(loop.emit(PLATFORM), ends, inputs, VALUES, START, rtol=1e-9, atol=1e-11)
@@ -90,5 +90,5 @@ def test_mujoco_converges_to_the_located_events() -> None:
     assert {"sticks", "slides forward", "slides backward"} <= modes
     off = [np.max(np.abs(simulate_with_mujoco(step, ends) - angles)) for step in (4e-4, 1e-4)]
     assert np.ptp(angles, axis=0).min() > 0.3
-    assert off[1] < 0.3 * off[0]
-    assert off[1] < 1e-3
+    assert figure("of that at 0.4 ms", off[1] / off[0]) < 0.3
+    assert figure("MuJoCo at 0.1 ms off ours, rad", off[1]) < 1e-3

@@ -60,13 +60,13 @@ def test_windings_of_any_stiffness(name: str, inductance: float | None) -> None:
 
 
 @pytest.mark.parametrize("name", SIGNALS)
-def test_everything_switched_on(everything, name: str) -> None:
+def test_everything_switched_on(everything, name: str, figure) -> None:
     model, at_work = everything
     for inductance in (6.9e-3, 1e-7):
         parameters = {**at_work, "L_pan": inductance}
         found = ptp_symbolic.simulate(model, 1.0, {"u_pan": SIGNALS[name]}, parameters)
-        assert missing(found) <= 1e-6
-        assert np.diff(found.dissipated).min() >= -1e-12
+        assert figure("missing in the ledger, of throughput", missing(found)) <= 1e-6
+        assert figure("least dissipation, J", np.diff(found.dissipated).min()) >= -1e-12
 
 
 @pytest.mark.parametrize("method", ["rosenbrock", "runge_kutta"])

@@ -55,7 +55,7 @@ def run(model: Model, times: Any, method: str, length: float, **rest: Any) -> Tr
     ],
 )  # fmt: skip
 def test_a_pendulum_of_large_swing(
-    method: str, expected: float, longest: float, end: float
+    method: str, expected: float, longest: float, end: float, figure
 ) -> None:
     """The payload, let go 160 degrees off its rest: an elliptic function."""
     model, swing = ptp_symbolic.load("payload"), 2.8
@@ -70,7 +70,8 @@ def test_a_pendulum_of_large_swing(
         found = run(model, times, method, length, parameters=free, initial=start)
         return float(np.linalg.norm(found["theta_tilt"] - exact))
 
-    assert order(error, sizes(longest)) == pytest.approx(expected, abs=0.1)
+    found = figure(f"order, {expected:g} expected", order(error, sizes(longest)))
+    assert found == pytest.approx(expected, abs=0.1)
 
 
 def rest_after_swings(start: float, friction: float, pull: float) -> tuple[float, int]:
@@ -91,7 +92,7 @@ def rest_after_swings(start: float, friction: float, pull: float) -> tuple[float
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_block_that_comes_to_rest_and_is_pulled_away_again(method: str) -> None:
+def test_a_block_that_comes_to_rest_and_is_pulled_away_again(method: str, figure) -> None:
     """48 swings until it stays, and 73 more when it is pulled: every one of them located."""
     friction, pull, again = 0.1, 10.0, 4e4
     first, swings = rest_after_swings(0.9, friction, 0.0)
@@ -107,7 +108,8 @@ def test_a_block_that_comes_to_rest_and_is_pulled_away_again(method: str) -> Non
         assert len(found.events) == swings + more + 1
         return float(np.linalg.norm(found["theta_pan"][1:] - [first, exact]))
 
-    assert order(error, sizes(10.0)) == pytest.approx(5.0, abs=0.1)
+    found = figure("order, 5 expected", order(error, sizes(10.0)))
+    assert found == pytest.approx(5.0, abs=0.1)
 
 
 SLOPE, TORN_AT = 0.02, 100.0
@@ -127,7 +129,7 @@ def after_breakaway(end: float) -> NDArray[np.float64]:
     return found.y[:, -1]
 
 
-def test_a_block_that_breaks_away_under_a_ramp() -> None:
+def test_a_block_that_breaks_away_under_a_ramp(figure) -> None:
     """Steps of fixed length start it late, by half a step where they are 8 k + 4."""
     end, pull = 1.6 * TORN_AT, {"tau_pan": ramp(0.0, 1e3 * SLOPE, 0.0, 1e3)}
     exact = after_breakaway(end)
@@ -139,9 +141,10 @@ def test_a_block_that_breaks_away_under_a_ramp() -> None:
         assert late == pytest.approx(0.5 * length if method == "fixed_step" else 0.0, abs=1e-11)
         return float(np.linalg.norm((found.x[-1] - exact) * [1.0, 20.0]))
 
-    assert order(error, end / np.array([108, 148, 212, 300])) == pytest.approx(1.0, abs=0.1)
+    found = figure("order, 1 expected", order(error, end / np.array([108, 148, 212, 300])))
+    assert found == pytest.approx(1.0, abs=0.1)
     for method in METHODS:
-        assert error(1.0, method) < 1e-10
+        assert figure(f"error, {method}", error(1.0, method)) < 1e-10
 
 
 @pytest.fixture(scope="module")
@@ -183,7 +186,7 @@ def touching_times(speed: float, count: int) -> NDArray[np.float64]:
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_load_that_flies_across_the_gap(flying: Model, method: str) -> None:
+def test_a_load_that_flies_across_the_gap(flying: Model, method: str, figure) -> None:
     speed, count = 0.1, 12
     exact = touching_times(speed, count)
 
@@ -196,4 +199,5 @@ def test_a_load_that_flies_across_the_gap(flying: Model, method: str) -> None:
         assert len(times) == count
         return float(np.linalg.norm(times - exact))
 
-    assert order(error, sizes(0.25)) == pytest.approx(5.0, abs=0.1)
+    found = figure("order, 5 expected", order(error, sizes(0.25)))
+    assert found == pytest.approx(5.0, abs=0.1)
