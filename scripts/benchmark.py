@@ -12,10 +12,9 @@ the best of several. How to read the table:
   the same run for the final state alone, "ledger" that with outputs and an energy ledger. Ours and
   every peer run at the loosest tolerance of a list that stays below 1e-8 (the error of a peer is
   that at its own steps); a peer keeps no outputs, and its ratio is to "final".
-- "work and precision": tolerance, error and time of the step.
 - "sensitivities": time with six parameters over time without, and their largest relative error.
 
-`--all` adds the peers that take minutes.
+`--all` adds the slower peers; `scripts/work_precision.py` draws error over time for all of them.
 """
 
 from __future__ import annotations
@@ -139,21 +138,22 @@ def one_trajectory() -> list[Row]:
         return solve_ivp(rhs, (0.0, END), start, method="DOP853", rtol=tolerance, atol=tolerance)
 
     exact = run(1e-13).x[-1]
-    ours = next(t for t in 10.0 ** -np.arange(6.0, 13.0, 0.5) if _off(run(t).x[-1], exact) < 1e-9)
+    ours = next(t for t in 10.0 ** -np.arange(6.0, 13.0, 0.5) if off(run(t).x[-1], exact) < 1e-9)
     theirs = next(
-        t for t in 10.0 ** -np.arange(6.0, 13.0, 0.5) if _off(peer(t).y[:, -1], exact) < 1e-9
+        t for t in 10.0 ** -np.arange(6.0, 13.0, 0.5) if off(peer(t).y[:, -1], exact) < 1e-9
     )
     (mine, found), (other, _) = best(lambda: run(ours), 50), best(lambda: peer(theirs), 3)
     return [
         {
             "what": "trajectory, payload, 10 s", "ms": mine * 1e3,
-            "error": _off(found.x[-1], exact), "peer": "scipy DOP853", "peer ms": other * 1e3,
+            "error": off(found.x[-1], exact), "peer": "scipy DOP853", "peer ms": other * 1e3,
             "ratio": other / mine,
         }
     ]  # fmt: skip
 
 
-def _off(x: Any, exact: Any) -> float:
+def off(x: Any, exact: Any) -> float:
+    """Largest difference of two arrays."""
     return float(np.max(np.abs(x - exact)))
 
 
@@ -181,13 +181,13 @@ def drive_cases(everything: bool) -> list[Row]:
     for name, signal in CASES.items():
         run = prepare(model, signal)
         exact = run(1e-12, method="runge_kutta").x[:, 0]
-        tolerance = next(t for t in TOLERANCES if _off(run(t).x[:, 0], exact) < WANTED)
+        tolerance = next(t for t in TOLERANCES if off(run(t).x[:, 0], exact) < WANTED)
         whole, found = best(partial(run, tolerance), 30)
         final, _ = best(partial(run, tolerance, LAST), 30)
         ledger, _ = best(partial(run, tolerance, ledger=True), 30)
         rows.append({
             "what": f"pan_drive, {name}, {len(found.events)} events", "tolerance": tolerance,
-            "error": _off(found.x[:, 0], exact), "ms": whole * 1e3, "final": final * 1e3,
+            "error": off(found.x[:, 0], exact), "ms": whole * 1e3, "final": final * 1e3,
             "ledger": ledger * 1e3,
         })  # fmt: skip
         peers = ("LSODA", "Radau", "DOP853") if everything or name == "step" else ("LSODA",)
@@ -198,23 +198,35 @@ def drive_cases(everything: bool) -> list[Row]:
 def _peer_row(
     model: Model, name: str, method: str, run: Callable[..., Passage], ours: float
 ) -> Row:
-    table, weights = stack([CASES[name]]), 0.1 * tolerance_weights(model)
-
-    def simulate(tolerance: float) -> Any:
-        return simulate_with_scipy(model, table, END, method, tolerance, tolerance * weights)
-
+    simulate = prepare_peer(model, CASES[name], method, run)
     for tolerance in TOLERANCES_OF_PEERS:
-        times, states, events = simulate(tolerance)
-        order = np.unique(times)
-        exact = np.interp(times, order, run(1e-12, order, "runge_kutta").x[:, 0])
-        if _off(states[:, 0], exact) < WANTED:
+        error, events = simulate(tolerance)
+        if error < WANTED:
             break
-    taken, _ = best(partial(simulate, tolerance), 2)
+    taken, _ = best(partial(simulate, tolerance, False), 2)
     return {
         "what": f"pan_drive, {name}, {events} events", "peer": f"scipy {method}, events",
-        "tolerance": tolerance, "error": _off(states[:, 0], exact), "peer ms": taken * 1e3,
-        "ratio": taken / ours,
+        "tolerance": tolerance, "error": error, "peer ms": taken * 1e3, "ratio": taken / ours,
     }  # fmt: skip
+
+
+def prepare_peer(
+    model: Model, signal: InputSignal, method: str, ours: Callable[..., Passage]
+) -> Callable[..., tuple[float, int]]:
+    """A function that runs 10 s by scipy: run(tolerance) gives its largest error and its events."""
+    table, weights = stack([signal]), 0.1 * tolerance_weights(model)
+
+    def run(tolerance: float, compared: bool = True) -> tuple[float, int]:
+        times, states, events = simulate_with_scipy(
+            model, table, END, method, tolerance, tolerance * weights
+        )
+        if not compared:
+            return np.nan, events
+        order = np.unique(times)
+        exact = np.interp(times, order, ours(1e-12, order, "runge_kutta").x[:, 0])
+        return off(states[:, 0], exact), events
+
+    return run
 
 
 def sampled_controller() -> list[Row]:
@@ -232,22 +244,8 @@ def sampled_controller() -> list[Row]:
         rows.append({
             "what": f"pan_servo at 1 kHz, {len(found.events)} events, {method}",
             "ms": whole * 1e3, "final": final * 1e3,
-            "error": _off(found.x[:, 0], exact.x[:, 0]), "tolerance": 1e-5,
+            "error": off(found.x[:, 0], exact.x[:, 0]), "tolerance": 1e-5,
         })  # fmt: skip
-    return rows
-
-
-def work_and_precision() -> list[Row]:
-    """Tolerance, error and time of the step by both methods."""
-    run, rows = prepare(ptp_symbolic.load("pan_drive"), CASES["step"]), []
-    exact = run(1e-12, method="runge_kutta")
-    for method in ("rosenbrock", "runge_kutta"):
-        for tolerance in (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10):
-            taken, found = best(partial(run, tolerance, method=method), 3)
-            rows.append({
-                "what": f"work and precision, {method}", "tolerance": tolerance,
-                "error": _off(found.x[:, 0], exact.x[:, 0]), "ms": taken * 1e3,
-            })  # fmt: skip
     return rows
 
 
@@ -285,11 +283,11 @@ def main() -> None:
     """Run every part; print a table, or JSON."""
     parser = argparse.ArgumentParser(description="Time the simulation against its peers.")
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
-    parser.add_argument("--all", action="store_true", help="also the peers that take minutes")
+    parser.add_argument("--all", action="store_true", help="also the slower peers")
     arguments = parser.parse_args()
     rows = [
         *right_hand_side(), *one_trajectory(), *drive_cases(arguments.all), *sampled_controller(),
-        *work_and_precision(), *sensitivities(),
+        *sensitivities(),
     ]  # fmt: skip
     if arguments.json:
         print(json.dumps(rows, indent=2))
