@@ -4,6 +4,7 @@ Breakaways and bounces in a gap make the cost piecewise smooth, and two effects 
 stand in for one another: a search that gained little in two steps may still be far from its end.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,9 +21,11 @@ from ptp_symbolic.diagnose.trial import (
     continue_fits,
     fixed_values,
     moved,
+    restarted,
     start_afresh,
 )
 from ptp_symbolic.diagnose.verdict import AT_FLOOR
+from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, run_counts
 
 AGAIN, ROUNDS, SETTLED = Effort(8, 1e-3, FINE, secants=True), 4, 0.97
@@ -47,7 +50,7 @@ def escape(task: Task, trial: Trial) -> Trial:
             best = continue_fits(task, [best], AGAIN)[0]
             task.progress(f"leaving a local minimum: {best.train.rms_counts():.3f} counts rms")
         if best.train.cost > SETTLED * before and best.candidates and _is_uneven(best.train):
-            best = _hopped(task, best, index + 1)
+            best = _elsewhere(task, best, index + 1)
         if best.train.cost > SETTLED * before:
             break
     return best
@@ -58,19 +61,39 @@ def _is_open(trial: Trial) -> bool:
     return len(trial.candidates) > 1 or _is_uneven(trial.train)
 
 
-def _hopped(task: Task, trial: Trial, seed: int) -> Trial:
-    """`trial` refitted from starts a little way off in every parameter, or itself if that is worse.
+def _elsewhere(task: Task, trial: Trial, seed: int) -> Trial:
+    """`trial` refitted from elsewhere, or itself if nothing clearly better is found.
 
-    One breakaway at the wrong sample is a minimum of its own; which way leads out, nobody knows.
+    Two effects can share a valley so flat that where it was entered decides where the search ends:
+    each in turn begins again at its own starts. One breakaway at the wrong sample is a minimum of
+    its own; which way leads out, nobody knows: every parameter begins a little way off.
     """
+    if len(trial.candidates) > 1:
+        starts = [start for candidate in trial.candidates for start in candidate.starts]
+        looks = [_refitted(task, trial, _restarted_at(trial.train, s), NEXT) for s in starts]
+        best = continue_fits(task, [min(looks, key=lambda look: look.train.cost)], LAST)[0]
+        if best.train.cost < SETTLED * trial.train.cost:
+            return best
     chance = np.random.default_rng(seed)
     for _ in range(HOPS):
         begun = moved(trial.train, HOP * chance.choice([-1.0, 1.0], len(trial.train.free)))
-        fixed, z = fixed_values(task, begun), trial.train.z
-        fit = fit_parameters(task.model, task.train, begun, fixed, z, LAST, task.executor)
-        if fit.cost < SETTLED * trial.train.cost:
-            return replace(trial, train=fit)
+        hopped = _refitted(task, trial, begun, LAST)
+        if hopped.train.cost < SETTLED * trial.train.cost:
+            return hopped
     return trial
+
+
+def _restarted_at(fit: Fit, start: Sequence[FreeParameter]) -> list[FreeParameter]:
+    """The free parameters of `fit`, those of `start` begun there and the others where it ended."""
+    elsewhere = {f.name: f.start for f in start}
+    return [replace(f, start=elsewhere.get(f.name, f.start)) for f in restarted(fit)]
+
+
+def _refitted(task: Task, trial: Trial, begun: Sequence[FreeParameter], effort: Effort) -> Trial:
+    """`trial` fitted anew, its parameters begun as given."""
+    fixed, z = fixed_values(task, begun), trial.train.z
+    fit = fit_parameters(task.model, task.train, begun, fixed, z, effort, task.executor)
+    return replace(trial, train=fit)
 
 
 def _from_table(task: Task, trial: Trial) -> Trial:
