@@ -18,6 +18,7 @@ from ptp_symbolic.derivation.rigid_play import rigid_contact
 from ptp_symbolic.derivation.transmission import Transmission, transmission
 from ptp_symbolic.effects.effect import Input, Limit, Sampler, State
 from ptp_symbolic.effects.effect import quantity as quantity_symbol
+from ptp_symbolic.kinematics import TIME
 from ptp_symbolic.parameters import Parameter
 from ptp_symbolic.platform import Platform
 
@@ -26,7 +27,8 @@ def assemble(platform: Platform) -> Equations:
     """Return the equations of `platform`.
 
     Raises InputError for an unknown effect, a parameter that no effect declares, a wrong unit or
-    a value outside the bounds of its effect.
+    a value outside the bounds of its effect; ValueError for an effect whose states share a name
+    with others, or whose expressions hold a symbol that nothing defines.
     """
     placed = place_effects(platform)
     parts = released(collect(platform.axes, placed))
@@ -53,7 +55,7 @@ def assemble(platform: Platform) -> Equations:
         mass_matrix=mechanics.mass,
         forcing=mechanics.forcing,
         terms=(*parts.terms.items(), *loads),
-        extra_states=_extra_states(parts),
+        extra_states=_extra_states(parts, (*mechanics.coordinates, *mechanics.rates)),
         samplers=_samplers(parts),
         inputs=tuple(given for given, _ in inputs),
         delays=tuple(_delay_of(axis, parts) for _, axis in inputs),
@@ -162,12 +164,17 @@ def _delay_of(axis: str, parts: Parts) -> sp.Symbol | None:
     return next((c.delays[axis] for c in parts.contributions if axis in c.delays), None)
 
 
-def _extra_states(parts: Parts) -> tuple[State, ...]:
-    return tuple(
-        replace(state, derivative=parts.resolve(state.derivative))
-        for contribution in parts.contributions
-        for state in contribution.states
-    )
+def _extra_states(parts: Parts, coordinates: Sequence[sp.Symbol]) -> tuple[State, ...]:
+    states = [state for contribution in parts.contributions for state in contribution.states]
+    taken = {str(symbol) for symbol in coordinates}
+    for state in states:
+        if state.name in taken:
+            raise ValueError(
+                f"State '{state.name}' ({state.meaning}) has the name of another state; put its"
+                " effect and axis into its name."
+            )
+        taken.add(state.name)
+    return tuple(replace(s, derivative=parts.resolve(s.derivative)) for s in states)
 
 
 def _samplers(parts: Parts) -> tuple[Sampler, ...]:
@@ -224,6 +231,21 @@ def _with_parameters(equations: Equations, declared: dict[str, Parameter]) -> Eq
         used |= power.free_symbols
     used |= {delay for delay in equations.delays if delay is not None}
     names = {str(symbol) for symbol in used}
+    _refuse_undefined(equations, names - declared.keys())
     parameters = tuple(p for name, p in declared.items() if name in names)
     requirements = tuple(r for r in equations.requirements if r.holds.free_symbols <= used)
     return replace(equations, parameters=parameters, requirements=requirements)
+
+
+def _refuse_undefined(equations: Equations, names: set[str]) -> None:
+    """Refuse `names` that are no parameters, where they are not variables of the machine either."""
+    variables = {*equations.state_symbols, *equations.mode_symbols, TIME}
+    variables |= {symbol for symbol, _ in equations.terms}
+    variables |= {symbol for sampler in equations.samplers for symbol in sampler.terms}
+    variables |= {symbol for friction in equations.frictions for symbol in friction.terms}
+    known = {str(symbol) for symbol in variables} | {given.name for given in equations.inputs}
+    if unknown := sorted(names - known):
+        raise ValueError(
+            f"Nothing defines {', '.join(unknown)}: declare it as a parameter of its effect, or"
+            " mend its name."
+        )

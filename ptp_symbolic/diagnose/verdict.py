@@ -110,11 +110,18 @@ def _simplest(judged: Sequence[Trial]) -> tuple[Trial, tuple[Trial, ...]]:
 def _away_from_zero(task: Task, trial: Trial) -> bool:
     """Every candidate of `trial` has a parameter whose interval leaves its vanishing value, and is
     felt there: the interval of a logarithm never reaches zero.
+
+    Where the data see a parameter only together with a declared one, its interval is that of its
+    bounds and says nothing: the declared model has had its chance to do as well alone.
     """
     found = {e.name: e for e in estimates(trial.train)}
     for candidate in trial.candidates:
         off = _switched_off(trial, candidate)
-        if all(found[name].lower <= zero <= found[name].upper for name, zero in off.items()):
+        own = set(candidate.parameters)
+        if all(
+            found[name].lower <= zero <= found[name].upper and set(found[name].only_with) <= own
+            for name, zero in off.items()
+        ):
             return False
         without, with_it = (squares(simulated(task, trial.train, v)) for v in (off, {}))
         if without < FELT * with_it:

@@ -46,7 +46,7 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
     reach = float(stats.t.ppf(0.975, max(degrees, 1)))
     spreads = reach * np.sqrt(np.maximum(np.diag(covariance), 0.0))
     units = np.abs(slopes(fit.free, to_search(fit.free, fit.values)))
-    involved = lost**2 > INVOLVED
+    involved = np.any(lost**2 > INVOLVED, axis=0)
     result = []
     for index, free in enumerate(fit.free):
         value = wrapped(free, fit.values[free.name])
@@ -82,7 +82,8 @@ def _interval(
 
 def sandwich(fit: Fit) -> tuple[FloatArray, int, FloatArray]:
     """Covariance [nf, nf] of the search coordinates, the degrees of freedom of its blocks, and the
-    directions [nf, lost] of scaled coordinates that the data do not see; it leaves these out.
+    directions [2, nf, lost] that the data do not see, in coordinates scaled by what the data see of
+    each alone, and in those of the search; it leaves these out.
     """
     nf = len(fit.free)
     bread, middle, blocks = np.zeros((nf, nf)), np.zeros((nf, nf)), 0
@@ -107,13 +108,19 @@ def sandwich(fit: Fit) -> tuple[FloatArray, int, FloatArray]:
 
 
 def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Inverse [nf, nf] where there is information, and the directions without, each scaled."""
+    """Inverse [nf, nf] where there is information, and the directions [2, nf, lost] without.
+
+    A parameter that the data hardly see takes part in a lost direction by little once it is scaled
+    by that, and by much as it is.
+    """
     size = np.sqrt(np.diag(information))
     unit = np.where(size > 0.0, size, 1.0)
     shares, directions = np.linalg.eigh(information / np.outer(unit, unit))
     kept = shares > LOST_SHARE * max(shares[-1], 1e-300)
     seen = directions[:, kept] / unit[:, None]
-    return seen / shares[kept] @ seen.T, directions[:, ~kept]
+    lost = directions[:, ~kept] / unit[:, None]
+    lost /= np.maximum(np.linalg.norm(lost, axis=0), 1e-300)
+    return seen / shares[kept] @ seen.T, np.stack([directions[:, ~kept], lost])
 
 
 def project_out(jacobian: FloatArray, nuisance: FloatArray) -> FloatArray:

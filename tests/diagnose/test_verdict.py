@@ -49,16 +49,20 @@ def test_word(
 
 
 @pytest.mark.parametrize(
-    ("lower", "upper", "without", "away"),
+    ("lower", "upper", "only_with", "without", "away"),
     [
-        (0.9, 1.1, 5.0, True),
-        (-0.1, 1.1, 5.0, False),
-        (4.0e-12, 4.4e-12, 1.0, False),  # the logarithm of nothing has an interval too
+        (0.9, 1.1, (), 5.0, True),
+        (-0.1, 1.1, (), 5.0, False),
+        (4.0e-12, 4.4e-12, (), 1.0, False),  # the logarithm of nothing has an interval too
+        (0.0, 50.0, ("b",), 5.0, True),  # a declared friction stands in for a part of it
+        (0.0, 50.0, ("b",), 1.0, False),
+        (0.0, 50.0, ("c",), 5.0, False),
     ],
 )
 def test_an_effect_is_away_from_zero_where_it_is_felt(
-    monkeypatch: pytest.MonkeyPatch, lower: float, upper: float, without: float, away: bool
-) -> None:
+    monkeypatch: pytest.MonkeyPatch, lower: float, upper: float, only_with: tuple[str, ...],
+    without: float, away: bool,
+) -> None:  # fmt: skip
     """`without`: sum of squares with the effect switched off, 1 with it."""
     model = SimpleNamespace(parameters=[SimpleNamespace(name="c", vanishes=0.0)])
     candidate = SimpleNamespace(is_declared_value=False, parameters=("c",))
@@ -67,7 +71,7 @@ def test_an_effect_is_away_from_zero_where_it_is_felt(
     def simulated(task: Any, fit: Any, values: Any) -> list[Any]:
         return [SimpleNamespace(failed=None, residual=np.sqrt([without if values else 1.0]))]
 
-    interval = SimpleNamespace(name="c", lower=lower, upper=upper)
+    interval = SimpleNamespace(name="c", lower=lower, upper=upper, only_with=only_with)
     monkeypatch.setattr(verdict, "estimates", lambda _: (interval,))
     monkeypatch.setattr(verdict, "simulated", simulated)
     assert verdict._away_from_zero(TASK, fitted) == away

@@ -69,7 +69,7 @@ def vanishing(equations: Equations, effect: Effect) -> dict[sp.Symbol, sp.Expr]:
 def test_every_effect_has_its_file_and_one_import() -> None:
     folder = Path(catalogue.__file__).parent
     files = {p.stem for p in folder.glob("*.py")} - {"__init__", "effect"}
-    assert files == set(IDS)
+    assert files == set(IDS), "a file per effect, imported and listed in effects/__init__.py"
     assert all(len(p.read_text().splitlines()) <= 80 for p in folder.glob("*.py") if p.stem in IDS)
 
 
@@ -90,7 +90,8 @@ def test_equations_are_unchanged_when_it_is_off(effect: Effect) -> None:
     platform = with_effect(effect)
     full = assemble(platform)
     bare, off = assemble(without(platform, effect)), vanishing(full, effect)
-    assert off
+    assert off, "give one of its parameters `vanishes`, or the effect `structural=True`"
+    assert effect.separating_experiment
     opened = {c.active: 1 for c in full.contacts} | {c.side: 0 for c in full.contacts}
     pairs = [
         *zip((*full.mass_matrix, *full.forcing), (*bare.mass_matrix, *bare.forcing), strict=True)
@@ -107,6 +108,36 @@ def test_equations_are_unchanged_when_it_is_off(effect: Effect) -> None:
         point = {symbol: sp.Float(rng.uniform(0.1, 1.0)) for symbol in symbols}
         a, b = (np.array(side.subs(point), dtype=float) for side in (left, right))
         assert a == pytest.approx(b, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=IDS)
+def test_what_it_brings_is_named_after_its_axis_and_stores_what_its_states_hold(
+    effect: Effect,
+) -> None:
+    for placed, place in place_effects(with_effect(effect)):
+        if placed is not effect:
+            continue
+        added = effect.contribute(place)
+        if place.axis is not None:
+            names = [p.name for p in effect.parameters(place)] + [s.name for s in added.states]
+            assert all(place.axis in name.split("_") for name in names), names
+        if added.states and added.torques:
+            assert added.stored != 0, "torques of a state work on what it stores: declare it"
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=IDS)
+def test_defaults_starts_and_where_it_vanishes_lie_within_the_bounds(effect: Effect) -> None:
+    for placed, place in place_effects(with_effect(effect)):
+        for p in effect.parameters(place) if placed is effect else ():
+            given = (p.default, *p.starts, *(() if p.vanishes is None else (p.vanishes,)))
+            assert all(p.lower <= value <= p.upper for value in given), p.name
+
+
+@pytest.mark.parametrize("base", BASES, ids=lambda base: base.name)
+def test_all_candidates_fit_into_one_machine(base: Platform) -> None:
+    """Names of parameters and states differ: a diagnosis places them all at once."""
+    everything = replace(base, effects=(*base.effects, *loop.candidate_effects(base)))
+    assert len(assemble(everything).effects) == len(everything.effects)
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=IDS)
@@ -157,16 +188,28 @@ def value_of(equations: Equations, name: str, rng: np.random.Generator) -> float
 
 
 @pytest.mark.parametrize("effect", [e for e in EFFECTS if e.dissipative], ids=lambda e: e.id)
-def test_a_dissipative_effect_takes_energy_out(effect: Effect) -> None:
-    platform = with_effect(effect)
-    model, rng = loop.emit(platform), np.random.default_rng(5)
-    p = model.parameter_vector()
+@pytest.mark.parametrize("size", [1e-3, 1.0, 30.0])
+def test_a_dissipative_effect_takes_energy_out(effect: Effect, size: float) -> None:
+    """Its own share of what the machine dissipates, with the effect at work and switched off."""
+    model, rng = loop.emit(with_effect(effect)), np.random.default_rng(5)
+    own = {p.name: p for p in model.parameters if p.vanishes is not None}
+    names = {
+        n for e in assemble(with_effect(effect)).effects if e.effect is effect for n in e.parameters
+    }
+    at_work = {n: own[n].starts[0] for n in names & own.keys() if own[n].starts}
+    switched_off = {n: own[n].vanishes for n in names & own.keys()}
+    p, off = model.parameter_vector(at_work), model.parameter_vector(switched_off)
+    taken = []
     for _ in range(200):
         x, u = rng.normal(size=len(model.state_names)), rng.normal(size=len(model.input_names))
-        m, e = np.zeros(len(model.mode_names)), np.zeros(3)
+        x *= size
+        m, e, other = np.zeros(len(model.mode_names)), np.zeros(3), np.zeros(3)
         model.module.initial_modes(0.0, x, u, p, m)
         model.module.energy(0.0, x, u, p, m, e)
-        assert e[2] >= 0.0
+        model.module.energy(0.0, x, u, off, m, other)
+        taken.append(e[2] - other[2] if switched_off else e[2])
+        assert taken[-1] >= -1e-12 * abs(e[2])
+    assert max(taken) > 0.0
 
 
 def test_an_unknown_effect_is_refused() -> None:

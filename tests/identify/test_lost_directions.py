@@ -41,6 +41,16 @@ def test_two_frictions_in_one_joint_are_known_as_a_sum_only() -> None:
     assert found["k"].identified and found["k"].only_with == ()
 
 
+def test_what_the_data_hardly_see_may_be_lost_with_what_they_see_well() -> None:
+    """Drag that fades far beyond the rates of the log: where it fades is not known either."""
+    rate, fades = np.sin(TIME), 1e-3 * np.sin(3.0 * TIME)
+    columns = {"c": rate - fades, "w0": 10.0 * fades, "b": rate, "k": np.cos(3.0 * TIME)}
+    found = {e.name: e for e in estimates(straight_line(columns, 1e-4))}
+    assert set(found["w0"].only_with) == {"b", "c"} and not found["w0"].identified
+    assert (found["w0"].lower, found["w0"].upper) == (0.0, 50.0)
+    assert found["k"].identified and found["k"].only_with == ()
+
+
 def test_the_interval_of_what_is_seen_stays_that_of_the_textbook() -> None:
     angle = np.cos(3.0 * TIME)
     found = {

@@ -1,0 +1,5 @@
+"""`python -m ptp_symbolic`: the command `ptp-symbolic`, for a checkout that is not installed."""
+
+from ptp_symbolic.cli import main
+
+main()
