@@ -22,8 +22,8 @@ from ptp_symbolic.identify.fit import Effort, Fit, all_values_at_start, fit_para
 FloatArray = NDArray[np.float64]
 
 PROBE = Effort(1, 1e-2, COARSE, rejections=2)
-SEEK = Effort(2, 1e-2, COARSE, rejections=2)
-GO_ON = Effort(3, 1e-2, COARSE, rejections=2)
+SEEK = Effort(2, 1e-2, COARSE, rejections=2, secants=True)
+GO_ON = Effort(3, 1e-2, COARSE, rejections=2, secants=True)
 CONFIRM = Effort(2, 1e-2, COARSE, rejections=2)
 PROBED_SHARE, TELLING_SHARE = 0.1, 0.4
 STARTS_KEPT, START_FACTOR = 2, 2.0

@@ -100,10 +100,7 @@ def fixed_values(task: Task, free: Sequence[FreeParameter]) -> dict[str, float]:
 
 
 def continue_fits(task: Task, trials: Sequence[Trial], effort: Effort) -> list[Trial]:
-    """Fit every trial on from where it ended, best first; a worse end is not taken.
-
-    Far from the floor derivatives at a point are good enough.
-    """
+    """Fit every trial on from where it ended, best first; a worse end is not taken."""
     continued = []
     for trial in trials:
         chosen = _suited(effort, trial)
@@ -124,9 +121,9 @@ def continue_fits(task: Task, trials: Sequence[Trial], effort: Effort) -> list[T
 
 
 def _suited(effort: Effort, trial: Trial) -> Effort:
-    """`effort` near the floor; far from it one that makes do with derivatives at a point."""
+    """`effort` near the floor; far from it a coarse one is good enough."""
     near = trial.train.rms_counts() < NEARBY_COUNTS
-    return effort if near else replace(effort, secants=False, tolerance=COARSE)
+    return effort if near else replace(effort, tolerance=COARSE)
 
 
 def start_afresh(task: Task, trial: Trial, effort: Effort) -> Trial:
