@@ -7,9 +7,11 @@ Comput. Phys. 176, 2002, Eq. 22) is exact in what is linear and of order 2 in th
     middle, ahead = x + h/2 phi1(h/2 L) f(x), x + h phi1(h L) f(x)
     end = ahead + h phi2(h L) (f(ahead) - phi0(h L) f(x))
 
-where phi0 is the exponential. It takes two slopes where the implicit method takes eight and a
-Jacobian. A step is made only where its correction is within the tolerance, no mode ends inside and
-nothing is asked for inside; everything else is left to the adaptive method.
+where phi0 is the exponential. It takes three slopes where the implicit method takes eight and a
+Jacobian. A step is made only where its correction is within the tolerance, also by what the slope
+at the middle says (two slopes a period of cogging apart would not see it), no mode ends inside and
+nothing is asked for inside; everything else is left to the adaptive method. So are machines that
+time itself drives, such as a shaken base.
 """
 
 from typing import Any, NamedTuple
@@ -37,13 +39,14 @@ from ptp_symbolic.simulation.location import TIME_RESOLUTION, fill_violations, s
 from ptp_symbolic.simulation.outputs import next_output
 from ptp_symbolic.simulation.phi_functions import double, fill_phi_functions
 from ptp_symbolic.simulation.pressed import derivative, hold_at_rest, jacobian
-from ptp_symbolic.simulation.steps import over_tolerance
+from ptp_symbolic.simulation.rosenbrock import TIME_DIFFERENCE
+from ptp_symbolic.simulation.steps import larger, over_tolerance
 
 PERIOD, KNOWN, WAIT, PATIENCE = 0, 1, 2, 3
 LONGEST_WAIT = 64.0  # samples
 
 _V, _M = VECTOR, MATRIX
-PROPAGATOR = types.Tuple((_V, _V, *[_M] * 9, *[_V] * 5))
+PROPAGATOR = types.Tuple((_V, _V, *[_M] * 10, *[_V] * 5))
 
 
 class Propagator(NamedTuple):
@@ -51,9 +54,9 @@ class Propagator(NamedTuple):
 
     modes: those that the matrices hold for; clock [4]: the last period in s, whether matrices of it
     are known, samples to wait before the next try, and how many after the next failure. decay =
-    phi0(h L), straight = h phi1(h L), bent = h phi2(h L), half = h/2 phi1(h/2 L), all by columns
-    [moving, moving rounded up to LANES]; linear, phi0, phi1, phi2, product [moving, moving], slope,
-    ahead, right, change, none [w]: scratch; `none` stays zero.
+    phi0(h L), straight = h phi1(h L), bent = h phi2(h L), half_decay = phi0(h/2 L), half = h/2
+    phi1(h/2 L), all by columns [moving, moving rounded up to LANES]; linear, phi0, phi1, phi2,
+    product [moving, moving], slope, ahead, right, change, none [w]: scratch; `none` stays zero.
     """
 
     modes: Any
@@ -61,6 +64,7 @@ class Propagator(NamedTuple):
     decay: Any
     straight: Any
     bent: Any
+    half_decay: Any
     half: Any
     linear: Any
     phi0: Any
@@ -79,7 +83,7 @@ def new_propagator(modes: int, moving: int, n: int) -> Propagator:
     z = np.zeros
     return Propagator(
         z(modes), np.array([0.0, 0.0, 0.0, 1.0]),
-        *(z((moving, padded(moving))) for _ in range(4)),
+        *(z((moving, padded(moving))) for _ in range(5)),
         *(z((moving, moving)) for _ in range(5)), *(z(padded(n)) for _ in range(5)),
     )  # fmt: skip
 
@@ -97,13 +101,15 @@ def reach_sample(equations, inputs, target, x, limits, atol, step, watch, record
     if clock[WAIT] > 0.0:
         clock[WAIT] -= 1.0
         return False
-    if next_output(record) < target - TIME_RESOLUTION:
+    if length > limits[1] or next_output(record) < target - TIME_RESOLUTION:
         return False
     derivative(equations, t, x, inputs.u, watch.m, propagator.slope)
     known = clock[KNOWN] == 1.0 and are_equal(watch.m, propagator.modes)
     error = 1e300
     for _ in range(2):
         if not known:
+            if is_driven_by_time(equations, inputs, t, x, watch.m, propagator):
+                break
             take_linear_part(equations, inputs, t, x, watch.m, step, propagator)
             fill_propagator(length, propagator)
         error = propagate(equations, inputs, t, length, x, limits, atol, watch.m, step, propagator)
@@ -123,6 +129,13 @@ def reach_sample(equations, inputs, target, x, limits, atol, step, watch, record
     copy(step.end, x)
     flush(x)
     return True
+
+
+@kernel
+def is_driven_by_time(equations, inputs, t, x, m, propagator):
+    """Whether dx/dt changes with time alone."""
+    derivative(equations, t + TIME_DIFFERENCE, x, inputs.u, m, propagator.right)
+    return not are_equal(propagator.right, propagator.slope)
 
 
 @inlined
@@ -148,17 +161,20 @@ def propagate(equations, inputs, t, h, x, limits, atol, m, step, propagator):
     multiply(propagator.half, slope, none, change)
     for a in range(moving):
         step.point[a] += change[a]
+    worst = 0.0
+    multiply(propagator.half_decay, slope, none, change)
+    derivative(equations, t + 0.5 * h, step.point, inputs.u, m, right)
+    for a in range(moving):
+        unseen = 0.5 * h * (right[a] - change[a])
+        worst = larger(worst, over_tolerance(unseen, x[a], step.point[a], limits[0], atol[a]))
     multiply(propagator.decay, slope, none, change)
     derivative(equations, t + h, ahead, inputs.u, m, right)
     for a in range(moving):
         right[a] -= change[a]
     multiply(propagator.bent, right, none, change)
-    worst = 0.0
     for a in range(moving):
         step.end[a] = ahead[a] + change[a]
-        ratio = over_tolerance(change[a], x[a], step.end[a], limits[0], atol[a])
-        if not ratio <= worst:  # also when it is not a number
-            worst = ratio
+        worst = larger(worst, over_tolerance(change[a], x[a], step.end[a], limits[0], atol[a]))
     hold_at_rest(equations, m, x, step.end)
     return worst
 
@@ -197,6 +213,7 @@ def fill_propagator(h, propagator):
         propagator.linear, propagator.phi0, propagator.phi1, propagator.phi2, propagator.product,
     )  # fmt: skip
     fill_phi_functions(linear, 0.5 * h, phi0, phi1, phi2, product)
+    fill_columns(1.0, phi0, propagator.half_decay)
     fill_columns(0.5 * h, phi1, propagator.half)
     double(phi0, phi1, phi2, product)
     fill_columns(1.0, phi0, propagator.decay)

@@ -1,5 +1,7 @@
 """One step by either method, behind one face: begin, attempt, error, curve, tangents."""
 
+import math
+
 from ptp_symbolic.simulation import rosenbrock, runge_kutta
 from ptp_symbolic.simulation.input_values import evaluate_inputs
 from ptp_symbolic.simulation.kernels import copy, inlined, kernel, merged
@@ -45,9 +47,14 @@ def error_norm(method, h, x, step, rtol, atol):
         else:
             e = _error_explicit(h, a, step)
         ratio = over_tolerance(e, x[a], step.end[a], rtol, atol[a])
-        if not ratio <= worst:  # also when it is not a number
-            worst = ratio
+        worst = larger(worst, ratio)
     return worst
+
+
+@inlined
+def larger(one, other):
+    """The larger of two numbers; not a number where either is none."""
+    return one if other <= one or math.isnan(one) else other
 
 
 @inlined

@@ -19,7 +19,11 @@ def test_scipy_with_events_agrees(
     peers = pytest.importorskip("event_peers")
     model, signal = ptp_symbolic.load("pan_drive"), step(0.0, 24.0, 0.05)
     atol = 1e-9 * tolerance_weights(model)
-    state, events = peers.simulate_with_scipy(model, stack([signal]), 0.4, method, 1e-8, atol)
+    times, states, events = peers.simulate_with_scipy(
+        model, stack([signal]), 0.4, method, 1e-8, atol
+    )
+    assert np.all(np.diff(times) > 0.0) and times[-1] == 0.4
+    state = states[-1]
     ours = ptp_symbolic.simulate(model, np.array([0.0, 0.4]), {"u_pan": signal}, rtol=1e-8)
     sys.modules.pop("event_peers")
     assert events == len(ours.events) > 2

@@ -144,6 +144,23 @@ def test_outputs_between_samples_are_those_of_the_adaptive_method(servo: Model) 
     assert np.max(np.abs(found.x[:, 4] - exact.x[:, 4])) < 1e-4  # A
 
 
+def test_a_base_that_shakes_once_a_sample_is_not_overlooked(figure) -> None:
+    """At every sample the base moves as at the one before."""
+    period = 0.02
+    model = pid.servo("payload", "base_motion")
+    given = pid.GAINS | pid.FINE | {
+        "t_sample_pan": period, "K_p_pan": 20.0, "K_i_pan": 0.0, "K_d_pan": 0.0,
+        "m_payload": 20.0, "c_x_payload": 0.5, "a_base": 20.0, "f_base": 1.0 / period,
+        "phi_base": 1.5, "psi_base": 1.5,
+    }  # fmt: skip
+    times = np.linspace(0.0, 2.0, 101)
+    exact, found = (
+        passage(model, step(0.0, 0.1, 0.0), method, tolerance, times, parameters=given)
+        for method, tolerance in (("runge_kutta", 1e-11), ("rosenbrock", 1e-5))
+    )
+    assert figure("error, rad", np.abs(found.x[:, 0] - exact.x[:, 0]).max()) < 1e-6
+
+
 def test_a_body_at_rest_does_not_creep_from_sample_to_sample(servo: Model) -> None:
     """A goal too small to break friction loose: the load stays where it was to the last bit."""
     found = passage(servo, step(0.0, 1e-9, 0.1), "rosenbrock", 1e-5, np.linspace(0.0, END, 4001))
