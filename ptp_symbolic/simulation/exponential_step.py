@@ -44,6 +44,7 @@ from ptp_symbolic.simulation.steps import larger, over_tolerance
 
 PERIOD, KNOWN, WAIT, PATIENCE = 0, 1, 2, 3
 LONGEST_WAIT = 64.0  # samples
+RESTING = 1e-3  # of the tolerance
 
 _V, _M = VECTOR, MATRIX
 PROPAGATOR = types.Tuple((_V, _V, *[_M] * 10, *[_V] * 5))
@@ -149,7 +150,10 @@ def are_equal(a, b):
 
 @inlined
 def propagate(equations, inputs, t, h, x, limits, atol, m, step, propagator):
-    """Fill middle (step.point) and end of a step; returns its correction over the tolerance."""
+    """Fill middle (step.point) and end of a step; returns its correction over the tolerance.
+
+    Where next to nothing moves, nothing needs to be corrected.
+    """
     slope, ahead, right = propagator.slope, propagator.ahead, propagator.right
     change, none, moving = propagator.change, propagator.none, propagator.linear.shape[0]
     copy(x, step.end)
@@ -161,6 +165,13 @@ def propagate(equations, inputs, t, h, x, limits, atol, m, step, propagator):
     multiply(propagator.half, slope, none, change)
     for a in range(moving):
         step.point[a] += change[a]
+    worst = 0.0
+    for a in range(moving):
+        worst = larger(worst, over_tolerance(h * slope[a], x[a], ahead[a], limits[0], atol[a]))
+    if worst <= RESTING:
+        copy(ahead, step.end)
+        hold_at_rest(equations, m, x, step.end)
+        return worst
     worst = 0.0
     multiply(propagator.half_decay, slope, none, change)
     derivative(equations, t + 0.5 * h, step.point, inputs.u, m, right)

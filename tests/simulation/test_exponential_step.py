@@ -124,7 +124,7 @@ def test_the_order_is_two_in_what_is_not_linear(figure) -> None:
 
     def error(period: float) -> float:
         found = passage(
-            model, constant(0.0), "rosenbrock", 1e9, np.array([0.0, end]),
+            model, constant(0.0), "rosenbrock", 1e-2, np.array([0.0, end]),
             parameters=load | {"t_sample_pan": period}, start=speed,
         )  # fmt: skip
         assert found.steps == round(end / period)
