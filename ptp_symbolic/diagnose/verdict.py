@@ -112,12 +112,13 @@ def _away_from_zero(task: Task, trial: Trial) -> bool:
     felt there: the interval of a logarithm never reaches zero.
 
     Where the data see a parameter only together with a declared one, its interval is that of its
-    bounds and says nothing: the declared model has had its chance to do as well alone.
+    bounds and says nothing: the declared model has had its chance to do as well alone. Candidates
+    that are seen only together have not.
     """
     found = {e.name: e for e in estimates(trial.train)}
+    own = {name for candidate in trial.candidates for name in candidate.parameters}
     for candidate in trial.candidates:
         off = _switched_off(trial, candidate)
-        own = set(candidate.parameters)
         if all(
             found[name].lower <= zero <= found[name].upper and set(found[name].only_with) <= own
             for name, zero in off.items()

@@ -57,6 +57,7 @@ def test_word(
         (0.0, 50.0, ("b",), 5.0, True),  # a declared friction stands in for a part of it
         (0.0, 50.0, ("b",), 1.0, False),
         (0.0, 50.0, ("c",), 5.0, False),
+        (0.0, 50.0, ("d",), 5.0, False),  # the other effect of the pair stands in for it
     ],
 )
 def test_an_effect_is_away_from_zero_where_it_is_felt(
@@ -64,14 +65,15 @@ def test_an_effect_is_away_from_zero_where_it_is_felt(
     without: float, away: bool,
 ) -> None:  # fmt: skip
     """`without`: sum of squares with the effect switched off, 1 with it."""
-    model = SimpleNamespace(parameters=[SimpleNamespace(name="c", vanishes=0.0)])
-    candidate = SimpleNamespace(is_declared_value=False, parameters=("c",))
-    fitted: Any = SimpleNamespace(train=SimpleNamespace(model=model), candidates=(candidate,))
+    model = SimpleNamespace(parameters=[SimpleNamespace(name=n, vanishes=0.0) for n in "cd"])
+    pair = tuple(SimpleNamespace(is_declared_value=False, parameters=(n,)) for n in "cd")
+    fitted: Any = SimpleNamespace(train=SimpleNamespace(model=model), candidates=pair)
 
     def simulated(task: Any, fit: Any, values: Any) -> list[Any]:
         return [SimpleNamespace(failed=None, residual=np.sqrt([without if values else 1.0]))]
 
     interval = SimpleNamespace(name="c", lower=lower, upper=upper, only_with=only_with)
-    monkeypatch.setattr(verdict, "estimates", lambda _: (interval,))
+    other = SimpleNamespace(name="d", lower=0.9, upper=1.1, only_with=())
+    monkeypatch.setattr(verdict, "estimates", lambda _: (interval, other))
     monkeypatch.setattr(verdict, "simulated", simulated)
     assert verdict._away_from_zero(TASK, fitted) == away
