@@ -19,8 +19,8 @@ from ptp_symbolic.diagnose.trial import (
     Task,
     Trial,
     continue_fits,
-    fixed_values,
     moved,
+    refit,
     restarted,
     start_afresh,
 )
@@ -91,9 +91,7 @@ def _restarted_at(fit: Fit, start: Sequence[FreeParameter]) -> list[FreeParamete
 
 def _refitted(task: Task, trial: Trial, begun: Sequence[FreeParameter], effort: Effort) -> Trial:
     """`trial` fitted anew, its parameters begun as given."""
-    fixed, z = fixed_values(task, begun), trial.train.z
-    fit = fit_parameters(task.model, task.train, begun, fixed, z, effort, task.executor)
-    return replace(trial, train=fit)
+    return replace(trial, train=refit(task, begun, trial.train.z, effort))
 
 
 def _from_table(task: Task, trial: Trial) -> Trial:

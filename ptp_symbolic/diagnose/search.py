@@ -25,8 +25,8 @@ from ptp_symbolic.diagnose.trial import (
     Task,
     Trial,
     continue_fits,
-    fixed_values,
     held_out_cost,
+    refit,
     restarted,
     simulated,
     start_afresh,
@@ -177,6 +177,4 @@ def without(task: Task, trial: Trial, idle: Candidate, effort: Effort) -> Trial:
     """Refit of a trial with one of its candidates taken out, from the optimum found."""
     kept = tuple(c for c in trial.candidates if c is not idle)
     free = tuple(f for f in restarted(trial.train) if f.name not in idle.parameters)
-    fixed, z = fixed_values(task, free), trial.train.z
-    fit = fit_parameters(task.model, task.train, free, fixed, z, effort, task.executor)
-    return Trial(kept, fit)
+    return Trial(kept, refit(task, free, trial.train.z, effort))

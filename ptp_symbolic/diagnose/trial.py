@@ -99,21 +99,19 @@ def fixed_values(task: Task, free: Sequence[FreeParameter]) -> dict[str, float]:
     return {name: value for name, value in task.fixed.items() if name not in names}
 
 
+def refit(
+    task: Task, free: Sequence[FreeParameter], z: Sequence[FloatArray], effort: Effort
+) -> Fit:
+    """Fit the train runs with `free` begun as given, every run begun at its z, the rest fixed."""
+    fixed = fixed_values(task, free)
+    return fit_parameters(task.model, task.train, free, fixed, z, effort, task.executor)
+
+
 def continue_fits(task: Task, trials: Sequence[Trial], effort: Effort) -> list[Trial]:
     """Fit every trial on from where it ended, best first; a worse end is not taken."""
     continued = []
     for trial in trials:
-        chosen = _suited(effort, trial)
-        free = restarted(trial.train)
-        fit = fit_parameters(
-            task.model,
-            task.train,
-            free,
-            fixed_values(task, free),
-            trial.train.z,
-            chosen,
-            task.executor,
-        )
+        fit = refit(task, restarted(trial.train), trial.train.z, _suited(effort, trial))
         is_better = fit.cost <= 1.02 * trial.train.cost or not trial.train.is_differentiated
         kept = fit if is_better else trial.train
         continued.append(replace(trial, train=kept))
@@ -139,10 +137,4 @@ def start_afresh(task: Task, trial: Trial, effort: Effort) -> Trial:
             f = began[f.name]
         free.append(f)
     z = [np.zeros(len(run.unknowns)) for run in task.train]
-    fixed = fixed_values(task, free)
-    return replace(
-        trial,
-        train=fit_parameters(
-            task.model, task.train, free, fixed, z, _suited(effort, trial), task.executor
-        ),
-    )
+    return replace(trial, train=refit(task, free, z, _suited(effort, trial)))
