@@ -207,6 +207,7 @@ def test_a_dissipative_effect_takes_energy_out(effect: Effect, size: float) -> N
         model.module.initial_modes(0.0, x, u, p, m)
         model.module.energy(0.0, x, u, p, m, e)
         model.module.energy(0.0, x, u, off, m, other)
+        assert e[2] >= 0.0
         taken.append(e[2] - other[2] if switched_off else e[2])
         assert taken[-1] >= -1e-12 * abs(e[2])
     assert max(taken) > 0.0
