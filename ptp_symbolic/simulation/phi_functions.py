@@ -12,8 +12,8 @@ HIGHEST_POWER, LARGEST_NORM, MOST_DOUBLINGS = 15, 0.5, 60
 @kernel
 def fill_phi_functions(matrix, scale, phi0, phi1, phi2, product):
     """Write phi0, phi1 and phi2 of scale times `matrix`, all [k, k]; `product` is scratch."""
-    doublings = 0
-    while not largest_row_sum(matrix) * scale <= LARGEST_NORM and doublings < MOST_DOUBLINGS:
+    doublings, norm = 0, largest_row_sum(matrix)
+    while not norm * scale <= LARGEST_NORM and doublings < MOST_DOUBLINGS:
         scale *= 0.5
         doublings += 1
     coefficient = 1.0
