@@ -127,7 +127,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "dff45a372b0f0a18"
+MODEL_HASH = "8e0e7062c78dce05"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 AXES = ("pan", "tilt")
@@ -269,12 +269,15 @@ SEARCH = (
     ("a_F_v_pan", 0.0, (0.0,), None, None),
     ("gap_pan", 0.0, (0.005, 0.02), None, None),
 )
-# Effects: id, axis, parameters, title, reference, separating experiment.
+# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
+# effects that it acts on, title, reference, separating experiment.
 EFFECTS = (
     (
         "rigid_bodies",
         None,
         ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"),
+        (),
+        (),
         "pan body and tilt body",
         "thesis Eq. 3.8, Table 5.1",
         "",
@@ -291,6 +294,8 @@ EFFECTS = (
             "c_y_payload",
             "c_z_payload",
         ),
+        (),
+        (),
         "payload",
         "thesis section 3.2.2, Table 5.3 with erratum 18",
         "",
@@ -299,6 +304,8 @@ EFFECTS = (
         "viscous_friction",
         "pan",
         ("b_pan",),
+        (),
+        (),
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
@@ -307,6 +314,8 @@ EFFECTS = (
         "viscous_friction",
         "tilt",
         ("b_tilt",),
+        (),
+        (),
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
@@ -315,6 +324,17 @@ EFFECTS = (
         "csvs_friction",
         "pan",
         ("F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan"),
+        (
+            ("Coulomb friction", ("F_c_pan",), (("F_s_pan", "F_c_pan"),)),
+            ("Coulomb and viscous friction", ("F_c_pan", "F_v_pan"), (("F_s_pan", "F_c_pan"),)),
+            ("Coulomb and static friction, Stribeck curve", ("F_c_pan", "F_s_pan", "v_s_pan"), ()),
+            (
+                "Coulomb, static, viscous and Stribeck friction",
+                ("F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan"),
+                (),
+            ),
+        ),
+        (),
         "Coulomb, static, viscous and Stribeck friction",
         "thesis Eq. 2.10, 2.11 with errata 2 and 3, Eq. 4.1, exponent 2",
         "Crawl through standstill in both directions at several slow speeds.",
@@ -323,6 +343,19 @@ EFFECTS = (
         "direction_dependent_friction",
         "pan",
         ("a_F_c_pan", "a_F_s_pan", "a_v_s_pan", "a_F_v_pan"),
+        (
+            ("Coulomb friction", ("a_F_c_pan",), ()),
+            ("viscous friction", ("a_F_v_pan",), ()),
+            ("Coulomb and static friction", ("a_F_c_pan", "a_F_s_pan"), ()),
+            ("Coulomb and viscous friction", ("a_F_c_pan", "a_F_v_pan"), ()),
+            ("Coulomb, static and viscous friction", ("a_F_c_pan", "a_F_s_pan", "a_F_v_pan"), ()),
+            (
+                "all of dry and viscous friction",
+                ("a_F_c_pan", "a_F_s_pan", "a_v_s_pan", "a_F_v_pan"),
+                (),
+            ),
+        ),
+        ("csvs_friction@pan",),
         "friction that differs by direction",
         "thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)",
         "Run the same speeds both ways at two supply polarities, or back-drive the joint "
@@ -332,6 +365,8 @@ EFFECTS = (
         "backlash",
         "pan",
         ("gap_pan",),
+        (),
+        ("shaft_compliance@pan",),
         "backlash",
         "thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
         "Reverse slowly with and without a known preload torque on the joint: backlash "
@@ -341,6 +376,8 @@ EFFECTS = (
         "shaft_compliance",
         "pan",
         ("k_shaft_pan", "d_shaft_pan"),
+        (),
+        (),
         "flexible shaft",
         "thesis Eq. 2.15 with erratum 4, Table 5.7",
         "",
@@ -349,6 +386,8 @@ EFFECTS = (
         "dc_motor",
         "pan",
         ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"),
+        (),
+        (),
         "geared DC motor",
         "thesis Eq. 3.10, Eq. 3.11 with erratum 8",
         "",
@@ -372,6 +411,8 @@ EFFECTS = (
             "s_start_tilt",
             "s_max_tilt",
         ),
+        (),
+        (),
         "linear actuator with lead screw and linkage",
         "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6",
         "",
@@ -4710,6 +4751,274 @@ def energy(t, x, u, p, m, e):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def equation_error(t, x, u, p, m, r):
+    """Write the torque that every row lacks, then rates of other states into r; x ends in accel."""
+    theta_pan = x[0]
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    theta_gear_pan = x[4]
+    omega_gear_pan = x[5]
+    i_pan = x[6]
+    i_tilt = x[7]
+    accel_pan = x[8]
+    accel_tilt = x[9]
+    accel_gear_pan = x[10]
+    u_pan = u[0]
+    u_tilt = u[1]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    m_payload = p[4]
+    J_x_payload = p[5]
+    J_y_payload = p[6]
+    J_z_payload = p[7]
+    c_x_payload = p[8]
+    c_y_payload = p[9]
+    c_z_payload = p[10]
+    b_pan = p[11]
+    b_tilt = p[12]
+    F_c_pan = p[13]
+    F_s_pan = p[14]
+    v_s_pan = p[15]
+    F_v_pan = p[16]
+    a_F_c_pan = p[17]
+    a_F_s_pan = p[18]
+    a_v_s_pan = p[19]
+    a_F_v_pan = p[20]
+    gap_pan = p[21]
+    k_shaft_pan = p[22]
+    d_shaft_pan = p[23]
+    L_pan = p[24]
+    R_pan = p[25]
+    K_t_pan = p[26]
+    J_motor_pan = p[27]
+    N_pan = p[28]
+    L_tilt = p[29]
+    R_tilt = p[30]
+    K_t_tilt = p[31]
+    J_motor_tilt = p[32]
+    b_motor_tilt = p[33]
+    N_tilt = p[34]
+    lead_tilt = p[35]
+    d_screw_tilt = p[36]
+    f_screw_tilt = p[37]
+    l_ground_tilt = p[38]
+    l_min_tilt = p[39]
+    r_arm_tilt = p[40]
+    s_start_tilt = p[41]
+    slide_pan = m[0]
+    slide_tilt = m[1]
+    side_pan = m[2]
+    active_pan = m[3]
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    c_y_payload_m_payload = c_y_payload * m_payload
+    c_x_payload_c_y_payload_m_payload = c_x_payload * c_y_payload_m_payload
+    c_y_payload_m_payload_c_z_payload = c_y_payload_m_payload * c_z_payload
+    sin_tilt_sq = sin_tilt * sin_tilt
+    cos_tilt_sq = cos_tilt * cos_tilt
+    c_x_payload_sq = c_x_payload * c_x_payload
+    c_z_payload_sq = c_z_payload * c_z_payload
+    c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
+    twice_omega_pan_omega_tilt = 2.0 * omega_pan * omega_tilt
+    cos_tilt_sin_tilt = cos_tilt * sin_tilt
+    force_pan_term = cos_tilt_sin_tilt * twice_omega_pan_omega_tilt
+    omega_tilt_sq = omega_tilt * omega_tilt
+    c_x_payload_c_z_payload_m_payload = c_x_payload * c_z_payload * m_payload
+    force_pan_term_2 = active_pan * (
+        d_shaft_pan * (omega_gear_pan - omega_pan)
+        + k_shaft_pan * (-0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan)
+    )
+    force_pan_term_3 = (
+        -J_x_payload * force_pan_term
+        - J_x_tilt * force_pan_term
+        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        - b_pan * omega_pan
+        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        - c_x_payload_c_y_payload_m_payload * cos_tilt * omega_tilt_sq
+        - c_x_payload_c_z_payload_m_payload * cos_tilt_sq * twice_omega_pan_omega_tilt
+        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+        - c_y_payload_m_payload_c_z_payload * omega_tilt_sq * sin_tilt
+        - c_z_payload_sq_m_payload * force_pan_term
+        + force_pan_term_2
+    )
+    force_pan = force_pan_term_3
+    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
+    mass_pan_term = (c_y_payload * c_y_payload) * m_payload
+    c_x_payload_cos_tilt = c_x_payload * cos_tilt
+    c_z_payload_sin_tilt = c_z_payload * sin_tilt
+    mass_pan_term_2 = (
+        J_pan
+        + J_x_payload * sin_tilt_sq
+        + J_x_tilt * sin_tilt_sq
+        + J_z_payload * cos_tilt_sq
+        + J_z_tilt * cos_tilt_sq
+        + 2.0 * c_x_payload_cos_tilt * c_z_payload_sin_tilt * m_payload
+        + c_x_payload_sq_m_payload * cos_tilt_sq
+        + c_z_payload_sq_m_payload * sin_tilt_sq
+        + cos_tilt_sq * mass_pan_term
+        + mass_pan_term * sin_tilt_sq
+    )
+    mass_pan = mass_pan_term_2
+    mass_pan_tilt_term = (
+        c_x_payload_c_y_payload_m_payload * sin_tilt - c_y_payload_m_payload_c_z_payload * cos_tilt
+    )
+    mass_pan_tilt = mass_pan_tilt_term
+    r[0] = accel_pan * mass_pan + accel_tilt * mass_pan_tilt - force_pan
+    follower_coupling_tilt = mass_pan_tilt_term
+    follower_inertia_tilt = mass_pan_term_2
+    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
+    load_inertia_tilt_term = (
+        J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
+    )
+    load_inertia_tilt = (
+        -(follower_coupling_tilt * follower_coupling_tilt) * follower_inertia_tilt_inverse
+        + load_inertia_tilt_term
+    )
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lead_tilt_inverse = 1.0 / lead_tilt
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    lowered_tilt = (
+        (-1.0)
+        * lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+    )
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    linkage_sin_tilt = math.sqrt(
+        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt_term = math.sqrt(
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    length_tilt = length_tilt_term
+    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
+    lost_lowering_tilt = (
+        (1.0 - lowered_tilt)
+        * 1.0
+        / (abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term))
+    )
+    raised_tilt = (
+        lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+    )
+    lost_raising_tilt = (
+        (raised_tilt - 1.0) * 1.0 / (load_inertia_tilt * raised_tilt + lost_lowering_tilt_term)
+    )
+    length_tilt_by_theta_tilt = (
+        1.0
+        / length_tilt_term
+        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
+    )
+    ratio_tilt_by_theta_tilt = (
+        -math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_term
+        / (length_tilt * length_tilt)
+        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
+    )
+    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
+    driving_torque_tilt_term = (
+        J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
+        - ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt)
+    )
+    b_tilt_omega_tilt = b_tilt * omega_tilt
+    omega_pan_sq = omega_pan * omega_pan
+    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
+    load_torque_tilt_term = J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
+    J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq = J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
+    load_torque_tilt_term_2 = c_x_payload_c_z_payload_m_payload * omega_pan_sq
+    load_torque_tilt_term_2_sin_tilt_sq = load_torque_tilt_term_2 * sin_tilt_sq
+    load_torque_tilt_term_3 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+    driving_torque_tilt = -driving_torque_tilt_term
+    follower_torque_tilt = force_pan_term_3
+    load_torque_tilt_term_4 = 9.81 * m_payload
+    load_torque_tilt = (
+        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
+        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
+        - b_tilt_omega_tilt
+        + c_x_payload_cos_tilt * load_torque_tilt_term_4
+        + c_z_payload_sin_tilt * load_torque_tilt_term_4
+        + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + cos_tilt_sq * load_torque_tilt_term_2
+        - follower_coupling_tilt * follower_inertia_tilt_inverse * follower_torque_tilt
+        - load_torque_tilt_term
+        - load_torque_tilt_term_2_sin_tilt_sq
+        - load_torque_tilt_term_3
+    )
+    carried_tilt = (
+        driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
+    )
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    force_tilt = (
+        J_x_payload * cos_tilt * omega_pan_sq * sin_tilt
+        + J_x_tilt * cos_tilt * omega_pan_sq * sin_tilt
+        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
+        - b_tilt_omega_tilt
+        + c_x_payload * c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
+        + 9.81 * c_x_payload * cos_tilt * m_payload
+        + 9.81 * c_z_payload * m_payload * sin_tilt
+        + c_z_payload_sq * cos_tilt * m_payload * omega_pan_sq * sin_tilt
+        - driving_torque_tilt_term
+        - load_torque_tilt_term
+        - load_torque_tilt_term_2_sin_tilt_sq
+        - load_torque_tilt_term_3
+        - slide_tilt
+        * (
+            0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
+            + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
+        )
+    )
+    mass_tilt = load_inertia_tilt_term + lost_lowering_tilt_term
+    r[1] = accel_pan * mass_pan_tilt + accel_tilt * mass_tilt - force_tilt
+    force_gear_pan_term = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    force_gear_pan = (
+        K_t_pan * N_pan * i_pan
+        - force_pan_term_2
+        - slide_pan
+        * (
+            F_v_pan * omega_gear_pan * slide_pan * (a_F_v_pan * slide_pan + 1.0)
+            + force_gear_pan_term
+            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - force_gear_pan_term)
+            * math.exp(
+                -(omega_gear_pan * omega_gear_pan)
+                / (
+                    (v_s_pan * v_s_pan)
+                    * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
+                )
+            )
+        )
+    )
+    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
+    r[2] = accel_gear_pan * mass_gear_pan - force_gear_pan
+    r[3] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
+    r[4] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
     l_ground_tilt = p[38]
@@ -4804,4 +5113,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 e93780b5ca57bc6495ca6f9bdd0dfdc86fd54d0c67c5f8c038fd7d7b12e23ece
+# END sha256 ed4fc3afa3ce4e5a8ead00a637da91a35892cde9a5b6987865d515e7f62a2efa

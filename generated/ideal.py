@@ -22,7 +22,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "2670c4dda78c8a64"
+MODEL_HASH = "cfbd648bba0cc6fc"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 AXES = ("pan", "tilt")
@@ -62,12 +62,15 @@ PARAMETERS = (
 # Searching them: name, value at which the effect vanishes (None: any), starts,
 # period, what a frequency is locked to.
 SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
-# Effects: id, axis, parameters, title, reference, separating experiment.
+# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
+# effects that it acts on, title, reference, separating experiment.
 EFFECTS = (
     (
         "rigid_bodies",
         None,
         ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"),
+        (),
+        (),
         "pan body and tilt body",
         "thesis Eq. 3.8, Table 5.1",
         "",
@@ -76,6 +79,8 @@ EFFECTS = (
         "viscous_friction",
         "pan",
         ("b_pan",),
+        (),
+        (),
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
@@ -84,6 +89,8 @@ EFFECTS = (
         "viscous_friction",
         "tilt",
         ("b_tilt",),
+        (),
+        (),
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
@@ -265,6 +272,41 @@ def energy(t, x, u, p, m, e):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def equation_error(t, x, u, p, m, r):
+    """Write the torque that every row lacks, then rates of other states into r; x ends in accel."""
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    accel_pan = x[4]
+    accel_tilt = x[5]
+    tau_pan = u[0]
+    tau_tilt = u[1]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    b_pan = p[4]
+    b_tilt = p[5]
+    sin_tilt = math.sin(theta_tilt)
+    cos_tilt = math.cos(theta_tilt)
+    cos_tilt_sin_tilt = cos_tilt * sin_tilt
+    force_pan = (
+        -2.0 * J_x_tilt * cos_tilt_sin_tilt * omega_pan * omega_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        - b_pan * omega_pan
+        + tau_pan
+    )
+    mass_pan = J_pan + J_x_tilt * (sin_tilt * sin_tilt) + J_z_tilt * (cos_tilt * cos_tilt)
+    r[0] = accel_pan * mass_pan - force_pan
+    force_tilt_term = cos_tilt_sin_tilt * (omega_pan * omega_pan)
+    force_tilt = (
+        J_x_tilt * force_tilt_term - J_z_tilt * force_tilt_term - b_tilt * omega_tilt + tau_tilt
+    )
+    mass_tilt = J_y_tilt
+    r[1] = accel_tilt * mass_tilt - force_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
     return
@@ -288,4 +330,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 dc644f94bf9a1466fcd5f25045611de69a91b3f116dcb288bb5f8c5dfe3a5f67
+# END sha256 9f01adabfef4634207bd0753666eee01adf8492153cd3a7453f1a4cd3dc6a60e

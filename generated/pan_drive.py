@@ -31,7 +31,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "1595a986c09bfc10"
+MODEL_HASH = "638b572612c618f4"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 AXES = ("pan",)
@@ -122,12 +122,15 @@ SEARCH = (
     ("a_F_v_pan", 0.0, (0.0,), None, None),
     ("gap_pan", 0.0, (0.005, 0.02), None, None),
 )
-# Effects: id, axis, parameters, title, reference, separating experiment.
+# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
+# effects that it acts on, title, reference, separating experiment.
 EFFECTS = (
     (
         "rigid_bodies",
         None,
         ("J_pan",),
+        (),
+        (),
         "pan body and tilt body",
         "thesis Eq. 3.8, Table 5.1",
         "",
@@ -136,6 +139,8 @@ EFFECTS = (
         "viscous_friction",
         "pan",
         ("b_pan",),
+        (),
+        (),
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
@@ -144,6 +149,17 @@ EFFECTS = (
         "csvs_friction",
         "pan",
         ("F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan"),
+        (
+            ("Coulomb friction", ("F_c_pan",), (("F_s_pan", "F_c_pan"),)),
+            ("Coulomb and viscous friction", ("F_c_pan", "F_v_pan"), (("F_s_pan", "F_c_pan"),)),
+            ("Coulomb and static friction, Stribeck curve", ("F_c_pan", "F_s_pan", "v_s_pan"), ()),
+            (
+                "Coulomb, static, viscous and Stribeck friction",
+                ("F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan"),
+                (),
+            ),
+        ),
+        (),
         "Coulomb, static, viscous and Stribeck friction",
         "thesis Eq. 2.10, 2.11 with errata 2 and 3, Eq. 4.1, exponent 2",
         "Crawl through standstill in both directions at several slow speeds.",
@@ -152,6 +168,19 @@ EFFECTS = (
         "direction_dependent_friction",
         "pan",
         ("a_F_c_pan", "a_F_s_pan", "a_v_s_pan", "a_F_v_pan"),
+        (
+            ("Coulomb friction", ("a_F_c_pan",), ()),
+            ("viscous friction", ("a_F_v_pan",), ()),
+            ("Coulomb and static friction", ("a_F_c_pan", "a_F_s_pan"), ()),
+            ("Coulomb and viscous friction", ("a_F_c_pan", "a_F_v_pan"), ()),
+            ("Coulomb, static and viscous friction", ("a_F_c_pan", "a_F_s_pan", "a_F_v_pan"), ()),
+            (
+                "all of dry and viscous friction",
+                ("a_F_c_pan", "a_F_s_pan", "a_v_s_pan", "a_F_v_pan"),
+                (),
+            ),
+        ),
+        ("csvs_friction@pan",),
         "friction that differs by direction",
         "thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)",
         "Run the same speeds both ways at two supply polarities, or back-drive the joint "
@@ -161,6 +190,8 @@ EFFECTS = (
         "backlash",
         "pan",
         ("gap_pan",),
+        (),
+        ("shaft_compliance@pan",),
         "backlash",
         "thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
         "Reverse slowly with and without a known preload torque on the joint: backlash "
@@ -170,6 +201,8 @@ EFFECTS = (
         "shaft_compliance",
         "pan",
         ("k_shaft_pan", "d_shaft_pan"),
+        (),
+        (),
         "flexible shaft",
         "thesis Eq. 2.15 with erratum 4, Table 5.7",
         "",
@@ -178,6 +211,8 @@ EFFECTS = (
         "dc_motor",
         "pan",
         ("L_pan", "R_pan", "K_t_pan", "J_motor_pan", "N_pan"),
+        (),
+        (),
         "geared DC motor",
         "thesis Eq. 3.10, Eq. 3.11 with erratum 8",
         "",
@@ -608,6 +643,68 @@ def energy(t, x, u, p, m, e):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def equation_error(t, x, u, p, m, r):
+    """Write the torque that every row lacks, then rates of other states into r; x ends in accel."""
+    theta_pan = x[0]
+    omega_pan = x[1]
+    theta_gear_pan = x[2]
+    omega_gear_pan = x[3]
+    i_pan = x[4]
+    accel_pan = x[5]
+    accel_gear_pan = x[6]
+    u_pan = u[0]
+    J_pan = p[0]
+    b_pan = p[1]
+    F_c_pan = p[2]
+    F_s_pan = p[3]
+    v_s_pan = p[4]
+    F_v_pan = p[5]
+    a_F_c_pan = p[6]
+    a_F_s_pan = p[7]
+    a_v_s_pan = p[8]
+    a_F_v_pan = p[9]
+    gap_pan = p[10]
+    k_shaft_pan = p[11]
+    d_shaft_pan = p[12]
+    L_pan = p[13]
+    R_pan = p[14]
+    K_t_pan = p[15]
+    J_motor_pan = p[16]
+    N_pan = p[17]
+    slide_pan = m[0]
+    side_pan = m[1]
+    active_pan = m[2]
+    force_pan_term = active_pan * (
+        d_shaft_pan * (omega_gear_pan - omega_pan)
+        + k_shaft_pan * (-0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan)
+    )
+    force_pan = -b_pan * omega_pan + force_pan_term
+    mass_pan = J_pan
+    r[0] = accel_pan * mass_pan - force_pan
+    force_gear_pan_term = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    force_gear_pan = (
+        K_t_pan * N_pan * i_pan
+        - force_pan_term
+        - slide_pan
+        * (
+            F_v_pan * omega_gear_pan * slide_pan * (a_F_v_pan * slide_pan + 1.0)
+            + force_gear_pan_term
+            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - force_gear_pan_term)
+            * math.exp(
+                -(omega_gear_pan * omega_gear_pan)
+                / (
+                    (v_s_pan * v_s_pan)
+                    * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
+                )
+            )
+        )
+    )
+    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
+    r[1] = accel_gear_pan * mass_gear_pan - force_gear_pan
+    r[2] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
     return
@@ -654,4 +751,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 2e1fe0077ecd579086f3cfc71a5973bdfe7471dc9d8a37217c2f85be9a029573
+# END sha256 d83a693abaa1be3af3928a42dc51b212fc765644592f174c6266cbb3b9a40a87

@@ -45,7 +45,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "0b68859c0dc49e03"
+MODEL_HASH = "5768e2e7ab6d4fcf"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 AXES = ("pan", "tilt")
@@ -92,12 +92,15 @@ PARAMETERS = (
 # Searching them: name, value at which the effect vanishes (None: any), starts,
 # period, what a frequency is locked to.
 SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
-# Effects: id, axis, parameters, title, reference, separating experiment.
+# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
+# effects that it acts on, title, reference, separating experiment.
 EFFECTS = (
     (
         "rigid_bodies",
         None,
         ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"),
+        (),
+        (),
         "pan body and tilt body",
         "thesis Eq. 3.8, Table 5.1",
         "",
@@ -114,6 +117,8 @@ EFFECTS = (
             "c_y_payload",
             "c_z_payload",
         ),
+        (),
+        (),
         "payload",
         "thesis section 3.2.2, Table 5.3 with erratum 18",
         "",
@@ -122,6 +127,8 @@ EFFECTS = (
         "viscous_friction",
         "pan",
         ("b_pan",),
+        (),
+        (),
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
@@ -130,6 +137,8 @@ EFFECTS = (
         "viscous_friction",
         "tilt",
         ("b_tilt",),
+        (),
+        (),
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
@@ -680,6 +689,99 @@ def energy(t, x, u, p, m, e):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def equation_error(t, x, u, p, m, r):
+    """Write the torque that every row lacks, then rates of other states into r; x ends in accel."""
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    accel_pan = x[4]
+    accel_tilt = x[5]
+    tau_pan = u[0]
+    tau_tilt = u[1]
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    m_payload = p[4]
+    J_x_payload = p[5]
+    J_y_payload = p[6]
+    J_z_payload = p[7]
+    c_x_payload = p[8]
+    c_y_payload = p[9]
+    c_z_payload = p[10]
+    b_pan = p[11]
+    b_tilt = p[12]
+    sin_tilt = math.sin(theta_tilt)
+    sin_tilt_sq = sin_tilt * sin_tilt
+    cos_tilt = math.cos(theta_tilt)
+    cos_tilt_sq = cos_tilt * cos_tilt
+    c_x_payload_sq = c_x_payload * c_x_payload
+    force_pan_term = (c_z_payload * c_z_payload) * m_payload
+    c_y_payload_m_payload = c_y_payload * m_payload
+    c_x_payload_c_y_payload_m_payload = c_x_payload * c_y_payload_m_payload
+    c_y_payload_m_payload_c_z_payload = c_y_payload_m_payload * c_z_payload
+    twice_omega_pan_omega_tilt = 2.0 * omega_pan * omega_tilt
+    cos_tilt_sin_tilt = cos_tilt * sin_tilt
+    force_pan_term_2 = cos_tilt_sin_tilt * twice_omega_pan_omega_tilt
+    omega_tilt_sq = omega_tilt * omega_tilt
+    c_x_payload_c_z_payload_m_payload = c_x_payload * c_z_payload * m_payload
+    force_pan = (
+        -J_x_payload * force_pan_term_2
+        - J_x_tilt * force_pan_term_2
+        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
+        - b_pan * omega_pan
+        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        - c_x_payload_c_y_payload_m_payload * cos_tilt * omega_tilt_sq
+        - c_x_payload_c_z_payload_m_payload * cos_tilt_sq * twice_omega_pan_omega_tilt
+        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
+        - c_y_payload_m_payload_c_z_payload * omega_tilt_sq * sin_tilt
+        - force_pan_term * force_pan_term_2
+        + tau_pan
+    )
+    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
+    mass_pan_term = (c_y_payload * c_y_payload) * m_payload
+    c_x_payload_cos_tilt = c_x_payload * cos_tilt
+    c_z_payload_sin_tilt = c_z_payload * sin_tilt
+    mass_pan = (
+        J_pan
+        + J_x_payload * sin_tilt_sq
+        + J_x_tilt * sin_tilt_sq
+        + J_z_payload * cos_tilt_sq
+        + J_z_tilt * cos_tilt_sq
+        + 2.0 * c_x_payload_cos_tilt * c_z_payload_sin_tilt * m_payload
+        + c_x_payload_sq_m_payload * cos_tilt_sq
+        + cos_tilt_sq * mass_pan_term
+        + force_pan_term * sin_tilt_sq
+        + mass_pan_term * sin_tilt_sq
+    )
+    mass_pan_tilt = (
+        c_x_payload_c_y_payload_m_payload * sin_tilt - c_y_payload_m_payload_c_z_payload * cos_tilt
+    )
+    r[0] = accel_pan * mass_pan + accel_tilt * mass_pan_tilt - force_pan
+    force_tilt_term = 9.81 * m_payload
+    omega_pan_sq = omega_pan * omega_pan
+    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
+    force_tilt_term_2 = c_x_payload_c_z_payload_m_payload * omega_pan_sq
+    force_tilt = (
+        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
+        - J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
+        - J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
+        - b_tilt * omega_tilt
+        + c_x_payload_cos_tilt * force_tilt_term
+        - c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+        + c_z_payload_sin_tilt * force_tilt_term
+        + cos_tilt_sin_tilt_omega_pan_sq * force_pan_term
+        + cos_tilt_sq * force_tilt_term_2
+        - force_tilt_term_2 * sin_tilt_sq
+        + tau_tilt
+    )
+    mass_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + force_pan_term
+    r[1] = accel_pan * mass_pan_tilt + accel_tilt * mass_tilt - force_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
     return
@@ -703,4 +805,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 7b946d41a5d2e0158980e57e5b340e137287db7910e9d2392860437d34b91bda
+# END sha256 1d6ebe8a583104ba31ea85f79ca1dcc775abc5539006ea4e1995658f18954a11

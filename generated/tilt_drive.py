@@ -54,7 +54,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "045ff99c6f478596"
+MODEL_HASH = "24bc5ba9fa2cdb51"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
 AXES = ("tilt",)
@@ -122,12 +122,15 @@ PARAMETERS = (
 # Searching them: name, value at which the effect vanishes (None: any), starts,
 # period, what a frequency is locked to.
 SEARCH = (("b_tilt", 0.0, (0.1,), None, None),)
-# Effects: id, axis, parameters, title, reference, separating experiment.
+# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
+# effects that it acts on, title, reference, separating experiment.
 EFFECTS = (
     (
         "payload",
         None,
         ("m_payload", "J_y_payload", "c_x_payload", "c_z_payload"),
+        (),
+        (),
         "payload",
         "thesis section 3.2.2, Table 5.3 with erratum 18",
         "",
@@ -136,6 +139,8 @@ EFFECTS = (
         "viscous_friction",
         "tilt",
         ("b_tilt",),
+        (),
+        (),
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
@@ -159,6 +164,8 @@ EFFECTS = (
             "s_start_tilt",
             "s_max_tilt",
         ),
+        (),
+        (),
         "linear actuator with lead screw and linkage",
         "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6",
         "",
@@ -1784,6 +1791,136 @@ def energy(t, x, u, p, m, e):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def equation_error(t, x, u, p, m, r):
+    """Write the torque that every row lacks, then rates of other states into r; x ends in accel."""
+    theta_tilt = x[0]
+    omega_tilt = x[1]
+    i_tilt = x[2]
+    accel_tilt = x[3]
+    u_tilt = u[0]
+    m_payload = p[0]
+    J_y_payload = p[1]
+    c_x_payload = p[2]
+    c_z_payload = p[3]
+    b_tilt = p[4]
+    L_tilt = p[5]
+    R_tilt = p[6]
+    K_t_tilt = p[7]
+    J_motor_tilt = p[8]
+    b_motor_tilt = p[9]
+    N_tilt = p[10]
+    lead_tilt = p[11]
+    d_screw_tilt = p[12]
+    f_screw_tilt = p[13]
+    l_ground_tilt = p[14]
+    l_min_tilt = p[15]
+    r_arm_tilt = p[16]
+    s_start_tilt = p[17]
+    slide_tilt = m[0]
+    load_inertia_tilt_term = (
+        J_y_payload
+        + (c_x_payload * c_x_payload) * m_payload
+        + (c_z_payload * c_z_payload) * m_payload
+    )
+    load_inertia_tilt = load_inertia_tilt_term
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lead_tilt_inverse = 1.0 / lead_tilt
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    lowered_tilt = (
+        (-1.0)
+        * lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+    )
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    sin_tilt = math.sin(theta_tilt)
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    linkage_sin_tilt = math.sqrt(
+        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    cos_tilt = math.cos(theta_tilt)
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt_term = math.sqrt(
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    length_tilt = length_tilt_term
+    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
+    lost_lowering_tilt = (
+        (1.0 - lowered_tilt)
+        * 1.0
+        / (abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term))
+    )
+    raised_tilt = (
+        lead_tilt_inverse_lowered_tilt_term
+        * 1.0
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
+        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+    )
+    lost_raising_tilt = (
+        (raised_tilt - 1.0) * 1.0 / (load_inertia_tilt * raised_tilt + lost_lowering_tilt_term)
+    )
+    length_tilt_by_theta_tilt = (
+        1.0
+        / length_tilt_term
+        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
+    )
+    ratio_tilt_by_theta_tilt = (
+        -math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_term
+        / (length_tilt * length_tilt)
+        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
+    )
+    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
+    driving_torque_tilt_term = J_motor_tilt * (
+        omega_tilt * omega_tilt
+    ) * ratio_tilt * ratio_tilt_by_theta_tilt - ratio_tilt * (
+        K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    )
+    b_tilt_omega_tilt = b_tilt * omega_tilt
+    driving_torque_tilt = -driving_torque_tilt_term
+    load_torque_tilt_term = 9.81 * m_payload
+    load_torque_tilt = (
+        -b_tilt_omega_tilt
+        + c_x_payload * cos_tilt * load_torque_tilt_term
+        + c_z_payload * load_torque_tilt_term * sin_tilt
+    )
+    carried_tilt = (
+        driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
+    )
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    force_tilt = (
+        -b_tilt_omega_tilt
+        + 9.81 * c_x_payload * cos_tilt * m_payload
+        + 9.81 * c_z_payload * m_payload * sin_tilt
+        - driving_torque_tilt_term
+        - slide_tilt
+        * (
+            0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
+            + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
+        )
+    )
+    mass_tilt = load_inertia_tilt_term + lost_lowering_tilt_term
+    r[0] = accel_tilt * mass_tilt - force_tilt
+    r[1] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
     l_ground_tilt = p[14]
@@ -1875,4 +2012,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 e3643795e8e5ca551727adfc0920b7d653d0d2f6e98479294cfa44ee6ba5739d
+# END sha256 63ad7851ea3e2d7182dbcfa71dc7bffe4744d3b3157aae2734293defd69ed62c

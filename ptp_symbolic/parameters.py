@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, replace
 
+HIGHEST_HARMONIC = 3
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -30,3 +32,20 @@ class Parameter:
         return replace(
             self, name=self.name.format(axis=axis), meaning=self.meaning.format(axis=axis)
         )
+
+
+def harmonics(sine: Parameter, cosine: Parameter) -> tuple[tuple[Parameter, Parameter], ...]:
+    """The amplitudes `sine` and `cosine` of a wave and those of its harmonics up to the third.
+
+    A name ``F_sin_{axis}`` becomes ``F_sin2_{axis}``; harmonics begin at zero in a search.
+    """
+
+    def of_order(parameter: Parameter, order: int) -> Parameter:
+        if order == 1:
+            return parameter
+        name = parameter.name.replace("_{axis}", f"{order}_{{axis}}")
+        meaning = f"{parameter.meaning}, harmonic {order}"
+        return replace(parameter, name=name, meaning=meaning, starts=(0.0,))
+
+    orders = range(1, HIGHEST_HARMONIC + 1)
+    return tuple((of_order(sine, n), of_order(cosine, n)) for n in orders)

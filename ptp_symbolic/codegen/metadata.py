@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import sympy as sp
 
 from ptp_symbolic import kinematics
-from ptp_symbolic.derivation.equations import Equations
+from ptp_symbolic.derivation.equations import Equations, PlacedEffect
 from ptp_symbolic.parameters import Parameter
 
 TEXT_WIDTH = 80
@@ -75,7 +75,8 @@ def _parameter_lines(equations: Equations) -> list[str]:
         "# Searching them: name, value at which the effect vanishes (None: any), starts,",
         "# period, what a frequency is locked to.",
         _tuple("SEARCH", [_search(p) for p in parameters if _is_searched(p)]),
-        "# Effects: id, axis, parameters, title, reference, separating experiment.",
+        "# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the",
+        "# effects that it acts on, title, reference, separating experiment.",
         _tuple("EFFECTS", _effects(equations)),
     ]
 
@@ -279,6 +280,25 @@ def _effects(equations: Equations) -> list[str]:
         effect = placed.effect
         axis = "None" if placed.axis is None else f'"{placed.axis}"'
         texts = (effect.title, effect.reference, effect.separating_experiment)
-        fields = [f'"{effect.id}"', axis, inner, *map(_long_text, texts)]
+        members, acted_on = _members(placed, used), f"({_listed(map(repr_text, placed.acts_on))})"
+        fields = [f'"{effect.id}"', axis, inner, members, acted_on, *map(_long_text, texts)]
         rows.append("(\n" + "".join(f"        {f},\n" for f in fields) + "    )")
     return rows
+
+
+def _members(placed: PlacedEffect, used: set[str]) -> str:
+    """The nested members of an effect, those that lack a parameter here left out."""
+    rows = []
+    for member in placed.effect.members:
+        own = [name.format(axis=placed.axis) for name in member.parameters]
+        tied = [tuple(n.format(axis=placed.axis) for n in pair) for pair in member.tied.items()]
+        if set(own) <= used:
+            pairs = _listed(f"({repr_text(a)}, {repr_text(b)})" for a, b in tied)
+            rows.append(f"({repr_text(member.title)}, ({_listed(map(repr_text, own))}), ({pairs}))")
+    return f"({_listed(rows)})"
+
+
+def _listed(items: Iterable[str]) -> str:
+    """Items of a tuple, without its parentheses."""
+    found = list(items)
+    return f"{found[0]}," if len(found) == 1 else ", ".join(found)

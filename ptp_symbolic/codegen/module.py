@@ -65,6 +65,7 @@ def module_text(equations: Equations) -> str:
             _outputs(equations, vectors),
             _output_jacobian(equations, vectors),
             _energy(equations, vectors),
+            _equation_error(equations, solve, vectors),
             _domain(equations, vectors),
             _margins(equations, vectors),
             *_samplers(equations, vectors),
@@ -247,6 +248,25 @@ def _energy(equations: Equations, vectors: Vectors) -> str:
     terms = [(str(symbol), term) for symbol, term in equations.terms]
     lines = share(terms, outputs, words_of(equations))
     return _kernel("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, lines)
+
+
+def _equation_error(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+    """What a measured motion leaves of the equations of motion: M a - forcing + sliding friction.
+
+    The accelerations, which follow the states in x, are given and not solved for.
+    """
+    given = [str(acceleration) for acceleration in solve.accelerations]
+    definitions = [(name, e) for name, e in solve.definitions if name not in given]
+    torques = solve.mass * sp.Matrix(solve.accelerations) - solve.force
+    moving = {sp.Symbol(s.name, real=True): s.derivative for s in equations.extra_states}
+    others = [moving[s] for s in equations.state_symbols if s in moving]
+    outputs = [(f"r[{i}]", sp.sympify(e, strict=True)) for i, e in enumerate([*torques, *others])]
+    lines = share(definitions, outputs, words_of(equations))
+    extended = replace(vectors, x=(*vectors.x, *given))
+    doc = (
+        "Write the torque that every row lacks, then rates of other states into r; x ends in accel."
+    )
+    return _kernel("equation_error", f"{MODE_ARGUMENTS}, r", doc, extended, lines)
 
 
 def _domain(equations: Equations, vectors: Vectors) -> str:

@@ -27,7 +27,21 @@ def words_of(equations: Equations) -> dict[str, str]:
     }
     timing = [f"{w}_{k}" for k in range(len(equations.samplers)) for w in SAMPLER_WORDS]
     sampled = _numbered("z", [*timing, *(f"next_{state}" for _, state, _ in equations.updates)])
-    words = {**rates, **guards, **readings, **energy, **strikes, **margins, **bounds, **sampled}
+    further = {state.name for state in equations.extra_states}
+    lacking = [f"torque_{str(rate).removeprefix('omega_')}" for rate in equations.rates]
+    lacking += [f"rate_of_{s}" for s in map(str, equations.state_symbols) if s in further]
+    errors = _numbered("r", lacking)
+    words = {
+        **rates,
+        **errors,
+        **guards,
+        **readings,
+        **energy,
+        **strikes,
+        **margins,
+        **bounds,
+        **sampled,
+    }
     for letter, names in columns.items():
         words |= _derivatives("f", letter, rates, names)
         words |= _derivatives("g", letter, guards, names)

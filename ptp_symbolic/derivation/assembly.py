@@ -12,7 +12,7 @@ from ptp_symbolic.derivation.friction import Mechanics, driving_torque, resolved
 from ptp_symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.derivation.ledger import energy_ledger
 from ptp_symbolic.derivation.parts import BASE_ACCELERATION, GRAVITY_QUANTITIES, Parts, collect
-from ptp_symbolic.derivation.placement import place_effects, resolved_parameters
+from ptp_symbolic.derivation.placement import acts_on, place_effects, resolved_parameters
 from ptp_symbolic.derivation.prescribed import constraint_power, reduced, released
 from ptp_symbolic.derivation.rigid_play import rigid_contact
 from ptp_symbolic.derivation.transmission import Transmission, transmission
@@ -67,7 +67,8 @@ def assemble(platform: Platform) -> Equations:
         requirements=tuple(r for effect, place in placed for r in effect.requires(place)),
         ledger=replace(ledger, power_in=ledger.power_in + power),
         effects=tuple(
-            PlacedEffect(e, p.axis, tuple(q.name for q in e.parameters(p))) for e, p in placed
+            PlacedEffect(e, p.axis, tuple(q.name for q in e.parameters(p)), acts_on(e, p, placed))
+            for e, p in placed
         ),
         rigid=rigid,
         rigid_equations=rigid_equations,

@@ -55,11 +55,14 @@ class Ledger:
 
 @dataclass(frozen=True)
 class PlacedEffect:
-    """An effect at its place, with the names of its parameters there."""
+    """An effect at its place, the names of its parameters there, and the keys (``effect`` or
+    ``effect@axis``) of the effects that define what it needs.
+    """
 
     effect: Effect
     axis: str | None
     parameters: tuple[str, ...]
+    acts_on: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -98,6 +98,16 @@ def available_quantities(placed: list[tuple[Effect, Place]]) -> set[str]:
     return {name for effect, place in placed for name in effect.contribute(place).quantities}
 
 
+def acts_on(effect: Effect, place: Place, placed: list[tuple[Effect, Place]]) -> tuple[str, ...]:
+    """Keys of the placed effects that define a quantity which `effect` at `place` needs."""
+    needs = {need.format(axis=place.axis) for need in effect.needs}
+    return tuple(
+        other.id if there.axis is None else f"{other.id}@{there.axis}"
+        for other, there in placed
+        if needs & set(other.contribute(there).quantities)
+    )
+
+
 def effects_that_define(quantity: str, axes: tuple[str, ...]) -> list[str]:
     """Ids of the effects that define `quantity` on a machine with these axes."""
     return [

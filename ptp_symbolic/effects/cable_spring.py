@@ -1,6 +1,6 @@
 """A cable wrap that pulls back: a hardening spring with a rest angle."""
 
-from ptp_symbolic.effects.effect import Contribution, Effect, Place
+from ptp_symbolic.effects.effect import Contribution, Effect, Member, Place
 from ptp_symbolic.parameters import Parameter
 
 PARAMETERS = (
@@ -17,6 +17,11 @@ PARAMETERS = (
         starts=(-0.5, 0.5),
     ),
 )  # fmt: skip
+LINEAR, CUBIC, REST = (p.name for p in PARAMETERS)
+MEMBERS = (
+    Member("linear spring", (LINEAR, REST)),
+    Member("spring with linear and cubic part", (LINEAR, CUBIC, REST)),
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:
@@ -35,6 +40,7 @@ CABLE_SPRING = Effect(
     reference="Duffing (1918): spring with linear and cubic part",
     parameters=_parameters,
     contribute=_contribute,
+    members=MEMBERS,
     separating_experiment="Unplug or unwind the cable and repeat; or sweep beyond +-180 deg, where"
     " gravity turns over and a spring does not.",
 )

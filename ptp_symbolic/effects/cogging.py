@@ -2,10 +2,10 @@
 
 import sympy as sp
 
-from ptp_symbolic.effects.effect import Contribution, Effect, Place
-from ptp_symbolic.parameters import Parameter
+from ptp_symbolic.effects.effect import Contribution, Effect, Place, harmonic_members
+from ptp_symbolic.parameters import Parameter, harmonics
 
-PARAMETERS = (
+AMPLITUDES = harmonics(
     Parameter(
         "T_sin_{axis}", "N m", 0.0, -1e4, 1e4,
         "cogging torque that goes with the sine of the gear output's angle",
@@ -15,21 +15,26 @@ PARAMETERS = (
         "T_cos_{axis}", "N m", 0.0, -1e4, 1e4, "cogging torque that goes with the cosine",
         vanishes=0.0, starts=(0.2,),
     ),
-    Parameter(
-        "n_cog_{axis}", "1", 60.0, 0.5, 1e5, "cogging cycles per turn of the gear output",
-        locked_to="angle",
-    ),
+)  # fmt: skip
+CYCLES = Parameter(
+    "n_cog_{axis}", "1", 60.0, 0.5, 1e5, "cogging cycles per turn of the gear output",
+    locked_to="angle",
 )  # fmt: skip
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
+    amplitudes = (p for pair in AMPLITUDES for p in pair)
+    return tuple(p.at_axis(place.axis) for p in (*amplitudes, CYCLES))
 
 
 def _contribute(place: Place) -> Contribution:
-    sine, cosine, cycles = (place.parameter(p.name) for p in PARAMETERS)
-    phase = cycles * place.gear_angle
-    return Contribution(potential=(sine * sp.cos(phase) - cosine * sp.sin(phase)) / cycles)
+    cycles = place.parameter(CYCLES.name)
+    potential = sp.Integer(0)
+    for order, pair in enumerate(AMPLITUDES, start=1):
+        sine, cosine = (place.parameter(p.name) for p in pair)
+        phase = order * cycles * place.gear_angle
+        potential += (sine * sp.cos(phase) - cosine * sp.sin(phase)) / (order * cycles)
+    return Contribution(potential=potential)
 
 
 COGGING = Effect(
@@ -38,6 +43,7 @@ COGGING = Effect(
     reference="Hanselman (2003), section 6: cogging as a position-dependent potential",
     parameters=_parameters,
     contribute=_contribute,
+    members=harmonic_members(AMPLITUDES, (CYCLES.name,)),
     separating_experiment="Turn the unpowered motor by hand or repeat at two loads: cogging stays,"
     " a transmission error grows with the load.",
 )

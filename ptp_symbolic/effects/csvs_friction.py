@@ -2,7 +2,14 @@
 
 import sympy as sp
 
-from ptp_symbolic.effects.effect import Contribution, Effect, Friction, Place, Requirement
+from ptp_symbolic.effects.effect import (
+    Contribution,
+    Effect,
+    Friction,
+    Member,
+    Place,
+    Requirement,
+)
 from ptp_symbolic.parameters import Parameter
 
 PARAMETERS = (
@@ -12,6 +19,13 @@ PARAMETERS = (
     ),
     Parameter("v_s_{axis}", "rad/s", 0.016, 1e-6, 1e3, "Stribeck speed", None, (0.05,)),
     Parameter("F_v_{axis}", "N m s/rad", 13.9424, 0.0, 1e4, "viscous part", 0.0, (0.0,)),
+)
+COULOMB, STATIC, STRIBECK, VISCOUS = (p.name for p in PARAMETERS)
+MEMBERS = (
+    Member("Coulomb friction", (COULOMB,), {STATIC: COULOMB}),
+    Member("Coulomb and viscous friction", (COULOMB, VISCOUS), {STATIC: COULOMB}),
+    Member("Coulomb and static friction, Stribeck curve", (COULOMB, STATIC, STRIBECK)),
+    Member("Coulomb, static, viscous and Stribeck friction", (COULOMB, STATIC, STRIBECK, VISCOUS)),
 )
 
 
@@ -52,5 +66,6 @@ CSVS_FRICTION = Effect(
     contribute=_contribute,
     dissipative=True,
     requires=_requires,
+    members=MEMBERS,
     separating_experiment="Crawl through standstill in both directions at several slow speeds.",
 )

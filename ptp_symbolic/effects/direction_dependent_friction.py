@@ -1,6 +1,6 @@
 """Friction that differs by direction: relative half differences, added for positive rate."""
 
-from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.effects.effect import Change, Contribution, Effect, Member, Place
 from ptp_symbolic.parameters import Parameter
 
 CHANGED = {
@@ -17,6 +17,16 @@ PARAMETERS = tuple(
         ("a_v_s_{axis}", "Stribeck speed", (0.0,)),
         ("a_F_v_{axis}", "viscous friction", (0.0,)),
     )
+)
+MEMBERS = (
+    Member("Coulomb friction", ("a_F_c_{axis}",)),
+    Member("viscous friction", ("a_F_v_{axis}",)),
+    Member("Coulomb and static friction", ("a_F_c_{axis}", "a_F_s_{axis}")),
+    Member("Coulomb and viscous friction", ("a_F_c_{axis}", "a_F_v_{axis}")),
+    Member(
+        "Coulomb, static and viscous friction", ("a_F_c_{axis}", "a_F_s_{axis}", "a_F_v_{axis}")
+    ),
+    Member("all of dry and viscous friction", tuple(CHANGED)),
 )
 
 
@@ -40,6 +50,7 @@ DIRECTION_DEPENDENT_FRICTION = Effect(
     parameters=_parameters,
     contribute=_contribute,
     needs=("coulomb_torque_{axis}",),
+    members=MEMBERS,
     separating_experiment="Run the same speeds both ways at two supply polarities, or back-drive"
     " the joint without power: friction follows the motion, an offset does not.",
 )

@@ -270,8 +270,45 @@ def slide(axis: str) -> sp.Symbol:
     return sp.Symbol(f"slide_{axis}", real=True)
 
 
+def wave(
+    place: Place, amplitudes: tuple[tuple[Parameter, Parameter], ...], angle: sp.Expr
+) -> sp.Expr:
+    """Sum of the harmonics of `angle` with sine and cosine `amplitudes` (see `harmonics`)."""
+    return sp.Add(
+        *(
+            place.parameter(sine.name) * sp.sin(order * angle)
+            + place.parameter(cosine.name) * sp.cos(order * angle)
+            for order, (sine, cosine) in enumerate(amplitudes, start=1)
+        )
+    )
+
+
 def _without_conditions(place: Place) -> tuple[Requirement, ...]:
     return ()
+
+
+@dataclass(frozen=True)
+class Member:
+    """A simpler version of an effect: the templates of the `parameters` that it has.
+
+    The others stay where they vanish, or take the value of another one, as `tied` says. A search
+    names an effect with the smallest member that the logs ask for.
+    """
+
+    title: str
+    parameters: tuple[str, ...]
+    tied: Mapping[str, str] = field(default_factory=dict)
+
+
+def harmonic_members(
+    amplitudes: tuple[tuple[Parameter, Parameter], ...], beside: tuple[str, ...] = ()
+) -> tuple[Member, ...]:
+    """Members of an effect with one harmonic, two, and all; the parameters `beside` are in each."""
+    titles = ("one harmonic", "two harmonics", "three harmonics")
+    return tuple(
+        Member(title, (*(p.name for pair in amplitudes[:count] for p in pair), *beside))
+        for count, title in enumerate(titles, start=1)
+    )
 
 
 @dataclass(frozen=True)
@@ -281,7 +318,8 @@ class Effect:
     `on_axis`: it sits on an axis, not on the whole platform. `needs`: quantities without which it
     has nothing to act on; `requires`: what its parameters must fulfil. `dissipative`: its torques
     only take energy out, which tests verify. `structural`: no parameter value makes it vanish (a
-    motor, a body): declared, never searched for. Other `kinds` share its id; this is the usual one.
+    motor, a body): declared, never searched for. `members` are nested versions of it, the simplest
+    first and the whole last. Other `kinds` share its id; this is the usual one.
     """
 
     id: str
@@ -296,5 +334,6 @@ class Effect:
     needs: tuple[str, ...] = ()
     requires: Callable[[Place], tuple[Requirement, ...]] = _without_conditions
     separating_experiment: str = ""
+    members: tuple[Member, ...] = ()
     kind: str | None = None
     kinds: tuple["Effect", ...] = ()

@@ -1,11 +1,16 @@
 """An encoder disc off its centre: the reading leads and lags once per turn."""
 
-import sympy as sp
+from ptp_symbolic.effects.effect import (
+    Change,
+    Contribution,
+    Effect,
+    Place,
+    harmonic_members,
+    wave,
+)
+from ptp_symbolic.parameters import Parameter, harmonics
 
-from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.parameters import Parameter
-
-PARAMETERS = (
+AMPLITUDES = harmonics(
     Parameter(
         "e_sin_{axis}", "rad", 0.0, -0.2, 0.2,
         "reading error of the encoder: part that goes with the sine of the joint angle",
@@ -20,12 +25,11 @@ PARAMETERS = (
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
+    return tuple(p.at_axis(place.axis) for pair in AMPLITUDES for p in pair)
 
 
 def _contribute(place: Place) -> Contribution:
-    sine, cosine = (place.parameter(p.name) for p in PARAMETERS)
-    error = sine * sp.sin(place.angle) + cosine * sp.cos(place.angle)
+    error = wave(place, AMPLITUDES, place.angle)
     return Contribution(changes={f"reading_{place.angle}": Change(addition=error)})
 
 
@@ -35,6 +39,7 @@ ENCODER_ECCENTRICITY = Effect(
     reference="Ellin and Dolsak (2008): eccentricity error of rotary encoders",
     parameters=_parameters,
     contribute=_contribute,
+    members=harmonic_members(AMPLITUDES),
     separating_experiment="Turn slowly against a second encoder or an optical polygon: the error"
     " depends on the angle alone, at any speed and load.",
 )

@@ -1,11 +1,16 @@
 """A gear that does not run true: its output leads and lags once per turn."""
 
-import sympy as sp
+from ptp_symbolic.effects.effect import (
+    Change,
+    Contribution,
+    Effect,
+    Place,
+    harmonic_members,
+    wave,
+)
+from ptp_symbolic.parameters import Parameter, harmonics
 
-from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.parameters import Parameter
-
-PARAMETERS = (
+AMPLITUDES = harmonics(
     Parameter(
         "g_sin_{axis}", "rad", 0.0, -0.2, 0.2,
         "transmission error: part that goes with the sine of the gear output's angle",
@@ -19,12 +24,11 @@ PARAMETERS = (
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
+    return tuple(p.at_axis(place.axis) for pair in AMPLITUDES for p in pair)
 
 
 def _contribute(place: Place) -> Contribution:
-    sine, cosine = (place.parameter(p.name) for p in PARAMETERS)
-    error = sine * sp.sin(place.gear_angle) + cosine * sp.cos(place.gear_angle)
+    error = wave(place, AMPLITUDES, place.gear_angle)
     return Contribution(changes={f"transmission_error_{place.axis}": Change(addition=error)})
 
 
@@ -35,6 +39,7 @@ GEAR_ECCENTRICITY = Effect(
     parameters=_parameters,
     contribute=_contribute,
     needs=("half_gap_{axis}",),
+    members=harmonic_members(AMPLITUDES),
     separating_experiment="Compare an encoder on the motor with the one on the joint over a full"
     " slow turn both ways; an encoder error shows without load as well.",
 )

@@ -1,11 +1,18 @@
-"""Friction that changes once per turn: a bent shaft, a bearing under uneven load."""
+"""Friction that depends on the angle: a bent shaft, a bearing under uneven load."""
 
 import sympy as sp
 
-from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.parameters import Parameter
+from ptp_symbolic.effects.effect import (
+    Change,
+    Contribution,
+    Effect,
+    Place,
+    harmonic_members,
+    wave,
+)
+from ptp_symbolic.parameters import Parameter, harmonics
 
-PARAMETERS = (
+AMPLITUDES = harmonics(
     Parameter(
         "F_sin_{axis}", "N m", 0.0, -1e4, 1e4,
         "part of dry friction that goes with the sine of the joint angle",
@@ -19,13 +26,12 @@ PARAMETERS = (
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
+    return tuple(p.at_axis(place.axis) for pair in AMPLITUDES for p in pair)
 
 
 def _contribute(place: Place) -> Contribution:
-    sine, cosine = (place.parameter(p.name) for p in PARAMETERS)
     added = Change(
-        addition=sine * sp.sin(place.angle) + cosine * sp.cos(place.angle),
+        addition=wave(place, AMPLITUDES, place.angle),
         through=lambda torque: sp.Max(torque, 0),
     )
     return Contribution(
@@ -40,6 +46,7 @@ POSITION_DEPENDENT_FRICTION = Effect(
     parameters=_parameters,
     contribute=_contribute,
     needs=("coulomb_torque_{axis}", "static_torque_{axis}"),
+    members=harmonic_members(AMPLITUDES),
     separating_experiment="Pass the same angles both ways at two speeds: gravity keeps its sign,"
     " friction flips, an encoder error grows with the speed.",
 )

@@ -18,11 +18,18 @@ BOUND_SLACK = 1e-9  # relative: a search that ends on a bound may miss it by rou
 
 @dataclass(frozen=True)
 class EffectInstance:
-    """An effect of a model: id, axis, its parameters, and texts for documents."""
+    """An effect of a model: id, axis, its parameters, and texts for documents.
+
+    `members` are its nested versions, the simplest first: title, parameters, and pairs of a
+    parameter and the one whose value it takes. `acts_on` are keys of effects that it cannot do
+    without.
+    """
 
     id: str
     axis: str | None
     parameters: tuple[str, ...]
+    members: tuple[tuple[str, tuple[str, ...], tuple[tuple[str, str], ...]], ...]
+    acts_on: tuple[str, ...]
     title: str
     reference: str
     separating_experiment: str
@@ -51,7 +58,8 @@ class ModelParameter:
 
 @dataclass(frozen=True)
 class Model:
-    """The equations of one machine, compiled on first use.
+    """The equations of one machine, compiled on first use; `declared` are its name, its title, and
+    default, lower and upper bound of every parameter where they are not those of the module.
 
     `state_derivative(t, x, u, p, dx)` writes dx/dt in place; `rhs(t, x, u, p)` returns it. Arrays
     are float64 in the order of `state_names` [n], `input_names` [nu] and `parameter_names` [np],
@@ -60,16 +68,17 @@ class Model:
     """
 
     module: ModuleType
+    declared: tuple[str, str, Mapping[str, tuple[float, float, float]]] | None = None
 
     @cached_property
     def name(self) -> str:
         """Name of the model."""
-        return str(self.module.NAME)
+        return str(self.module.NAME) if self.declared is None else self.declared[0]
 
     @cached_property
     def title(self) -> str:
         """One line that says what the model is."""
-        return str(self.module.TITLE)
+        return str(self.module.TITLE) if self.declared is None else self.declared[1]
 
     @cached_property
     def state_names(self) -> tuple[str, ...]:
@@ -90,8 +99,10 @@ class Model:
     def parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters with unit, default, bounds and where they vanish."""
         search = {row[0]: row[1:] for row in self.module.SEARCH}
+        own = {} if self.declared is None else self.declared[2]
         return tuple(
-            ModelParameter(*row, *search.get(row[0], ())) for row in self.module.PARAMETERS
+            ModelParameter(name, unit, *own.get(name, numbers), meaning, *search.get(name, ()))
+            for name, unit, *numbers, meaning in self.module.PARAMETERS
         )
 
     @cached_property

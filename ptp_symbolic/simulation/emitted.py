@@ -46,22 +46,22 @@ def addresses(module: ModuleType) -> NDArray[np.int64]:
 
     The module keeps the functions alive, and the cache keeps the module.
     """
-    return _compiled(module, SIGNATURES | IMPACT_SIGNATURES)
+    return compiled_addresses(module, SIGNATURES | IMPACT_SIGNATURES)
 
 
 @lru_cache(maxsize=256)
 def sampler_addresses(module: ModuleType) -> NDArray[np.int64]:
     """Addresses [2] of `sample` and `sample_jacobian` of a module with samplers."""
-    return _compiled(module, SAMPLER_SIGNATURES)
+    return compiled_addresses(module, SAMPLER_SIGNATURES)
 
 
 @lru_cache(maxsize=256)
 def output_addresses(module: ModuleType) -> NDArray[np.int64]:
     """Addresses [2] of `outputs` and `output_jacobian` of an emitted module."""
-    return _compiled(module, OUTPUT_SIGNATURES)
+    return compiled_addresses(module, OUTPUT_SIGNATURES)
 
 
-def _compiled(module: ModuleType, signatures: dict[str, Any]) -> NDArray[np.int64]:
+def compiled_addresses(module: ModuleType, signatures: dict[str, Any]) -> NDArray[np.int64]:
     found = []
     for name, signature in signatures.items():
         if name in IMPACT_SIGNATURES and name not in vars(module):

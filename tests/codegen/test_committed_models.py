@@ -50,6 +50,42 @@ def test_rigid_models_against_an_independent_newton_euler_program(name: str) -> 
         assert np.array_equal(found[:2], x[2:])
 
 
+@pytest.mark.parametrize("name", ["ideal", "payload"])
+def test_torques_that_a_motion_lacks_against_an_independent_newton_euler_program(name: str) -> None:
+    model, rng = ptp_symbolic.load(name), np.random.default_rng(9)
+    values = model.defaults
+    for _ in range(STATES):
+        angles, rates, wanted, given = rng.normal(size=(4, 2))
+        lacking = np.zeros(2)
+        model.module.equation_error(
+            0.0, np.concatenate([angles, rates, wanted]), given, model.parameter_vector(),
+            np.zeros(0), lacking,
+        )  # fmt: skip
+        mass = rigid_platform.mass_matrix(angles, values)
+        free = rigid_platform.accelerations(angles, rates, given, values)
+        truth = mass @ (wanted - free)
+        assert np.abs(lacking - truth).max() <= 1e-11 * max(1.0, np.abs(truth).max())
+
+
+@pytest.mark.parametrize("name", list(COMMITTED))
+def test_a_motion_that_obeys_the_equations_lacks_no_torque(name: str) -> None:
+    model, rng = ptp_symbolic.load(name), np.random.default_rng(4)
+    states = list(model.state_names)
+    rows = [states.index(n) for n in states if n.startswith("omega_")]
+    others = [i for i, n in enumerate(states) if not n.startswith(("theta_", "omega_"))]
+    n, p = len(states), model.parameter_vector()
+    m = rng.choice([-1.0, 1.0], len(model.mode_names))
+    for _ in range(20):
+        x, u = 0.3 * rng.normal(size=n), rng.normal(size=len(model.input_names))
+        dx, r = np.zeros(n), np.zeros(len(rows) + len(others))
+        model.module.mode_derivative(0.0, x, u, p, m, dx)
+        model.module.equation_error(0.0, np.concatenate([x, dx[rows]]), u, p, m, r)
+        still = np.zeros_like(r)
+        model.module.equation_error(0.0, np.concatenate([x, 0 * dx[rows]]), u, p, m, still)
+        assert np.abs(r[: len(rows)]).max() <= 1e-9 * max(1.0, np.abs(still).max())
+        assert r[len(rows) :] == pytest.approx(dx[others], rel=1e-12)
+
+
 @pytest.mark.parametrize("name", list(COMMITTED))
 def test_jacobian_against_central_differences(name: str) -> None:
     model, rng = ptp_symbolic.load(name), np.random.default_rng(3)

@@ -36,8 +36,10 @@ def with_effect(effect: Effect) -> Platform:
     for base in BASES:
         if any(e.effect == effect.id for e in base.effects):
             return base
+        available = available_quantities(place_effects(base))
         for addition in loop.candidate_effects(base):
-            if addition.effect == effect.id:
+            needs = {need.format(axis=addition.axis) for need in effect.needs}
+            if addition.effect == effect.id and needs <= available:
                 return replace(base, effects=(*base.effects, addition))
     assert effect.structural, f"No base platform takes {effect.id}."
     needs = {need.format(axis="pan") for need in effect.needs}
