@@ -6,68 +6,34 @@ Math. 6, 1980) at a tight tolerance; events are bisected to 1e-12 s and landed o
 Beside the declared drive it holds effects that a test can plant; at their defaults they vanish.
 """
 
-import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from tests.independent.drive import Drive, as_records
+from tests.independent.drive_laws import (
+    breakaway,
+    cogging_torque,
+    dry_change,
+    harmonics,
+    harmonics_slope,
+    joint_torque,
+    sliding_friction,
+    winding,
+    wrap_slope,
+)
 
-LOAD_ANGLE, LOAD_RATE, GEAR_ANGLE, GEAR_RATE, CURRENT, HEAT = range(6)
+Floats = NDArray[np.float64]
+PanDrive = Drive
+
+LOAD_ANGLE, LOAD_RATE, GEAR_ANGLE, GEAR_RATE, CURRENT, HEAT, WRAP = range(7)
+STATES = 7
 DEAD_BAND = 1e-13  # rad/s; rounding right after breakaway must not count as a reversal
 EVENT_TOLERANCE = 1e-12  # s
 LONGEST_STEP = 5e-4  # s
 NEGLIGIBLE = 1e-60  # flushed to zero, as denormal numbers are slow
-
-
-class PanDrive(NamedTuple):
-    """The drive and everything hidden in it; SI units, torques and rates at the gear output.
-
-    `forward` is motion towards positive angles. Payload torque: gravity_torque = m g c sin(beta),
-    towards the angle alpha_base. Coulomb ripple: friction_ripple (1 - cos(n theta - phase)) / 2 on
-    top of Coulomb and breakaway torque. Breakaway grows by the factor
-    1 + dwell_gain ln(1 + rest / dwell_time); resistance by heat, with
-    heating_time d(heat)/dt = heating_gain R i^2 - heat.
-    """
-
-    L: float = 6.9e-3
-    R: float = 12.9
-    K_t: float = 0.0724
-    J_motor: float = 1.1e-5
-    N: float = 500.0
-    k_shaft: float = 5000.0
-    d_shaft: float = 1.5
-    gap: float = math.radians(1.49)
-    J_load: float = 0.1
-    b_load: float = 2.0
-    F_c_forward: float = 0.24
-    F_c_backward: float = 0.24
-    F_s_forward: float = 0.65
-    F_s_backward: float = 0.65
-    v_s_forward: float = 0.016
-    v_s_backward: float = 0.016
-    F_v_forward: float = 14.0
-    F_v_backward: float = 14.0
-    gravity_torque: float = 0.0
-    alpha_base: float = 0.0
-    k1_cable: float = 0.0
-    k3_cable: float = 0.0
-    theta0_cable: float = 0.0
-    constant_torque: float = 0.0
-    voltage_offset: float = 0.0
-    friction_ripple: float = 0.0
-    ripple_count: float = 1.0
-    ripple_phase: float = 0.0
-    dwell_gain: float = 0.0
-    dwell_time: float = 1.0
-    heating_gain: float = 0.0
-    heating_time: float = 1.0
-    shake_torque: float = 0.0
-    shake_frequency: float = 1.0
-    shake_phase: float = 0.0
-
 
 _A = np.array(
     [
@@ -88,98 +54,90 @@ _ERROR = np.append(_A[6], 0.0) - _FOURTH
 
 
 @numba.njit(cache=True)
-def _touching(y: Floats, drive: PanDrive) -> int:
+def _twist(y: Floats, drive: Any) -> tuple[float, float]:
+    """Angle in rad by which the shaft's end on the gear leads the load, and its rate."""
+    angle, rate = y[GEAR_ANGLE], y[GEAR_RATE]
+    seen = angle + harmonics(drive.transmission, angle)
+    seen_rate = rate * (1.0 + harmonics_slope(drive.transmission, angle))
+    return seen - y[LOAD_ANGLE], seen_rate - y[LOAD_RATE]
+
+
+@numba.njit(cache=True)
+def _flank_torque(depth: float, closing: float, drive: Any) -> float:
+    """Torque in N m with which a flank presses at a depth; negative where it would have to pull."""
+    stiffness = drive.k_shaft
+    if drive.contact_softness != 0.0:
+        stiffness *= depth / (depth + drive.contact_softness)
+    return stiffness * depth + drive.d_shaft * closing
+
+
+@numba.njit(cache=True)
+def _touching(y: Floats, drive: Any) -> int:
     """Flank that presses: 1, -1, or 0 in the gap and where the damped contact would pull."""
+    twist, rate = _twist(y, drive)
     for side in (1, -1):
-        depth = side * (y[GEAR_ANGLE] - y[LOAD_ANGLE]) - 0.5 * drive.gap
-        closing = side * (y[GEAR_RATE] - y[LOAD_RATE])
-        if depth > 0.0 and drive.k_shaft * depth + drive.d_shaft * closing > 0.0:
+        depth = side * twist - 0.5 * drive.gap
+        if depth > 0.0 and _flank_torque(depth, side * rate, drive) > 0.0:
             return side
     return 0
 
 
 @numba.njit(cache=True)
-def _contact_torque(y: Floats, contact: int, drive: PanDrive) -> float:
+def _contact_torque(y: Floats, contact: int, drive: Any) -> float:
     """Torque on the load in N m through the flank `contact`."""
     if contact == 0:
         return 0.0
-    twist = y[GEAR_ANGLE] - y[LOAD_ANGLE] - contact * 0.5 * drive.gap
-    return drive.k_shaft * twist + drive.d_shaft * (y[GEAR_RATE] - y[LOAD_RATE])
+    twist, rate = _twist(y, drive)
+    return contact * _flank_torque(contact * twist - 0.5 * drive.gap, contact * rate, drive)
 
 
 @numba.njit(cache=True)
-def _gear_torque(y: Floats, contact: int, drive: PanDrive) -> float:
+def _gear_torque(y: Floats, shaft: float, drive: Any) -> float:
     """Torque in N m at the gear output that is left for friction and motor inertia."""
-    return drive.N * drive.K_t * y[CURRENT] - _contact_torque(y, contact, drive)
-
-
-@numba.njit(cache=True)
-def _ripple(y: Floats, drive: PanDrive) -> float:
-    angle = drive.ripple_count * y[GEAR_ANGLE] - drive.ripple_phase
-    return 0.5 * drive.friction_ripple * (1.0 - math.cos(angle))
-
-
-@numba.njit(cache=True)
-def _sliding_friction(y: Floats, slip: int, drive: PanDrive) -> float:
-    """CSVS friction in N m while sliding towards `slip`; smooth in the rate, also past zero."""
-    rate = y[GEAR_RATE]
-    coulomb, static = drive.F_c_forward, drive.F_s_forward
-    stribeck, viscous = drive.v_s_forward, drive.F_v_forward
-    if slip < 0:
-        coulomb, static = drive.F_c_backward, drive.F_s_backward
-        stribeck, viscous = drive.v_s_backward, drive.F_v_backward
-    level = coulomb + (static - coulomb) * math.exp(-((rate / stribeck) ** 2))
-    return slip * (level + _ripple(y, drive)) + viscous * rate
-
-
-@numba.njit(cache=True)
-def _breakaway(y: Floats, side: int, rest: float, drive: PanDrive) -> float:
-    """Torque in N m that starts motion towards `side` after `rest` seconds at rest."""
-    static = drive.F_s_forward if side > 0 else drive.F_s_backward
-    growth = 1.0 + drive.dwell_gain * math.log(1.0 + rest / drive.dwell_time)
-    return static * growth + _ripple(y, drive)
+    lever = 1.0 + harmonics_slope(drive.transmission, y[GEAR_ANGLE])
+    return drive.N * drive.K_t * y[CURRENT] - lever * shaft + cogging_torque(drive, y[GEAR_ANGLE])
 
 
 @numba.njit(cache=True)
 def _slope(
-    t: float, y: Floats, u: float, contact: int, slip: int, drive: PanDrive, out: Floats
+    t: float, y: Floats, u: float, push: float, contact: int, slip: int, drive: Any, out: Floats
 ) -> None:
-    """Time derivative of the state [6] in a fixed mode, into `out`."""
-    stretch = y[LOAD_ANGLE] - drive.theta0_cable
-    load = _contact_torque(y, contact, drive) - drive.b_load * y[LOAD_RATE]
-    load -= drive.k1_cable * stretch + drive.k3_cable * stretch**3
-    load -= drive.gravity_torque * math.sin(y[LOAD_ANGLE] - drive.alpha_base)
-    load += drive.constant_torque
-    shake = 2.0 * math.pi * drive.shake_frequency * t + drive.shake_phase
-    load += drive.shake_torque * math.sin(shake)
+    """Time derivative of the state [7] in a fixed mode, into `out`; `push` in N m on the load."""
+    shaft = _contact_torque(y, contact, drive)
+    load = shaft + push + joint_torque(drive, t, y[LOAD_ANGLE], y[LOAD_RATE], y[WRAP])
     out[LOAD_ANGLE], out[GEAR_ANGLE] = y[LOAD_RATE], y[GEAR_RATE]
     out[LOAD_RATE] = load / drive.J_load
     out[GEAR_RATE] = 0.0
     if slip != 0:
-        torque = _gear_torque(y, contact, drive) - _sliding_friction(y, slip, drive)
+        change = dry_change(drive, y[LOAD_ANGLE], y[GEAR_ANGLE], shaft)
+        friction = sliding_friction(drive, t, y[GEAR_RATE], slip, change)
+        torque = _gear_torque(y, shaft, drive) - friction
         out[GEAR_RATE] = torque / (drive.J_motor * drive.N**2)
-    drop = drive.R * (1.0 + y[HEAT]) * y[CURRENT]
-    back = drive.K_t * drive.N * y[GEAR_RATE]
-    out[CURRENT] = (u + drive.voltage_offset - drop - back) / drive.L
-    out[HEAT] = (drive.heating_gain * drop * y[CURRENT] - y[HEAT]) / drive.heating_time
+    out[CURRENT], out[HEAT] = winding(drive, u, y[GEAR_RATE], y[CURRENT], y[HEAT])
+    out[WRAP] = wrap_slope(drive, y[LOAD_RATE], y[WRAP])
 
 
 @numba.njit(cache=True)
 def _step(
-    t: float, y: Floats, u: float, contact: int, slip: int, drive: PanDrive, h: float
+    t: float, y: Floats, drawn: Any, contact: int, slip: int, drive: Any, h: float
 ) -> tuple[Floats, float]:
-    """State [6] after one step of order 5, and the largest difference to order 4."""
-    slopes = np.empty((7, 6))
+    """State [7] after one step of order 5, and the largest difference to order 4.
+
+    `drawn` = (voltage in V, push on the load in N m at time zero, its slope in N m/s).
+    """
+    slopes = np.empty((7, STATES))
     stage = y.copy()
     for s in range(7):
-        for i in range(6):
+        for i in range(STATES):
             total = 0.0
             for j in range(s):
                 total += _A[s, j] * slopes[j, i]
             stage[i] = y[i] + h * total
-        _slope(t + _C[s] * h, stage, u, contact, slip, drive, slopes[s])
+        now = t + _C[s] * h
+        push = drawn[1] + drawn[2] * now
+        _slope(now, stage, drawn[0], push, contact, slip, drive, slopes[s])
     error = 0.0
-    for i in range(6):
+    for i in range(STATES):
         total = 0.0
         for j in range(7):
             total += _ERROR[j] * slopes[j, i]
@@ -188,21 +146,30 @@ def _step(
 
 
 @numba.njit(cache=True)
+def _holds(t: float, y: Floats, contact: int, rest_since: float, drive: Any) -> int:
+    """Zero if dry friction holds the gear at rest, else the side to which it breaks away."""
+    shaft = _contact_torque(y, contact, drive)
+    torque = _gear_torque(y, shaft, drive)
+    side = 1 if torque > 0.0 else -1
+    change = dry_change(drive, y[LOAD_ANGLE], y[GEAR_ANGLE], shaft)
+    limit = breakaway(drive, t, side, t - rest_since, change)
+    return 0 if abs(torque) <= limit else side
+
+
+@numba.njit(cache=True)
 def _leaves_mode(
-    t: float, y: Floats, contact: int, slip: int, rest_since: float, drive: PanDrive
+    t: float, y: Floats, contact: int, slip: int, rest_since: float, drive: Any
 ) -> bool:
     """Whether flank or friction mode no longer fits the state."""
     if _touching(y, drive) != contact:
         return True
     if slip != 0:
         return slip * y[GEAR_RATE] < -DEAD_BAND
-    torque = _gear_torque(y, contact, drive)
-    side = 1 if torque > 0.0 else -1
-    return abs(torque) > _breakaway(y, side, t - rest_since, drive)
+    return _holds(t, y, contact, rest_since, drive) != 0
 
 
 @numba.njit(cache=True)
-def _choose_mode(t: float, y: Floats, mode: Any, memory: Floats, drive: PanDrive) -> None:
+def _choose_mode(t: float, y: Floats, mode: Any, memory: Floats, drive: Any) -> None:
     """New (contact, slip) in `mode` [2]; first the rate is stopped, then the flank, then friction.
 
     memory [2] = (time since when the gear is at rest in s, last step size in s).
@@ -212,21 +179,18 @@ def _choose_mode(t: float, y: Floats, mode: Any, memory: Floats, drive: PanDrive
         memory[0] = t
     mode[0] = _touching(y, drive)
     if y[GEAR_RATE] == 0.0:
-        torque = _gear_torque(y, mode[0], drive)
-        side = 1 if torque > 0.0 else -1
-        holds = abs(torque) <= _breakaway(y, side, t - memory[0], drive)
-        mode[1] = 0 if holds else side
+        mode[1] = _holds(t, y, mode[0], memory[0], drive)
 
 
 @numba.njit(cache=True)
 def _land(
-    t: float, y: Floats, u: float, mode: Any, memory: Floats, drive: PanDrive, h: float
+    t: float, y: Floats, drawn: Any, mode: Any, memory: Floats, drive: Any, h: float
 ) -> float:
     """Length in s of the step that just leaves the mode, within the `h` that leaves it."""
     low = 0.0
     while h - low > EVENT_TOLERANCE:
         middle = 0.5 * (low + h)
-        after, _ = _step(t, y, u, mode[0], mode[1], drive, middle)
+        after, _ = _step(t, y, drawn, mode[0], mode[1], drive, middle)
         if _leaves_mode(t + middle, after, mode[0], mode[1], memory[0], drive):
             h = middle
         else:
@@ -239,17 +203,17 @@ def _advance(
     t: float,
     end: float,
     y: Floats,
-    u: float,
+    drawn: Any,
     mode: Any,
     memory: Floats,
-    drive: PanDrive,
+    drive: Any,
     tol: float,
 ) -> int:
-    """Move the state [6] from `t` to `end` under held voltage, in place; the number of events."""
+    """Move the state [7] from `t` to `end` under held voltage, in place; the number of events."""
     events = 0
     while end - t > EVENT_TOLERANCE:
         h = min(memory[1], end - t)
-        after, error = _step(t, y, u, mode[0], mode[1], drive, h)
+        after, error = _step(t, y, drawn, mode[0], mode[1], drive, h)
         growth = min(4.0, max(0.2, 0.9 * (tol / max(error, 1e-30)) ** 0.2))
         if error > tol:
             memory[1] = h * growth
@@ -257,42 +221,68 @@ def _advance(
         if h == memory[1] or growth < 1.0:
             memory[1] = min(LONGEST_STEP, h * growth)
         if _leaves_mode(t + h, after, mode[0], mode[1], memory[0], drive):
-            h = _land(t, y, u, mode, memory, drive, h)
-            after, _ = _step(t, y, u, mode[0], mode[1], drive, h)
+            h = _land(t, y, drawn, mode, memory, drive, h)
+            after, _ = _step(t, y, drawn, mode[0], mode[1], drive, h)
             _choose_mode(t + h, after, mode, memory, drive)
             events += 1
             if events > 10_000:
                 raise RuntimeError("mode changes pile up")
         t += h
-        for i in range(6):
+        for i in range(STATES):
             y[i] = after[i] if abs(after[i]) > NEGLIGIBLE else 0.0
     return events
 
 
 @numba.njit(cache=True)
 def _run(
-    drive: PanDrive, voltage: Floats, start: Floats, period: float, tol: float
+    drive: Any, voltage: Floats, push: Floats, start: Floats, period: float, tol: float
 ) -> tuple[Floats, int]:
-    states = np.empty((voltage.shape[0], 6))
+    states = np.empty((voltage.shape[0], STATES))
     y = start.copy()
     mode = np.zeros(2, dtype=np.int64)
     memory = np.array([0.0, 1e-5])
     mode[1] = int(np.sign(y[GEAR_RATE]))
     _choose_mode(0.0, y, mode, memory, drive)
     events = 0
+    late = int(drive.delay / period)
+    fraction = drive.delay - late * period
     for k in range(voltage.shape[0]):
         states[k] = y
-        events += _advance(k * period, (k + 1) * period, y, voltage[k], mode, memory, drive, tol)
+        begin, middle, end = k * period, k * period + fraction, (k + 1) * period
+        rise = (push[k + 1] - push[k]) / period
+        for source, t, until in ((k - late - 1, begin, middle), (k - late, middle, end)):
+            if until > t:
+                drawn = (voltage[max(source, 0)], push[k] - rise * begin, rise)
+                events += _advance(t, until, y, drawn, mode, memory, drive, tol)
     return states, events
 
 
 def simulate(
-    drive: PanDrive, voltage: Floats, start: Floats, period: float = 5e-3, tolerance: float = 1e-12
+    drive: PanDrive,
+    voltage: Floats,
+    start: Floats,
+    period: float = 5e-3,
+    tolerance: float = 1e-12,
+    push: Floats | None = None,
 ) -> tuple[Floats, int]:
-    """States [n, 6] at the sample times under voltage [n] in V, and the number of events.
+    """States [n, 7] at the sample times under voltage [n] in V, and the number of events.
 
-    Columns: load angle and rate, gear angle and rate (rad, rad/s), current in A, relative heating.
-    `voltage[k]` is held from sample k to sample k + 1; `tolerance` is the local error of a step.
+    Columns: load angle and rate, gear angle and rate (rad, rad/s), current in A, relative heating,
+    relative pull of a hysteretic cable; `start` may leave out the last. `voltage[k]` is held from
+    sample k to sample k + 1, the first also before it; `push` [n + 1] in N m turns the load and is
+    linear from sample to sample; `tolerance` is the local error of a step.
     """
-    voltage, start = np.asarray(voltage, dtype=float), np.asarray(start, dtype=float)
-    return _run(PanDrive(*(float(value) for value in drive)), voltage, start, period, tolerance)
+    voltage, begin = np.asarray(voltage, dtype=float), np.zeros(STATES)
+    begin[: len(start)] = start
+    if push is None:
+        push = np.zeros(len(voltage) + 1)
+    return _run(as_records(drive)[0], voltage, push, begin, period, tolerance)
+
+
+@numba.njit(cache=True)
+def shaft_torques(drive: Any, states: Floats) -> Floats:
+    """Torque [n] in N m from the shaft on the load along states [n, 7] of a drive's record."""
+    torques = np.empty(states.shape[0])
+    for k in range(states.shape[0]):
+        torques[k] = _contact_torque(states[k], _touching(states[k], drive), drive)
+    return torques

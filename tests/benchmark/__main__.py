@@ -1,0 +1,93 @@
+"""Commands of the benchmark.
+
+    python -m tests.benchmark make  --out DIR [--half build|report] [--only REGEX]
+    python -m tests.benchmark run   --out DIR [--half ...] [--only REGEX] [--jobs N]
+    python -m tests.benchmark table --out DIR [--half ...] [--only REGEX]
+    python -m tests.benchmark draw  --out DIR [--half ...] [--only REGEX] FILE.png
+
+`run` makes what is missing and leaves out what has an outcome; `table` also writes table.md and
+table.json into DIR.
+"""
+
+import argparse
+import re
+from pathlib import Path
+
+from tests.benchmark.catalogue import catalogue
+from tests.benchmark.entry import Entry
+from tests.benchmark.runner import diagnose_one, make_missing, progress_bar, run_all
+from tests.benchmark.table import figures, read_results, show, write_tables
+
+
+def chosen(arguments: argparse.Namespace) -> list[Entry]:
+    """Entries of the half and the pattern asked for."""
+    return [
+        entry
+        for entry in catalogue()
+        if arguments.half in (None, entry.half) and re.search(arguments.only, entry.id)
+    ]
+
+
+def make(arguments: argparse.Namespace) -> None:
+    """Write the sets that are missing."""
+    entries = chosen(arguments)
+    with progress_bar() as progress:
+        task = progress.add_task("make", total=len(entries))
+        for entry in entries:
+            if make_missing(entry, arguments.out / entry.id):
+                print(entry.id, flush=True)
+            progress.advance(task)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Diagnose the sets that have no outcome."""
+    run_all(chosen(arguments), arguments.out, arguments.jobs)
+
+
+def tabulate(arguments: argparse.Namespace) -> None:
+    """Print and write the figures of the sets that have an outcome."""
+    results = read_results(chosen(arguments), arguments.out)
+    title = f"{len(results)} sets, {arguments.half or 'both halves'}"
+    data = figures(results)
+    show(data, title)
+    stem = "table" if arguments.half is None else f"table-{arguments.half}"
+    write_tables(data, arguments.out, title, stem)
+
+
+def draw(arguments: argparse.Namespace) -> None:
+    """Draw power and confusion of the sets that have an outcome."""
+    from tests.benchmark.draw import draw_all
+
+    draw_all(read_results(chosen(arguments), arguments.out), arguments.file)
+
+
+def one(arguments: argparse.Namespace) -> None:
+    """Diagnose the set in the folder `out`, in this process."""
+    diagnose_one(arguments.out, [int(core) for core in arguments.cores.split(",")])
+
+
+COMMANDS = {"make": make, "run": run, "table": tabulate, "draw": draw, "diagnose-one": one}
+
+
+def main() -> None:
+    """Run the command asked for."""
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.benchmark",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("command", choices=COMMANDS)
+    parser.add_argument("file", nargs="?", type=Path, help="picture that draw writes")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the sets")
+    parser.add_argument("--half", choices=["build", "report"])
+    parser.add_argument("--only", default="", metavar="REGEX", help="part of the identity")
+    parser.add_argument("--jobs", type=int, default=1, help="sets at a time")
+    parser.add_argument("--cores", default="0", help=argparse.SUPPRESS)
+    arguments = parser.parse_intermixed_args()
+    if arguments.command == "draw" and arguments.file is None:
+        parser.error("draw needs the file to write")
+    COMMANDS[arguments.command](arguments)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,128 @@
+"""The catalogue: every set of the benchmark, in a fixed order with a seed of its own.
+
+Build and report alternate in the pattern build, report, report, build: that gives both halves the
+same number of sets, and a machine or an effect that comes twice in a row comes once in each.
+"""
+
+import dataclasses
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+
+from tests.benchmark import plan
+from tests.benchmark.effects import WHOLE_PLATFORM
+from tests.benchmark.entry import Entry, Planted
+from tests.benchmark.unlisted import DECLARED_VALUE
+from tests.benchmark.variation import (
+    Variation,
+    draw_variation,
+    for_faint_effects,
+    for_small_deviations,
+)
+
+FIRST_SEED = 4000
+HALVES = ("build", "report", "report", "build")
+COMBINED_LEVELS = (1.5, 6.0)
+UNLISTED_LEVELS = (1.5, 8.0)
+DECLARED_LEVEL = 3.0
+SHORT_ARC_LEVEL = 3.0
+
+Draft = tuple[str, str, tuple[Planted, ...]]  # machine, kind, what is planted
+
+
+def _planted(machine: str, name: str, level: float) -> Planted:
+    """From "effect" or "effect@axis"; a machine with one axis need not be told which."""
+    effect, _, axis = name.partition("@")
+    if effect in WHOLE_PLATFORM or effect.startswith(DECLARED_VALUE):
+        return Planted(effect, None, level)
+    return Planted(effect, axis or plan.MACHINE_AXIS[machine], level)
+
+
+def _levels(seed: int, count: int, between: tuple[float, float]) -> list[float]:
+    """Random levels, even in their logarithm."""
+    rng = np.random.default_rng([seed, 7])
+    return [round(float(level), 2) for level in np.exp(rng.uniform(*np.log(between), count))]
+
+
+def _singles() -> Iterator[Draft]:
+    """One effect each: the places of an effect in turn, and the levels in turn."""
+    for number, (effect, (count, places)) in enumerate(plan.SINGLES.items()):
+        for k in range(count):
+            machine, axis = places[k % len(places)]
+            level = plan.LEVELS[(k + number) % len(plan.LEVELS)]
+            level = min(level, plan.MOST_LEVEL.get(effect, level))
+            yield machine, "single", (Planted(effect, axis, level),)
+
+
+def _combined(kind: str, table: tuple[tuple[str, ...], ...], seed: int) -> Iterator[Draft]:
+    """Sets with several effects, each with a level of its own."""
+    for number, (machine, *names) in enumerate(table):
+        names = [name for name in names if name]
+        between = UNLISTED_LEVELS if kind == "unlisted" else COMBINED_LEVELS
+        levels = _levels(seed + number, len(names), between)
+        planted = [_planted(machine, *both) for both in zip(names, levels, strict=True)]
+        yield machine, kind, tuple(planted)
+
+
+def _drafts() -> Iterator[Draft]:
+    """All sets in the order of the catalogue, without seeds."""
+    yield from _singles()
+    yield from _combined("pair", plan.PAIRS, 100)
+    yield from _combined("triple", plan.TRIPLES, 200)
+    for machine, parameter in plan.DECLARED_VALUES:
+        yield (
+            machine,
+            "declared_value",
+            (_planted(machine, DECLARED_VALUE + parameter, DECLARED_LEVEL),),
+        )
+    for _ in range(plan.PERFECT_PER_MACHINE):
+        for machine in plan.SLIGHTLY_WRONG:
+            yield machine, "perfect", ()
+    yield from _combined("unlisted", plan.UNLISTED, 300)
+    for machine, count in plan.SLIGHTLY_WRONG.items():
+        yield from itertools.repeat((machine, "slightly_wrong", ()), count)
+    for machine, effect in plan.SHORT_ARCS:
+        yield machine, "short_arc", (_planted(machine, effect, SHORT_ARC_LEVEL),)
+
+
+def _variation(seed: int, draft: Draft, far: bool) -> Variation:
+    """The surroundings of a set: by chance, but for what its effects need."""
+    machine, kind, planted = draft
+    fine = machine == "direct_drive" or kind == "short_arc"
+    variation = draw_variation(seed, fine, far, kind == "short_arc")
+    without = [
+        f"{one.effect}@{one.axis}"
+        for one in planted
+        if one.effect in ("viscous_friction", "csvs_friction")
+    ]
+    if any(one.effect in plan.FAINT.get(machine, ()) for one in planted):
+        variation = for_faint_effects(variation)
+    if any(one.effect == "product_of_inertia" for one in planted):
+        # The small tilt body is nearly a rod: it can hardly have products of inertia.
+        variation = dataclasses.replace(variation, heavy=True)
+    if kind == "slightly_wrong":
+        variation = for_small_deviations(variation)
+    return dataclasses.replace(variation, without=tuple(without))
+
+
+def catalogue() -> tuple[Entry, ...]:
+    """All entries; the same on every call."""
+    entries, perfect = [], 0
+    for number, draft in enumerate(_drafts()):
+        machine, kind, planted = draft
+        far = False
+        if kind == "perfect":
+            # One of every three in turn, so that each machine has its share.
+            far = (perfect // len(plan.SLIGHTLY_WRONG)) % plan.FAR_EVERY == 1
+            perfect += 1
+        seed = FIRST_SEED + number
+        names = "+".join(
+            one.effect.replace(DECLARED_VALUE, "") + (f"@{one.axis}" if one.axis else "")
+            for one in planted
+        )
+        identity = "-".join(filter(None, (f"{number:03d}", machine, kind, names)))
+        variation = _variation(seed, draft, far)
+        half = HALVES[number % len(HALVES)]
+        entries.append(Entry(identity, machine, kind, planted, seed, variation, half))
+    return tuple(entries)

@@ -1,0 +1,38 @@
+"""An entry of the catalogue: which machine hides what, how large, with which chance."""
+
+from dataclasses import dataclass
+
+from tests.benchmark.variation import Variation
+
+KINDS = (
+    "single",
+    "pair",
+    "triple",
+    "declared_value",
+    "perfect",
+    "unlisted",
+    "slightly_wrong",
+    "short_arc",
+)
+
+
+@dataclass(frozen=True)
+class Planted:
+    """A hidden effect: its name, its axis (None for the whole platform), its size in thresholds."""
+
+    effect: str
+    axis: str | None
+    level: float
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One set of logs; `half` is "build" for work on the diagnosis or "report" for its figures."""
+
+    id: str
+    machine: str
+    kind: str
+    planted: tuple[Planted, ...]
+    seed: int
+    variation: Variation
+    half: str

@@ -1,0 +1,10 @@
+"""All machines of the benchmark by name."""
+
+from tests.benchmark.machine import Machine
+from tests.benchmark.pan_machine import PAN_DRIVE, PAN_DRIVE_DC
+from tests.benchmark.rigid_machine import DIRECT_DRIVE, TILT_SERVO, TWO_AXIS
+
+MACHINES: dict[str, Machine] = {
+    machine.name: machine
+    for machine in (PAN_DRIVE, PAN_DRIVE_DC, TILT_SERVO, DIRECT_DRIVE, TWO_AXIS)
+}

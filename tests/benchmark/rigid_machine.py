@@ -1,0 +1,281 @@
+"""Machines of rigid bodies: a tilt servo with a geared motor, a direct drive, both axes at once."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tests.benchmark import declarations, servo_runs
+from tests.benchmark.machine import (
+    SHIFT_SIZE,
+    Declared,
+    Floats,
+    Recording,
+    Run,
+    Values,
+    push,
+)
+from tests.benchmark.rigid_truth import bodies_of, gravity_and_inertia
+from tests.benchmark.truth_drive import drive_of, reading, torque_along
+from tests.benchmark.variation import Variation
+from tests.independent import rigid_drives
+from tests.independent.drive import as_records
+from tests.independent.rigid_runs import at_rest, replay, track
+
+STEP = 0.5e-3  # s; its error is a tenth of the finest encoder's floor
+WINDOW = 1.0  # s, of machines that a torque drives
+BOTH = ("pan", "tilt")
+DISTANT_START = "start_of_J_pan"  # kept among the values, as the platform must state it
+
+
+@dataclass(frozen=True)
+class Plate:
+    """What is declared of a machine: known values, and start values of what is to be fitted."""
+
+    known: dict[str, float]
+    starts: dict[str, float]
+
+
+@dataclass(frozen=True)
+class RigidMachine:
+    """Truth and declaration; `heavy` stands in for `plate` where the variation says so.
+
+    `motor` says that a voltage drives a geared motor; `tied` are parameters that are declared to be
+    the same as another.
+    """
+
+    name: str
+    axes: tuple[str, ...]
+    plate: Plate
+    heavy: Plate | None = None
+    voltage_driven: bool = False
+    viscous: bool = True
+    tied: dict[str, str] = field(default_factory=dict)
+
+    def plate_of(self, variation: Variation) -> Plate:
+        """The plate of the variation."""
+        return self.heavy if self.heavy and variation.heavy else self.plate
+
+    def _frees_pan_inertia(self, variation: Variation) -> bool:
+        """Whether the known pan inertia is to be fitted, from a start that is far off."""
+        return variation.far and len(self.axes) > 1
+
+    def _absent(self, variation: Variation) -> set[str]:
+        """Parameters of effects that the platform does not declare this time."""
+        absent = set()
+        for axis in self.axes:
+            if f"viscous_friction@{axis}" in variation.without:
+                absent |= {f"b_{axis}", f"F_v_{axis}"}
+            if f"csvs_friction@{axis}" in variation.without:
+                absent |= {f"{name}_{axis}" for name in ("F_c", "F_s", "v_s", "F_v")}
+        return absent
+
+    def draw(self, rng: np.random.Generator, variation: Variation) -> dict[str, float]:
+        """True values: 0.6 to 1.7 of the start values, inertia and dry friction further if far."""
+        plate = self.plate_of(variation)
+        true = {name: value * declarations.near(rng) for name, value in plate.starts.items()}
+        for name, start in plate.starts.items():
+            if variation.far and declarations.letter(name) in ("J", "F_c"):
+                true[name] = start * declarations.far(rng)
+        for axis in self.axes:
+            static, coulomb = f"F_s_{axis}", f"F_c_{axis}"
+            if static in plate.starts:
+                excess = plate.starts[static] / plate.starts[coulomb] - 1.0
+                true[static] = true[coulomb] * (1.0 + excess * declarations.near(rng))
+        if self._frees_pan_inertia(variation):
+            true[DISTANT_START] = plate.known["J_pan"] * declarations.far(rng)
+        absent = self._absent(variation)
+        return plate.known | {k: v for k, v in true.items() if k not in absent}
+
+    def free(self, variation: Variation) -> tuple[str, ...]:
+        """The declared free parameters."""
+        names = list(self.plate_of(variation).starts)
+        if self._frees_pan_inertia(variation):
+            names.append("J_pan")
+        return tuple(name for name in names if name not in self._absent(variation))
+
+    def declared(self, values: Values, variation: Variation) -> Declared:
+        """The platform as TOML data."""
+        plate, free = self.plate_of(variation), self.free(variation)
+        starts = dict(plate.starts)
+        if self._frees_pan_inertia(variation):
+            starts["J_pan"] = values[DISTANT_START]
+        known = {k: v for k, v in plate.known.items() if k not in free}
+        known |= {k: 0.0 for k in self._absent(variation) if k.startswith("F_v_")}
+        parameters = {name: {"value": value} for name, value in known.items()}
+        bounds = declarations.bounds_for(free)
+        parameters |= {name: {"start": starts[name], "bounds": bounds[name]} for name in free}
+        parameters |= {name: {"same_as": other} for name, other in self.tied.items()}
+        effects = declarations.rigid_effects(
+            self.axes, self.voltage_driven, self.viscous, variation.without
+        )
+        owned = declarations.owned(effects, parameters)
+        signals: dict = {}
+        for axis in self.axes:
+            if self.voltage_driven:
+                signals |= declarations.drive_signals(axis, variation)
+            else:
+                signals |= declarations.torque_signals(axis, variation)
+        platform = {"name": self.name, "title": self.name.replace("_", " "), "axes": [*self.axes]}
+        return {
+            "platform": platform,
+            "effects": effects,
+            "parameters": owned,
+            "signals": signals,
+        }
+
+    def runs(
+        self, rng: np.random.Generator, values: Values, variation: Variation
+    ) -> tuple[Run, ...]:
+        """The runs of a set, training first."""
+        return servo_runs.make_runs(self.name, self.axes, rng, values, variation)
+
+    def coulomb(self, axis: str) -> float:
+        """Coulomb torque in N m that `axis` is declared with, or would be."""
+        return self.plate.starts[f"F_c_{axis}"]
+
+    def _joints(self, values: Values) -> rigid_drives.Joints:
+        """The simulator of the machine."""
+        pan, tilt = (drive_of(values, axis) if axis in self.axes else None for axis in BOTH)
+        return rigid_drives.joints(bodies_of(values, self.axes), pan, tilt, self.voltage_driven)
+
+    def _places(self) -> list[int]:
+        """Columns of the axes in the simulator."""
+        return [BOTH.index(axis) for axis in self.axes]
+
+    def _both(self, columns: Floats) -> Floats:
+        """Columns [n, joints, ...] of the machine's joints as [n, 2, ...]."""
+        full = np.zeros((len(columns), 2, *columns.shape[2:]))
+        full[:, self._places()] = columns
+        return full
+
+    def record(self, values: Values, run: Run) -> Recording:
+        """The run as its servo makes it."""
+        targets = np.dstack([run.command[:, :, None], run.reference])
+        pushes = self._both(push(values, run, self.axes))
+        start = at_rest(*self._both(run.start))
+        inputs, states = track(
+            self._joints(values),
+            run.servo,
+            self._both(targets),
+            run.kept,
+            pushes,
+            start,
+            run.period,
+            STEP,
+        )
+        return Recording(run, inputs[:, self._places()], states)
+
+    def window(self, run: Run) -> int:
+        """The whole run if a voltage drives, else a second."""
+        return len(run.command) if self.voltage_driven else round(WINDOW / run.period)
+
+    def shifts(self) -> int:
+        """Angles of the start; rates too, where a torque drives."""
+        return len(self.axes) * (1 if self.voltage_driven else 2)
+
+    def replay(
+        self, values: Values, recording: Recording, inputs: Floats | None = None, shift: int = -1
+    ) -> Floats:
+        """States along the recorded inputs, window by window; a joint at rest keeps its rate."""
+        run, window = recording.run, self.window(recording.run)
+        starts = recording.states[::window].copy()
+        if shift >= 0:
+            place = self._places()[shift % len(self.axes)]
+            if shift < len(self.axes):
+                starts[:, place, rigid_drives.ANGLE] += SHIFT_SIZE
+            else:
+                moving = starts[:, place, rigid_drives.RATE] != 0.0
+                starts[moving, place, rigid_drives.RATE] += SHIFT_SIZE
+        given = recording.inputs if inputs is None else inputs
+        pushes = self._both(push(values, run, self.axes))
+        machine = self._joints(values)
+        return replay(machine, self._both(given), pushes, starts, window, run.period, STEP)
+
+    def readings(self, values: Values, states: Floats, variation: Variation) -> Floats:
+        """Angles as the encoders read them, then the currents if they are logged."""
+        columns = [
+            reading(values, axis, states[:, place, rigid_drives.ANGLE])
+            for axis, place in zip(self.axes, self._places(), strict=True)
+        ]
+        if self.voltage_driven and variation.current:
+            columns += [states[:, place, rigid_drives.CURRENT] for place in self._places()]
+        return np.column_stack(columns)
+
+    def torque(self, values: Values, recording: Recording, states: Floats) -> Floats:
+        """Torque on the joints from friction, all that hangs on them, gravity and inertia."""
+        time, columns = recording.run.time, []
+        bodies = gravity_and_inertia(bodies_of(values, self.axes), states, recording.run.period)
+        for number, (axis, place) in enumerate(zip(self.axes, self._places(), strict=True)):
+            record, own = as_records(drive_of(values, axis))[0], states[:, place]
+            angle, rate = own[:, rigid_drives.ANGLE], own[:, rigid_drives.RATE]
+            driving = recording.inputs[:, number]
+            if self.voltage_driven:
+                constant = values[f"N_{axis}"] * values[f"K_t_{axis}"]
+                driving = constant * own[:, rigid_drives.CURRENT]
+            motion = np.column_stack([angle, rate, angle, rate, driving, own[:, rigid_drives.WRAP]])
+            columns.append(torque_along(record, time, motion) + bodies[:, place])
+        return np.column_stack(columns) + push(values, recording.run, self.axes)[:-1]
+
+
+def _tilt_plate(
+    motor: dict[str, float], mass: float, inertia: float, friction: tuple[float, ...]
+) -> Plate:
+    """A geared motor, a payload on an arm, friction as (F_c, F_s, v_s, F_v)."""
+    known = {f"{name}_tilt": value for name, value in motor.items()}
+    known |= {"m_payload": mass, "J_y_payload": 0.0, "c_x_payload": 0.1, "c_z_payload": 0.0}
+    names = ("F_c_tilt", "F_s_tilt", "v_s_tilt", "F_v_tilt")
+    starts = {"J_y_tilt": inertia} | dict(zip(names, friction, strict=True))
+    return Plate(known, starts)
+
+
+_SMALL_MOTOR = {"L": 5e-3, "R": 5.0, "K_t": 0.03, "J_motor": 1e-6, "N": 150.0}
+_LARGE_MOTOR = {"L": 4e-3, "R": 3.0, "K_t": 0.06, "J_motor": 4e-6, "N": 200.0}
+TILT_SERVO = RigidMachine(
+    "tilt_servo",
+    ("tilt",),
+    _tilt_plate(_SMALL_MOTOR, 0.5, 0.02, (0.3, 0.45, 0.03, 0.4)),
+    _tilt_plate(_LARGE_MOTOR, 5.0, 0.1, (1.2, 1.8, 0.03, 2.0)),
+    voltage_driven=True,
+    viscous=False,
+)
+DIRECT_DRIVE = RigidMachine(
+    "direct_drive",
+    ("pan",),
+    Plate(
+        {
+            "m_payload": 2.0,
+            "J_z_payload": 0.0,
+            "c_x_payload": 0.1,
+            "c_y_payload": 0.0,
+            "F_v_pan": 0.0,
+        },
+        {"J_pan": 0.03, "b_pan": 0.05, "F_c_pan": 0.15, "F_s_pan": 0.22, "v_s_pan": 0.03},
+    ),
+)
+_LIGHT_BODIES = {"J_pan": 0.012, "J_x_tilt": 0.0041, "J_y_tilt": 0.0065, "J_z_tilt": 0.0027}
+_LARGE_BODIES = {"J_pan": 0.02, "J_x_tilt": 0.012, "J_y_tilt": 0.014, "J_z_tilt": 0.01}
+
+
+def _two_axis_plate(bodies: dict[str, float]) -> Plate:
+    """The platform of tests/platforms/fieldlog_two_axis.toml with other bodies."""
+    payload = {
+        "m_payload": 4.992,
+        "J_x_payload": 0.0053,
+        "J_y_payload": 0.0068,
+        "J_z_payload": 0.0068,
+        "c_x_payload": 0.1,
+        "c_y_payload": 0.0,
+        "c_z_payload": 0.0,
+    }
+    friction = {"v_s_pan": 0.01, "F_v_pan": 0.0, "v_s_tilt": 0.01, "F_v_tilt": 0.0}
+    starts = {"b_pan": 0.1, "F_c_pan": 0.05, "b_tilt": 0.1, "F_c_tilt": 0.05}
+    return Plate(bodies | payload | friction, starts)
+
+
+TWO_AXIS = RigidMachine(
+    "two_axis",
+    BOTH,
+    _two_axis_plate(_LIGHT_BODIES),
+    _two_axis_plate(_LARGE_BODIES),
+    tied={"F_s_pan": "F_c_pan", "F_s_tilt": "F_c_tilt"},
+)

@@ -1,0 +1,187 @@
+"""Make a set of the catalogue: draw the machine, size what it hides, record, write.
+
+A machine that absorbs an effect at every sane size is drawn anew, a few times.
+"""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from tests.benchmark import deviations
+from tests.benchmark.effects import Numbers, Scene, Shape
+from tests.benchmark.entry import Entry, Planted
+from tests.benchmark.logs import write_logs
+from tests.benchmark.machine import Machine, Recording, Run, angle_floor
+from tests.benchmark.machines import MACHINES
+from tests.benchmark.sizing import AbsorbedError, Yardstick
+from tests.benchmark.unlisted import DECLARED_VALUE, UNLISTED, shape_of
+
+MOST_DRAWS = 6
+LEAST_LEVEL = 0.6  # of the level asked for, where a limit cuts the size
+DECLARED_ERRORS = (0.03, 0.4)  # least and most relative error of a wrong declared value
+MOST_INPUT_NOISE = {True: 0.01, False: 0.01}  # V where voltage-driven, N m else
+
+
+@dataclass
+class Hidden:
+    """What a set hides: all parameters, those to be told, and a record per effect."""
+
+    values: Numbers = field(default_factory=dict)
+    told: Numbers = field(default_factory=dict)
+    records: list[dict[str, Any]] = field(default_factory=list)
+
+
+def generate(entry: Entry, folder: Path) -> dict[str, Any]:
+    """Write platform.toml, train/*.csv, validate/*.csv and truth.json; returns the truth.
+
+    Raises AbsorbedError if no machine that was drawn shows the effects at a sane size.
+    """
+    machine = MACHINES[entry.machine]
+    for draw in range(MOST_DRAWS):
+        try:
+            return _make(entry, machine, draw, folder)
+        except AbsorbedError as absorbed:
+            reason = absorbed
+    raise AbsorbedError(f"{entry.id}: {reason}")
+
+
+def _make(entry: Entry, machine: Machine, draw: int, folder: Path) -> dict[str, Any]:
+    """One try with the machine of one draw."""
+    variation = entry.variation
+    values = machine.draw(np.random.default_rng([entry.seed, 2, draw]), variation)
+    runs = machine.runs(np.random.default_rng([entry.seed, 3, draw]), values, variation)
+    training = [machine.record(values, run) for run in runs if run.path.startswith("train/")]
+    yardstick = Yardstick(machine, values, training, variation)
+    noise = 0.0
+    if variation.input_noise:
+        rng = np.random.default_rng([entry.seed, 4])
+        most = MOST_INPUT_NOISE[machine.voltage_driven]
+        noise = yardstick.widen_by_input_noise(rng, variation.input_noise, most)
+    hidden = _hide(entry, machine, yardstick, draw)
+    true = {**values, **hidden.values}
+    recordings = _record(machine, true, runs)
+    trained = recordings[: len(training)]
+    truth = _truth(entry, machine, yardstick, hidden, noise)
+    truth["response_floors"] = yardstick.against(trained, true) if hidden.values else 0.0
+    truth["draw"] = draw
+    write_logs(folder, machine, true, recordings, variation, noise, entry.seed)
+    _write_platform(folder, machine, entry, values, noise)
+    (folder / "truth.json").write_text(json.dumps(truth, indent=1) + "\n")
+    return truth
+
+
+def _record(machine: Machine, values: Numbers, runs: Sequence[Run]) -> list[Recording]:
+    """All runs as the machine makes them."""
+    return [machine.record(values, run) for run in runs]
+
+
+def _hide(entry: Entry, machine: Machine, yardstick: Yardstick, draw: int) -> Hidden:
+    """The hidden parameters, sized on the machine without them."""
+    if entry.kind == "slightly_wrong":
+        rng = np.random.default_rng([entry.seed, 5, draw])
+        values, record = deviations.scaled(machine, yardstick, rng)
+        return Hidden(values, {}, [record])
+    hidden = Hidden()
+    for number, planted in enumerate(entry.planted):
+        rng = np.random.default_rng([entry.seed, 5, draw, number])
+        axis = planted.axis or machine.axes[0]
+        peak, fastest = _extremes(yardstick, machine.axes.index(axis))
+        scene = Scene(machine, yardstick.values, axis, peak, fastest, rng)
+        shape = shape_of(planted.effect, scene)
+        size, record = _size(planted, shape, yardstick, entry.variation.period)
+        parameters = shape.values(size)
+        hidden.values |= parameters
+        hidden.told |= {k: v for k, v in parameters.items() if k not in shape.untold}
+        hidden.records.append(record)
+    return hidden
+
+
+def _extremes(yardstick: Yardstick, joint: int) -> tuple[float, float]:
+    """Largest command, and largest rate of a joint in rad/s, in the training runs."""
+    peak, fastest = 0.0, 0.0
+    for made in yardstick.recordings:
+        read = yardstick.machine.readings(yardstick.values, made.states, yardstick.variation)
+        rate = np.abs(np.diff(read[:, joint])) / made.run.period
+        peak = max(peak, float(np.max(np.abs(made.inputs))))
+        fastest = max(fastest, float(np.max(rate)))
+    return peak, fastest
+
+
+def _size(
+    planted: Planted, shape: Shape, yardstick: Yardstick, period: float
+) -> tuple[float, dict[str, Any]]:
+    """The size that the level asks for, cut at the limit, and what is to be told of it."""
+    threshold = yardstick.threshold(shape)
+    size = min(planted.level * threshold, shape.limit)
+    if planted.effect.startswith(DECLARED_VALUE):
+        size = min(max(size, DECLARED_ERRORS[0]), DECLARED_ERRORS[1])
+    elif size < LEAST_LEVEL * planted.level * threshold:
+        raise AbsorbedError(f"level {size / threshold:.2f} at the limit {shape.limit:.3g}")
+    if planted.effect == "input_delay":
+        size = _between_samples(size, period)
+    seen = yardstick.seen(shape.values(size), shape.torque)
+    record = {
+        "effect": planted.effect,
+        "axis": planted.axis,
+        "level_asked": planted.level,
+        "level": size / threshold,
+        "threshold": threshold,
+        "size": size,
+        "response_floors": seen.floors,
+        "torque_share": seen.share,
+    }
+    return size, record
+
+
+def _between_samples(delay: float, period: float) -> float:
+    """A delay in s that is no multiple of the sampling period: a tenth of it away at least."""
+    whole, part = divmod(delay / period, 1.0)
+    return (whole + min(max(part, 0.1), 0.9)) * period if delay > 0.1 * period else delay
+
+
+def _truth(
+    entry: Entry, machine: Machine, yardstick: Yardstick, hidden: Hidden, noise: float
+) -> dict[str, Any]:
+    """What truth.json tells, but for the response."""
+    variation = entry.variation
+    listed = [planted for planted in entry.planted if planted.effect not in UNLISTED]
+    free = machine.free(variation)
+    return {
+        "id": entry.id,
+        "machine": entry.machine,
+        "kind": entry.kind,
+        "half": entry.half,
+        "seed": entry.seed,
+        "effects": [planted.effect for planted in listed],
+        "axes": [planted.axis for planted in listed],
+        "unlisted": [one.effect for one in entry.planted if one.effect in UNLISTED],
+        "level": [
+            record["level"]
+            for record in hidden.records
+            if record.get("effect") in {planted.effect for planted in listed}
+        ],
+        "floor": angle_floor(variation),
+        "floor_widening": yardstick.widening.tolist(),
+        "parameters": {name: yardstick.values[name] for name in free} | hidden.told,
+        "hidden": hidden.values,
+        "planted": hidden.records,
+        "input_noise": noise,
+        "variation": asdict(variation),
+    }
+
+
+def _write_platform(
+    folder: Path, machine: Machine, entry: Entry, values: Numbers, noise: float
+) -> None:
+    """The platform as declared, with the noise of its inputs where that is known."""
+    platform = machine.declared(values, entry.variation)
+    for signal in platform["signals"].values():
+        if signal["role"] == "input" and entry.variation.declared_input_noise and noise > 0.0:
+            signal["noise"] = noise
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "platform.toml").write_text(tomli_w.dumps(platform))

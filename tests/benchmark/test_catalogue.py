@@ -1,0 +1,78 @@
+"""Facts of the catalogue: how many sets of what, both halves alike, a seed for each."""
+
+from collections import Counter
+
+from tests.benchmark import plan
+from tests.benchmark.catalogue import catalogue
+from tests.benchmark.effects import LISTED, WHOLE_PLATFORM
+from tests.benchmark.entry import KINDS
+from tests.benchmark.machines import MACHINES
+from tests.benchmark.unlisted import DECLARED_VALUE, UNLISTED
+
+ENTRIES = catalogue()
+PER_KIND = {
+    "single": 155,
+    "pair": 28,
+    "triple": 16,
+    "declared_value": 14,
+    "perfect": 30,
+    "unlisted": 22,
+    "slightly_wrong": 22,
+    "short_arc": 6,
+}
+
+
+def test_number_of_sets_per_kind() -> None:
+    assert Counter(entry.kind for entry in ENTRIES) == PER_KIND
+    assert set(PER_KIND) == set(KINDS)
+
+
+def test_seeds_and_identities_are_unique_and_the_catalogue_does_not_change() -> None:
+    assert len({entry.seed for entry in ENTRIES}) == len(ENTRIES)
+    assert len({entry.id for entry in ENTRIES}) == len(ENTRIES)
+    assert catalogue() == ENTRIES
+
+
+def test_both_halves_hold_every_kind_machine_and_effect() -> None:
+    halves = Counter(entry.half for entry in ENTRIES)
+    assert abs(halves["build"] - halves["report"]) <= 1
+    for half in ("build", "report"):
+        chosen = [entry for entry in ENTRIES if entry.half == half]
+        assert {entry.kind for entry in chosen} == set(KINDS)
+        assert {entry.machine for entry in chosen} == set(MACHINES)
+        planted = {one.effect for entry in chosen for one in entry.planted}
+        assert planted >= set(LISTED) | set(UNLISTED)
+        for kind in ("perfect", "unlisted", "slightly_wrong"):
+            machines = {entry.machine for entry in chosen if entry.kind == kind}
+            assert machines == set(MACHINES), f"{kind} in {half}"
+
+
+def test_every_single_effect_comes_in_all_five_sizes() -> None:
+    for effect in LISTED:
+        entries = [e for e in ENTRIES if e.kind == "single" and e.planted[0].effect == effect]
+        most = plan.MOST_LEVEL.get(effect, max(plan.LEVELS))
+        levels = {entry.planted[0].level for entry in entries}
+        assert levels == {min(level, most) for level in plan.LEVELS}, effect
+        assert {entry.half for entry in entries} == {"build", "report"}
+
+
+def test_every_machine_sees_all_rates_and_a_third_of_the_perfect_ones_start_far_off() -> None:
+    for machine in MACHINES:
+        entries = [entry for entry in ENTRIES if entry.machine == machine]
+        assert {entry.variation.period for entry in entries} == {0.001, 0.005, 0.01, 0.02}
+        perfect = [entry for entry in entries if entry.kind == "perfect"]
+        assert sum(entry.variation.far for entry in perfect) == 2
+        for kind in ("none", "white", "coloured"):
+            assert any(entry.variation.noise_kind == kind for entry in entries)
+        for flag in ("repeat", "declared_noise", "declared_input_noise", "stalls"):
+            assert any(getattr(entry.variation, flag) for entry in entries), (machine, flag)
+
+
+def test_names_and_axes_are_those_of_the_machine() -> None:
+    for entry in ENTRIES:
+        for one in entry.planted:
+            known = one.effect in LISTED or one.effect in UNLISTED
+            assert known or one.effect.startswith(DECLARED_VALUE)
+            whole = one.effect in WHOLE_PLATFORM or one.effect.startswith(DECLARED_VALUE)
+            assert (one.axis is None) == whole
+            assert whole or one.axis in MACHINES[entry.machine].axes

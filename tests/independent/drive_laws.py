@@ -1,0 +1,145 @@
+"""Torques and voltages of a drive's record, jitted; the two simulators share them.
+
+`drive` is a record of `drive.RECORD`. Angles in rad, rates in rad/s, torques in N m at the gear
+output. Dry friction is a level (Coulomb, Stribeck and all that changes them) with the sign of the
+motion; its value at rest is the breakaway torque.
+"""
+
+import math
+from typing import Any
+
+import numba
+
+from tests.independent.drive import Floats
+
+
+@numba.njit(cache=True)
+def harmonics(rows: Floats, angle: float) -> float:
+    """Sum of sine and cosine parts over the rows (sine, cosine, harmonic)."""
+    total = 0.0
+    for k in range(rows.shape[0]):
+        if rows[k, 0] != 0.0 or rows[k, 1] != 0.0:
+            turned = rows[k, 2] * angle
+            total += rows[k, 0] * math.sin(turned) + rows[k, 1] * math.cos(turned)
+    return total
+
+
+@numba.njit(cache=True)
+def harmonics_slope(rows: Floats, angle: float) -> float:
+    """Derivative of `harmonics` by the angle."""
+    total = 0.0
+    for k in range(rows.shape[0]):
+        if rows[k, 0] != 0.0 or rows[k, 1] != 0.0:
+            count = rows[k, 2]
+            turned = count * angle
+            total += count * (rows[k, 0] * math.cos(turned) - rows[k, 1] * math.sin(turned))
+    return total
+
+
+@numba.njit(cache=True)
+def cogging_torque(drive: Any, gear_angle: float) -> float:
+    """Torque of the motor's poles on the gear output."""
+    total = 0.0
+    for k in range(drive.cogging.shape[0]):
+        amplitude = drive.cogging[k, 0]
+        if amplitude != 0.0:
+            total += amplitude * math.sin(drive.cogging[k, 1] * gear_angle + drive.cogging[k, 2])
+    return total
+
+
+@numba.njit(cache=True)
+def dry_change(drive: Any, angle: float, gear_angle: float, load: float) -> float:
+    """What angle and transmitted torque `load` add to Coulomb and to static friction."""
+    change = harmonics(drive.friction_by_angle, angle) + drive.friction_by_load * abs(load)
+    if drive.friction_ripple != 0.0:
+        turned = drive.ripple_count * gear_angle - drive.ripple_phase
+        change += 0.5 * drive.friction_ripple * (1.0 - math.cos(turned))
+    return change
+
+
+@numba.njit(cache=True)
+def _decay(drive: Any, t: float) -> float:
+    if drive.friction_decay == 0.0:
+        return 1.0
+    return 1.0 + drive.friction_decay * math.exp(-t / drive.decay_time)
+
+
+@numba.njit(cache=True)
+def viscous(drive: Any, coefficient: float, rate: float) -> float:
+    """Viscous torque; with an exponent below one it is curved, and the same at 1 rad/s."""
+    if drive.viscous_exponent == 1.0 or rate == 0.0:
+        return coefficient * rate
+    return coefficient * rate * abs(rate) ** (drive.viscous_exponent - 1.0)
+
+
+@numba.njit(cache=True)
+def sliding_friction(drive: Any, t: float, rate: float, slip: int, change: float) -> float:
+    """CSVS friction while sliding towards `slip`; smooth in the rate, also past zero."""
+    coulomb, static = drive.F_c_forward, drive.F_s_forward
+    stribeck, coefficient = drive.v_s_forward, drive.F_v_forward
+    if slip < 0:
+        coulomb, static = drive.F_c_backward, drive.F_s_backward
+        stribeck, coefficient = drive.v_s_backward, drive.F_v_backward
+    ratio = abs(rate / stribeck)
+    if drive.stribeck_exponent == 2.0:
+        drop = math.exp(-ratio * ratio)
+    else:
+        drop = math.exp(-(ratio**drive.stribeck_exponent))
+    level = max(0.0, coulomb + (static - coulomb) * drop + change)
+    return slip * level * _decay(drive, t) + viscous(drive, coefficient, rate)
+
+
+@numba.njit(cache=True)
+def breakaway(drive: Any, t: float, side: int, rest: float, change: float) -> float:
+    """Torque that starts motion towards `side` after `rest` seconds at rest."""
+    static = drive.F_s_forward if side > 0 else drive.F_s_backward
+    growth = 1.0 + drive.dwell_gain * math.log(1.0 + rest / drive.dwell_time)
+    return max(0.0, static * growth + change) * _decay(drive, t)
+
+
+@numba.njit(cache=True)
+def joint_torque(drive: Any, t: float, angle: float, rate: float, wrap: float) -> float:
+    """Torque on the joint from all that hangs on it, but for friction of the drive."""
+    stretch = angle - drive.theta0_cable
+    torque = drive.constant_torque - viscous(drive, drive.b_load, rate)
+    torque -= drive.k1_cable * stretch + drive.k3_cable * stretch**3
+    torque -= drive.wrap_torque * wrap
+    torque -= drive.quadratic_drag * rate * abs(rate)
+    torque -= drive.torque_by_angle_and_rate * angle * rate
+    if drive.viscous_by_angle != 0.0:
+        torque -= drive.viscous_by_angle * rate * math.sin(2.0 * angle)
+    if drive.gravity_torque != 0.0:
+        torque -= drive.gravity_torque * math.sin(angle - drive.alpha_base)
+    if drive.shake_torque != 0.0:
+        shake = 2.0 * math.pi * drive.shake_frequency * t + drive.shake_phase
+        torque += drive.shake_torque * math.sin(shake)
+    if drive.base_shake_sine != 0.0 or drive.base_shake_cosine != 0.0:
+        lever = drive.base_shake_sine * math.sin(angle) + drive.base_shake_cosine * math.cos(angle)
+        shake = 2.0 * math.pi * drive.base_shake_frequency * t + drive.base_shake_phase
+        torque += lever * math.sin(shake)
+    return torque
+
+
+@numba.njit(cache=True)
+def wrap_slope(drive: Any, rate: float, wrap: float) -> float:
+    """Bouc and Wen's hysteresis with n = 1: the relative pull `wrap` stays within -1 and 1."""
+    return (rate - 0.5 * (abs(rate) * wrap + rate * abs(wrap))) / drive.wrap_angle
+
+
+@numba.njit(cache=True)
+def motor_voltage(drive: Any, u: float) -> float:
+    """Voltage in V at the winding for a commanded `u`: dead band, offset, then the rails."""
+    width = drive.voltage_deadband
+    u = max(u - width, 0.0) + min(u + width, 0.0) + drive.voltage_offset
+    return min(drive.voltage_limit, max(-drive.voltage_limit, u))
+
+
+@numba.njit(cache=True)
+def winding(drive: Any, u: float, rate: float, current: float, heat: float) -> tuple[float, float]:
+    """Slopes of the current in A/s and of the relative heating in 1/s under a commanded `u` in V.
+
+    `rate` is the motor's speed referred to the gear output.
+    """
+    drop = drive.R * (1.0 + heat) * current
+    slope = (motor_voltage(drive, u) - drop - drive.K_t * drive.N * rate) / drive.L
+    return slope, (drive.heating_gain * drop * current - heat) / drive.heating_time
