@@ -11,7 +11,11 @@ from ptp_symbolic.atomic import write_text_if_changed
 from ptp_symbolic.codegen.module import module_text
 from ptp_symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.derivation.assembly import assemble
-from ptp_symbolic.derivation.placement import available_quantities, place_effects
+from ptp_symbolic.derivation.placement import (
+    available_quantities,
+    declared_parameters,
+    place_effects,
+)
 from ptp_symbolic.effects import EFFECTS
 from ptp_symbolic.errors import unknown
 from ptp_symbolic.identify.coordinates import FreeParameter, free_parameter
@@ -33,35 +37,50 @@ def cache_folder() -> Path:
 
 
 def emit(platform: Platform) -> Model:
-    """Derive, emit and load the model of `platform`; modules are kept by their content.
+    """Derive, emit and load the model of `platform`; modules are kept by their mathematics.
 
-    Raises InputError when no machine with its parameters can exist.
+    Machines that differ in their numbers alone share a module, which is compiled once. Raises
+    InputError when no machine with its parameters can exist.
     """
     equations = assemble(platform)
     refuse_impossible(equations, platform)
-    text = module_text(equations)
+    usual = declared_parameters(place_effects(platform))
+    shared = replace(
+        equations, name="machine", title="Machine of a user",
+        parameters=tuple(usual[p.name] for p in equations.parameters),
+    )  # fmt: skip
+    text = module_text(shared)
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     name = f"ptp_model_{digest}"
     folder = cache_folder()
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     path = folder / f"{name}.py"
     write_text_if_changed(path, text)
-    return load_module(path, name)
+    own = {p.name: (p.default, p.lower, p.upper) for p in equations.parameters}
+    return replace(load_module(path, name), declared=(platform.name, platform.title, own))
 
 
 def candidate_effects(platform: Platform) -> tuple[EffectDeclaration, ...]:
-    """Effects that could be added to `platform`: searchable, not declared, with what they need."""
-    placed = place_effects(platform)
-    available = available_quantities(placed)
-    declared = {(effect.id, place.axis) for effect, place in placed}
-    found = []
-    for effect in EFFECTS:
-        for axis in platform.axes if effect.on_axis else (None,):
-            needs = {need.format(axis=axis) for need in effect.needs}
-            if effect.structural or (effect.id, axis) in declared or not needs <= available:
-                continue
-            found.append(EffectDeclaration(effect.id, axis, None))
-    return tuple(found)
+    """Effects that could be added to `platform`: searchable, not declared, with what they need,
+    which may itself be one of them.
+    """
+    declared = {(effect.id, place.axis) for effect, place in place_effects(platform)}
+    order = {effect.id: number for number, effect in enumerate(EFFECTS)}
+    found: list[EffectDeclaration] = []
+    while True:
+        extended = replace(platform, effects=(*platform.effects, *found))
+        available = available_quantities(place_effects(extended))
+        added = [
+            EffectDeclaration(effect.id, axis, None)
+            for effect in EFFECTS
+            for axis in (platform.axes if effect.on_axis else (None,))
+            if not effect.structural
+            and (effect.id, axis) not in declared | {(e.effect, e.axis) for e in found}
+            and {need.format(axis=axis) for need in effect.needs} <= available
+        ]
+        if not added:
+            return tuple(sorted(found, key=lambda e: order[e.effect]))
+        found += added
 
 
 def with_candidates(platform: Platform) -> Platform:

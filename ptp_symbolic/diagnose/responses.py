@@ -1,191 +1,171 @@
-"""Near the floor: candidates ranked by what a finite amount of each would gain.
+"""What a finite amount of a candidate would change in the simulated outputs of a trial.
 
-There the declared parameters have bent as far as they can to stand in for what is missing, and an
-effect that acts through breakaways or bounces has no usable derivative: its response to its finite
-start, the declared parameters following, tells more than any search from that start.
+Breakaways, gaps and delays do not show in the torque along the motion, or have no derivative where
+they vanish: their response to a finite amount, the free parameters following, tells what a refit
+could gain, and where it should start.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.trial import (
-    Task,
-    Trial,
-    fixed_values,
-    moved,
-    restarted,
-    simulated,
-    squares,
-)
-from ptp_symbolic.identify.coordinates import FreeParameter, limits, to_search
-from ptp_symbolic.identify.fit import Fit, all_values, all_values_at_start
+from ptp_symbolic.diagnose.proposals import Proposal
+from ptp_symbolic.diagnose.signatures import brought
+from ptp_symbolic.diagnose.trial import Task, Trial, simulated
+from ptp_symbolic.identify.coordinates import to_search
+from ptp_symbolic.identify.fit import all_values
 from ptp_symbolic.identify.intervals import project_out
 
 FloatArray = NDArray[np.float64]
 
-AMOUNT = 0.02  # of a parameter that is free or declared already
-SHARE = 0.1  # of the scale of a parameter that begins at zero, less where that changes
-REACH, SHRINKS = 3.0, 6  # more than so many times the residual; a tenth each time
-DAMPING, FARTHEST, LEAST, MOST = 1e-3, 0.5, 0.05, 5.0
+REACH = 3.0  # times the residual: a response beyond is shrunk, for it is no longer linear
+SHRINKS, SHRINK = 4, 0.25
+FARTHEST = 0.5  # search coordinates (half a decade or half a scale) that free parameters may follow
+RIDGE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class _Response:
-    """A candidate at one start: what makes the residual least, and the sum of squares left.
-
-    `amounts` are that of the whole start, under "", and values of its parameters that begin at
-    zero; `shift` moves the declared parameters.
+class Response:
+    """A candidate added to a trial: the share of the squared residual that is predicted to be left,
+    and where a refit should start. `columns` [n, k] are its responses, `changes` the values that
+    made each.
     """
 
-    base: Trial
     candidate: Candidate
-    start: tuple[FreeParameter, ...]
-    amounts: Mapping[str, float]
-    shift: FloatArray
     left: float
+    proposal: Proposal
 
 
-def most_promising(
-    task: Task, bases: Sequence[Trial], candidates: Sequence[Candidate], count: int
-) -> tuple[list[Trial], list[Trial]]:
-    """The `count` best candidates as trials, each begun where its response promises most, and the
-    others begun likewise.
+def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list[Response]:
+    """Responses of `candidates` that the trial does not have, the most promising first.
+
+    A candidate that needs another brings it along.
     """
-    best: dict[tuple[str, ...], _Response] = {}
-    for base in bases:
-        for response in _responses(task, base, candidates):
-            key = tuple(sorted((*base.keys, response.candidate.key)))
-            if key not in best or response.left < best[key].left:
-                best[key] = response
-    ordered = sorted(best.values(), key=lambda response: response.left)
-    tried = [_begun(task, response) for response in ordered]
-    begun = [trial for trial in tried if np.isfinite(trial.train.cost)]
-    return begun[:count], begun[count:]
-
-
-def _responses(task: Task, base: Trial, candidates: Sequence[Candidate]) -> list[_Response]:
-    """The response of `base` to every start of every candidate that it does not have."""
-    fit, free = base.train, restarted(base.train)
-    phi, residual = to_search(free, fit.values), [e.residual for e in fit.evaluations]
-    steps = np.where(phi + AMOUNT <= limits(free)[1], AMOUNT, -AMOUNT)
-    columns = [
-        _change(task, base, residual, all_values(free, phi + step)) for step in np.diag(steps)
+    have = {c.key for c in trial.candidates}
+    by_key = {c.key: c for c in reversed(task.candidates)}
+    wanted = [
+        (c, shape)
+        for c in candidates
+        if c.key not in have
+        for shape in c.shapes
     ]
-    here = _projected(base, residual)
-    seen = np.array([c is not None for c in columns], dtype=np.bool_)
-    known = np.zeros((len(here), 0))
-    for step, column in zip(steps, columns, strict=True):
-        if column is not None:
-            known = np.column_stack([known, column / step])
-    found = []
-    for candidate in candidates:
-        for start in candidate.starts if candidate.key not in base.keys else ():
-            changes = _changes(task, base, residual, candidate, start)
-            columns_of = [column for _, column in changes.values()]
-            if not any(map(np.any, columns_of)):
-                continue
-            added = np.column_stack([known, *columns_of])
-            most = np.repeat([FARTHEST, MOST], [known.shape[1], len(changes)])
-            x, left = _least(here, added, most)
-            shift = np.zeros(len(free))
-            shift[seen] = x[: known.shape[1]]
-            sizes = zip(changes.items(), x[known.shape[1] :], strict=True)
-            amounts = {name: float(amount * step) for (name, (step, _)), amount in sizes}
-            found.append(_Response(base, candidate, start, amounts, shift, left))
-    return found
+    fit = trial.fit
+    residual = [e.residual for e in fit.evaluations]
+    here = _projected(trial, residual)
+    declared = np.vstack(
+        [project_out(e.by_parameter, e.by_start) for e in fit.evaluations]
+    )
+
+    def respond(pair: tuple[Candidate, Mapping[str, float]]) -> Response | None:
+        candidate, shape = pair
+        base = {k: v for k, v in brought(candidate, by_key).items()
+                if not any(key in have for key in candidate.brings)}  # fmt: skip
+        found = [
+            _column(task, trial, residual, {**base, **shape}, f.name, f.tied, candidate)
+            for f in candidate.defining
+        ]
+        kept = [(f, c) for f, c in zip(candidate.defining, found, strict=True) if c is not None]
+        if not kept:
+            return None
+        columns = np.column_stack([c[0] for _, c in kept])
+        amounts, left = _least(here, declared, columns, fit, kept, candidate)
+        values = _moved(trial, amounts[: declared.shape[1]])
+        values.update(base)
+        values.update(shape)
+        for (f, _), amount in zip(kept, amounts[declared.shape[1] :], strict=True):
+            zero = candidate.vanishing[f.name]
+            value = float(np.clip(zero + amount, f.lower, f.upper))
+            values.update(dict.fromkeys((f.name, *f.tied), value))
+        added = [by_key[key] for key in candidate.brings if key not in have]
+        return Response(candidate, left, Proposal((*trial.candidates, *added, candidate), values))
+
+    jobs = list(task.executor.map(respond, wanted))
+    best: dict[tuple[str, int], Response] = {}
+    for response in sorted((r for r in jobs if r is not None), key=lambda r: r.left):
+        best.setdefault((response.candidate.key, response.candidate.member), response)
+    return list(best.values())
 
 
-def _changes(
+def _column(
     task: Task,
-    base: Trial,
+    trial: Trial,
     residual: Sequence[FloatArray],
+    base: Mapping[str, float],
+    name: str,
+    tied: Sequence[str],
     candidate: Candidate,
-    start: Sequence[FreeParameter],
-) -> dict[str, tuple[float, FloatArray]]:
-    """What `start` changes as a whole (name "", step 1), and per parameter that begins at zero a
-    step and what it adds to that; empty where the whole cannot be simulated.
+) -> tuple[FloatArray, float] | None:
+    """The response per unit of a defining parameter, and the amount that made it; None where
+    nothing can be simulated or nothing changes.
     """
-    given = all_values_at_start(start)
+    zero = candidate.vanishing[name]
+    f = next(p for p in candidate.free if p.name == name)
+    whole = f.start - zero
     if candidate.is_declared_value:
-        given = {f.name: min(f.start * (1.0 + AMOUNT), f.upper) for f in start}
-    whole = _change(task, base, residual, given)
-    if whole is None:
-        return {}
-    changes = {"": (1.0, whole)}
-    most = REACH * float(np.sqrt(base.train.cost))
-    for f in start:
-        step = SHARE * f.scale
-        for _ in range(SHRINKS if f.start == 0.0 else 0):
-            more = _change(task, base, residual, {**given, f.name: step})
-            if more is not None and np.linalg.norm(more - whole) <= most:
-                changes[f.name] = step, more - whole
-                break
-            step *= 0.1
-    return {name: change for name, change in changes.items() if not name or np.any(change[1])}
+        whole = min(0.05 * abs(f.start), 0.5 * (f.upper - f.start))
+    most = REACH * float(np.sqrt(sum(r @ r for r in residual)))
+    amount = whole
+    for _ in range(SHRINKS):
+        changed = simulated(
+            task, trial.fit, {**base, **dict.fromkeys((name, *tied), zero + amount)}, None
+        )
+        if not any(e.failed for e in changed):
+            without = residual
+            if base:
+                plain = simulated(task, trial.fit, base, None)
+                if any(e.failed for e in plain):
+                    return None
+                without = [e.residual for e in plain]
+            change = _projected(
+                trial, [e.residual - r for e, r in zip(changed, without, strict=True)]
+            )
+            size = float(np.linalg.norm(change))
+            if size == 0.0:
+                return None
+            if size <= most:
+                return change / amount, amount
+        amount *= SHRINK
+    return None
 
 
-def _change(
-    task: Task, base: Trial, residual: Sequence[FloatArray], values: Mapping[str, float]
-) -> FloatArray | None:
-    """How the residual of all runs changes with `values`, the starts following; None: it failed."""
-    changed = simulated(task, base.train, values)
-    if any(e.failed for e in changed):
-        return None
-    return _projected(base, [e.residual - r for e, r in zip(changed, residual, strict=True)])
+def _projected(trial: Trial, columns: Sequence[FloatArray]) -> FloatArray:
+    """One column [n] over all runs, without what the unknown starts can explain."""
+    pairs = zip(columns, trial.fit.evaluations, strict=True)
+    return np.concatenate([project_out(c[:, None], e.by_start)[:, 0] for c, e in pairs])
 
 
-def _projected(base: Trial, columns: Sequence[FloatArray]) -> FloatArray:
-    """One column over all runs, without what the unknown starts can explain."""
-    parts = zip(columns, base.train.evaluations, strict=True)
-    return np.concatenate([project_out(c[:, None], e.by_start)[:, 0] for c, e in parts])
-
-
-def _least(residual: FloatArray, columns: FloatArray, most: FloatArray) -> tuple[FloatArray, float]:
-    """Amounts [n] of `columns`, at most `most` either way, that make the residual least, and the
-    sum of squares left.
+def _least(here, declared, columns, fit, kept, candidate):  # type: ignore[no-untyped-def]
+    """Amounts of the declared search coordinates and of the defining parameters that make the
+    residual least within bounds, and the share of its square that is left.
     """
-    information, gradient = columns.T @ columns, columns.T @ residual
-    damped = information + DAMPING * np.diag(np.diag(information) + 1e-12)
-    factor = np.linalg.cholesky(damped)
-    target = -solve_triangular(factor, gradient, lower=True)
-    x = np.asarray(lsq_linear(factor.T, target, (-most, most)).x, dtype=np.float64)
-    return x, float(residual @ residual + 2.0 * gradient @ x + x @ information @ x)
+    table = np.column_stack([declared, columns])
+    lower = np.concatenate(
+        [np.full(declared.shape[1], -FARTHEST),
+         [f.lower - candidate.vanishing[f.name] for f, _ in kept]]
+    )  # fmt: skip
+    upper = np.concatenate(
+        [np.full(declared.shape[1], FARTHEST),
+         [f.upper - candidate.vanishing[f.name] for f, _ in kept]]
+    )  # fmt: skip
+    size = np.maximum(np.linalg.norm(table, axis=0), 1e-300)
+    triangle = np.linalg.qr(np.column_stack([table / size, here]), mode="r")
+    k = table.shape[1]
+    ridge = RIDGE * np.linalg.norm(triangle[:, k]) * np.eye(k)
+    solved = lsq_linear(
+        np.vstack([triangle[:, :k], ridge]),
+        -np.concatenate([triangle[:, k], np.zeros(k)]),
+        ((lower - 1e-12) * size, (upper + 1e-12) * size),
+    )
+    left = 2.0 * solved.cost / max(float(here @ here), 1e-300)
+    return solved.x / size, float(left)
 
 
-def _begun(task: Task, response: _Response) -> Trial:
-    """The trial at the amounts of `response`: what switches the effect on grows, the rest stays."""
-    base = response.base
-    begun = moved(base.train, response.shift)
-    vanishes = {p.name: p.vanishes for p in task.model.parameters}
-    whole = response.amounts[""]
-    for f in response.start:
-        zero = f.start if response.candidate.is_declared_value else vanishes[f.name]
-        if response.candidate.is_declared_value:
-            start = f.start * (1.0 + AMOUNT * whole)
-        elif f.name in response.amounts:
-            start = response.amounts[f.name]
-        elif zero is None or f.start == zero:
-            start = f.start
-        else:
-            least = LEAST if f.logarithmic else -MOST
-            start = zero + max(whole, least) * (f.start - zero)
-        begun.append(replace(f, start=float(np.clip(start, f.lower, f.upper))))
-    fixed = fixed_values(task, begun)
-    return Trial((*base.candidates, response.candidate), _unfitted(task, base, begun, fixed))
-
-
-def _unfitted(
-    task: Task, base: Trial, free: Sequence[FreeParameter], fixed: Mapping[str, float]
-) -> Fit:
-    """The residuals at the starts of `free`."""
-    values = {**fixed, **all_values_at_start(free)}
-    evaluations = tuple(simulated(task, base.train, values))
-    failed = next((e.failed for e in evaluations if e.failed), None)
-    z, cost = base.train.z, squares(evaluations)
-    return Fit(task.model, task.train, tuple(free), values, z, cost, evaluations, failed)
+def _moved(trial: Trial, shift: FloatArray) -> dict[str, float]:
+    """Values of all parameters, the free ones shifted in their search coordinates."""
+    free = trial.fit.free
+    phi = to_search(free, trial.fit.values) + shift
+    return {**trial.values, **all_values(free, phi)}

@@ -1,180 +1,165 @@
-"""Search the missing effect: refit every candidate, keep the best, judge on held-out runs.
-
-The score test orders nothing away: an effect inside a gap has no usable gradient where it vanishes.
-Poor candidates are dropped after a few iterations, in rounds that do not depend on which thread is
-faster.
+"""The search: sets that the equation space proposes, refitted by simulation, the best pruned and
+grown by one candidate at a time.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.escape import escape
-from ptp_symbolic.diagnose.scores import Score, score, share_left
-from ptp_symbolic.diagnose.starts import first_round
+from ptp_symbolic.diagnose.gain import Gain, gain
+from ptp_symbolic.diagnose.proposals import Proposals, declared_start, propose
+from ptp_symbolic.diagnose.responses import responses
 from ptp_symbolic.diagnose.trial import (
-    COARSE,
-    FINE,
-    LAST,
-    NEARBY_COUNTS,
-    NEXT,
-    SMOOTH,
+    ROUGH,
+    SHARP,
     Task,
     Trial,
-    continue_fits,
-    held_out_cost,
-    refit,
-    restarted,
-    simulated,
-    start_afresh,
+    continued,
+    fitted,
+    halving,
+    mean_squares,
+    ranked,
 )
-from ptp_symbolic.identify.coordinates import FreeParameter
-from ptp_symbolic.identify.evaluate import evaluate
-from ptp_symbolic.identify.fit import Effort, all_values_at_start, fit_parameters, unblinded
-from ptp_symbolic.identify.run import Run
 
-FloatArray = NDArray[np.float64]
-
-FIRST = Effort(5, 3e-3, COARSE, 0.3, secants=True)
-DECLARED = Effort(8, 1e-2, COARSE, 0.3)
-MENDED = Effort(10, 2e-3, COARSE, secants=True)
-HELD_OUT = Effort(10, 1e-4, FINE)
-DROP_FACTOR, CLOSE_FACTOR, CLOSE_COST = 25.0, 1.5, 4.0
-PURSUED, FINISHED, BEAM = 3, 3, 3
-VISIBLE_SHARE = 0.03
+MATERIAL = 0.1  # share of the predictive loss below which a candidate is not worth a name
+DECLARED_RUNGS = ((4, 2), (8, 1))
+PROPOSED_RUNGS = ((2, 4), (3, 2), (5, 1))
+ADDED_RUNGS = ((3, 2), (5, 1))
+POLISH = 12
+REMOVED = 4
+ADDED = 4
+ROUNDS = 3
+AT_NOISE = 1.1
 
 
-def fit_declared(task: Task) -> Trial:
-    """Fit the declared model, from the table start and from a start a factor of 2 away."""
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A candidate that was added to or taken from a set, with what it gains."""
+
+    candidate: Candidate
+    gain: Gain
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What the search found: the declared model, the chosen set (the same where nothing is added),
+    what every member of it gains, and all other trials.
+    """
+
+    declared: Trial
+    chosen: Trial
+    members: tuple[Step, ...]
+    others: tuple[Trial, ...]
+    proposals: Proposals
+
+
+def search(task: Task) -> Search:
+    """Find the set of candidates that the training runs ask for."""
+    task.progress("comparing all sets of effects along the measured motion")
+    proposals = propose(task)
     task.progress("fitting the declared model")
-    fits = [
-        fit_parameters(task.model, task.train, free, task.fixed, None, DECLARED, task.executor)
-        for free in (task.free, tuple(_shifted(f) for f in task.free))
-    ]
-    trials = _best([Trial((), fit) for fit in fits], len(fits), CLOSE_COST)
-    trial = continue_fits(task, trials, MENDED)[0]
-    if trial.train.rms_counts() < NEARBY_COUNTS:
-        trial = continue_fits(task, [trial], LAST)[0]
-    task.progress(f"the declared model leaves {trial.train.rms_counts():.3f} counts rms")
-    return judge(task, escape(task, trial))
+    declared = fit_declared(task, proposals)
+    others: list[Trial] = []
+    best = declared
+    if not is_at_noise(declared):
+        task.progress(f"refitting {len(proposals.sets)} proposed sets")
+        begun = [fitted(task, s.candidates, s.values, None, 0) for s in proposals.sets]
+        found = halving(task, begun, PROPOSED_RUNGS)
+        others += begun
+        if found:
+            best = ranked([declared, polished(task, found[0])])[0]
+    best, members, removed = prune(task, best, declared)
+    others += removed
+    for _ in range(ROUNDS):
+        grown = grow(task, best, proposals)
+        if grown is None:
+            break
+        others.append(best)
+        best, members, removed = prune(task, grown, declared)
+        others += removed
+        if best.keys == others[-1].keys:
+            break
+    return Search(declared, best, tuple(members), tuple(others), proposals)
 
 
-def _shifted(free: FreeParameter) -> FreeParameter:
-    """The same parameter started elsewhere: half the value where it can only be positive."""
-    value = 0.5 * free.start if free.logarithmic else free.start
-    return replace(free, start=float(np.clip(value, free.lower, free.upper)))
+def fit_declared(task: Task, proposals: Proposals) -> Trial:
+    """The declared model, from the start that the rows give and from the declared one."""
+    starts = [proposals.start, declared_start(task)]
+    begun = [fitted(task, (), values, None, 0) for values in starts]
+    return polished(task, halving(task, begun, DECLARED_RUNGS)[0])
 
 
-def judge(task: Task, trial: Trial) -> Trial:
-    """Fit only the starts of the held-out runs with the parameters of `trial`, and let it see what
-    its intervals need.
-    """
-    held_out = fit_parameters(
-        task.model, task.validate, (), trial.train.values, None, HELD_OUT, task.executor
+def polished(task: Task, trial: Trial) -> Trial:
+    """The trial fitted to its end; with sharp simulations where only noise is left."""
+    trial = continued(task, trial, POLISH, ROUGH, task.executor)
+    if is_at_noise(trial):
+        trial = continued(task, trial, POLISH, SHARP, task.executor)
+    return trial
+
+
+def is_at_noise(trial: Trial) -> bool:
+    """Whether a trial leaves little more than noise in every signal."""
+    squares = mean_squares(trial.fit.evaluations, trial.fit.runs)
+    size = np.array([len(run.time) for run in trial.fit.runs], dtype=np.float64)
+    return bool(np.all(size @ squares / size.sum() <= AT_NOISE**2))
+
+
+def without(task: Task, trial: Trial, candidate: Candidate) -> Trial:
+    """The trial refitted without one of its candidates, and without what needs it."""
+    kept = tuple(
+        c for c in trial.candidates if c is not candidate and candidate.key not in c.brings
     )
-    return replace(trial, train=unblinded(trial.train, task.executor), validate=held_out)
+    values = trial.values | {
+        name: task.fixed[name] for c in trial.candidates if c not in kept
+        for f in c.free for name in (f.name, *f.tied)
+    }  # fmt: skip
+    begun = fitted(task, kept, values, trial.fit.z, REMOVED, ROUGH, task.executor)
+    return polished(task, begun)
 
 
-def try_candidates(
-    task: Task, bases: Sequence[Trial], candidates: Sequence[Candidate]
-) -> list[Trial]:
-    """Refit every base with each candidate added; the best are polished and judged, best first.
-
-    Of several effects at once more are pursued: in their flat valleys the order is late to show.
+def prune(
+    task: Task, trial: Trial, declared: Trial
+) -> tuple[Trial, list[Step], list[Trial]]:
+    """Take every candidate out in turn, the one that gains least first, until each that is left
+    gains clearly and materially.
     """
-    effects = len(bases[0].candidates) + 1
-    groups, left = first_round(task, bases, candidates)
-    second = [freed for group in groups for freed in _freed(task, group)]
-    third = _distinct(
-        [
-            trial
-            for group in second
-            for trial in continue_fits(task, _best(group, PURSUED * effects, DROP_FACTOR), NEXT)
-        ]
-    )
-    task.progress("polishing the best candidates")
-    chosen = _best(third, FINISHED * effects, CLOSE_FACTOR**effects)
-    polished = continue_fits(task, chosen, LAST)
-    best = continue_fits(task, polished[:FINISHED], SMOOTH)
-    best[:1] = [escape(task, trial) for trial in best[:1]]
-    judged = [judge(task, trial) for trial in (*best, *polished[FINISHED:])]
-    for trial in sorted(judged, key=held_out_cost):
-        error = np.sqrt(held_out_cost(trial))
-        task.progress(f"{' + '.join(trial.keys)}: {error:.3f} counts rms on held-out runs")
-    dropped = [
-        replace(t, train=t.train.lightened())
-        for t in (*third, *(t for group in second for t in group))
-        if t.keys not in {j.keys for j in judged}
+    removed: list[Trial] = []
+    while trial.candidates:
+        steps = []
+        for candidate in trial.candidates:
+            smaller = without(task, trial, candidate)
+            if not smaller.candidates:
+                smaller = ranked([smaller, declared])[0]
+            removed.append(smaller)
+            steps.append((Step(candidate, gain(trial, smaller)), smaller))
+        weakest, smaller = min(steps, key=lambda s: s[0].gain.share)
+        tests = len(task.candidates)
+        if weakest.gain.share >= MATERIAL and weakest.gain.is_clear(tests):
+            return trial, [s for s, _ in steps], removed
+        trial = smaller
+    return trial, [], removed
+
+
+def grow(task: Task, trial: Trial, proposals: Proposals) -> Trial | None:
+    """The trial with one more candidate that gains clearly and materially; None where none does."""
+    if is_at_noise(trial):
+        candidates: Sequence[Candidate] = proposals.unseen
+    else:
+        candidates = task.candidates
+    found = [r for r in responses(task, trial, candidates) if r.left < 1.0 - MATERIAL]
+    if not found:
+        return None
+    task.progress(f"adding one of {len(found)} candidates to {' + '.join(trial.keys) or 'none'}")
+    begun = [
+        fitted(task, r.proposal.candidates, r.proposal.values, trial.fit.z, 0)
+        for r in found[:ADDED]
     ]
-    unique = {t.keys: t for t in reversed(dropped)}
-    ordered = sorted(unique.values(), key=lambda t: t.train.cost)
-    return sorted(judged, key=held_out_cost) + ordered + left
-
-
-def scores(task: Task, base: Trial, candidates: Sequence[Candidate]) -> dict[str, Score]:
-    """Score of every candidate at the optimum of `base`."""
-    names = list(task.model.parameter_names)
-    wanted = sorted({name for c in candidates for name in c.parameters})
-    columns = np.array([names.index(name) for name in wanted], dtype=np.int64)
-    p = task.model.parameter_vector(dict(base.train.values))
-
-    def derivatives(pair: tuple[Run, FloatArray]) -> FloatArray:
-        return evaluate(task.model, pair[0], p, pair[1], columns, True, COARSE).by_parameter
-
-    pairs = list(zip(base.train.runs, base.train.z, strict=True))
-    by_run = list(task.executor.map(derivatives, pairs))
-    return {
-        c.key: score(base.train, [d[:, [wanted.index(n) for n in c.parameters]] for d in by_run])
-        for c in candidates
-    }
-
-
-def visible_candidates(
-    task: Task, base: Trial, candidates: Sequence[Candidate], scored: Mapping[str, Score]
-) -> list[Candidate]:
-    """Candidates that the declared parameters cannot absorb.
-
-    Where the score says absorbed, the response to a start of finite size decides: the derivative of
-    an effect that only moves breakaways or bounces tells nothing where the effect vanishes.
-    """
-
-    def is_visible(candidate: Candidate) -> bool:
-        if scored[candidate.key].share_left >= VISIBLE_SHARE:
-            return True
-        changed = simulated(task, base.train, all_values_at_start(candidate.starts[0]))
-        if any(e.failed for e in changed):
-            return True
-        return share_left(base.train, [e.residual for e in changed]) >= VISIBLE_SHARE
-
-    return [c for c in candidates if is_visible(c)]
-
-
-def _freed(task: Task, group: Sequence[Trial]) -> list[list[Trial]]:
-    """Free the declared parameters of a group; several effects at once are also started afresh."""
-    freed = [continue_fits(task, group, FIRST)]
-    several = [t for t in group if len(t.candidates) > 1]
-    return freed + ([[start_afresh(task, t, FIRST) for t in several]] if several else [])
-
-
-def _distinct(trials: Sequence[Trial]) -> list[Trial]:
-    """The best trial of every set of effects."""
-    best: dict[tuple[str, ...], Trial] = {}
-    for trial in sorted(trials, key=lambda trial: trial.train.cost):
-        best.setdefault(trial.keys, trial)
-    return list(best.values())
-
-
-def _best(trials: Sequence[Trial], count: int, factor: float) -> list[Trial]:
-    """At most `count` trials, none above `factor` times the cost of the best."""
-    ordered = sorted(trials, key=lambda trial: trial.train.cost)
-    return [t for t in ordered[:count] if t.train.cost <= factor * ordered[0].train.cost]
-
-
-def without(task: Task, trial: Trial, idle: Candidate, effort: Effort) -> Trial:
-    """Refit of a trial with one of its candidates taken out, from the optimum found."""
-    kept = tuple(c for c in trial.candidates if c is not idle)
-    free = tuple(f for f in restarted(trial.train) if f.name not in idle.parameters)
-    return Trial(kept, refit(task, free, trial.train.z, effort))
+    left = halving(task, begun, ADDED_RUNGS)
+    if not left:
+        return None
+    best = polished(task, left[0])
+    earned = gain(best, trial)
+    clear = earned.share >= MATERIAL and earned.is_clear(len(task.candidates))
+    return best if clear else None

@@ -1,4 +1,4 @@
-"""A trial: the declared model with a set of candidates, fitted and judged."""
+"""A trial: the declared model with a set of candidates, fitted to the training runs by simulation."""
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.scores import mean_square
-from ptp_symbolic.identify.coordinates import FreeParameter, to_search, to_values
+from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters
 from ptp_symbolic.identify.run import Run
@@ -18,123 +17,180 @@ from ptp_symbolic.runtime.model import Model
 FloatArray = NDArray[np.float64]
 Progress = Callable[[str], None]
 
-NEARBY_COUNTS = 5.0
-COARSE, FINE = Tolerance(1e-4, 1e-6), Tolerance(1e-5, 1e-7)
-NEXT = Effort(10, 2e-3, COARSE, 0.5, secants=True)
-LAST = Effort(10, 3e-4, FINE, secants=True)
-SMOOTH = Effort(15, 1e-4, FINE)
+BEND = 2.5  # a block this many times as far off as the usual one counts only linearly (Huber)
+ROUGH, SHARP = 1e-2, 1e-3  # error of a simulation as a share of the noise, while searching and at last
+FAR = 20.0  # standard deviations: from here on simulations need no better accuracy
 
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """What stays the same through a diagnosis."""
+    """What stays the same through a diagnosis.
+
+    `whole` are the training runs as they were logged, `train` the same or their windows, `validate`
+    those that only the report sees. `free` are the declared free parameters, `fixed` the values of
+    all others, every candidate switched off. `resolution` is the noise of the finest angle in rad.
+    """
 
     model: Model
+    whole: tuple[Run, ...]
     train: tuple[Run, ...]
     validate: tuple[Run, ...]
     free: tuple[FreeParameter, ...]
     fixed: Mapping[str, float]
+    candidates: tuple[Candidate, ...]
     executor: Executor
     progress: Progress
     input_noise: tuple[float | None, ...]
+    resolution: float
 
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """One set of candidates with its fit, and the held-out runs once it was judged."""
+    """A set of candidates and the fit with their parameters free."""
 
     candidates: tuple[Candidate, ...]
-    train: Fit
-    validate: Fit | None = None
+    fit: Fit
 
     @property
     def keys(self) -> tuple[str, ...]:
         """Keys of the candidates, sorted."""
         return tuple(sorted(c.key for c in self.candidates))
 
+    @property
+    def values(self) -> dict[str, float]:
+        """Values of all parameters of the model."""
+        return dict(self.fit.values)
 
-def simulated(task: Task, fit: Fit, values: Mapping[str, float]) -> list[Evaluation]:
-    """All runs of `fit` with `values` in place of its own, begun where its runs begin; coarse and
-    without derivatives.
+
+def freed(
+    task: Task, candidates: Sequence[Candidate], values: Mapping[str, float]
+) -> tuple[FreeParameter, ...]:
+    """The declared free parameters and those of `candidates`, started at `values`."""
+    every = (*task.free, *(f for c in candidates for f in c.free))
+    return tuple(restarted(f, values[f.name]) for f in every)
+
+
+def restarted(free: FreeParameter, value: float) -> FreeParameter:
+    """The parameter started at `value`; its scale stays where the value is next to nothing."""
+    inside = float(np.clip(value, free.lower, free.upper))
+    if free.logarithmic:
+        return replace(free, start=max(inside, free.lower))
+    return replace(free, start=inside, scale=max(abs(inside), free.scale))
+
+
+def fitted(
+    task: Task,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+    z: Sequence[FloatArray] | None,
+    iterations: int,
+    share: float = ROUGH,
+    executor: Executor | None = None,
+    misleading: Sequence[tuple[int, int]] | None = None,
+) -> Trial:
+    """Fit from `values` (all parameters of the model) and the starts `z` of the runs."""
+    free = freed(task, candidates, values)
+    names = {name for f in free for name in (f.name, *f.tied)}
+    fixed = {name: value for name, value in task.fixed.items() if name not in names}
+    effort = Effort(iterations, GAIN, accuracy(task, share), secants=True)
+    fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, misleading)
+    return Trial(tuple(candidates), fit)
+
+
+GAIN = 1e-3  # relative gain of an iteration below which two in a row end a fit
+
+
+def accuracy(task: Task, share: float, rms: float = 1.0) -> Tolerance:
+    """Tolerance that keeps angles good to a `share` of their noise, or of what a model leaves
+    (`rms` in standard deviations).
     """
+    return Tolerance.for_resolution(task.resolution * max(1.0, min(rms, FAR)), share)
+
+
+def continued(
+    task: Task, trial: Trial, iterations: int, share: float, executor: Executor | None = None
+) -> Trial:
+    """Fit a trial on from where it ended; a worse end is not taken."""
+    new = fitted(
+        task, trial.candidates, trial.values, trial.fit.z, iterations, share, executor,
+        trial.fit.misleading,
+    )  # fmt: skip
+    return trial if new.fit.failed or misfits([trial, new])[1] > misfits([trial, new])[0] else new
+
+
+def simulated(
+    task: Task, fit: Fit, values: Mapping[str, float], executor: Executor | None
+) -> list[Evaluation]:
+    """All runs of `fit` with `values` in place of its own, without derivatives."""
     p, none = task.model.parameter_vector({**fit.values, **values}), np.zeros(0, dtype=np.int64)
+    tolerance = accuracy(task, ROUGH)
 
     def one(pair: tuple[Run, FloatArray]) -> Evaluation:
-        return evaluate(task.model, pair[0], p, pair[1], none, False, COARSE)
+        return evaluate(task.model, pair[0], p, pair[1], none, False, tolerance)
 
-    return list(task.executor.map(one, zip(fit.runs, fit.z, strict=True)))
-
-
-def squares(evaluations: Sequence[Evaluation]) -> float:
-    """Sum of the squared residuals of all runs; infinite where one has failed."""
-    return float(sum(np.inf if e.failed else e.residual @ e.residual for e in evaluations))
+    run = executor.map if executor else map
+    return list(run(one, zip(fit.runs, fit.z, strict=True)))
 
 
-def held_out_cost(trial: Trial) -> float:
-    """Mean square of the held-out residuals; infinite when not judged."""
-    if trial.validate is None or trial.validate.failed:
-        return np.inf
-    return mean_square(trial.validate.pairs())
+def mean_squares(evaluations: Sequence[Evaluation], runs: Sequence[Run]) -> FloatArray:
+    """Mean square [runs, signals] of the weighted residuals; infinite where a simulation failed."""
+    rows = []
+    for e, run in zip(evaluations, runs, strict=True):
+        table = e.residual.reshape(run.measured.shape)
+        failed = e.failed is not None or not np.all(np.isfinite(table))
+        rows.append(np.full(table.shape[1], np.inf) if failed else np.mean(table**2, axis=0))
+    return np.array(rows)
 
 
-def restarted(fit: Fit) -> tuple[FreeParameter, ...]:
-    """The free parameters of `fit`, started where it ended."""
-    return tuple(
-        replace(f, start=max(fit.values[f.name], 1e-6 * f.start) if f.logarithmic else
-                float(np.clip(fit.values[f.name], f.lower, f.upper)))
-        for f in fit.free
-    )  # fmt: skip
+def misfits(trials: Sequence[Trial]) -> list[float]:
+    """One number per trial to rank them by: n log(mean square), summed over the signals, so that no
+    signal outweighs another by its unit (likelihood with unknown variances: Bard, 1974, 4.9).
 
-
-def moved(fit: Fit, shift: FloatArray) -> list[FreeParameter]:
-    """The free parameters of `fit`, started `shift` [nf] search coordinates from where it ended."""
-    free = restarted(fit)
-    ahead = to_values(free, to_search(free, fit.values) + shift)
-    return [replace(f, start=ahead[f.name]) for f in free]
-
-
-def fixed_values(task: Task, free: Sequence[FreeParameter]) -> dict[str, float]:
-    """Values of the parameters that stay fixed while `free` are searched."""
-    names = {name for f in free for name in (f.name, *f.tied)}
-    return {name: value for name, value in task.fixed.items() if name not in names}
-
-
-def refit(
-    task: Task, free: Sequence[FreeParameter], z: Sequence[FloatArray], effort: Effort
-) -> Fit:
-    """Fit the train runs with `free` begun as given, every run begun at its z, the rest fixed."""
-    fixed = fixed_values(task, free)
-    return fit_parameters(task.model, task.train, free, fixed, z, effort, task.executor)
-
-
-def continue_fits(task: Task, trials: Sequence[Trial], effort: Effort) -> list[Trial]:
-    """Fit every trial on from where it ended, best first; a worse end is not taken."""
-    continued = []
-    for trial in trials:
-        fit = refit(task, restarted(trial.train), trial.train.z, _suited(effort, trial))
-        is_better = fit.cost <= 1.02 * trial.train.cost or not trial.train.is_differentiated
-        kept = fit if is_better else trial.train
-        continued.append(replace(trial, train=kept))
-    return sorted(continued, key=lambda trial: trial.train.cost)
-
-
-def _suited(effort: Effort, trial: Trial) -> Effort:
-    """`effort` near the floor; far from it a coarse one is good enough."""
-    near = trial.train.rms_counts() < NEARBY_COUNTS
-    return effort if near else replace(effort, tolerance=COARSE)
-
-
-def start_afresh(task: Task, trial: Trial, effort: Effort) -> Trial:
-    """Fit `trial` anew: declared parameters at their table start, those of the effect where they
-    are, unless they went to a bound; these begin where their search began.
+    Runs or windows far worse than usual count only linearly; "usual" is that of the best trial.
     """
-    began = {f.name: f for c in trial.candidates for f in c.starts[0]}
-    free = []
-    for f in restarted(trial.train):
-        if f.table is not None:
-            f = replace(f, start=f.table)
-        elif f.name in began and not f.lower < f.start < f.upper:
-            f = began[f.name]
-        free.append(f)
-    z = [np.zeros(len(run.unknowns)) for run in task.train]
-    return replace(trial, train=refit(task, free, z, _suited(effort, trial)))
+    squares = [mean_squares(t.fit.evaluations, t.fit.runs) for t in trials]
+    usual = np.min([np.median(s, axis=0) for s in squares], axis=0)
+    size = np.array([len(run.time) for run in trials[0].fit.runs], dtype=np.float64)
+    result = []
+    for square in squares:
+        if not np.all(np.isfinite(square)):
+            result.append(np.inf)
+            continue
+        bounded = huber(square, BEND**2 * np.maximum(usual, 1.0))
+        mean = size @ bounded / size.sum()
+        result.append(float(size.sum() * np.sum(np.log(np.maximum(mean, 1e-300)))))
+    return result
+
+
+def huber(square: FloatArray, bend: FloatArray) -> FloatArray:
+    """Squares that grow only linearly with their root beyond `bend` (itself a square)."""
+    return np.where(square <= bend, square, 2.0 * np.sqrt(bend * square) - bend)
+
+
+def ranked(trials: Sequence[Trial]) -> list[Trial]:
+    """Trials, the best fit first; of equal sets the best alone."""
+    if not trials:
+        return []
+    cost = misfits(trials)
+    order = sorted(range(len(trials)), key=lambda k: cost[k])
+    best: dict[tuple[tuple[str, int], ...], Trial] = {}
+    for k in order:
+        members = tuple(sorted((c.key, c.member) for c in trials[k].candidates))
+        best.setdefault(members, trials[k])
+    return list(best.values())
+
+
+def halving(
+    task: Task, trials: Sequence[Trial], rungs: Sequence[tuple[int, int]], share: float = ROUGH
+) -> list[Trial]:
+    """Successive halving (Jamieson and Talwalkar, 2016): every rung gives the trials that are left
+    so many iterations, side by side, and keeps so many of them.
+    """
+    left = list(trials)
+    for iterations, kept in rungs:
+        go_on = [
+            task.executor.submit(continued, task, trial, iterations, share) for trial in left
+        ]
+        left = [t for t in ranked([job.result() for job in go_on]) if np.isfinite(t.fit.cost)]
+        left = left[:kept]
+    return left

@@ -18,7 +18,7 @@ from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.least_squares import Optimum, Problem, cost_of, minimise
 from ptp_symbolic.identify.requirements import keep_possible
 from ptp_symbolic.identify.run import Run
-from ptp_symbolic.identify.secants import Secants
+from ptp_symbolic.identify.secants import Secants, Shift
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
@@ -26,7 +26,7 @@ FloatArray = NDArray[np.float64]
 
 DEFAULT_TOLERANCE = Tolerance()
 BLIND = 0.2
-GAP_PLACES, TRIED_PLACES = (-0.9, -0.45, 0.45, 0.9), 3
+TRIED_PLACES = 3
 ROUNDED = 1.1  # mean square residual over that of rounding alone: no other place fits better
 
 
@@ -59,6 +59,8 @@ class Fit:
     cost: float
     evaluations: tuple[Evaluation, ...]
     failed: str | None = None
+    tolerance: Tolerance = DEFAULT_TOLERANCE
+    misleading: tuple[Shift, ...] | None = None
 
     def rms_counts(self) -> float:
         """Root mean square of the residual of all encoder signals, in counts."""
@@ -99,8 +101,10 @@ def fit_parameters(
     z: Sequence[FloatArray] | None = None,
     effort: Effort | None = None,
     executor: Executor | None = None,
+    misleading: Sequence[Shift] | None = None,
 ) -> Fit:
-    """Fit `free` from their starts; all other parameters stay at `fixed`.
+    """Fit `free` from their starts; all other parameters stay at `fixed`. Derivatives known to be
+    `misleading` from an earlier fit of the same parameters are replaced from the first step on.
 
     With no free parameter only the start unknowns of every run are fitted, which is how runs that
     were never fitted are judged.
@@ -110,12 +114,16 @@ def fit_parameters(
     if not free:
         return _fit_starts(model, runs, fixed, start_z, effort, executor)
     problem = _problem(model, runs, free, fixed, effort, executor)
+    if problem.refine is not None and misleading is not None:
+        problem.refine.chosen = list(misleading)
     phi = to_search(free, {f.name: f.start for f in free})
     best = minimise(problem, phi, start_z, effort.iterations, effort.gain, effort.rejections)
     values = {**fixed, **all_values(free, best.phi)}
     return Fit(
         model, tuple(runs), tuple(free), values, tuple(best.z), best.cost,
-        tuple(best.evaluations), best.failed,
+        tuple(best.evaluations), best.failed, effort.tolerance,
+        None if problem.refine is None or problem.refine.chosen is None
+        else tuple(problem.refine.chosen),
     )  # fmt: skip
 
 
@@ -125,13 +133,14 @@ def unblinded(fit: Fit, executor: Executor | None = None) -> Fit:
     """
     if not fit.free or fit.failed:
         return fit
-    effort = Effort(secants=True)
+    effort = Effort(tolerance=fit.tolerance, secants=True)
     problem = _problem(fit.model, fit.runs, fit.free, fit.values, effort, executor)
     assert problem.refine is not None
     phi = to_search(fit.free, fit.values)
-    mended = problem.refine(phi, fit.z, list(fit.evaluations))
+    here = problem.evaluate(phi, fit.z, True)
+    mended = problem.refine(phi, fit.z, here)
     chosen = []
-    for at_point, finite in zip(fit.evaluations, mended, strict=True):
+    for at_point, finite in zip(here, mended, strict=True):
         seen, size = (np.linalg.norm(e.by_parameter, axis=0) for e in (at_point, finite))
         columns = np.where(seen < BLIND * size, finite.by_parameter, at_point.by_parameter)
         chosen.append(replace(at_point, by_parameter=columns))
@@ -267,16 +276,18 @@ def _fit_starts(
     return Fit(
         model, tuple(runs), (), dict(fixed), tuple(b.z[0] for b in best),
         float(sum(b.cost for b in best)), tuple(b.evaluations[0] for b in best),
-        next((b.failed for b in best if b.failed), None),
+        next((b.failed for b in best if b.failed), None), effort.tolerance,
     )  # fmt: skip
 
 
 def _places(problem: Problem, run: Run, start: FloatArray) -> list[FloatArray]:
-    """The best few starts of `run` that differ from `start` in the place in a gap, best first."""
+    """The best few starts of `run` that differ from `start` in the place in a gap or in whether a
+    joint is at rest, best first.
+    """
     nothing, best = np.zeros(0), [start]
     for index, unknown in enumerate(run.unknowns):
-        if unknown.contact is not None:
-            places = [_moved(best[0], index, v) for v in (best[0][index], *GAP_PLACES)]
+        if unknown.places:
+            places = [_moved(best[0], index, v) for v in (best[0][index], *unknown.places)]
             costs = [cost_of(problem, problem.evaluate(nothing, [p], False), [p]) for p in places]
             best = [places[i] for i in np.argsort(costs, kind="stable")[:TRIED_PLACES]]
     return best

@@ -9,15 +9,19 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.data import Log
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.identify.noise import white_noise
 from ptp_symbolic.platform import Platform, SignalDeclaration
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.inputs import InputTable, stack, table
 
 FloatArray = NDArray[np.float64]
 
-REST_SAMPLES, REST_IN_WINDOW = 3, 20
-SLOPE_SAMPLES = 9
-EDGE_SPAN = 20
+START_SPAN = 0.1  # s of motion that tell the rate at the start
+LEAST_START = 5  # samples of a parabola with two degrees of freedom left
+AT_REST = 4.0  # standard deviations: a rate below may be zero
+EDGE_SPAN = 0.1  # s over which the speed at the edge of a window is taken
+GAP_PLACES = (-0.9, -0.45, 0.45, 0.9)
+ROUNDING = 1.0 / np.sqrt(12.0)  # standard deviation of rounding, in counts
 
 
 @dataclass(frozen=True)
@@ -26,6 +30,7 @@ class StartUnknown:
 
     `tangent` [n] is the derivative of the start by the unknown; a `contact` index says that the
     unknown is the place in that gap, from -1 (lower face) to 1 (upper face). `sigma` is its prior.
+    A search may begin at other `places` too: elsewhere in the gap, or at rest.
     """
 
     name: str
@@ -34,6 +39,7 @@ class StartUnknown:
     upper: float
     sigma: float
     contact: int | None = None
+    places: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,19 +87,29 @@ def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple
                 f" {', '.join(model.output_names)}; declare it under [signals.{missing[0]}]."
             )
     order = [[s.signal for s in given].index(name) for name in model.input_names]
-    return tuple(_prepare(model, outputs, log, log.inputs[:, order]) for log in logs)
-
-
-def _prepare(
-    model: Model, outputs: Sequence[SignalDeclaration], log: Log, inputs: FloatArray
-) -> Run:
     counts = np.array(
         [
             2 * np.pi / s.counts_per_revolution if s.counts_per_revolution else np.nan
             for s in outputs
         ]
     )
-    sigma = np.array([_sigma(s, q) for s, q in zip(outputs, counts, strict=True)])
+    sigma = np.array(
+        [
+            _sigma(s, q, [log.outputs[:, k] for log in logs])
+            for k, (s, q) in enumerate(zip(outputs, counts, strict=True))
+        ]
+    )
+    return tuple(_prepare(model, outputs, log, log.inputs[:, order], counts, sigma) for log in logs)
+
+
+def _prepare(
+    model: Model,
+    outputs: Sequence[SignalDeclaration],
+    log: Log,
+    inputs: FloatArray,
+    counts: FloatArray,
+    sigma: FloatArray,
+) -> Run:
     run = Run(
         name=log.name,
         time=np.ascontiguousarray(log.time),
@@ -107,12 +123,17 @@ def _prepare(
         start=np.empty(0),
         unknowns=(),
     )
-    return _with_start(model, run, REST_SAMPLES)
+    return with_start(model, run)
 
 
-def _sigma(signal: SignalDeclaration, count: float) -> float:
-    rounding = 0.0 if np.isnan(count) else count / np.sqrt(12.0)
-    sigma = float(np.hypot(rounding, signal.noise or 0.0))
+def _sigma(signal: SignalDeclaration, count: float, measured: Sequence[FloatArray]) -> float:
+    """Standard deviation of a signal: rounding, and the declared noise or else that in the logs."""
+    rounding = 0.0 if np.isnan(count) else count * ROUNDING
+    noise = signal.noise
+    if noise is None and rounding > 0.0:
+        seen = float(np.median([white_noise(column) for column in measured]))
+        noise = float(np.sqrt(max(seen**2 - rounding**2, 0.0)))
+    sigma = float(np.hypot(rounding, noise or 0.0))
     if sigma == 0.0:
         raise InputError(
             f"Signal '{signal.signal}' has neither counts_per_revolution nor noise;"
@@ -121,13 +142,16 @@ def _sigma(signal: SignalDeclaration, count: float) -> float:
     return sigma
 
 
-def _with_start(model: Model, run: Run, rest_samples: int) -> Run:
-    """Guess the start from the first samples: at rest, or moving with the slope of the angle."""
+def with_start(model: Model, run: Run) -> Run:
+    """`run` with a guess of the state at its first sample, and what is unknown of it.
+
+    A parabola through the first tenth of a second gives angle and rate. A joint with dry friction
+    whose rate is within its noise is taken to be at rest; one that is near it may be.
+    """
     states = list(model.state_names)
     start = np.array(model.module.STATE_INITIAL, dtype=np.float64)
+    rubbing = {states[i] for i in model.friction_rates}
     unknowns: list[StartUnknown] = []
-    first = run.measured[: rest_samples + 1]
-    at_rest = True
     for column, signal in enumerate(run.signals):
         if signal not in states:
             continue
@@ -135,38 +159,54 @@ def _with_start(model: Model, run: Run, rest_samples: int) -> Run:
         if axis == signal or f"omega_{axis}" not in states:
             start[states.index(signal)] = run.measured[0, column]
             continue
-        count = run.counts[column] if run.counts[column] > 0 else 1.0 / run.weight[column]
-        carried = [name for name in (signal, f"theta_gear_{axis}") if name in states]
-        start[[states.index(name) for name in carried]] = run.measured[0, column]
-        unknowns.append(_unknown(states, signal, carried, 3.0 * count, 0.35 * count))
-        if np.ptp(first[:, column]) <= 1.01 * count:
-            continue
-        at_rest = False
-        slope = np.polyfit(
-            run.time[:SLOPE_SAMPLES] - run.time[0], run.measured[:SLOPE_SAMPLES, column], 2
-        )[1]
+        sigma = 1.0 / run.weight[column]
+        rate, error = _first_rate(run, column)
+        angles = [name for name in (signal, f"theta_gear_{axis}") if name in states]
         rates = [name for name in (f"omega_{axis}", f"omega_gear_{axis}") if name in states]
-        start[[states.index(name) for name in rates]] = slope
-        span = float(run.time[SLOPE_SAMPLES - 1] - run.time[0])
-        unknowns.append(_unknown(states, rates[0], rates, 1e3, 2.0 * count / span))
-    if at_rest:
-        resting = set(states) & {f"theta_{a}" for a in model.module.AXES}
-        for index, name in enumerate(states):
-            if name not in resting and not name.startswith("theta_"):
-                start[index] = model.module.STATE_INITIAL[index]
+        start[[states.index(name) for name in angles]] = run.measured[0, column]
+        limit = 10.0 * sigma
+        unknowns.append(_unknown(states, signal, angles, limit, sigma))
+        may_rest = bool(rubbing & set(rates))
+        if may_rest and abs(rate) <= AT_REST * error:
+            continue
+        start[[states.index(name) for name in rates]] = rate
+        places = (0.0, -rate) if may_rest and abs(rate) <= 3.0 * AT_REST * error else ()
+        unknowns.append(_unknown(states, rates[0], rates, 1e3, error, places))
     for contact, (gear, _) in enumerate(model.module.CONTACT_ANGLES):
         tangent = np.zeros(len(states))
         tangent[gear] = 1.0
-        unknowns.append(StartUnknown(f"gap_place_{contact}", tangent, -1.0, 1.0, 1.0, contact))
+        unknowns.append(
+            StartUnknown(f"gap_place_{contact}", tangent, -1.0, 1.0, 1.0, contact, GAP_PLACES)
+        )
     return replace(run, start=start, unknowns=tuple(unknowns))
 
 
+def _first_rate(run: Run, column: int) -> tuple[float, float]:
+    """Rate at the first sample, and its standard deviation: noise as if white, rounding as if it
+    were the same in half of the samples.
+    """
+    count = max(LEAST_START, int(np.searchsorted(run.time, run.time[0] + START_SPAN)))
+    time = run.time[:count] - run.time[0]
+    columns = np.vander(time / time[-1], 3, increasing=True)
+    inverse = np.linalg.pinv(columns)
+    rate = float(inverse[1] @ run.measured[:count, column]) / time[-1]
+    sigma = 1.0 / run.weight[column]
+    rounding = float(np.nan_to_num(run.counts[column])) * ROUNDING
+    white = np.sqrt(max(sigma**2 - rounding**2, 0.0)) * float(np.linalg.norm(inverse[1]))
+    return rate, float(np.hypot(white, 2.0 * rounding)) / float(time[-1])
+
+
 def _unknown(
-    states: list[str], name: str, carried: list[str], limit: float, sigma: float
+    states: list[str],
+    name: str,
+    carried: list[str],
+    limit: float,
+    sigma: float,
+    places: tuple[float, ...] = (),
 ) -> StartUnknown:
     tangent = np.zeros(len(states))
     tangent[[states.index(c) for c in carried]] = 1.0
-    return StartUnknown(name, tangent, -limit, limit, sigma)
+    return StartUnknown(name, tangent, -limit, limit, sigma, None, places)
 
 
 def _moving_edges(run: Run, edges: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -177,7 +217,9 @@ def _moving_edges(run: Run, edges: NDArray[np.int64]) -> NDArray[np.int64]:
     encoders = np.flatnonzero(np.isfinite(run.counts))
     if encoders.size == 0:
         return edges
-    half = EDGE_SPAN // 2
+    half = max(1, round(0.5 * EDGE_SPAN / float(np.median(np.diff(run.time)))))
+    if len(run.time) <= 4 * half:
+        return edges
     rate = np.zeros((len(run.time), encoders.size))
     rate[half:-half] = run.measured[2 * half :, encoders] - run.measured[: -2 * half, encoders]
     speed = np.abs(rate) / np.maximum(np.sqrt(np.mean(rate**2, axis=0)), 1e-300)
@@ -193,7 +235,7 @@ def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
     Neighbours share the sample between them, so that no step from sample to sample is lost.
     """
     duration = run.time[-1] - run.time[0]
-    pieces = max(1, round(duration / length))
+    pieces = max(1, min(round(duration / length), (len(run.time) - 1) // (2 * LEAST_START)))
     if pieces == 1:
         return (run,)
     edges = _moving_edges(run, np.linspace(0, len(run.time) - 1, pieces + 1).astype(int))
@@ -208,5 +250,5 @@ def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
             held_inputs=np.ascontiguousarray(run.held_inputs[part]),
             measured=np.ascontiguousarray(run.measured[part]),
         )
-        windows.append(_with_start(model, piece, REST_IN_WINDOW))
+        windows.append(with_start(model, piece))
     return tuple(windows)

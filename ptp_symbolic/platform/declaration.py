@@ -13,7 +13,8 @@ class ParameterDeclaration:
 
     `value` is the known value, the start value of a free parameter, or the value of the parameter
     it is tied to. Numbers are in `unit`, an SI unit; `unit` None means the effect's own unit and
-    bounds None the effect's own bounds. `lower` and `upper` are given together.
+    bounds None the effect's own bounds. `lower` and `upper` are given together. `uncertainty` says
+    by how much a known value may be off at most; None where the platform does not say.
     """
 
     name: str
@@ -23,6 +24,7 @@ class ParameterDeclaration:
     lower: float | None = None
     upper: float | None = None
     same_as: str | None = None
+    uncertainty: float | None = None
 
 
 @dataclass(frozen=True)

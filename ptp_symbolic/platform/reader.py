@@ -151,7 +151,7 @@ def _parameters(given: object, file: str) -> tuple[ParameterDeclaration, ...]:
         name: fields.table(
             entry,
             f"{file}: parameters.{fields.name(name, f'{file}: parameters')}",
-            ("value", "start", "same_as", "unit", "bounds"),
+            ("value", "start", "same_as", "unit", "bounds", "uncertainty"),
         )
         for name, entry in fields.table(given, f"{file}: parameters").items()
     }
@@ -198,7 +198,17 @@ def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDecla
                 f"{where}.{key}: {fields.shown(entry[key])}{unit_text} lies outside its bounds "
                 f"{fields.shown(bounds)}{unit_text}; change one of them."
             )
-    return ParameterDeclaration(name, unit, value, key == "start", lower, upper)
+    uncertainty = None
+    if "uncertainty" in entry:
+        uncertainty = _scaled(entry["uncertainty"], factor, f"{where}.uncertainty")
+        if key == "start" or uncertainty < 0.0:
+            raise InputError(
+                f"{where}.uncertainty: {fields.shown(entry['uncertainty'])}: give zero or more, and"
+                " only with a value; a start is fitted within its bounds."
+            )
+    return ParameterDeclaration(
+        name, unit, value, key == "start", lower, upper, uncertainty=uncertainty
+    )
 
 
 def _tied(

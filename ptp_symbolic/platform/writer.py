@@ -53,6 +53,8 @@ def _parameter_lines(parameter: ParameterDeclaration) -> list[str]:
         raise ValueError(f"Parameter {parameter.name!r} has one bound alone; give both or none.")
     if parameter.lower is not None and parameter.upper is not None:
         lines.append(f"bounds = [{float(parameter.lower)!r}, {float(parameter.upper)!r}]")
+    if parameter.uncertainty is not None:
+        lines.append(f"uncertainty = {float(parameter.uncertainty)!r}")
     return lines
 
 

@@ -1,0 +1,94 @@
+"""By how much a larger model predicts better: losses of blocks that the fit did not see.
+
+Every block of the training runs is left out in turn and predicted by the others (see
+`identify.blocks`); the losses of two models on the same blocks are compared in pairs.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from ptp_symbolic.diagnose.trial import BEND, Trial, huber
+from ptp_symbolic.identify.blocks import (
+    block_labels,
+    block_length,
+    bootstrap_share,
+    leave_blocks_out,
+)
+from ptp_symbolic.identify.fit import Fit
+from ptp_symbolic.identify.intervals import project_out
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+CONFIDENCE = 0.95
+LEAST_SPREAD = 1e-12  # of a share: equal blocks have none
+
+
+@dataclass(frozen=True)
+class Gain:
+    """Share of the predictive loss of the smaller model that the larger one takes away, its 95 %
+    interval, and its t statistic with `degrees` of freedom over blocks.
+    """
+
+    share: float
+    lower: float
+    upper: float
+    statistic: float
+    degrees: int
+
+    def is_clear(self, tests: int) -> bool:
+        """Whether the gain is above zero at 5 % over so many `tests` (Bonferroni, one-sided)."""
+        threshold = stats.t.ppf(1.0 - 0.05 / max(tests, 1), max(self.degrees, 1))
+        return self.statistic > float(threshold)
+
+
+def gain(larger: Trial, smaller: Trial) -> Gain:
+    """The predictive gain of `larger` over `smaller`, both fitted to the same runs."""
+    runs = larger.fit.runs
+    residuals = [_projected(t.fit) for t in (larger, smaller)]
+    signals = runs[0].measured.shape[1]
+    difference = [
+        (b**2 - a**2).reshape(-1, signals).sum(axis=1)
+        for a, b in zip(residuals[0][0], residuals[1][0], strict=True)
+    ]
+    labels = block_labels([len(d) for d in difference], block_length(difference))
+    label = np.concatenate(labels)
+    squares = [_block_squares(parts, label, signals) for parts in residuals]
+    size = np.bincount(label)
+    scale = np.maximum((size @ squares[0]) / size.sum(), 1e-300)
+    losses = [size * huber(s / scale, np.full(signals, BEND**2)).sum(axis=1) for s in squares]
+    return compared(losses[0], losses[1])
+
+
+def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
+    """The gain from the losses [b] of the same blocks by two models."""
+    taken = smaller - larger
+    share, lower, upper = bootstrap_share(taken, smaller, CONFIDENCE)
+    influence = (taken - share * smaller) / max(smaller.sum(), 1e-300)
+    b = len(taken)
+    error = float(np.sqrt(b / max(b - 1, 1) * np.sum(influence**2)))
+    return Gain(share, lower, upper, share / max(error, LEAST_SPREAD), b - 1)
+
+
+def _projected(fit: Fit) -> tuple[list[FloatArray], list[FloatArray]]:
+    """Residuals [k * ny] and Jacobians [k * ny, nf] of every run, its unknown start taken out."""
+    residuals = [
+        project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations
+    ]
+    jacobians = [project_out(e.by_parameter, e.by_start) for e in fit.evaluations]
+    return residuals, jacobians
+
+
+def _block_squares(
+    parts: tuple[Sequence[FloatArray], Sequence[FloatArray]], label: IntArray, signals: int
+) -> FloatArray:
+    """Mean square [b, signals] of the residuals of every block, predicted by the other blocks."""
+    residual, jacobian = np.concatenate(parts[0]), np.vstack(parts[1])
+    left = leave_blocks_out(residual, jacobian, np.repeat(label, signals))
+    table = left.predicted.reshape(-1, signals) ** 2
+    size = np.bincount(label)
+    return np.column_stack([np.bincount(label, weights=c) / size for c in table.T])

@@ -1,0 +1,227 @@
+"""What the equation space proposes: where to start the declared model, and which sets to try."""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
+
+from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.signatures import brought, locked_signatures, signatures
+from ptp_symbolic.diagnose.subsets import (
+    Regression,
+    Subset,
+    is_no_worse,
+    ranked_subsets,
+    regression,
+    remainder,
+    reweighted,
+)
+from ptp_symbolic.diagnose.trial import Task, restarted
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.identify.coordinates import FreeParameter
+from ptp_symbolic.identify.equation_fit import fit_equations, linearised
+from ptp_symbolic.identify.equation_space import EquationSpace, prepare_equation_space
+from ptp_symbolic.identify.fit import all_values_at_start
+
+FloatArray = NDArray[np.float64]
+
+FAR_OFF = 4.0  # factor by which a declared start may be off when rows are chosen that count
+BLOCK = 1.0  # s left out at once: longer than the windows, whose rows overlap
+LARGEST = 3
+DEVIATIONS, SHARE = 2.0, 0.02
+PROPOSED = 6
+REGRESSIONS = 3
+REFINEMENTS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Proposal:
+    """A set of candidates and the values of all parameters at which to start it."""
+
+    candidates: tuple[Candidate, ...]
+    values: dict[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Proposals:
+    """The start of the declared model, sets to try, and candidates that the rows do not show.
+
+    `space` is None where the machine has no equation space; then only the simulation searches.
+    """
+
+    start: dict[str, float]
+    sets: tuple[Proposal, ...]
+    unseen: tuple[Candidate, ...]
+    space: EquationSpace | None
+    regression: Regression | None
+
+
+def declared_start(task: Task) -> dict[str, float]:
+    """All parameters at the declared starts, every candidate switched off."""
+    return {**task.fixed, **all_values_at_start(task.free)}
+
+
+def propose(task: Task) -> Proposals:
+    """Regress the residual torques and currents along the measured motion on all candidates."""
+    start = declared_start(task)
+    space = equation_space(task, start)
+    if space is None:
+        return Proposals(start, (), task.candidates, None, None)
+    first = fit_equations(space, task.free, start, 4, task.executor)
+    values = possible(task, {**start, **first.values})
+    here = {f.name: values[f.name] for f in task.free}
+    found = linearised(space, task.free, values, here, task.executor, own_torque=True)
+    equation, run, time = space.labels()
+    block = run * 100_000 + (time // BLOCK).astype(np.int64)
+    seen, unseen = signatures(space, task.candidates, values, found.weight, task.executor)
+    declared, base = task.free, found.jacobian
+    rows = regression(found.rows, declared, base, seen, equation, block, found.weight)
+    locked = locked_signatures(space, task.candidates, values, remainder(rows), rows.weight)
+    every = [*seen, *locked]
+    rows = regression(found.rows, declared, base, every, equation, block, found.weight)
+    chosen, rows = _best_sets(rows)
+    sets = [_refined(task, space, rows, s.candidates, values) for s in chosen]
+    return Proposals(values, tuple(sets), tuple(unseen), space, rows)
+
+
+def _refined(
+    task: Task,
+    space: EquationSpace,
+    rows: Regression,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+) -> Proposal:
+    """A set started where the rows ask for it, the parameters that shape it fitted to them too."""
+    begun = start_of(task, rows, candidates, values)
+    own = {(s.candidate.key, s.candidate.member): s.candidate for s in rows.signatures}
+    placed = tuple(own[c.key, c.member] for c in candidates)
+    free = (*task.free, *(restarted(f, begun[f.name]) for c in placed for f in c.free))
+    found = fit_equations(space, free, begun, REFINEMENTS, task.executor)
+    return Proposal(placed, possible(task, {**begun, **found.values}))
+
+
+def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | None:
+    """The equation space of the training runs; None where angles are missing or states sampled."""
+    vector = task.model.parameter_vector
+    varied = dict(start)
+    for candidate in task.candidates:
+        for f in candidate.free:
+            amount = f.start
+            if candidate.is_declared_value:
+                amount = min(1.05 * f.start, f.upper)
+            varied.update(dict.fromkeys((f.name, *f.tied), amount))
+    others = []
+    for f in task.free:
+        for factor in (FAR_OFF, 1.0 / FAR_OFF):
+            value = float(np.clip(f.start * factor, f.lower, f.upper))
+            others.append(vector({**start, **dict.fromkeys((f.name, *f.tied), value)}))
+    try:
+        space = prepare_equation_space(
+            task.model, task.whole, vector(dict(start)), others, vector(varied)
+        )
+    except InputError:
+        return None
+    enough = min(int(rows.kept.sum()) for rows in space.rows_of) >= 0
+    total = sum(int(rows.kept.sum()) for rows in space.rows_of)
+    return space if enough and total > 4 * (len(task.free) + 1) else None
+
+
+def possible(task: Task, values: Mapping[str, float]) -> dict[str, float]:
+    """`values` with every relation met that the machine needs: of two parameters the first raised."""
+    found = dict(values)
+    margin = np.zeros(len(task.model.module.REQUIREMENTS))
+    for names, *_ in task.model.module.REQUIREMENTS:
+        task.model.module.margins(task.model.parameter_vector(found), margin)
+        if np.all(margin >= 0.0):
+            break
+        most = max(found[name] for name in names)
+        for name in names:
+            found[name] = most
+    return found
+
+
+def _best_sets(rows: Regression) -> tuple[list[Subset], Regression]:
+    """The sets that blocks left out favour: those that are no worse than the best, the simplest
+    first, then the best of every size. Scales follow the residual of the set that is chosen.
+    """
+    chosen: Subset | None = None
+    for _ in range(REGRESSIONS):
+        every = ranked_subsets(rows, LARGEST)
+        close = [s for s in every if is_no_worse(s, every[0], DEVIATIONS, SHARE)]
+        close.sort(key=lambda s: (len(s.candidates), s.columns, s.loss))
+        again = chosen is not None and _keys(chosen) == _keys(close[0])
+        chosen = close[0]
+        if again:
+            break
+        rows = reweighted(rows, chosen.candidates)
+    kept: dict[frozenset[str], Subset] = {}
+    for subset in (*close[:2], every[0], *_best_by_size(every), *close[2:]):
+        if subset.candidates:
+            kept.setdefault(_keys(subset), subset)
+    return list(kept.values())[:PROPOSED], rows
+
+
+def _best_by_size(every: Sequence[Subset]) -> list[Subset]:
+    """The two best single candidates, the best pair and the best triple."""
+    found = []
+    for size, count in ((1, 2), (2, 1), (3, 1)):
+        distinct: dict[frozenset[str], Subset] = {}
+        for subset in every:
+            if len(subset.candidates) == size:
+                distinct.setdefault(_keys(subset), subset)
+        found += list(distinct.values())[:count]
+    return found
+
+
+def _keys(subset: Subset) -> frozenset[str]:
+    return frozenset(c.key for c in subset.candidates)
+
+
+def start_of(
+    task: Task, rows: Regression, candidates: Sequence[Candidate], values: Mapping[str, float]
+) -> dict[str, float]:
+    """Values at which to start a set: the amounts that the rows ask for, within bounds, at the best
+    values of the parameters that shape its members; the declared parameters follow.
+    """
+    own = {(s.candidate.key, s.candidate.member): s for s in rows.signatures}
+    found = [own[c.key, c.member] for c in candidates]
+    root = np.sqrt(rows.weight)
+    right = np.concatenate([rows.rows * root, np.zeros(len(rows.declared))])
+    best, result = np.inf, dict(values)
+    for shapes in itertools.product(*(range(len(s.candidate.shapes)) for s in found)):
+        free: list[tuple[FreeParameter, float]] = []
+        columns = [rows.base[:, k] for k in range(rows.base.shape[1])]
+        for signature, shape in zip(found, shapes, strict=True):
+            for f, column in zip(signature.candidate.defining, signature.slopes[shape], strict=True):
+                free.append((f, signature.candidate.vanishing[f.name]))
+                columns.append(column)
+        table = np.column_stack(columns) * root[:, None]
+        declared = rows.declared
+        prior = np.zeros((len(declared), table.shape[1]))
+        prior[:, : len(declared)] = np.diag([1.0 / f.scale for f in declared])
+        table = np.vstack([table, prior])
+        lower = np.array([f.lower - values[f.name] for f in declared] + [f.lower - z for f, z in free])
+        upper = np.array([f.upper - values[f.name] for f in declared] + [f.upper - z for f, z in free])
+        size = np.maximum(np.linalg.norm(table, axis=0), 1e-300)
+        triangle = np.linalg.qr(np.column_stack([table / size, right]), mode="r")
+        k = table.shape[1]
+        solved = lsq_linear(
+            triangle[:, :k], -triangle[:, k], ((lower - 1e-12) * size, (upper + 1e-12) * size)
+        )
+        if solved.cost < best:
+            best, amounts = solved.cost, solved.x / size
+            result = dict(values)
+            for f, amount in zip(declared, amounts, strict=False):
+                value = float(np.clip(values[f.name] + amount, f.lower, f.upper))
+                result.update(dict.fromkeys((f.name, *f.tied), value))
+            for (f, zero), amount in zip(free, amounts[len(declared) :], strict=True):
+                value = float(np.clip(zero + amount, f.lower, f.upper))
+                if any(f.name in s.finite for s in found) and amount != 0.0:
+                    value = f.start
+                result.update(dict.fromkeys((f.name, *f.tied), value))
+            for signature, shape in zip(found, shapes, strict=True):
+                result.update(signature.candidate.shapes[shape])
+    return possible(task, result)

@@ -1,0 +1,208 @@
+"""What every candidate would change in the rows of the equation space.
+
+A candidate's signature is a set of columns: the rows with a finite amount of each parameter that
+switches it on, minus the rows without, at every set of values of the parameters that shape it. Its
+span holds, or nearly holds, everything that the candidate can do. A frequency is scanned.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.identify.equation_space import EquationSpace
+
+FloatArray = NDArray[np.float64]
+
+SAME_DIRECTION = 1e-3  # singular value, relative: columns closer than this count once
+CYCLES_APART = 0.2  # of a period over the whole range: finer frequencies cannot be told apart
+ATTENUATED = 2.0  # cycles within a window: faster ones are averaged away
+SMALL_AMOUNT = 0.01  # of the amount at which a search begins: the rows are linear there
+DECLARED_AMOUNT = 0.05  # share of a declared value by which it is changed
+
+
+@dataclass(frozen=True, eq=False)
+class Signature:
+    """What a candidate, with its frequency, changes in the rows.
+
+    `slopes` gives, for every set of shaping values and every defining parameter, the change [n] of
+    the rows per unit of the parameter; `finite` the defining parameters that show only at the whole
+    amount with which their search begins. `columns` [n, c] span all of that, orthonormal when rows
+    count by their weight.
+    """
+
+    candidate: Candidate
+    slopes: tuple[tuple[FloatArray, ...], ...]
+    finite: frozenset[str]
+    columns: FloatArray
+
+
+def signatures(
+    space: EquationSpace,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+    weight: FloatArray,
+    executor: Executor | None = None,
+) -> tuple[list[Signature], list[Candidate]]:
+    """Signatures at the parameter `values`, each row counted by its `weight` [n]; and candidates
+    that change nothing along the measured motion.
+    """
+    by_key = {c.key: c for c in reversed(candidates)}
+    own = space.own_torque(space.model.parameter_vector(dict(values)))
+    cache: dict[tuple[tuple[str, float], ...], FloatArray] = {}
+
+    def rows(changed: Mapping[str, float]) -> FloatArray:
+        key = tuple(sorted(changed.items()))
+        if key not in cache:
+            p = space.model.parameter_vector({**values, **changed})
+            cache[key] = space.rows(p, own)
+        return cache[key]
+
+    def signature(candidate: Candidate) -> Signature:
+        return _signature(candidate, brought(candidate, by_key), rows, weight)
+
+    rows({})
+    wanted = [c for c in candidates if c.locked is None]
+    run = executor.map if executor else map
+    found = list(run(signature, wanted))
+    space.forget()
+    seen = [s for s in found if s.columns.shape[1]]
+    keys = {s.candidate.key for s in seen}
+    return seen, [c for c in wanted if c.key not in keys]
+
+
+def brought(candidate: Candidate, by_key: Mapping[str, Candidate]) -> dict[str, float]:
+    """Start values of the candidates that `candidate` brings along, so that it has what to act on."""
+    return {
+        name: f.start
+        for key in candidate.brings
+        for f in by_key[key].free
+        for name in (f.name, *f.tied)
+    }
+
+
+def _signature(
+    candidate: Candidate,
+    base: Mapping[str, float],
+    rows: Callable[[Mapping[str, float]], FloatArray],
+    weight: FloatArray,
+) -> Signature:
+    """Difference quotients of `rows` by every defining parameter at every set of shaping values."""
+    finite: set[str] = set()
+    slopes = []
+    for shape in candidate.shapes:
+        without, columns = rows({**base, **shape}), []
+        for f in candidate.defining:
+            zero, whole = candidate.vanishing[f.name], f.start
+            if candidate.is_declared_value:
+                whole = min(f.start * (1.0 + DECLARED_AMOUNT), 0.5 * (f.start + f.upper))
+            column = np.zeros(len(weight))
+            for amount in (zero + SMALL_AMOUNT * (whole - zero), whole):
+                changed = dict.fromkeys((f.name, *f.tied), amount)
+                column = (rows({**base, **shape, **changed}) - without) / (amount - zero)
+                if np.any(column):
+                    break
+                finite.add(f.name)
+            columns.append(column)
+        slopes.append(tuple(columns))
+    span = _orthonormal(np.column_stack([c for columns in slopes for c in columns]), weight)
+    return Signature(candidate, tuple(slopes), frozenset(finite), span)
+
+
+def _orthonormal(columns: FloatArray, weight: FloatArray) -> FloatArray:
+    """The span of `columns` [n, k], orthonormal when rows count by `weight`."""
+    root = np.sqrt(weight)[:, None]
+    weighted = columns * root
+    size = np.linalg.norm(weighted, axis=0)
+    weighted = weighted[:, size > 0.0] / size[size > 0.0]
+    if not weighted.shape[1]:
+        return np.zeros((len(weight), 0))
+    left, values, _ = np.linalg.svd(weighted, full_matrices=False)
+    return left[:, values > SAME_DIRECTION * values[0]] / root
+
+
+def locked_signatures(
+    space: EquationSpace,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+    residual: FloatArray,
+    weight: FloatArray,
+) -> list[Signature]:
+    """Signatures of candidates with a frequency, at the strongest line of the weighted `residual`.
+
+    A full scan over the place (time, or the angle of the candidate's axis): all frequencies from one
+    cycle over the whole range to those that the windows average away.
+    """
+    by_key = {c.key: c for c in reversed(candidates)}
+    own = space.own_torque(space.model.parameter_vector(dict(values)))
+    found = []
+
+    def rows(changed: Mapping[str, float]) -> FloatArray:
+        return space.rows(space.model.parameter_vector({**values, **changed}), own)
+
+    lines: dict[tuple[str, str | None], float] = {}
+    for candidate in candidates:
+        if candidate.locked is None:
+            continue
+        name, place = candidate.locked
+        if (place, candidate.axis) not in lines:
+            lines[place, candidate.axis] = _strongest(space, candidate, residual, weight)
+        frequency = lines[place, candidate.axis]
+        limits = next(f for f in candidate.free if f.name == name)
+        if not limits.lower < frequency < limits.upper:
+            continue
+        free = tuple(
+            replace(f, start=frequency, scale=CYCLES_APART * frequency) if f.name == name else f
+            for f in candidate.free
+        )
+        shapes = tuple({**shape, name: frequency} for shape in candidate.shapes)
+        placed = replace(candidate, free=free, shapes=shapes)
+        found.append(_signature(placed, brought(placed, by_key), rows, weight))
+    return [s for s in found if s.columns.shape[1]]
+
+
+def _strongest(
+    space: EquationSpace, candidate: Candidate, residual: FloatArray, weight: FloatArray
+) -> float:
+    """The frequency in Hz, or in cycles per turn, of the strongest line of the residual torques."""
+    equation, run, time = space.labels()
+    assert candidate.locked is not None
+    by_angle = candidate.locked[1] == "angle"
+    axes = space.model.module.AXES
+    own = [axes.index(candidate.axis)] if candidate.axis else list(range(len(axes)))
+    rows = np.isin(equation, own)
+    place, speed = time[rows], np.ones(int(rows.sum()))
+    if by_angle:
+        place, speed = _angles(space, own[0], run[rows], time[rows])
+    turn = 2.0 * np.pi if by_angle else 1.0
+    span = float(np.ptp(place)) / turn
+    slow = float(np.quantile(np.abs(speed), 0.1)) / turn
+    highest = ATTENUATED / max(2.0 * space.half_width * slow, 1e-12)
+    grid = np.arange(1.0 / span, highest, CYCLES_APART / span)
+    value = residual[rows] * np.sqrt(weight[rows])
+    power = np.zeros(len(grid))
+    for axis in own:
+        here = equation[rows] == axis
+        phase = np.exp(2j * np.pi * np.outer(grid, place[here] / turn))
+        power += np.abs(phase @ value[here]) ** 2 / np.sum(weight[rows][here])
+    return float(grid[int(np.argmax(power))]) if len(grid) else 0.0
+
+
+def _angles(
+    space: EquationSpace, axis: int, run: NDArray[np.int64], time: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Measured angle and its slope at the rows of an axis."""
+    angle, speed = np.zeros(len(time)), np.zeros(len(time))
+    for number in np.unique(run):
+        own = run == number
+        source = space.runs[number]
+        column = source.signals.index(f"theta_{space.model.module.AXES[axis]}")
+        measured = source.measured[:, column]
+        angle[own] = np.interp(time[own], source.time, measured)
+        h = space.half_width
+        ahead, behind = (np.interp(time[own] + d, source.time, measured) for d in (h, -h))
+        speed[own] = (ahead - behind) / (2.0 * h)
+    return angle, speed

@@ -1,0 +1,125 @@
+"""The noise of a measured signal: how large, and how it is coloured.
+
+Differences of high order of a signal remove its smooth motion and keep its white noise, which gives
+a first size. What a model leaves shows the colour: its spectrum above the frequencies of the motion
+is that of a first-order autoregression plus white noise, whose likelihood (Whittle, 1953) gives the
+whole variance, also below.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+FloatArray = NDArray[np.float64]
+
+ORDER = 5  # of the differences: a motion at a tenth of the sampling rate leaves 1 % of itself
+KEPT = 0.99  # of the squared differences: the rest may be jumps of the motion
+PIECE = 256  # samples; the median over pieces is that of the quiet ones where motion is rough
+SEGMENT = 64  # samples of a periodogram: its lowest frequency resolves poles up to 0.95
+LOWEST = 3  # first bin used of a segment: those below belong to the window and to the motion
+POLES = np.concatenate([[0.0], np.linspace(0.3, 0.97, 40)])
+
+
+@lru_cache(maxsize=8)
+def _trimmed_share(kept: float) -> float:
+    """Mean of the smallest share `kept` of the squares of normal numbers of variance 1."""
+    z = stats.norm.ppf(0.5 + 0.5 * kept)
+    return float((kept - 2.0 * z * stats.norm.pdf(z)) / kept)
+
+
+def white_noise(signal: FloatArray) -> float:
+    """Standard deviation of the white noise of a smooth `signal` [n], also of its rounding.
+
+    Squared differences of order 5, less the largest, corrected for what that takes from normal noise;
+    zero where the signal is too short.
+    """
+    gain = float(comb(2 * ORDER, ORDER))
+    if len(signal) < 4 * ORDER:
+        return 0.0
+    square = np.diff(signal, ORDER) ** 2
+    pieces = np.array_split(square, max(1, len(square) // PIECE))
+    values = []
+    for piece in pieces:
+        kept = np.sort(piece)[: max(1, int(KEPT * len(piece)))]
+        values.append(float(kept.mean()) / (gain * _trimmed_share(KEPT)))
+    return float(np.sqrt(np.median(values)))
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Noise with the standard deviation `rms` of which a part is an autoregression with `pole` at
+    one sample; `most` is the largest standard deviation that the spectrum allows at 95 %.
+    """
+
+    rms: float
+    pole: float
+    most: float
+
+
+def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
+    """The noise in residual `series` (evenly sampled, any lengths), at least `least` of it white.
+
+    Whittle's likelihood over the bins that lie above the motion, profiled over the pole.
+    """
+    power, count = _spectrum(series)
+    if count == 0:
+        return Noise(least, 0.0, least)
+    omega = 2.0 * np.pi * np.arange(LOWEST, SEGMENT // 2 + 1) / SEGMENT
+    power = power[LOWEST:]
+    degrees = 2.0 * count / OVERLAP_CORRELATION
+    fits = [_profiled(power, omega, pole, least**2, degrees) for pole in POLES]
+    likelihood = np.array([f[0] for f in fits])
+    best = int(np.argmax(likelihood))
+    allowed = likelihood >= likelihood[best] - 0.5 * float(stats.chi2.ppf(0.95, 1))
+    most = max(f[1] for f, ok in zip(fits, allowed, strict=True) if ok)
+    return Noise(float(np.sqrt(fits[best][1])), float(POLES[best]), float(np.sqrt(most)))
+
+
+OVERLAP_CORRELATION = 1.2  # periodograms of Hann windows that overlap by half share that much
+
+
+def _spectrum(series: Sequence[FloatArray]) -> tuple[FloatArray, int]:
+    """Mean periodogram [SEGMENT/2 + 1] per sample of Hann windows that overlap by half (Welch,
+    1967), scaled so that white noise of variance 1 has power 1, and the number of windows.
+    """
+    taper = np.hanning(SEGMENT + 1)[:-1]
+    total, count = np.zeros(SEGMENT // 2 + 1), 0
+    for values in series:
+        for first in range(0, len(values) - SEGMENT + 1, SEGMENT // 2):
+            part = values[first : first + SEGMENT]
+            total += np.abs(np.fft.rfft((part - part.mean()) * taper)) ** 2
+            count += 1
+    return total / max(count, 1) / float(np.sum(taper**2)), count
+
+
+def _profiled(
+    power: FloatArray, omega: FloatArray, pole: float, least: float, degrees: float
+) -> tuple[float, float]:
+    """Largest log likelihood at `pole`, and the variance there."""
+    shape = 1.0 / np.abs(1.0 - pole * np.exp(-1j * omega)) ** 2
+    best = (-np.inf, least)
+    for share in SHARES if pole > 0.0 else (0.0,):
+        # the white part is `least` or more; the autoregressive innovations have variance v
+        for white in (least, None):
+            if white is None:
+                mixture = share * shape * (1.0 - pole**2) + (1.0 - share)
+                variance = float(np.mean(power / mixture))
+                model, whole = variance * mixture, variance
+                if (1.0 - share) * variance < least:
+                    continue
+            else:
+                innovation = share * float(np.mean(np.maximum(power - white, 0.0) / shape)) * 2.0
+                model = white + innovation * shape
+                whole = white + innovation / (1.0 - pole**2)
+            likelihood = -0.5 * degrees * float(np.sum(np.log(model) + power / model))
+            if likelihood > best[0]:
+                best = (likelihood, whole)
+    return best
+
+
+SHARES = np.linspace(0.0, 1.0, 21)
