@@ -2,13 +2,14 @@
 
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ptp_symbolic import loop
@@ -18,21 +19,24 @@ from ptp_symbolic.data import Log, read_logs, read_split_logs
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.diagnose.candidates import find_candidates, vanished
 from ptp_symbolic.diagnose.curves import curves_of
+from ptp_symbolic.diagnose.errors import error_of
+from ptp_symbolic.diagnose.floor import carried_noise, floor_of
+from ptp_symbolic.diagnose.proposals import propose
 from ptp_symbolic.diagnose.residual_tests import residual_tests
-from ptp_symbolic.diagnose.rounds import Diagnosis, diagnose
-from ptp_symbolic.diagnose.search import HELD_OUT, fit_declared
+from ptp_symbolic.diagnose.search import Search, fit_declared, search
 from ptp_symbolic.diagnose.summary import (
     cause,
     error_table,
     fit_table,
+    gain_table,
     headline,
     ranking,
 )
-from ptp_symbolic.diagnose.trial import Task, Trial
-from ptp_symbolic.diagnose.verdict import EXPLAINED, PARTLY, UP_TO_GROUP
-from ptp_symbolic.identify.fit import all_values_at_start, fit_parameters
+from ptp_symbolic.diagnose.trial import Task, Trial, accuracy
+from ptp_symbolic.diagnose.verdict import Verdict, decide
+from ptp_symbolic.identify.fit import Effort, all_values_at_start, fit_parameters, unblinded
 from ptp_symbolic.identify.intervals import Estimate, estimates
-from ptp_symbolic.identify.run import prepare_runs
+from ptp_symbolic.identify.run import Run, prepare_runs
 from ptp_symbolic.identify.windows import cut, window_length
 from ptp_symbolic.platform import (
     EffectDeclaration,
@@ -47,7 +51,9 @@ from ptp_symbolic.runtime.model import Model
 
 Progress = Callable[[str], None]
 SCHEMA_VERSION = 1
-FAR_FROM_FLOOR = 3.0  # input noise may double the floor where runs are cut into windows
+FAR_FROM_FLOOR = 3.0  # times the floor: from here on a fit is called far from it
+START_ITERATIONS = 10  # for the starts of the runs at the declared values
+START_SHARE = 1e-2  # error of those simulations, as a share of the noise
 
 
 @dataclass(frozen=True)
@@ -84,20 +90,29 @@ def fit_platform(
     logs = read_logs(paths, platform)
     model = loop.emit(platform)
     with _workers() as executor:
-        task = _task(platform, model, logs, logs, {}, executor, progress)
+        task = _task(platform, model, logs, logs, (), executor, progress)
         begun = _as_declared(task)
-        trial = fit_declared(task) if task.free else begun
-    error = error_table(begun, trial, None)["train"]
-    left, floor = (error[when]["total"]["rmse_counts"] for when in ("after", "noise_floor"))
-    cut_up = len(task.train) > len(logs)
-    fitted = loop.extended(platform, (), trial.train.values, ())
+        trial = begun
+        if task.free:
+            progress("fitting")
+            trial = fit_declared(task, propose(task))
+            trial = replace(trial, fit=unblinded(trial.fit, executor))
+        floor = floor_of(task, trial, carried_noise(task, trial))
+    units = model.units
+    error = {
+        "before": None if begun.fit.failed else error_of(begun.fit, units),
+        "after": error_of(trial.fit, units),
+        "noise_floor": error_of(trial.fit, units, floor.level),
+    }
+    left, least = (error[when]["total"]["rmse"] for when in ("after", "noise_floor"))  # type: ignore[index]
+    fitted = loop.extended(platform, (), trial.values, ())
     summary = {
         "schema_version": SCHEMA_VERSION,
         "platform": {"name": platform.name, "title": platform.title},
-        "parameters": fit_table(trial),
-        "error": error | ({"before": None} if begun.train.failed else {}),
-        "far_from_floor": trial.train.failed is not None or left > FAR_FROM_FLOOR * floor,
-        "windows": {"count": len(task.train), "seconds": _mean_length(task)} if cut_up else None,
+        "parameters": fit_table(trial, estimates(trial.fit)),
+        "error": error,
+        "far_from_floor": trial.fit.failed is not None or left > FAR_FROM_FLOOR * least,
+        "windows": _windows(task),
     }
     files = {"fit.json": _json(summary), "platform.toml": platform_text(fitted)}
     return Output(summary, files)
@@ -106,13 +121,18 @@ def fit_platform(
 def _as_declared(task: Task) -> Trial:
     """The declared start values, with nothing but the starts of the runs fitted."""
     values = {**task.fixed, **all_values_at_start(task.free)}
+    effort = Effort(START_ITERATIONS, 1e-3, accuracy(task, START_SHARE))
     return Trial(
-        (), fit_parameters(task.model, task.train, (), values, None, HELD_OUT, task.executor)
+        (), fit_parameters(task.model, task.train, (), values, None, effort, task.executor)
     )
 
 
-def _mean_length(task: Task) -> float:
-    return sum(float(run.time[-1] - run.time[0]) for run in task.train) / len(task.train)
+def _windows(task: Task) -> dict[str, Any] | None:
+    """How many windows the runs were cut into, and how long they are; None for whole runs."""
+    if len(task.train) == len(task.whole):
+        return None
+    length = sum(float(run.time[-1] - run.time[0]) for run in task.train) / len(task.train)
+    return {"count": len(task.train), "seconds": length}
 
 
 def diagnose_platform(
@@ -128,13 +148,13 @@ def diagnose_platform(
     train_logs, validate_logs = read_split_logs(train, validate, platform)
     progress("deriving the equations of the platform and its candidates")
     model = loop.emit(loop.with_candidates(platform))
-    declared = effect_keys(platform)
-    known = loop.known_values(platform, model)
-    off = vanished(model, declared)
     with _workers() as executor:
-        task = _task(platform, model, train_logs, validate_logs, off, executor, progress)
-        found = diagnose(task, find_candidates(model, declared, known))
-    return _write_up(platform, found)
+        task = _task(
+            platform, model, train_logs, validate_logs, effect_keys(platform), executor, progress
+        )
+        found = search(task)
+        verdict = decide(task, found)
+        return _write_up(platform, task, found, verdict)
 
 
 def _task(
@@ -142,28 +162,51 @@ def _task(
     model: Model,
     train: Iterable[Log],
     validate: Iterable[Log],
-    off: Mapping[str, float],
+    declared: Sequence[str],
     executor: Executor,
     progress: Progress,
 ) -> Task:
+    """All that stays the same; `declared` are the keys of the effects that are not candidates."""
     progress("preparing the simulation (compiles for about a minute once on a new machine)")
     loop.refuse_unknown_signals(platform, model)
     free = loop.free_parameters(platform, model)
-    fixed = {**model.defaults, **off, **loop.known_values(platform, model)}
+    known = loop.known_values(platform, model)
+    off = vanished(model, declared) if declared else {}
+    fixed = {**model.defaults, **off, **{name: value for name, (value, _) in known.items()}}
     with naming_file(platform):
         runs = [prepare_runs(model, platform, tuple(logs)) for logs in (train, validate)]
-    start = {**fixed, **{name: f.start for f in free for name in (f.name, *f.tied)}}
+    start = {**fixed, **all_values_at_start(free)}
     noises = {s.signal: s.noise for s in platform.signals}
     noise = tuple(noises[name] for name in model.input_names)
     length = window_length(model, runs[0], model.parameter_vector(start), noise)
     cut_train, cut_validate = (cut(model, part, length) for part in runs)
-    return Task(model, cut_train, cut_validate, free, fixed, executor, progress, noise)
+    return Task(
+        model, runs[0], cut_train, cut_validate, free, fixed,
+        find_candidates(model, declared, known) if declared else (),
+        executor, progress, noise,
+        frozenset(name for name, size in noises.items() if size is not None),
+        _finest_angle(runs[0]),
+    )  # fmt: skip
 
 
-def _write_up(platform: Platform, found: Diagnosis) -> Output:
-    accepted = found.verdict.accepted
-    named = found.verdict.word in (EXPLAINED, UP_TO_GROUP, PARTLY)
-    after = accepted if named and accepted is not None else found.base
+def _finest_angle(runs: Sequence[Run]) -> float:
+    """Smallest noise of a measured angle in rad; of any signal where no angle is measured."""
+    run = runs[0]
+    angles = [k for k, name in enumerate(run.signals) if name.startswith("theta_")]
+    return float(np.min(1.0 / run.weight[angles or list(range(len(run.weight)))]))
+
+
+def _write_up(platform: Platform, task: Task, found: Search, verdict: Verdict) -> Output:
+    after = replace(
+        verdict.final, fit=unblinded(verdict.final.fit, task.executor)
+    )
+    declared = found.declared
+    intervals = {e.name: e for e in estimates(after.fit)}
+    parts = {
+        "train": (declared.fit, after.fit),
+        "validate": (verdict.before, verdict.after),
+    }
+    errors = error_table(parts, verdict.floor)
     extended = _extended(platform, after)
     files: dict[str, str | bytes] = {}
     equations = []
@@ -173,23 +216,23 @@ def _write_up(platform: Platform, found: Diagnosis) -> Output:
     summary = {
         "schema_version": SCHEMA_VERSION,
         "platform": {"name": platform.name, "title": platform.title},
-        "verdict": found.verdict.word,
-        "summary": headline(found),
-        "added": _added(found, after),
-        "ranking": ranking(found),
-        "error": error_table(found.base, after, found.verdict.floor),
-        "residual_tests": residual_tests(after, after.train.model.input_names),
+        "verdict": verdict.word,
+        "summary": headline(verdict, errors),
+        "added": _added(verdict, after, intervals),
+        "ranking": ranking(found, verdict, task.candidates),
+        "error": errors,
+        "residual_tests": residual_tests(verdict.after, task.model.input_names),
         "fit": {
-            "before": {"parameters": fit_table(found.base)},
-            "after": {"parameters": fit_table(after)},
+            "before": {"parameters": fit_table(declared, estimates(declared.fit))},
+            "after": {"parameters": fit_table(after, tuple(intervals.values()))},
         },
-        "not_visible": [
-            {"effect": c.id, "axis": c.axis, "why": "absorbed by the declared parameters"}
-            for c in found.invisible
-        ],
+        "held_out": None if verdict.held_out is None else gain_table(verdict.held_out),
+        "refused": dict(verdict.refused),
+        "windows": _windows(task),
+        "not_visible": [],
         "equations": equations,
     }
-    curves = curves_of(found.base, after)
+    curves = curves_of(parts)
     files["diagnosis.json"] = _json(summary)
     files["platform.toml"] = platform_text(extended)
     files["equations.tex"] = _equations_tex(equations)
@@ -213,17 +256,19 @@ def _equations_tex(equations: list[dict[str, Any]]) -> str:
     return f"% \\usepackage{{amsmath}}\n{text}"
 
 
-def _added(found: Diagnosis, after: Trial) -> list[dict[str, Any]]:
-    values = {e.name: e for e in estimates(after.train)}
-    units = after.train.model.units
-    rivals = sorted({key for r in found.verdict.rivals for key in r.keys} - set(after.keys))
+def _added(
+    verdict: Verdict, after: Trial, intervals: Mapping[str, Estimate]
+) -> list[dict[str, Any]]:
+    units = after.fit.model.units
+    gains = {step.candidate.key: step.gain for step in verdict.members}
     return [
         {
             "effect": c.id,
             "title": cause(c, after),
             "axis": c.axis,
-            "parameters": {name: _value(values[name], units[name]) for name in c.parameters},
-            "confusable_with": rivals if found.verdict.word == UP_TO_GROUP else [],
+            "parameters": {name: _value(intervals[name], units[name]) for name in c.parameters},
+            "gain": gain_table(gains[c.key]),
+            "confusable_with": list(verdict.confusable[c.key]),
             "separating_experiment": c.separating_experiment,
         }
         for c in after.candidates
@@ -238,17 +283,16 @@ def _value(estimate: Estimate, unit: str) -> dict[str, Any]:
 
 def _extended(platform: Platform, after: Trial) -> Platform:
     """`platform` with the accepted effects, and every fitted value as the new start."""
-    model = after.train.model
-    bounds = {p.name: p for p in model.parameters}
+    bounds = {p.name: p for p in after.fit.model.parameters}
     added = [
         EffectDeclaration(c.id, c.axis, None) for c in after.candidates if not c.is_declared_value
     ]
     fitted = [
         ParameterDeclaration(
-            name, bounds[name].unit, after.train.values[name], True, bounds[name].lower,
+            name, bounds[name].unit, after.values[name], True, bounds[name].lower,
             bounds[name].upper,
         )
         for c in after.candidates
         for name in c.parameters
     ]  # fmt: skip
-    return loop.extended(platform, added, after.train.values, fitted)
+    return loop.extended(platform, added, after.values, fitted)

@@ -140,11 +140,13 @@ def free_parameters(platform: Platform, model: Model) -> tuple[FreeParameter, ..
     )
 
 
-def known_values(platform: Platform, model: Model) -> dict[str, float]:
-    """Values of the parameters that `platform` declares as known and `model` has."""
+def known_values(platform: Platform, model: Model) -> dict[str, tuple[float, float | None]]:
+    """Values of the parameters that `platform` declares as known and `model` has, each with the
+    most by which it may be off, where the platform says so.
+    """
     own = set(model.parameter_names)
     return {
-        d.name: d.value
+        d.name: (d.value, d.uncertainty)
         for d in platform.parameters
         if not d.free and d.same_as is None and d.name in own
     }

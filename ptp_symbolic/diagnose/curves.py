@@ -6,19 +6,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.diagnose.summary import Pair, by_source
-from ptp_symbolic.diagnose.trial import Trial
+from ptp_symbolic.diagnose.errors import Pair, by_source
 from ptp_symbolic.identify.evaluate import simulated_signals
+from ptp_symbolic.identify.fit import Fit
 
 FloatArray = NDArray[np.float64]
 
 
-def curves_of(base: Trial, after: Trial) -> dict[str, Any]:
-    """Measured and simulated signals of every run, its windows joined at the times `borders`."""
-    units = base.train.model.units
+def curves_of(parts: Mapping[str, tuple[Fit, Fit]]) -> dict[str, Any]:
+    """Measured and simulated signals of every run of each part ("train", "validate"), by the declared
+    and by the final model; the windows of a run joined at the times `borders`.
+    """
     curves: dict[str, Any] = {}
-    for name in ("train", "validate"):
-        before_fit, after_fit = getattr(base, name), getattr(after, name)
+    for name, (before_fit, after_fit) in parts.items():
+        units = before_fit.model.units
         groups = zip(
             by_source(before_fit.pairs()).items(),
             by_source(after_fit.pairs()).values(),

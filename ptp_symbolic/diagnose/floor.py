@@ -1,56 +1,71 @@
-"""The noise floor: what the encoder's rounding and noise leave of a perfect model."""
+"""The noise floor: what a perfect model leaves, and whether a model leaves no more.
 
-from collections.abc import Sequence
+Rounding and noise of a signal, as the platform declares them or as its logs show; the colour of that
+noise, where it is not declared, from what the model leaves; and the noise of the inputs, carried to
+the outputs by the model itself.
+"""
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.identify.evaluate import Evaluation
-from ptp_symbolic.identify.run import Run
+from ptp_symbolic.diagnose.trial import BEND, Task, Trial, huber, mean_squares
+from ptp_symbolic.identify.noise import coloured_noise
+from ptp_symbolic.identify.windows import propagated_noise
 
 FloatArray = NDArray[np.float64]
 
-ROUNDING_COUNTS = 1.0 / np.sqrt(12.0)
-KEPT_SHARE = 0.99
-MANY_WINDOWS, KEPT_WINDOWS = 20, 0.9
+ABOVE_NOISE = 1.1  # times the floor: what a model leaves below cannot be told from noise
 
 
-def encoder_columns(run: Run) -> list[int]:
-    """Measured columns that are encoder signals; all columns where there is no encoder."""
-    found = [c for c in range(run.measured.shape[1]) if np.isfinite(run.counts[c])]
-    return found or list(range(run.measured.shape[1]))
-
-
-def trimmed(pairs: Sequence[tuple[Run, Evaluation]]) -> list[tuple[Run, Evaluation]]:
-    """Of many windows those nine tenths that fit best; few whole runs all.
-
-    One window in twenty may settle in the wrong branch of sticking and sliding.
+@dataclass(frozen=True, eq=False)
+class Floor:
+    """What a perfect model leaves in every signal: rms [ny], in units of the rounding and noise that
+    weights stand for, and the largest rms [ny] that may be noise at 95 % (noise of unknown colour).
     """
-    if len(pairs) < MANY_WINDOWS:
-        return list(pairs)
-    size = [float(np.mean(e.residual**2)) for _, e in pairs]
-    order = np.argsort(size, kind="stable")[: int(KEPT_WINDOWS * len(pairs))]
-    return [pairs[i] for i in sorted(order)]
+
+    level: FloatArray
+    most: FloatArray
 
 
-def residual_counts(run: Run, evaluation: Evaluation, column: int) -> FloatArray:
-    """Residual of one column in counts (in units of its noise where it has no counts)."""
-    residual = evaluation.residual.reshape(run.measured.shape)[:, column]
-    count = run.counts[column]
-    return residual / run.weight[column] / count if np.isfinite(count) else residual
-
-
-def floor_counts(pairs: Sequence[tuple[Run, Evaluation]]) -> float:
-    """Floor in counts: rounding, and noise as seen in third differences of the residual.
-
-    Third differences remove everything slow; of white noise they keep the variance times 20.
+def left_over(trial: Trial) -> FloatArray:
+    """Root mean square [ny] of what a trial leaves in every signal; runs or windows far worse than
+    usual count only linearly.
     """
-    extra = []
-    for run, evaluation in pairs:
-        for column in encoder_columns(run):
-            third = np.diff(residual_counts(run, evaluation, column), 3) ** 2
-            kept = np.sort(third)[: max(1, int(KEPT_SHARE * third.size))]
-            extra.append((float(kept.sum()) / 20.0, kept.size))
-    total = sum(part for part, _ in extra) / max(sum(size for _, size in extra), 1)
-    noise = max(0.0, total - ROUNDING_COUNTS**2)
-    return float(np.hypot(ROUNDING_COUNTS, np.sqrt(noise)))
+    squares = mean_squares(trial.fit.evaluations, trial.fit.runs)
+    if not np.all(np.isfinite(squares)):
+        return np.full(squares.shape[1], np.inf)
+    size = np.array([len(run.time) for run in trial.fit.runs], dtype=np.float64)
+    usual = np.maximum(np.median(squares, axis=0), 1.0)
+    return np.asarray(np.sqrt(size @ huber(squares, BEND**2 * usual) / size.sum()))
+
+
+def carried_noise(task: Task, trial: Trial) -> FloatArray:
+    """What the noise of the inputs leaves in every signal [ny], by the model of `trial`."""
+    p = task.model.parameter_vector(trial.values)
+    return propagated_noise(task.model, trial.fit.runs, trial.fit.z, p, task.input_noise)
+
+
+def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
+    """The floor with the colour of the noise as the remainder of `trial` shows it."""
+    runs = trial.fit.runs
+    rms, most = np.ones(len(runs[0].signals)), np.ones(len(runs[0].signals))
+    for column, signal in enumerate(runs[0].signals):
+        if signal not in task.declared_noise:
+            series = [
+                e.residual.reshape(run.measured.shape)[:, column] for run, e in trial.fit.pairs()
+            ]
+            noise = coloured_noise(series, 1.0)
+            rms[column], most[column] = noise.rms, noise.most
+    return Floor(np.hypot(rms, carried), np.hypot(most, carried))
+
+
+def leaves_noise_alone(task: Task, trial: Trial, carried: FloatArray) -> bool:
+    """Whether what a trial leaves cannot be told from noise, in any signal."""
+    left = left_over(trial)
+    if np.all(left <= ABOVE_NOISE):
+        return True
+    if not np.all(np.isfinite(left)):
+        return False
+    return bool(np.all(left <= ABOVE_NOISE * floor_of(task, trial, carried).most))

@@ -1,17 +1,18 @@
-"""Tests of what a model leaves over on held-out runs, for every measured signal."""
+"""Tests of what a model leaves over on validation runs, for every measured signal."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from ptp_symbolic.diagnose.floor import residual_counts
-from ptp_symbolic.diagnose.trial import Trial
+from ptp_symbolic.identify.fit import Fit
 
 FloatArray = NDArray[np.float64]
 
-LAGS = 25
+LAGS = 25  # samples over which correlations are looked at
+FALSE_ALARM = 0.01  # of a test, over all its lags
 WHITE = (
     "neighbouring residuals should not resemble each other; rounding and noise of the inputs make"
     " them do so a little where nothing is missing, so that this test alone proves nothing"
@@ -19,40 +20,44 @@ WHITE = (
 INDEPENDENT = "what is left over should not follow {name}; where it does, the model lacks something"
 
 
-def residual_tests(trial: Trial, inputs: tuple[str, ...]) -> list[dict[str, Any]]:
+def residual_tests(fit: Fit, inputs: tuple[str, ...]) -> list[dict[str, Any]]:
     """Per measured signal: whiteness of its residual, and independence of each of the `inputs`.
 
-    The statistic is the largest correlation over `LAGS` lags, averaged over runs; of independent
-    residuals it stays below the threshold in 99 of 100 cases.
+    The statistic is the largest correlation over `LAGS` lags; of independent residuals it stays below
+    the threshold in 99 of 100 cases.
     """
-    assert trial.validate is not None
-    pairs = [(r, e) for r, e in trial.validate.pairs() if len(r.time) > 4 * LAGS]
-    size = sum(len(run.time) for run, _ in pairs)
+    pairs = [(r, e) for r, e in fit.pairs() if len(r.time) > 4 * LAGS]
     rows: list[dict[str, Any]] = []
-    for column, signal in enumerate(trial.validate.runs[0].signals if pairs else ()):
-        left = [residual_counts(run, e, column) for run, e in pairs]
-        white = np.mean([_correlation(r, r) for r in left], axis=0)[1:]
-        rows.append(_row("whiteness", signal, white, size, WHITE))
+    for column, signal in enumerate(fit.runs[0].signals if pairs else ()):
+        left = [e.residual.reshape(run.measured.shape)[:, column] for run, e in pairs]
+        white, size = correlations(left, left)
+        rows.append(_row("whiteness", signal, white[1:], size, WHITE))
         for k, name in enumerate(inputs):
-            crossed = np.mean(
-                [_correlation(r, run.held_inputs[:, k])
-                 for r, (run, _) in zip(left, pairs, strict=True)], axis=0,
-            )  # fmt: skip
+            crossed, size = correlations(left, [run.held_inputs[:, k] for run, _ in pairs])
             meaning = INDEPENDENT.format(name=name)
             rows.append(_row(f"independence of {name}", signal, crossed, size, meaning))
     return rows
 
 
+def correlations(first: Sequence[FloatArray], other: Sequence[FloatArray]) -> tuple[FloatArray, int]:
+    """Correlations [LAGS + 1] of series over runs of any lengths, and the number of samples.
+
+    Each run is scaled by itself and counts by its samples, so that the standard deviation of
+    independent series is 1 / sqrt(samples).
+    """
+    total, size = np.zeros(LAGS + 1), 0
+    for a, b in zip(first, other, strict=True):
+        a, b = a - a.mean(), b - b.mean()
+        norm = max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-300)
+        total += [a.size * float(a[k:] @ b[: b.size - k]) / norm for k in range(LAGS + 1)]
+        size += a.size
+    return total / max(size, 1), size
+
+
 def _row(name: str, signal: str, values: FloatArray, size: int, meaning: str) -> dict[str, Any]:
     largest = float(np.max(np.abs(values)))
-    threshold = float(stats.norm.ppf(1.0 - 0.005 / values.size) / np.sqrt(size))
+    threshold = float(stats.norm.ppf(1.0 - 0.5 * FALSE_ALARM / values.size) / np.sqrt(size))
     return {
         "name": name, "signal": signal, "statistic": largest, "threshold": threshold,
         "passed": largest <= threshold, "meaning": meaning,
     }  # fmt: skip
-
-
-def _correlation(a: FloatArray, b: FloatArray) -> FloatArray:
-    a, b = a - a.mean(), b - b.mean()
-    scale = max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-300)
-    return np.array([float(a[k:] @ b[: b.size - k]) / scale for k in range(LAGS + 1)])

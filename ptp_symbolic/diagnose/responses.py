@@ -14,10 +14,10 @@ from scipy.optimize import lsq_linear
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.proposals import Proposal
-from ptp_symbolic.diagnose.signatures import brought
+from ptp_symbolic.diagnose.signatures import DECLARED_AMOUNT, brought
 from ptp_symbolic.diagnose.trial import Task, Trial, simulated
-from ptp_symbolic.identify.coordinates import to_search
-from ptp_symbolic.identify.fit import all_values
+from ptp_symbolic.identify.coordinates import FreeParameter, to_search
+from ptp_symbolic.identify.fit import Fit, all_values
 from ptp_symbolic.identify.intervals import project_out
 
 FloatArray = NDArray[np.float64]
@@ -25,14 +25,33 @@ FloatArray = NDArray[np.float64]
 REACH = 3.0  # times the residual: a response beyond is shrunk, for it is no longer linear
 SHRINKS, SHRINK = 4, 0.25
 FARTHEST = 0.5  # search coordinates (half a decade or half a scale) that free parameters may follow
-RIDGE = 1e-6
+RIDGE = 1e-6  # of the residual per unit column: keeps columns apart that are nearly the same
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """Responses `table` [n, k] of a candidate, per unit of each of its `free` parameters, the others
+    at `base` (shaping values, and candidates that it brings along).
+    """
+
+    candidate: Candidate
+    free: tuple[FreeParameter, ...]
+    table: FloatArray
+    base: Mapping[str, float]
+
+    def values(self, amounts: FloatArray) -> dict[str, float]:
+        """Values of the parameters of the candidate, at `amounts` [k] from where it vanishes."""
+        found = dict(self.base)
+        for f, amount in zip(self.free, amounts, strict=True):
+            value = float(np.clip(self.candidate.vanishing[f.name] + amount, f.lower, f.upper))
+            found.update(dict.fromkeys((f.name, *f.tied), value))
+        return found
 
 
 @dataclass(frozen=True, eq=False)
 class Response:
     """A candidate added to a trial: the share of the squared residual that is predicted to be left,
-    and where a refit should start. `columns` [n, k] are its responses, `changes` the values that
-    made each.
+    and where a refit should start.
     """
 
     candidate: Candidate
@@ -45,41 +64,22 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
 
     A candidate that needs another brings it along.
     """
-    have = {c.key for c in trial.candidates}
+    have = set(trial.keys)
     by_key = {c.key: c for c in reversed(task.candidates)}
-    wanted = [
-        (c, shape)
-        for c in candidates
-        if c.key not in have
-        for shape in c.shapes
-    ]
+    wanted = [(c, shape) for c in candidates if c.key not in have for shape in c.shapes]
     fit = trial.fit
-    residual = [e.residual for e in fit.evaluations]
-    here = _projected(trial, residual)
-    declared = np.vstack(
-        [project_out(e.by_parameter, e.by_start) for e in fit.evaluations]
-    )
+    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+    declared = stacked(fit, [e.by_parameter for e in fit.evaluations])
 
     def respond(pair: tuple[Candidate, Mapping[str, float]]) -> Response | None:
         candidate, shape = pair
-        base = {k: v for k, v in brought(candidate, by_key).items()
-                if not any(key in have for key in candidate.brings)}  # fmt: skip
-        found = [
-            _column(task, trial, residual, {**base, **shape}, f.name, f.tied, candidate)
-            for f in candidate.defining
-        ]
-        kept = [(f, c) for f, c in zip(candidate.defining, found, strict=True) if c is not None]
-        if not kept:
+        found = response_columns(task, trial, candidate, shape)
+        if found is None:
             return None
-        columns = np.column_stack([c[0] for _, c in kept])
-        amounts, left = _least(here, declared, columns, fit, kept, candidate)
-        values = _moved(trial, amounts[: declared.shape[1]])
-        values.update(base)
-        values.update(shape)
-        for (f, _), amount in zip(kept, amounts[declared.shape[1] :], strict=True):
-            zero = candidate.vanishing[f.name]
-            value = float(np.clip(zero + amount, f.lower, f.upper))
-            values.update(dict.fromkeys((f.name, *f.tied), value))
+        amounts, left = least(residual, declared, found)
+        nf = declared.shape[1]
+        phi = to_search(fit.free, fit.values) + amounts[:nf]
+        values = {**trial.values, **all_values(fit.free, phi), **found.values(amounts[nf:])}
         added = [by_key[key] for key in candidate.brings if key not in have]
         return Response(candidate, left, Proposal((*trial.candidates, *added, candidate), values))
 
@@ -90,67 +90,81 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
     return list(best.values())
 
 
+def response_columns(
+    task: Task, trial: Trial, candidate: Candidate, shape: Mapping[str, float]
+) -> Columns | None:
+    """Responses of `candidate` at the fit of `trial`, shaped by `shape`; None where nothing changes
+    or nothing can be simulated.
+    """
+    by_key = {c.key: c for c in reversed(task.candidates)}
+    brings = any(key not in trial.keys for key in candidate.brings)
+    base = {**(brought(candidate, by_key) if brings else {}), **shape}
+    residual = [e.residual for e in trial.fit.evaluations]
+    without = residual
+    if brings:
+        plain = simulated(task, trial.fit, base, None)
+        if any(e.failed for e in plain):
+            return None
+        without = [e.residual for e in plain]
+    most = REACH * float(np.sqrt(sum(r @ r for r in residual)))
+    found = [
+        (f, _column(task, trial, without, base, f, candidate, most)) for f in candidate.defining
+    ]
+    kept = [(f, column) for f, column in found if column is not None]
+    if not kept:
+        return None
+    table = np.column_stack([column for _, column in kept])
+    return Columns(candidate, tuple(f for f, _ in kept), table, base)
+
+
 def _column(
     task: Task,
     trial: Trial,
-    residual: Sequence[FloatArray],
+    without: Sequence[FloatArray],
     base: Mapping[str, float],
-    name: str,
-    tied: Sequence[str],
+    f: FreeParameter,
     candidate: Candidate,
-) -> tuple[FloatArray, float] | None:
-    """The response per unit of a defining parameter, and the amount that made it; None where
-    nothing can be simulated or nothing changes.
+    most: float,
+) -> FloatArray | None:
+    """The response [n] per unit of a defining parameter, to the largest amount whose response stays
+    below `most`; None where nothing can be simulated or nothing changes.
     """
-    zero = candidate.vanishing[name]
-    f = next(p for p in candidate.free if p.name == name)
-    whole = f.start - zero
+    zero = candidate.vanishing[f.name]
+    amount = f.start - zero
     if candidate.is_declared_value:
-        whole = min(0.05 * abs(f.start), 0.5 * (f.upper - f.start))
-    most = REACH * float(np.sqrt(sum(r @ r for r in residual)))
-    amount = whole
+        amount = min(DECLARED_AMOUNT * abs(f.start), 0.5 * (f.upper - f.start))
     for _ in range(SHRINKS):
-        changed = simulated(
-            task, trial.fit, {**base, **dict.fromkeys((name, *tied), zero + amount)}, None
-        )
+        values = {**base, **dict.fromkeys((f.name, *f.tied), zero + amount)}
+        changed = simulated(task, trial.fit, values, None)
         if not any(e.failed for e in changed):
-            without = residual
-            if base:
-                plain = simulated(task, trial.fit, base, None)
-                if any(e.failed for e in plain):
-                    return None
-                without = [e.residual for e in plain]
-            change = _projected(
-                trial, [e.residual - r for e, r in zip(changed, without, strict=True)]
-            )
+            differences = [
+                (e.residual - r)[:, None] for e, r in zip(changed, without, strict=True)
+            ]
+            change = stacked(trial.fit, differences)[:, 0]
             size = float(np.linalg.norm(change))
             if size == 0.0:
                 return None
             if size <= most:
-                return change / amount, amount
+                return change / amount
         amount *= SHRINK
     return None
 
 
-def _projected(trial: Trial, columns: Sequence[FloatArray]) -> FloatArray:
-    """One column [n] over all runs, without what the unknown starts can explain."""
-    pairs = zip(columns, trial.fit.evaluations, strict=True)
-    return np.concatenate([project_out(c[:, None], e.by_start)[:, 0] for c, e in pairs])
+def stacked(fit: Fit, columns: Sequence[FloatArray]) -> FloatArray:
+    """Columns [k, c] of every run below one another, without what the unknown starts can explain."""
+    pairs = zip(columns, fit.evaluations, strict=True)
+    return np.vstack([project_out(c, e.by_start) for c, e in pairs])
 
 
-def _least(here, declared, columns, fit, kept, candidate):  # type: ignore[no-untyped-def]
-    """Amounts of the declared search coordinates and of the defining parameters that make the
-    residual least within bounds, and the share of its square that is left.
+def least(here: FloatArray, declared: FloatArray, found: Columns) -> tuple[FloatArray, float]:
+    """Amounts of the declared search coordinates and of the candidate's parameters that make the
+    residual `here` [n] least within bounds, and the share of its square that is left.
     """
-    table = np.column_stack([declared, columns])
-    lower = np.concatenate(
-        [np.full(declared.shape[1], -FARTHEST),
-         [f.lower - candidate.vanishing[f.name] for f, _ in kept]]
-    )  # fmt: skip
-    upper = np.concatenate(
-        [np.full(declared.shape[1], FARTHEST),
-         [f.upper - candidate.vanishing[f.name] for f, _ in kept]]
-    )  # fmt: skip
+    zero = [found.candidate.vanishing[f.name] for f in found.free]
+    reach = np.full(declared.shape[1], FARTHEST)
+    lower = np.concatenate([-reach, [f.lower - z for f, z in zip(found.free, zero, strict=True)]])
+    upper = np.concatenate([reach, [f.upper - z for f, z in zip(found.free, zero, strict=True)]])
+    table = np.column_stack([declared, found.table])
     size = np.maximum(np.linalg.norm(table, axis=0), 1e-300)
     triangle = np.linalg.qr(np.column_stack([table / size, here]), mode="r")
     k = table.shape[1]
@@ -162,10 +176,3 @@ def _least(here, declared, columns, fit, kept, candidate):  # type: ignore[no-un
     )
     left = 2.0 * solved.cost / max(float(here @ here), 1e-300)
     return solved.x / size, float(left)
-
-
-def _moved(trial: Trial, shift: FloatArray) -> dict[str, float]:
-    """Values of all parameters, the free ones shifted in their search coordinates."""
-    free = trial.fit.free
-    phi = to_search(free, trial.fit.values) + shift
-    return {**trial.values, **all_values(free, phi)}

@@ -1,13 +1,15 @@
-"""The search: sets that the equation space proposes, refitted by simulation, the best pruned and
-grown by one candidate at a time.
+"""The search: sets that the equation space proposes, refitted by simulation; the best of them is
+completed, pruned and grown until every candidate in it is needed and none outside would add to it.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.floor import carried_noise, leaves_noise_alone
 from ptp_symbolic.diagnose.gain import Gain, gain
 from ptp_symbolic.diagnose.proposals import Proposals, declared_start, propose
 from ptp_symbolic.diagnose.responses import responses
@@ -19,33 +21,35 @@ from ptp_symbolic.diagnose.trial import (
     continued,
     fitted,
     halving,
-    mean_squares,
     ranked,
 )
 
+FloatArray = NDArray[np.float64]
+
 MATERIAL = 0.1  # share of the predictive loss below which a candidate is not worth a name
-DECLARED_RUNGS = ((4, 2), (8, 1))
+DECLARED_RUNGS = ((4, 2), (8, 1))  # iterations, and how many trials go on
 PROPOSED_RUNGS = ((2, 4), (3, 2), (5, 1))
 ADDED_RUNGS = ((3, 2), (5, 1))
-POLISH = 12
-REMOVED = 4
-ADDED = 4
-ROUNDS = 3
-AT_NOISE = 1.1
+POLISH = 12  # iterations to the end of a fit that is begun well
+REMOVED = 4  # iterations without a candidate, before the fit is polished
+ADDED = 4  # candidates that are refitted when one is added
+ROUNDS = 3  # of growing: as many effects as a set may gain after the first choice
 
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """A candidate that was added to or taken from a set, with what it gains."""
+    """A candidate of the chosen set, what it gains, and the trial without it."""
 
     candidate: Candidate
     gain: Gain
+    without: Trial
 
 
 @dataclass(frozen=True, eq=False)
 class Search:
     """What the search found: the declared model, the chosen set (the same where nothing is added),
-    what every member of it gains, and all other trials.
+    what every member of it gains, all other trials, and the noise of the inputs [ny] as the
+    declared model carries it to the outputs.
     """
 
     declared: Trial
@@ -53,6 +57,7 @@ class Search:
     members: tuple[Step, ...]
     others: tuple[Trial, ...]
     proposals: Proposals
+    carried: FloatArray
 
 
 def search(task: Task) -> Search:
@@ -61,105 +66,200 @@ def search(task: Task) -> Search:
     proposals = propose(task)
     task.progress("fitting the declared model")
     declared = fit_declared(task, proposals)
-    others: list[Trial] = []
-    best = declared
-    if not is_at_noise(declared):
-        task.progress(f"refitting {len(proposals.sets)} proposed sets")
-        begun = [fitted(task, s.candidates, s.values, None, 0) for s in proposals.sets]
-        found = halving(task, begun, PROPOSED_RUNGS)
-        others += begun
-        if found:
-            best = ranked([declared, polished(task, found[0])])[0]
-    best, members, removed = prune(task, best, declared)
-    others += removed
-    for _ in range(ROUNDS):
-        grown = grow(task, best, proposals)
-        if grown is None:
-            break
-        others.append(best)
-        best, members, removed = prune(task, grown, declared)
-        others += removed
-        if best.keys == others[-1].keys:
-            break
-    return Search(declared, best, tuple(members), tuple(others), proposals)
+    seeker = Seeker(task, declared, proposals, carried_noise(task, declared))
+    return seeker.search()
 
 
 def fit_declared(task: Task, proposals: Proposals) -> Trial:
     """The declared model, from the start that the rows give and from the declared one."""
     starts = [proposals.start, declared_start(task)]
     begun = [fitted(task, (), values, None, 0) for values in starts]
-    return polished(task, halving(task, begun, DECLARED_RUNGS)[0])
+    best = halving(task, begun, DECLARED_RUNGS)
+    return continued(task, best[0] if best else begun[-1], POLISH, ROUGH, task.executor)
 
 
-def polished(task: Task, trial: Trial) -> Trial:
-    """The trial fitted to its end; with sharp simulations where only noise is left."""
-    trial = continued(task, trial, POLISH, ROUGH, task.executor)
-    if is_at_noise(trial):
-        trial = continued(task, trial, POLISH, SHARP, task.executor)
-    return trial
+class Seeker:
+    """A search in progress; `others` collects the trials that were not chosen."""
+
+    def __init__(
+        self, task: Task, declared: Trial, proposals: Proposals, carried: FloatArray
+    ) -> None:
+        self.task, self.declared, self.proposals, self.carried = task, declared, proposals, carried
+        self.others: list[Trial] = []
+
+    def search(self) -> Search:
+        """Propose, refit, complete, prune, grow, simplify."""
+        task, best = self.task, self.declared
+        if not self.is_at_noise(best):
+            begun = self.proposed()
+            task.progress(f"refitting {len(begun)} proposed sets")
+            found = halving(task, begun, PROPOSED_RUNGS)
+            self.others += begun
+            if found:
+                best = self.best_of([best, self.completed(found[0])])
+        best = self.pruned(best)
+        for _ in range(ROUNDS):
+            grown = self.grown(best)
+            if grown is None:
+                break
+            self.others.append(best)
+            pruned = self.pruned(self.completed(grown))
+            if pruned.keys == best.keys:
+                break
+            best = pruned
+        best = self.simplified(best)
+        steps = [self.step(best, c) for c in best.candidates]
+        return Search(
+            self.declared, best, tuple(steps), tuple(self.others), self.proposals, self.carried
+        )
+
+    def proposed(self) -> list[Trial]:
+        """The proposed sets at the better of two starts, that of the rows and that of the declared
+        model; and what the rows cannot show, at its response in the outputs.
+        """
+        task, declared = self.task, self.declared
+        begun = []
+        for s in self.proposals.sets:
+            own = {name for c in s.candidates for f in c.free for name in (f.name, *f.tied)}
+            beside = declared.values | {name: s.values[name] for name in own}
+            starts = [
+                fitted(task, s.candidates, s.values, None, 0),
+                fitted(task, s.candidates, beside, declared.fit.z, 0),
+            ]
+            begun.append(self.best_of(starts))
+        unseen = responses(task, declared, self.proposals.unseen)[:ADDED]
+        return begun + [
+            fitted(task, r.proposal.candidates, r.proposal.values, declared.fit.z, 0)
+            for r in unseen
+        ]
+
+    def best_of(self, trials: Sequence[Trial]) -> Trial:
+        """The trial that fits best."""
+        return ranked(trials)[0]
+
+    def is_at_noise(self, trial: Trial) -> bool:
+        return leaves_noise_alone(self.task, trial, self.carried)
+
+    def polished(self, trial: Trial) -> Trial:
+        """The trial fitted to its end; with sharp simulations where little but noise is left."""
+        trial = continued(self.task, trial, POLISH, ROUGH, self.task.executor)
+        if self.is_at_noise(trial):
+            trial = continued(self.task, trial, POLISH, SHARP, self.task.executor)
+        return trial
+
+    def completed(self, trial: Trial) -> Trial:
+        """The trial polished, each of its candidates in its fullest form: an effect is allowed all
+        that it can do before another is called.
+        """
+        full = tuple(fullest(self.task, c) for c in trial.candidates)
+        if all(a is b for a, b in zip(full, trial.candidates, strict=True)):
+            return self.polished(trial)
+        return self.polished(fitted(self.task, full, trial.values, trial.fit.z, 0))
+
+    def without(self, trial: Trial, candidate: Candidate) -> Trial:
+        """The trial refitted without one of its candidates, and without what needs it."""
+        kept = tuple(
+            c for c in trial.candidates if c is not candidate and candidate.key not in c.brings
+        )
+        if not kept:
+            return self.declared
+        names = {
+            name
+            for c in trial.candidates
+            if c not in kept
+            for f in c.free
+            for name in (f.name, *f.tied)
+        }
+        values = trial.values | {name: self.task.fixed[name] for name in names}
+        task = self.task
+        begun = fitted(task, kept, values, trial.fit.z, REMOVED, ROUGH, task.executor)
+        smaller = self.polished(begun)
+        self.others.append(smaller)
+        return smaller
+
+    def step(self, trial: Trial, candidate: Candidate) -> Step:
+        """What a candidate gains."""
+        smaller = self.without(trial, candidate)
+        return Step(candidate, gain(trial, smaller), smaller)
+
+    def is_needed(self, earned: Gain) -> bool:
+        """Whether a gain is material, and clear over all candidates that were looked at."""
+        return earned.share >= MATERIAL and earned.is_clear(len(self.task.candidates))
+
+    def pruned(self, trial: Trial) -> Trial:
+        """Take every candidate out in turn, the one that gains least first, until each that is left
+        gains clearly and materially.
+        """
+        while trial.candidates:
+            steps = [self.step(trial, c) for c in trial.candidates]
+            weakest = min(steps, key=lambda s: s.gain.share)
+            if self.is_needed(weakest.gain):
+                break
+            trial = weakest.without
+        return trial
+
+    def grown(self, trial: Trial) -> Trial | None:
+        """The trial with one more candidate that gains clearly and materially; None if none does.
+
+        Where only noise is left, those are tried that the motion alone cannot show.
+        """
+        task = self.task
+        wanted = self.proposals.unseen if self.is_at_noise(trial) else task.candidates
+        found = [r for r in responses(task, trial, wanted) if r.left < 1.0 - MATERIAL]
+        if not found:
+            return None
+        names = " + ".join(trial.keys) or "the declared model"
+        task.progress(f"adding one of {len(found)} candidates to {names}")
+        begun = [
+            fitted(task, r.proposal.candidates, r.proposal.values, trial.fit.z, 0)
+            for r in found[:ADDED]
+        ]
+        left = halving(task, begun, ADDED_RUNGS)
+        self.others += begun
+        if not left:
+            return None
+        best = self.polished(left[0])
+        return best if self.is_needed(gain(best, trial)) else None
+
+    def simplified(self, trial: Trial) -> Trial:
+        """Every candidate in the simplest of its forms that loses nothing clear and material."""
+        for key in trial.keys:
+            candidate = next(c for c in trial.candidates if c.key == key)
+            simpler = sorted(
+                (c for c in forms(self.task, candidate) if len(c.free) < len(candidate.free)),
+                key=lambda c: len(c.free),
+            )
+            for form in simpler:
+                smaller = self.in_form(trial, candidate, form)
+                if not self.is_needed(gain(trial, smaller)):
+                    trial = smaller
+                    break
+        return trial
+
+    def in_form(self, trial: Trial, candidate: Candidate, form: Candidate) -> Trial:
+        """The trial refitted with a candidate in another form."""
+        dropped = set(candidate.parameters) - set(form.parameters)
+        values = trial.values | {name: self.task.fixed[name] for name in dropped}
+        candidates = tuple(form if c is candidate else c for c in trial.candidates)
+        task = self.task
+        return self.polished(
+            fitted(task, candidates, values, trial.fit.z, REMOVED, ROUGH, task.executor)
+        )
 
 
-def is_at_noise(trial: Trial) -> bool:
-    """Whether a trial leaves little more than noise in every signal."""
-    squares = mean_squares(trial.fit.evaluations, trial.fit.runs)
-    size = np.array([len(run.time) for run in trial.fit.runs], dtype=np.float64)
-    return bool(np.all(size @ squares / size.sum() <= AT_NOISE**2))
-
-
-def without(task: Task, trial: Trial, candidate: Candidate) -> Trial:
-    """The trial refitted without one of its candidates, and without what needs it."""
-    kept = tuple(
-        c for c in trial.candidates if c is not candidate and candidate.key not in c.brings
-    )
-    values = trial.values | {
-        name: task.fixed[name] for c in trial.candidates if c not in kept
-        for f in c.free for name in (f.name, *f.tied)
-    }  # fmt: skip
-    begun = fitted(task, kept, values, trial.fit.z, REMOVED, ROUGH, task.executor)
-    return polished(task, begun)
-
-
-def prune(
-    task: Task, trial: Trial, declared: Trial
-) -> tuple[Trial, list[Step], list[Trial]]:
-    """Take every candidate out in turn, the one that gains least first, until each that is left
-    gains clearly and materially.
-    """
-    removed: list[Trial] = []
-    while trial.candidates:
-        steps = []
-        for candidate in trial.candidates:
-            smaller = without(task, trial, candidate)
-            if not smaller.candidates:
-                smaller = ranked([smaller, declared])[0]
-            removed.append(smaller)
-            steps.append((Step(candidate, gain(trial, smaller)), smaller))
-        weakest, smaller = min(steps, key=lambda s: s[0].gain.share)
-        tests = len(task.candidates)
-        if weakest.gain.share >= MATERIAL and weakest.gain.is_clear(tests):
-            return trial, [s for s, _ in steps], removed
-        trial = smaller
-    return trial, [], removed
-
-
-def grow(task: Task, trial: Trial, proposals: Proposals) -> Trial | None:
-    """The trial with one more candidate that gains clearly and materially; None where none does."""
-    if is_at_noise(trial):
-        candidates: Sequence[Candidate] = proposals.unseen
-    else:
-        candidates = task.candidates
-    found = [r for r in responses(task, trial, candidates) if r.left < 1.0 - MATERIAL]
-    if not found:
-        return None
-    task.progress(f"adding one of {len(found)} candidates to {' + '.join(trial.keys) or 'none'}")
-    begun = [
-        fitted(task, r.proposal.candidates, r.proposal.values, trial.fit.z, 0)
-        for r in found[:ADDED]
+def forms(task: Task, candidate: Candidate) -> list[Candidate]:
+    """All forms of a candidate, a scanned frequency where it was found."""
+    starts = {f.name: f for f in candidate.free}
+    return [
+        replace(c, free=tuple(starts.get(f.name, f) for f in c.free))
+        for c in task.candidates
+        if c.key == candidate.key
     ]
-    left = halving(task, begun, ADDED_RUNGS)
-    if not left:
-        return None
-    best = polished(task, left[0])
-    earned = gain(best, trial)
-    clear = earned.share >= MATERIAL and earned.is_clear(len(task.candidates))
-    return best if clear else None
+
+
+def fullest(task: Task, candidate: Candidate) -> Candidate:
+    """The form of a candidate with the most parameters."""
+    best = max(forms(task, candidate), key=lambda c: len(c.free))
+    return best if len(best.free) > len(candidate.free) else candidate
+
+

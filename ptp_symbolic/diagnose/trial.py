@@ -28,7 +28,9 @@ class Task:
 
     `whole` are the training runs as they were logged, `train` the same or their windows, `validate`
     those that only the report sees. `free` are the declared free parameters, `fixed` the values of
-    all others, every candidate switched off. `resolution` is the noise of the finest angle in rad.
+    all others, every candidate switched off. `input_noise` is the declared noise of every input
+    (None: as the logs show it), `declared_noise` names the outputs whose noise is declared, and
+    `resolution` is the noise of the finest angle in rad.
     """
 
     model: Model
@@ -41,6 +43,7 @@ class Task:
     executor: Executor
     progress: Progress
     input_noise: tuple[float | None, ...]
+    declared_noise: frozenset[str]
     resolution: float
 
 

@@ -1,16 +1,23 @@
-"""The verdict: nothing missing, explained (up to a group, partly), or unexplained."""
+"""The verdict: which effects are confirmed, which cannot be told apart, and what is left."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.floor import floor_counts
-from ptp_symbolic.diagnose.scores import share_explained, share_improved
-from ptp_symbolic.diagnose.trial import Task, Trial, held_out_cost, simulated, squares
-from ptp_symbolic.identify.intervals import estimates
-from ptp_symbolic.identify.windows import propagated_noise
+from ptp_symbolic.diagnose.confirm import answers_to_inputs, why_unconfirmed
+from ptp_symbolic.diagnose.floor import (
+    ABOVE_NOISE,
+    Floor,
+    carried_noise,
+    floor_of,
+    left_over,
+)
+from ptp_symbolic.diagnose.gain import Gain, compared, gain
+from ptp_symbolic.diagnose.groups import Rival, confusable, rivals
+from ptp_symbolic.diagnose.search import MATERIAL, Search, Seeker, Step
+from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy, mean_squares, ranked
+from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, unblinded
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"
@@ -18,122 +25,133 @@ UP_TO_GROUP = "explained_up_to_group"
 PARTLY = "partly_explained"
 UNEXPLAINED = "unexplained"
 
-AT_FLOOR, NEAR_FLOOR, LEFT_TO_PARTLY = 1.05, 1.5, 2.0
-IMPROVED, EXPLAINED_SHARE, PARTLY_SHARE = 0.85, 0.90, 0.30
-TIE = 1.02
-CLEAR_GAIN = 0.9
-SECOND_LEAVES = 0.3
-FELT = 1.02  # of the sum of squares, once an effect is switched off
+MAJOR = 0.5  # share of the loss that an effect must take away where more than noise is left: a model
+# that is slightly wrong everywhere lets many candidates gain a little
+HELD_OUT_ABOVE = 1.25  # times the floor: validation runs are few, and bear the errors of the fit
+HELD_OUT_ITERATIONS = 10  # for the starts of the validation runs
 
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
-    """What the logs say: the word, the accepted trial (None: none), rivals, floor in counts."""
+    """What the logs say.
+
+    `final` is the declared model with what is confirmed, `members` what each of its effects gains,
+    `confusable` the keys that may stand in the place of each; `closest` the best set where nothing
+    is confirmed. `refused` tells why candidates that gained were not named. `floor` is that of
+    `final`; `before` and `after` are the validation runs by the declared and by the final model.
+    """
 
     word: str
-    accepted: Trial | None
-    rivals: tuple[Trial, ...]
-    floor: float
-    improved: float
-    explained: float
+    final: Trial
+    members: tuple[Step, ...]
+    confusable: Mapping[str, tuple[str, ...]]
+    rivals: tuple[Rival, ...]
+    closest: Trial | None
+    refused: Mapping[str, str]
+    floor: Floor
+    before: Fit
+    after: Fit
+    held_out: Gain | None
 
 
-def decide(task: Task, base: Trial, trials: Sequence[Trial]) -> Verdict:
-    """Decide on held-out runs alone; `trials` are judged refits of `base`, in any order."""
-    judged = sorted((t for t in trials if np.isfinite(held_out_cost(t))), key=held_out_cost)
-    floor = _noise_floor(task, (base, *judged))
-    before = float(np.sqrt(held_out_cost(base)))
-    if not judged:
-        word = NOTHING_MISSING if before <= AT_FLOOR * floor else UNEXPLAINED
-        return Verdict(word, None, (), floor, 0.0, 0.0)
-    winner, rivals = _choose(task, judged, floor)
-    assert base.validate is not None and winner.validate is not None
-    improved = share_improved(base.validate.pairs(), winner.validate.pairs(), floor)
-    explained = share_explained(base.validate.pairs(), winner.validate.pairs(), floor)
-    final = float(np.sqrt(held_out_cost(winner)))
-    clear = held_out_cost(winner) < CLEAR_GAIN * held_out_cost(base) and improved >= IMPROVED
-    seen = clear and _away_from_zero(task, winner)
-    if before <= AT_FLOOR * floor and not seen:
-        return Verdict(NOTHING_MISSING, None, (), floor, improved, explained)
-    if not seen or final > LEFT_TO_PARTLY * floor:
-        return Verdict(UNEXPLAINED, None, tuple(judged[:1]), floor, improved, explained)
-    if final <= AT_FLOOR * floor or (explained >= EXPLAINED_SHARE and final <= NEAR_FLOOR * floor):
-        word = UP_TO_GROUP if rivals else EXPLAINED
-        return Verdict(word, winner, rivals, floor, improved, explained)
-    if explained < PARTLY_SHARE:
-        return Verdict(UNEXPLAINED, None, tuple(judged[:1]), floor, improved, explained)
-    return Verdict(PARTLY, winner, rivals, floor, improved, explained)
+def decide(task: Task, found: Search) -> Verdict:
+    """Confirm the chosen set, find what it cannot be told from, and judge the validation runs."""
+    refused: dict[str, str] = {}
+    seeker = Seeker(task, found.declared, found.proposals, found.carried)
+    trial, steps = found.chosen, list(found.members)
+    fit = unblinded(trial.fit, task.executor)
+    while trial.candidates:
+        why = _weakness(task, seeker, trial, steps, fit)
+        if why is None:
+            break
+        step, reason = why
+        refused[step.candidate.key] = reason
+        trial = step.without
+        steps = [seeker.step(trial, c) for c in trial.candidates]
+        fit = unblinded(trial.fit, task.executor)
+    alike: list[Rival] = []
+    if trial.candidates:
+        alike = rivals(task, trial, (*found.others, *seeker.others), fit)
+    task.progress("simulating the validation runs")
+    before = held_out_fit(task, found.declared)
+    after = held_out_fit(task, trial) if trial.candidates else before
+    held_out = held_out_gain(after, before) if trial.candidates else None
+    closest = None if trial.candidates else _closest(found)
+    if held_out is not None and held_out.upper < MATERIAL:
+        for key in trial.keys:
+            refused[key] = "the validation runs are predicted no better with it"
+        closest, trial, steps, after, held_out, alike = trial, found.declared, [], before, None, []
+    floor = floor_of(task, trial, carried_noise(task, trial))
+    named = confusable(trial, alike)
+    word = _word(trial, named, floor, after)
+    if word == NOTHING_MISSING:
+        closest = None
+    return Verdict(
+        word, trial, tuple(steps), named, tuple(alike), closest, refused, floor, before, after,
+        held_out,
+    )  # fmt: skip
 
 
-def _choose(task: Task, judged: Sequence[Trial], floor: float) -> tuple[Trial, tuple[Trial, ...]]:
-    """The best trial of one effect, unless one of two effects removes most of what that leaves."""
-    chosen: tuple[Trial, tuple[Trial, ...]] | None = None
-    for size in sorted({len(t.candidates) for t in judged}):
-        best, rivals = _simplest([t for t in judged if len(t.candidates) == size])
-        if chosen is None:
-            chosen = best, rivals
-            continue
-        left = max(held_out_cost(chosen[0]) - floor**2, 0.0)
-        open_ = float(np.sqrt(held_out_cost(chosen[0]))) > AT_FLOOR * floor
-        most = held_out_cost(best) - floor**2 <= SECOND_LEAVES * left
-        if open_ and most and _away_from_zero(task, best):
-            chosen = best, rivals
-    assert chosen is not None
-    return chosen
+def _weakness(
+    task: Task, seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit
+) -> tuple[Step, str] | None:
+    """The candidate of a trial that is confirmed least, and why not; None where all are."""
+    weakest = min(steps, key=lambda s: s.gain.share)
+    if not seeker.is_needed(weakest.gain):
+        return weakest, f"takes away only {100.0 * weakest.gain.share:.0f} % of the error"
+    for step in steps:
+        reason = why_unconfirmed(task, trial, fit, step.candidate)
+        if reason is not None:
+            return step, reason
+    if not answers_to_inputs(task, trial):
+        return weakest, "with it the model no longer answers to its inputs"
+    if weakest.gain.share < MAJOR and not seeker.is_at_noise(trial):
+        return weakest, (
+            f"takes away {100.0 * weakest.gain.share:.0f} % of the error, too little where more than"
+            " noise is left"
+        )
+    return None
 
 
-def _noise_floor(task: Task, trials: Sequence[Trial]) -> float:
-    """Floor in counts: rounding and encoder noise, and input noise carried to the encoder."""
-    best = min(trials, key=held_out_cost)
-    p = task.model.parameter_vector(dict(best.train.values))
-    fit = best.validate or best.train
-    carried = propagated_noise(task.model, fit.runs, fit.z, p, task.input_noise)
-    measured = min(floor_counts(t.train.pairs()) for t in trials)
-    return float(np.hypot(measured, carried))
+def _closest(found: Search) -> Trial | None:
+    """The best trial with any candidate."""
+    trials = [t for t in (found.chosen, *found.others) if t.candidates]
+    best = ranked([found.declared, *trials])
+    return next((t for t in best if t.candidates and np.isfinite(t.fit.cost)), None)
 
 
-def is_settled(verdict: Verdict) -> bool:
-    """True when no further effect needs to be searched."""
-    return verdict.word in (NOTHING_MISSING, EXPLAINED, UP_TO_GROUP)
+def _word(trial: Trial, named: Mapping[str, tuple[str, ...]], floor: Floor, after: Fit) -> str:
+    """The word for a confirmed set."""
+    quiet = _is_quiet(trial, floor, after)
+    if not trial.candidates:
+        return NOTHING_MISSING if quiet else UNEXPLAINED
+    if not quiet:
+        return PARTLY
+    return UP_TO_GROUP if any(named.values()) else EXPLAINED
 
 
-def _simplest(judged: Sequence[Trial]) -> tuple[Trial, tuple[Trial, ...]]:
-    """The winner among ties, the fewest parameters first; rivals are ties just as simple."""
-    best = float(np.sqrt(held_out_cost(judged[0])))
-    ties = [t for t in judged if float(np.sqrt(held_out_cost(t))) <= TIE * best]
-    winner = min(ties, key=lambda t: (len(t.train.free), held_out_cost(t)))
-    size = len(winner.train.free)
-    rivals = [t for t in ties if t is not winner and len(t.train.free) == size]
-    return winner, tuple(r for r in rivals if not set(winner.keys) <= set(r.keys))
+def _is_quiet(trial: Trial, floor: Floor, after: Fit) -> bool:
+    """Whether neither training nor validation runs show more than noise."""
+    held_out = Trial(trial.candidates, after)
+    return bool(
+        np.all(left_over(trial) <= ABOVE_NOISE * floor.most)
+        and np.all(left_over(held_out) <= HELD_OUT_ABOVE * floor.most)
+    )
 
 
-def _away_from_zero(task: Task, trial: Trial) -> bool:
-    """Every candidate of `trial` has a parameter whose interval leaves its vanishing value, and is
-    felt there: the interval of a logarithm never reaches zero.
-
-    Where the data see a parameter only together with a declared one, its interval is that of its
-    bounds and says nothing: the declared model has had its chance to do as well alone. Candidates
-    that are seen only together have not.
-    """
-    found = {e.name: e for e in estimates(trial.train)}
-    own = {name for candidate in trial.candidates for name in candidate.parameters}
-    for candidate in trial.candidates:
-        off = _switched_off(trial, candidate)
-        if all(
-            found[name].lower <= zero <= found[name].upper and set(found[name].only_with) <= own
-            for name, zero in off.items()
-        ):
-            return False
-        without, with_it = (squares(simulated(task, trial.train, v)) for v in (off, {}))
-        if without < FELT * with_it:
-            return False
-    return True
+def held_out_fit(task: Task, trial: Trial) -> Fit:
+    """The validation runs by the model of a trial, nothing but their starts fitted."""
+    effort = Effort(HELD_OUT_ITERATIONS, 1e-3, accuracy(task, SHARP))
+    return fit_parameters(
+        task.model, task.validate, (), trial.values, None, effort, task.executor
+    )
 
 
-def _switched_off(trial: Trial, candidate: Candidate) -> dict[str, float]:
-    """Values of the parameters of `candidate` at which it vanishes."""
-    if candidate.is_declared_value:
-        return {f.name: f.start for f in candidate.starts[0]}
-    vanishes = {p.name: p.vanishes for p in trial.train.model.parameters}
-    zeros = {name: vanishes[name] for name in candidate.parameters}
-    return {name: zero for name, zero in zeros.items() if zero is not None}
+def held_out_gain(after: Fit, before: Fit) -> Gain:
+    """The share of the mean square error of validation runs or windows that is taken away."""
+    losses = []
+    for fit in (after, before):
+        squares = mean_squares(fit.evaluations, fit.runs)
+        size = np.array([len(run.time) for run in fit.runs], dtype=np.float64)
+        losses.append(size * np.minimum(squares, 1e12).sum(axis=1))
+    return compared(losses[0], losses[1])

@@ -1,7 +1,8 @@
 """Confidence intervals that allow for residuals correlated in time.
 
-The residuals of a simulation error fit are never white: the covariance is a sandwich whose middle
-sums the score over blocks of time (Liang and Zeger, 1986), the unknown starts projected out.
+The residuals of a simulation error fit are never white: the covariance is that of a jackknife over
+blocks of time, as long as the residual's own correlation asks for, the unknown starts projected out.
+It never gets smaller than that of white noise of the declared size.
 """
 
 from dataclasses import dataclass
@@ -10,15 +11,21 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from ptp_symbolic.identify.blocks import (
+    block_labels,
+    block_length,
+    jackknife_covariance,
+    leave_blocks_out,
+)
 from ptp_symbolic.identify.coordinates import FreeParameter, slopes, to_search, wrapped
 from ptp_symbolic.identify.fit import Fit
 
 FloatArray = NDArray[np.float64]
 
-BLOCK_SECONDS = 1.0
-UNIDENTIFIED = 1.0
-LOST_SHARE, INVOLVED = 1e-10, 1e-3
-WIDEST = 30.0  # of a logarithm
+UNIDENTIFIED = 1.0  # half width of an interval, as a share of the value, from which it says nothing
+LOST_SHARE = 1e-10  # of the largest eigenvalue of the information: directions below are not seen
+INVOLVED = 1e-3  # squared share of a parameter in such a direction from which on it takes part
+WIDEST = 30.0  # half width of the interval of a logarithm beyond which it has no end
 
 
 @dataclass(frozen=True)
@@ -42,8 +49,8 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
     """Values of the free parameters of `fit` with 95 % intervals."""
     if not fit.free:
         return ()
-    covariance, degrees, lost = sandwich(fit)
-    reach = float(stats.t.ppf(0.975, max(degrees, 1)))
+    covariance, degrees, lost = covariance_of(fit)
+    reach = stats.t.ppf(0.975, degrees)
     spreads = reach * np.sqrt(np.maximum(np.diag(covariance), 0.0))
     units = np.abs(slopes(fit.free, to_search(fit.free, fit.values)))
     involved = np.any(lost**2 > INVOLVED, axis=0)
@@ -80,31 +87,35 @@ def _interval(
     return float(ends[0]), float(ends[1]), width
 
 
-def sandwich(fit: Fit) -> tuple[FloatArray, int, FloatArray]:
-    """Covariance [nf, nf] of the search coordinates, the degrees of freedom of its blocks, and the
+def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Covariance [nf, nf] of the search coordinates, the degrees of freedom [nf] behind each, and the
     directions [2, nf, lost] that the data do not see, in coordinates scaled by what the data see of
     each alone, and in those of the search; it leaves these out.
     """
-    nf = len(fit.free)
-    bread, middle, blocks = np.zeros((nf, nf)), np.zeros((nf, nf)), 0
-    for run, e in fit.pairs():
-        projected = project_out(e.by_parameter, e.by_start)
-        bread += projected.T @ projected
-        ny = run.measured.shape[1]
-        edges = np.arange(run.time[0], run.time[-1] + BLOCK_SECONDS, BLOCK_SECONDS)
-        of_row = np.repeat(np.searchsorted(edges, run.time, side="right"), ny)
-        for block in np.unique(of_row):
-            rows = of_row == block
-            score = projected[rows].T @ e.residual[rows]
-            middle += np.outer(score, score)
-            blocks += 1
-    inverse, lost = _inverse(bread)
-    correction = blocks / max(blocks - nf, 1)
-    white = inverse * max(1.0, fit.cost / max(sum(r.size for r in fit.runs), 1))
-    robust = correction * inverse @ middle @ inverse
+    signals = fit.runs[0].measured.shape[1]
+    residuals = [project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations]
+    columns = np.vstack([project_out(e.by_parameter, e.by_start) for e in fit.evaluations])
+    series = [r.reshape(-1, signals).sum(axis=1) for r in residuals]
+    labels = block_labels([len(s) for s in series], block_length(series))
+    residual, label = np.concatenate(residuals), np.repeat(np.concatenate(labels), signals)
+    inverse, lost = _inverse(columns.T @ columns)
+    white = inverse * max(1.0, float(np.mean(residual**2)))
+    shifts = leave_blocks_out(residual, columns, label).shifts
+    robust = jackknife_covariance(shifts)
     larger = np.maximum(np.diag(robust), np.diag(white))
     scale = np.sqrt(larger / np.maximum(np.diag(robust), 1e-300))
-    return robust * np.outer(scale, scale), blocks - nf, lost
+    return robust * np.outer(scale, scale), degrees_of_freedom(shifts), lost
+
+
+def degrees_of_freedom(shifts: FloatArray) -> FloatArray:
+    """Degrees of freedom [nf] of jackknife variances from the `shifts` [b, nf] of b blocks: b - 1
+    where all blocks shift a parameter alike, 1 where one alone does (moments of the squares, after
+    Satterthwaite, 1946; those of normal shifts have a kurtosis of 3).
+    """
+    square = shifts**2
+    fourth = np.maximum(np.sum(square**2, axis=0), 1e-300)
+    equal = 3.0 * np.sum(square, axis=0) ** 2 / fourth - 2.0
+    return np.asarray(np.clip(equal, 1.0, max(len(shifts) - 1, 1)))
 
 
 def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:

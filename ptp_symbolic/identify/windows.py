@@ -20,6 +20,7 @@ from ptp_symbolic.simulation.inputs import stack, table
 FloatArray = NDArray[np.float64]
 
 ALLOWED_COUNTS = 0.5
+ALLOWED_RISE = 2.0  # of the drift in the shortest window: a machine that forgets adds little more
 ALLOWED_GROWTH = 10.0
 GROWING_LENGTH = 1.0
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)
@@ -47,11 +48,17 @@ def window_length(
     rng = np.random.default_rng(REPLAY_SEED)
     grown = [_drift(model, run, p, input_noise(run, declared_noise), rng) for run in runs]
     durations = [float(run.time[-1] - run.time[0]) for run in runs]
+    allowed = max(ALLOWED_COUNTS, ALLOWED_RISE * _typical(grown, LENGTHS[-1]))
     for length in lengths:
-        inside = [np.mean(drift[time <= length] ** 2) for drift, time in grown if time.size]
-        if inside and np.sqrt(np.median(inside)) <= ALLOWED_COUNTS:
+        if _typical(grown, length) <= allowed:
             return None if length >= max(durations) else float(length)
     return LENGTHS[-1]
+
+
+def _typical(grown: Sequence[tuple[FloatArray, FloatArray]], length: float) -> float:
+    """Median over runs of the rms drift within `length` s of the start; infinite without runs."""
+    inside = [np.mean(drift[time <= length] ** 2) for drift, time in grown if time.size]
+    return float(np.sqrt(np.median(inside))) if inside else np.inf
 
 
 def _grows(model: Model, run: Run, p: FloatArray) -> bool:
@@ -112,8 +119,9 @@ def propagated_noise(
     z: Sequence[FloatArray],
     p: FloatArray,
     declared_noise: Sequence[float | None],
-) -> float:
-    """What input noise leaves in the residual of a perfect model, in counts rms.
+) -> FloatArray:
+    """What input noise leaves in the residual of a perfect model: rms [ny], in units of the noise
+    of every signal (see `Run.weight`).
 
     Every run is replayed with noisy inputs; what its unknown start can take up is projected out.
     The median over runs counts, so that a replay which sticks elsewhere does not.
@@ -124,8 +132,10 @@ def propagated_noise(
         found = _replay(model, run, p, start, input_noise(run, declared_noise), rng)
         if found is not None:
             change = project_out(found[0][:, None], found[1])[:, 0]
-            squares.append(float(np.mean(in_counts(run, change) ** 2)))
-    return float(np.sqrt(np.median(squares))) if squares else 0.0
+            squares.append(np.mean(change.reshape(run.measured.shape) ** 2, axis=0))
+    if not squares:
+        return np.zeros(runs[0].measured.shape[1])
+    return np.asarray(np.sqrt(np.median(np.array(squares), axis=0)))
 
 
 def cut(model: Model, runs: Sequence[Run], length: float | None) -> tuple[Run, ...]:

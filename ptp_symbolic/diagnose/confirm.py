@@ -1,0 +1,96 @@
+"""What an effect must stand before it is named, besides its predictive gain."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.groups import effect_of, outside
+from ptp_symbolic.diagnose.responses import stacked
+from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy
+from ptp_symbolic.identify.blocks import leave_blocks_out
+from ptp_symbolic.identify.evaluate import evaluate
+from ptp_symbolic.identify.fit import Fit
+from ptp_symbolic.simulation.inputs import stack, table
+
+FloatArray = NDArray[np.float64]
+
+STABLE = 0.5  # share of an effect that is left, at least, when a run is left out
+ELSEWHERE = 0.05  # share of an effect that runs other than the one left out must show
+NEAR_BOUND = 1e-4  # of a parameter's size: closer to its bound it is at the bound
+
+
+def why_unconfirmed(task: Task, trial: Trial, fit: Fit, candidate: Candidate) -> str | None:
+    """Why `candidate` of a trial cannot be named; None where nothing speaks against it. `fit` is the
+    trial's, with derivatives that are not blind.
+    """
+    bound = at_bound(fit, candidate)
+    if bound is not None:
+        return f"{bound} ends at its bound"
+    run = unstable_without(fit, candidate)
+    if run is not None:
+        return f"its value does not hold when {run} is left out"
+    return None
+
+
+def at_bound(fit: Fit, candidate: Candidate) -> str | None:
+    """A defining parameter that the fit pressed against a bound at which it does not vanish."""
+    own = {f.name: f for f in fit.free}
+    for begun in candidate.defining:
+        f, value = own[begun.name], fit.values[begun.name]
+        if f.period is not None:
+            continue
+        near = NEAR_BOUND * max(abs(f.start), abs(value))
+        ends = [end for end in (f.lower, f.upper) if abs(value - end) <= near]
+        if ends and abs(value - candidate.vanishing[f.name]) > near:
+            return f.name
+    return None
+
+
+def unstable_without(fit: Fit, candidate: Candidate) -> str | None:
+    """The first run without which less than half of the effect, or its opposite, would be found.
+
+    The effect is what it changes in the outputs, apart from what other parameters follow. Where a
+    single run holds all that is known of it, leaving that out says nothing.
+    """
+    sources = [run.name.partition("#")[0] for run in fit.runs]
+    names = list(dict.fromkeys(sources))
+    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    label = np.repeat([names.index(s) for s in sources], [run.size for run in fit.runs])
+    left = leave_blocks_out(residual, columns, label)
+    own = [k for k, f in enumerate(fit.free) if f.name in candidate.parameters]
+    others = [k for k in range(len(fit.free)) if k not in own]
+    effect = outside(effect_of(fit, candidate, columns)[:, None], columns[:, others])[:, 0]
+    mine = outside(columns[:, own], columns[:, others])
+    square = float(effect @ effect)
+    if square == 0.0:
+        return None
+    for number, name in enumerate(names):
+        here = label == number
+        if float(effect[here] @ effect[here]) > (1.0 - ELSEWHERE) * square:
+            continue
+        shifted = effect + mine @ left.shifts[number, own]
+        if float(shifted @ effect) < STABLE * square:
+            return name
+    return None
+
+
+def answers_to_inputs(task: Task, trial: Trial) -> bool:
+    """Whether the inputs move the fitted model by more than it leaves over: a model so inert that
+    free starts alone follow the logs explains nothing.
+    """
+    p, none = task.model.parameter_vector(trial.values), np.zeros(0, dtype=np.int64)
+    moved = left = 0.0
+    for (run, e), z in zip(trial.fit.pairs(), trial.fit.z, strict=True):
+        quiet = np.zeros_like(run.held_inputs)
+        idle = replace(
+            run, inputs=stack([table(run.time, c, "hold") for c in quiet.T]), held_inputs=quiet
+        )
+        found = evaluate(task.model, idle, p, z, none, False, accuracy(task, SHARP))
+        if found.failed is None:
+            moved += float(np.sum((found.residual - e.residual) ** 2))
+            left += float(np.sum(e.residual**2))
+    return moved > left
+

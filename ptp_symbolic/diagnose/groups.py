@@ -1,0 +1,188 @@
+"""Candidates that the logs cannot tell from one that was chosen.
+
+An effect of the chosen set is compared, at the fit, with what every other candidate would change in
+the outputs, both without what the declared parameters and the other effects can follow (canonical
+correlation: Hotelling, 1936). Those that resemble it are refitted in its place to the same depth;
+the ones that predict as well form its group.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.gain import Gain, gain
+from ptp_symbolic.diagnose.responses import Columns, least, response_columns, stacked
+from ptp_symbolic.diagnose.search import (
+    ADDED_RUNGS,
+    MATERIAL,
+    POLISH,
+)
+from ptp_symbolic.diagnose.trial import ROUGH, Task, Trial, continued, fitted, halving, ranked
+from ptp_symbolic.identify.coordinates import slopes, to_search, to_values
+from ptp_symbolic.identify.fit import Fit
+
+FloatArray = NDArray[np.float64]
+
+SIMILAR = 0.9  # canonical correlation from which on a candidate is refitted in the place of another
+MOST_REFITTED = 6  # look-alikes of one effect that are refitted, the most similar first
+NEAR = 0.5  # share of its loss that a set may lose to the chosen one and still be polished
+
+
+@dataclass(frozen=True, eq=False)
+class Rival:
+    """A set that predicts as well as the chosen one; `gain` is that of the chosen over it."""
+
+    trial: Trial
+    gain: Gain
+
+
+@dataclass(frozen=True, eq=False)
+class Similarity:
+    """A candidate in the place of another: their correlation, and where its refit starts."""
+
+    candidate: Candidate
+    correlation: float
+    values: dict[str, float]
+
+
+def rivals(task: Task, chosen: Trial, others: Sequence[Trial], fit: Fit) -> list[Rival]:
+    """Sets as large as the chosen one, of which these logs do not prefer the chosen one clearly and
+    materially, `others` among them. `fit` is its fit with derivatives that are not blind.
+    """
+    begun: list[Trial] = []
+    for member in chosen.candidates:
+        alike = look_alikes(task, chosen, fit, member)
+        kept = tuple(c for c in chosen.candidates if c is not member)
+        begun += [
+            fitted(task, (*kept, s.candidate), s.values, chosen.fit.z, 0)
+            for s in alike[:MOST_REFITTED]
+        ]
+    if begun:
+        task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
+    trials = halving(task, begun, ((ADDED_RUNGS[0][0], len(begun)), (ADDED_RUNGS[1][0], len(begun))))
+    tried = {t.keys for t in trials} | {chosen.keys}
+    for other in ranked(others):
+        same_size = len(other.candidates) == len(chosen.candidates)
+        if same_size and other.keys not in tried and np.isfinite(other.fit.cost):
+            if other.fit.is_differentiated and gain(chosen, other).share < NEAR:
+                trials.append(other)
+    result: dict[tuple[str, ...], Rival] = {}
+    for trial in trials:
+        if gain(chosen, trial).share >= NEAR:
+            continue
+        polished = continued(task, trial, POLISH, ROUGH, task.executor)
+        rival = Rival(polished, gain(chosen, polished))
+        if not (rival.gain.share >= MATERIAL and rival.gain.is_clear(len(trials))):
+            result.setdefault(polished.keys, rival)
+    return list(result.values())
+
+
+def confusable(chosen: Trial, found: Sequence[Rival]) -> dict[str, tuple[str, ...]]:
+    """For every key of the chosen set the keys that may stand in its place."""
+    named: dict[str, set[str]] = {key: set() for key in chosen.keys}
+    for rival in found:
+        other = set(rival.trial.keys) - set(chosen.keys)
+        for key in set(chosen.keys) - set(rival.trial.keys):
+            named[key] |= other
+    return {key: tuple(sorted(keys)) for key, keys in named.items()}
+
+
+def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[Similarity]:
+    """Candidates whose response correlates above SIMILAR with the effect of `member`, best first."""
+    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+    table = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    own = [k for k, f in enumerate(fit.free) if f.name in member.parameters]
+    others = [k for k in range(len(fit.free)) if k not in own]
+    effect = effect_of(fit, member, table)
+    away = table[:, others]
+    target = outside(effect[:, None], away)[:, 0]
+    size = float(np.linalg.norm(target))
+    if size == 0.0:
+        return []
+    off = {name: member.vanishing[f.name] for f in member.defining for name in (f.name, *f.tied)}
+    base = trial.values | off
+    wanted = [
+        (c, shape)
+        for c in task.candidates
+        if c.key not in trial.keys and c.key != member.key
+        for shape in c.shapes
+    ]
+
+    def compare(pair: tuple[Candidate, Mapping[str, float]]) -> Similarity | None:
+        candidate, shape = pair
+        found = response_columns(task, trial, candidate, shape)
+        if found is None:
+            return None
+        correlation = canonical_correlation(target, outside(found.table, away))
+        if correlation < SIMILAR:
+            return None
+        values = _instead(base, fit, others, residual - effect, away, found)
+        return Similarity(candidate, correlation, values | dict(found.base))
+
+    best: dict[str, Similarity] = {}
+    jobs = [s for s in task.executor.map(compare, wanted) if s is not None]
+    for s in sorted(jobs, key=lambda s: -s.correlation):
+        best.setdefault(s.candidate.key, s)
+    return list(best.values())
+
+
+def effect_of(fit: Fit, member: Candidate, table: FloatArray) -> FloatArray:
+    """What `member` changes in the residuals [n] at the fit, linearly: `table` [n, nf] are the
+    derivatives by the search coordinates.
+    """
+    unit = slopes(fit.free, to_search(fit.free, fit.values))
+    effect = np.zeros(len(table))
+    for k, f in enumerate(fit.free):
+        if f.name in member.vanishing:
+            effect += table[:, k] / unit[k] * (fit.values[f.name] - member.vanishing[f.name])
+    return effect
+
+
+def outside(columns: FloatArray, away: FloatArray) -> FloatArray:
+    """The part of `columns` [n, k] orthogonal to those of `away` [n, m]."""
+    size = np.linalg.norm(away, axis=0)
+    kept = away[:, size > 0.0] / size[size > 0.0]
+    if not kept.shape[1]:
+        return columns
+    left, values, _ = np.linalg.svd(kept, full_matrices=False)
+    basis = left[:, values > SINGULAR * values[0]]
+    return np.asarray(columns - basis @ (basis.T @ columns))
+
+
+SINGULAR = 1e-8  # relative singular value below which directions are the same
+
+
+def canonical_correlation(target: FloatArray, columns: FloatArray) -> float:
+    """Largest correlation of `target` [n] with any combination of `columns` [n, k]."""
+    size = np.linalg.norm(columns, axis=0)
+    kept = columns[:, size > 0.0] / size[size > 0.0]
+    if not kept.shape[1] or not np.any(target):
+        return 0.0
+    left, values, _ = np.linalg.svd(kept, full_matrices=False)
+    basis = left[:, values > SINGULAR * values[0]]
+    return float(np.linalg.norm(basis.T @ target) / np.linalg.norm(target))
+
+
+def _instead(
+    base: Mapping[str, float],
+    fit: Fit,
+    others: Sequence[int],
+    residual: FloatArray,
+    away: FloatArray,
+    found: Columns,
+) -> dict[str, float]:
+    """Values of all parameters where `found` takes up the `residual` of the fit without a member."""
+    amounts, _ = least(residual, away, found)
+    shift = np.zeros(len(fit.free))
+    shift[list(others)] = amounts[: len(others)]
+    phi = to_search(fit.free, fit.values) + shift
+    moved = to_values(fit.free, phi)
+    values = dict(base)
+    for k in others:
+        f = fit.free[k]
+        values.update(dict.fromkeys((f.name, *f.tied), moved[f.name]))
+    values.update(found.values(amounts[len(others) :]))
+    return values
