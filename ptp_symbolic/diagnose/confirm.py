@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.groups import effect_of, outside
-from ptp_symbolic.diagnose.responses import stacked
+from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
 from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy
 from ptp_symbolic.identify.blocks import leave_blocks_out
 from ptp_symbolic.identify.evaluate import evaluate

@@ -14,14 +14,15 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.gain import Gain, gain
-from ptp_symbolic.diagnose.responses import Columns, least, response_columns, stacked
+from ptp_symbolic.diagnose.linear import canonical_correlation, effect_of, outside, stacked
+from ptp_symbolic.diagnose.responses import REACH, Columns, least, response_columns
 from ptp_symbolic.diagnose.search import (
     ADDED_RUNGS,
     MATERIAL,
-    POLISH,
+    polished,
 )
-from ptp_symbolic.diagnose.trial import ROUGH, Task, Trial, continued, fitted, halving, ranked
-from ptp_symbolic.identify.coordinates import slopes, to_search, to_values
+from ptp_symbolic.diagnose.trial import Task, Trial, fitted, halving, ranked
+from ptp_symbolic.identify.coordinates import to_search, to_values
 from ptp_symbolic.identify.fit import Fit
 
 FloatArray = NDArray[np.float64]
@@ -57,7 +58,7 @@ def rivals(task: Task, chosen: Trial, others: Sequence[Trial], fit: Fit) -> list
         alike = look_alikes(task, chosen, fit, member)
         kept = tuple(c for c in chosen.candidates if c is not member)
         begun += [
-            fitted(task, (*kept, s.candidate), s.values, chosen.fit.z, 0)
+            fitted(task, (*kept, s.candidate), s.values, chosen.fit.z, 0, fit)
             for s in alike[:MOST_REFITTED]
         ]
     if begun:
@@ -73,10 +74,10 @@ def rivals(task: Task, chosen: Trial, others: Sequence[Trial], fit: Fit) -> list
     for trial in trials:
         if gain(chosen, trial).share >= NEAR:
             continue
-        polished = continued(task, trial, POLISH, ROUGH, task.executor)
-        rival = Rival(polished, gain(chosen, polished))
+        refitted = polished(task, trial)
+        rival = Rival(refitted, gain(chosen, refitted))
         if not (rival.gain.share >= MATERIAL and rival.gain.is_clear(len(trials))):
-            result.setdefault(polished.keys, rival)
+            result.setdefault(refitted.keys, rival)
     return list(result.values())
 
 
@@ -104,16 +105,13 @@ def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[S
         return []
     off = {name: member.vanishing[f.name] for f in member.defining for name in (f.name, *f.tied)}
     base = trial.values | off
-    wanted = [
-        (c, shape)
-        for c in task.candidates
-        if c.key not in trial.keys and c.key != member.key
-        for shape in c.shapes
-    ]
+    full = {c.key: c for c in sorted(task.candidates, key=lambda c: len(c.free))}
+    wanted = [(c, shape) for c in full.values() if c.key not in trial.keys for shape in c.shapes]
+    most = REACH * float(np.linalg.norm(effect))
 
     def compare(pair: tuple[Candidate, Mapping[str, float]]) -> Similarity | None:
         candidate, shape = pair
-        found = response_columns(task, trial, candidate, shape)
+        found = response_columns(task, trial, candidate, shape, most)
         if found is None:
             return None
         correlation = canonical_correlation(target, outside(found.table, away))
@@ -127,43 +125,6 @@ def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[S
     for s in sorted(jobs, key=lambda s: -s.correlation):
         best.setdefault(s.candidate.key, s)
     return list(best.values())
-
-
-def effect_of(fit: Fit, member: Candidate, table: FloatArray) -> FloatArray:
-    """What `member` changes in the residuals [n] at the fit, linearly: `table` [n, nf] are the
-    derivatives by the search coordinates.
-    """
-    unit = slopes(fit.free, to_search(fit.free, fit.values))
-    effect = np.zeros(len(table))
-    for k, f in enumerate(fit.free):
-        if f.name in member.vanishing:
-            effect += table[:, k] / unit[k] * (fit.values[f.name] - member.vanishing[f.name])
-    return effect
-
-
-def outside(columns: FloatArray, away: FloatArray) -> FloatArray:
-    """The part of `columns` [n, k] orthogonal to those of `away` [n, m]."""
-    size = np.linalg.norm(away, axis=0)
-    kept = away[:, size > 0.0] / size[size > 0.0]
-    if not kept.shape[1]:
-        return columns
-    left, values, _ = np.linalg.svd(kept, full_matrices=False)
-    basis = left[:, values > SINGULAR * values[0]]
-    return np.asarray(columns - basis @ (basis.T @ columns))
-
-
-SINGULAR = 1e-8  # relative singular value below which directions are the same
-
-
-def canonical_correlation(target: FloatArray, columns: FloatArray) -> float:
-    """Largest correlation of `target` [n] with any combination of `columns` [n, k]."""
-    size = np.linalg.norm(columns, axis=0)
-    kept = columns[:, size > 0.0] / size[size > 0.0]
-    if not kept.shape[1] or not np.any(target):
-        return 0.0
-    left, values, _ = np.linalg.svd(kept, full_matrices=False)
-    basis = left[:, values > SINGULAR * values[0]]
-    return float(np.linalg.norm(basis.T @ target) / np.linalg.norm(target))
 
 
 def _instead(

@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +35,7 @@ LARGEST = 3
 DEVIATIONS, SHARE = 2.0, 0.02
 PROPOSED = 6
 REGRESSIONS = 3
-REFINEMENTS = 3
+REFINEMENTS = 2  # Gauss-Newton steps of a proposed set along the measured motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +84,9 @@ def propose(task: Task) -> Proposals:
     every = [*seen, *locked]
     rows = regression(found.rows, declared, base, every, equation, block, found.weight)
     chosen, rows = _best_sets(rows)
-    sets = [_refined(task, space, rows, s.candidates, values) for s in chosen]
+    space.rows(task.model.parameter_vector(values))
+    refine = partial(_refined, task, space, rows, values)
+    sets = task.executor.map(refine, [s.candidates for s in chosen])
     return Proposals(values, tuple(sets), tuple(unseen), space, rows)
 
 
@@ -91,15 +94,15 @@ def _refined(
     task: Task,
     space: EquationSpace,
     rows: Regression,
-    candidates: Sequence[Candidate],
     values: Mapping[str, float],
+    candidates: Sequence[Candidate],
 ) -> Proposal:
     """A set started where the rows ask for it, the parameters that shape it fitted to them too."""
     begun = start_of(task, rows, candidates, values)
     own = {(s.candidate.key, s.candidate.member): s.candidate for s in rows.signatures}
     placed = tuple(own[c.key, c.member] for c in candidates)
     free = (*task.free, *(restarted(f, begun[f.name]) for c in placed for f in c.free))
-    found = fit_equations(space, free, begun, REFINEMENTS, task.executor)
+    found = fit_equations(space, free, begun, REFINEMENTS)
     return Proposal(placed, possible(task, {**begun, **found.values}))
 
 

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.linear import stacked
 from ptp_symbolic.diagnose.proposals import Proposal
 from ptp_symbolic.diagnose.signatures import DECLARED_AMOUNT, brought
 from ptp_symbolic.diagnose.trial import Task, Trial, simulated
 from ptp_symbolic.identify.coordinates import FreeParameter, to_search
-from ptp_symbolic.identify.fit import Fit, all_values
-from ptp_symbolic.identify.intervals import project_out
+from ptp_symbolic.identify.fit import all_values
 
 FloatArray = NDArray[np.float64]
 
@@ -70,10 +70,11 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
     fit = trial.fit
     residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
     declared = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    most = REACH * float(np.linalg.norm(residual))
 
     def respond(pair: tuple[Candidate, Mapping[str, float]]) -> Response | None:
         candidate, shape = pair
-        found = response_columns(task, trial, candidate, shape)
+        found = response_columns(task, trial, candidate, shape, most)
         if found is None:
             return None
         amounts, left = least(residual, declared, found)
@@ -91,10 +92,10 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
 
 
 def response_columns(
-    task: Task, trial: Trial, candidate: Candidate, shape: Mapping[str, float]
+    task: Task, trial: Trial, candidate: Candidate, shape: Mapping[str, float], most: float
 ) -> Columns | None:
-    """Responses of `candidate` at the fit of `trial`, shaped by `shape`; None where nothing changes
-    or nothing can be simulated.
+    """Responses of `candidate` at the fit of `trial`, shaped by `shape`, to amounts that change the
+    residuals by at most the norm `most`; None where nothing changes or can be simulated.
     """
     by_key = {c.key: c for c in reversed(task.candidates)}
     brings = any(key not in trial.keys for key in candidate.brings)
@@ -106,7 +107,6 @@ def response_columns(
         if any(e.failed for e in plain):
             return None
         without = [e.residual for e in plain]
-    most = REACH * float(np.sqrt(sum(r @ r for r in residual)))
     found = [
         (f, _column(task, trial, without, base, f, candidate, most)) for f in candidate.defining
     ]
@@ -148,12 +148,6 @@ def _column(
                 return change / amount
         amount *= SHRINK
     return None
-
-
-def stacked(fit: Fit, columns: Sequence[FloatArray]) -> FloatArray:
-    """Columns [k, c] of every run below one another, without what the unknown starts can explain."""
-    pairs = zip(columns, fit.evaluations, strict=True)
-    return np.vstack([project_out(c, e.by_start) for c, e in pairs])
 
 
 def least(here: FloatArray, declared: FloatArray, found: Columns) -> tuple[FloatArray, float]:

@@ -12,6 +12,7 @@ from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.floor import carried_noise, leaves_noise_alone
 from ptp_symbolic.diagnose.gain import Gain, gain
 from ptp_symbolic.diagnose.proposals import Proposals, declared_start, propose
+from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
 from ptp_symbolic.diagnose.responses import responses
 from ptp_symbolic.diagnose.trial import (
     ROUGH,
@@ -27,7 +28,7 @@ from ptp_symbolic.diagnose.trial import (
 FloatArray = NDArray[np.float64]
 
 MATERIAL = 0.1  # share of the predictive loss below which a candidate is not worth a name
-DECLARED_RUNGS = ((4, 2), (8, 1))  # iterations, and how many trials go on
+DECLARED_RUNGS = ((4, 1),)  # iterations, and how many trials go on
 PROPOSED_RUNGS = ((2, 4), (3, 2), (5, 1))
 ADDED_RUNGS = ((3, 2), (5, 1))
 POLISH = 12  # iterations to the end of a fit that is begun well
@@ -73,9 +74,14 @@ def search(task: Task) -> Search:
 def fit_declared(task: Task, proposals: Proposals) -> Trial:
     """The declared model, from the start that the rows give and from the declared one."""
     starts = [proposals.start, declared_start(task)]
-    begun = [fitted(task, (), values, None, 0) for values in starts]
+    begun = [fitted(task, (), values, None) for values in starts]
     best = halving(task, begun, DECLARED_RUNGS)
-    return continued(task, best[0] if best else begun[-1], POLISH, ROUGH, task.executor)
+    return polished(task, best[0] if best else begun[-1])
+
+
+def polished(task: Task, trial: Trial, share: float = ROUGH) -> Trial:
+    """The trial fitted to its end, derivatives that mislead replaced."""
+    return continued(task, trial, POLISH, share, True, task.executor)
 
 
 class Seeker:
@@ -123,13 +129,15 @@ class Seeker:
             own = {name for c in s.candidates for f in c.free for name in (f.name, *f.tied)}
             beside = declared.values | {name: s.values[name] for name in own}
             starts = [
-                fitted(task, s.candidates, s.values, None, 0),
-                fitted(task, s.candidates, beside, declared.fit.z, 0),
+                fitted(task, s.candidates, s.values, None),
+                fitted(task, s.candidates, beside, declared.fit.z, 0, declared.fit),
             ]
             begun.append(self.best_of(starts))
         unseen = responses(task, declared, self.proposals.unseen)[:ADDED]
         return begun + [
-            fitted(task, r.proposal.candidates, r.proposal.values, declared.fit.z, 0)
+            fitted(
+                task, r.proposal.candidates, r.proposal.values, declared.fit.z, 0, declared.fit
+            )
             for r in unseen
         ]
 
@@ -142,10 +150,8 @@ class Seeker:
 
     def polished(self, trial: Trial) -> Trial:
         """The trial fitted to its end; with sharp simulations where little but noise is left."""
-        trial = continued(self.task, trial, POLISH, ROUGH, self.task.executor)
-        if self.is_at_noise(trial):
-            trial = continued(self.task, trial, POLISH, SHARP, self.task.executor)
-        return trial
+        trial = polished(self.task, trial)
+        return polished(self.task, trial, SHARP) if self.is_at_noise(trial) else trial
 
     def completed(self, trial: Trial) -> Trial:
         """The trial polished, each of its candidates in its fullest form: an effect is allowed all
@@ -154,7 +160,7 @@ class Seeker:
         full = tuple(fullest(self.task, c) for c in trial.candidates)
         if all(a is b for a, b in zip(full, trial.candidates, strict=True)):
             return self.polished(trial)
-        return self.polished(fitted(self.task, full, trial.values, trial.fit.z, 0))
+        return self.polished(fitted(self.task, full, trial.values, trial.fit.z, 0, trial.fit))
 
     def without(self, trial: Trial, candidate: Candidate) -> Trial:
         """The trial refitted without one of its candidates, and without what needs it."""
@@ -172,7 +178,9 @@ class Seeker:
         }
         values = trial.values | {name: self.task.fixed[name] for name in names}
         task = self.task
-        begun = fitted(task, kept, values, trial.fit.z, REMOVED, ROUGH, task.executor)
+        begun = fitted(
+            task, kept, values, trial.fit.z, REMOVED, trial.fit, executor=task.executor
+        )
         smaller = self.polished(begun)
         self.others.append(smaller)
         return smaller
@@ -187,15 +195,18 @@ class Seeker:
         return earned.share >= MATERIAL and earned.is_clear(len(self.task.candidates))
 
     def pruned(self, trial: Trial) -> Trial:
-        """Take every candidate out in turn, the one that gains least first, until each that is left
-        gains clearly and materially.
+        """Take candidates out, the one that seems to gain least first, until each that is left gains
+        clearly and materially.
         """
         while trial.candidates:
-            steps = [self.step(trial, c) for c in trial.candidates]
-            weakest = min(steps, key=lambda s: s.gain.share)
-            if self.is_needed(weakest.gain):
+            expected = {c.key: expected_gain(trial, c) for c in trial.candidates}
+            for candidate in sorted(trial.candidates, key=lambda c: expected[c.key]):
+                step = self.step(trial, candidate)
+                if not self.is_needed(step.gain):
+                    trial = step.without
+                    break
+            else:
                 break
-            trial = weakest.without
         return trial
 
     def grown(self, trial: Trial) -> Trial | None:
@@ -211,7 +222,7 @@ class Seeker:
         names = " + ".join(trial.keys) or "the declared model"
         task.progress(f"adding one of {len(found)} candidates to {names}")
         begun = [
-            fitted(task, r.proposal.candidates, r.proposal.values, trial.fit.z, 0)
+            fitted(task, r.proposal.candidates, r.proposal.values, trial.fit.z, 0, trial.fit)
             for r in found[:ADDED]
         ]
         left = halving(task, begun, ADDED_RUNGS)
@@ -243,8 +254,23 @@ class Seeker:
         candidates = tuple(form if c is candidate else c for c in trial.candidates)
         task = self.task
         return self.polished(
-            fitted(task, candidates, values, trial.fit.z, REMOVED, ROUGH, task.executor)
+            fitted(
+                task, candidates, values, trial.fit.z, REMOVED, trial.fit, executor=task.executor
+            )
         )
+
+
+def expected_gain(trial: Trial, candidate: Candidate) -> float:
+    """The share of the squared residual without `candidate` that it takes away, predicted from the
+    derivatives at the fit.
+    """
+    fit = trial.fit
+    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    others = [k for k, f in enumerate(fit.free) if f.name not in candidate.parameters]
+    effect = outside(effect_of(fit, candidate, columns)[:, None], columns[:, others])[:, 0]
+    taken = float(effect @ effect)
+    return taken / max(taken + float(residual @ residual), 1e-300)
 
 
 def forms(task: Task, candidate: Candidate) -> list[Candidate]:

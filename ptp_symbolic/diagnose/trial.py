@@ -86,18 +86,45 @@ def fitted(
     candidates: Sequence[Candidate],
     values: Mapping[str, float],
     z: Sequence[FloatArray] | None,
-    iterations: int,
+    iterations: int = 0,
+    parent: Fit | None = None,
     share: float = ROUGH,
+    secants: bool = False,
     executor: Executor | None = None,
-    misleading: Sequence[tuple[int, int]] | None = None,
 ) -> Trial:
-    """Fit from `values` (all parameters of the model) and the starts `z` of the runs."""
+    """Fit from `values` (all parameters of the model) and the starts `z` of the runs.
+
+    Simulations are as accurate as what the `parent`, from which the fit goes on, leaves asks for.
+    With `secants`, derivatives that mislead are replaced by differences; those that misled the
+    parent are known to mislead.
+    """
     free = freed(task, candidates, values)
     names = {name for f in free for name in (f.name, *f.tied)}
     fixed = {name: value for name, value in task.fixed.items() if name not in names}
-    effort = Effort(iterations, GAIN, accuracy(task, share), secants=True)
-    fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, misleading)
+    rms = 1.0 if parent is None else quietest(parent)
+    effort = Effort(iterations, GAIN, accuracy(task, share, rms), secants=secants)
+    known = _inherited(parent, free) if secants else None
+    fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known)
     return Trial(tuple(candidates), fit)
+
+
+def quietest(fit: Fit) -> float:
+    """The smallest rms, in standard deviations, that a fit leaves in an angle."""
+    squares = mean_squares(fit.evaluations, fit.runs)
+    angles = [k for k, name in enumerate(fit.runs[0].signals) if name.startswith("theta_")]
+    left = squares[:, angles] if angles else squares
+    return float(np.sqrt(np.min(np.median(left, axis=0))))
+
+
+def _inherited(parent: Fit | None, free: Sequence[FreeParameter]) -> list[tuple[int, int]] | None:
+    """The derivatives (run, column) that misled the parent, as columns of `free`; None: not known."""
+    if parent is None or parent.misleading is None:
+        return None
+    own = {f.name: k for k, f in enumerate(free)}
+    names = [f.name for f in parent.free]
+    found = [(run, own[names[c]]) for run, c in parent.misleading if names[c] in own]
+    fresh = [k for name, k in own.items() if name not in names]
+    return found + [(run, k) for run in range(len(parent.runs)) for k in fresh]
 
 
 GAIN = 1e-3  # relative gain of an iteration below which two in a row end a fit
@@ -111,14 +138,22 @@ def accuracy(task: Task, share: float, rms: float = 1.0) -> Tolerance:
 
 
 def continued(
-    task: Task, trial: Trial, iterations: int, share: float, executor: Executor | None = None
+    task: Task,
+    trial: Trial,
+    iterations: int,
+    share: float = ROUGH,
+    secants: bool = False,
+    executor: Executor | None = None,
 ) -> Trial:
     """Fit a trial on from where it ended; a worse end is not taken."""
     new = fitted(
-        task, trial.candidates, trial.values, trial.fit.z, iterations, share, executor,
-        trial.fit.misleading,
+        task, trial.candidates, trial.values, trial.fit.z, iterations, trial.fit, share, secants,
+        executor,
     )  # fmt: skip
-    return trial if new.fit.failed or misfits([trial, new])[1] > misfits([trial, new])[0] else new
+    if new.fit.misleading is None and trial.fit.misleading is not None:
+        new = replace(new, fit=replace(new.fit, misleading=trial.fit.misleading))
+    before, after = misfits([trial, new])
+    return trial if new.fit.failed or after > before else new
 
 
 def simulated(
@@ -126,7 +161,7 @@ def simulated(
 ) -> list[Evaluation]:
     """All runs of `fit` with `values` in place of its own, without derivatives."""
     p, none = task.model.parameter_vector({**fit.values, **values}), np.zeros(0, dtype=np.int64)
-    tolerance = accuracy(task, ROUGH)
+    tolerance = accuracy(task, ROUGH, quietest(fit))
 
     def one(pair: tuple[Run, FloatArray]) -> Evaluation:
         return evaluate(task.model, pair[0], p, pair[1], none, False, tolerance)
@@ -184,16 +219,14 @@ def ranked(trials: Sequence[Trial]) -> list[Trial]:
 
 
 def halving(
-    task: Task, trials: Sequence[Trial], rungs: Sequence[tuple[int, int]], share: float = ROUGH
+    task: Task, trials: Sequence[Trial], rungs: Sequence[tuple[int, int]]
 ) -> list[Trial]:
     """Successive halving (Jamieson and Talwalkar, 2016): every rung gives the trials that are left
     so many iterations, side by side, and keeps so many of them.
     """
     left = list(trials)
     for iterations, kept in rungs:
-        go_on = [
-            task.executor.submit(continued, task, trial, iterations, share) for trial in left
-        ]
+        go_on = [task.executor.submit(continued, task, trial, iterations) for trial in left]
         left = [t for t in ranked([job.result() for job in go_on]) if np.isfinite(t.fit.cost)]
         left = left[:kept]
     return left
