@@ -197,9 +197,7 @@ def _finest_angle(runs: Sequence[Run]) -> float:
 
 
 def _write_up(platform: Platform, task: Task, found: Search, verdict: Verdict) -> Output:
-    after = replace(
-        verdict.final, fit=unblinded(verdict.final.fit, task.executor)
-    )
+    after = replace(verdict.final, fit=unblinded(verdict.final.fit, task.executor))
     declared = found.declared
     intervals = {e.name: e for e in estimates(after.fit)}
     parts = {

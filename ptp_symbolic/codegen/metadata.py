@@ -75,7 +75,8 @@ def _parameter_lines(equations: Equations) -> list[str]:
         "# Searching them: name, value at which the effect vanishes (None: any), starts,",
         "# period, what a frequency is locked to.",
         _tuple("SEARCH", [_search(p) for p in parameters if _is_searched(p)]),
-        "# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the",
+        "# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of"
+        " the",
         "# effects that it acts on, title, reference, separating experiment.",
         _tuple("EFFECTS", _effects(equations)),
     ]

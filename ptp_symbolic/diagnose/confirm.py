@@ -21,8 +21,8 @@ NEAR_BOUND = 1e-4  # of a parameter's size: closer to its bound it is at the bou
 
 
 def why_unconfirmed(task: Task, trial: Trial, fit: Fit, candidate: Candidate) -> str | None:
-    """Why `candidate` of a trial cannot be named; None where nothing speaks against it. `fit` is the
-    trial's, with derivatives that are not blind.
+    """Why `candidate` of a trial cannot be named; None where nothing speaks against it. `fit` is
+    the trial's, with derivatives that are not blind.
     """
     bound = at_bound(fit, candidate)
     if bound is not None:
@@ -92,4 +92,3 @@ def answers_to_inputs(task: Task, trial: Trial) -> bool:
             moved += float(np.sum((found.residual - e.residual) ** 2))
             left += float(np.sum(e.residual**2))
     return moved > left
-

@@ -14,8 +14,8 @@ FloatArray = NDArray[np.float64]
 
 
 def curves_of(parts: Mapping[str, tuple[Fit, Fit]]) -> dict[str, Any]:
-    """Measured and simulated signals of every run of each part ("train", "validate"), by the declared
-    and by the final model; the windows of a run joined at the times `borders`.
+    """Measured and simulated signals of every run of each part ("train", "validate"), by the
+    declared and by the final model; the windows of a run joined at the times `borders`.
     """
     curves: dict[str, Any] = {}
     for name, (before_fit, after_fit) in parts.items():

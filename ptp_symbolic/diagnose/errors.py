@@ -38,8 +38,8 @@ def angle_columns(run: Run) -> list[int]:
 
 
 def error_of(fit: Fit, units: dict[str, str], floor: FloatArray | None = None) -> dict[str, Any]:
-    """Errors of `fit` in total, by run and by signal; those of a `floor` [ny], in units of the noise
-    of every signal, where one is given.
+    """Errors of `fit` in total, by run and by signal; those of a `floor` [ny], in units of the
+    noise of every signal, where one is given.
     """
     pairs = fit.pairs()
     return {

@@ -1,8 +1,8 @@
 """The noise floor: what a perfect model leaves, and whether a model leaves no more.
 
-Rounding and noise of a signal, as the platform declares them or as its logs show; the colour of that
-noise, where it is not declared, from what the model leaves; and the noise of the inputs, carried to
-the outputs by the model itself.
+Rounding and noise of a signal, as the platform declares them or as its logs show; the colour of
+that noise, where it is not declared, from what the model leaves; and the noise of the inputs,
+carried to the outputs by the model itself.
 """
 
 from dataclasses import dataclass
@@ -21,8 +21,9 @@ ABOVE_NOISE = 1.1  # times the floor: what a model leaves below cannot be told f
 
 @dataclass(frozen=True, eq=False)
 class Floor:
-    """What a perfect model leaves in every signal: rms [ny], in units of the rounding and noise that
-    weights stand for, and the largest rms [ny] that may be noise at 95 % (noise of unknown colour).
+    """What a perfect model leaves in every signal: rms [ny], in units of the rounding and noise
+    that weights stand for, and the largest rms [ny] that may be noise at 95 % (noise of unknown
+    colour).
     """
 
     level: FloatArray

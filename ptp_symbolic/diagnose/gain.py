@@ -76,9 +76,7 @@ def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
 
 def _projected(fit: Fit) -> tuple[list[FloatArray], list[FloatArray]]:
     """Residuals [k * ny] and Jacobians [k * ny, nf] of every run, its unknown start taken out."""
-    residuals = [
-        project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations
-    ]
+    residuals = [project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations]
     jacobians = [project_out(e.by_parameter, e.by_start) for e in fit.evaluations]
     return residuals, jacobians
 

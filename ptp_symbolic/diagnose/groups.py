@@ -63,13 +63,15 @@ def rivals(task: Task, chosen: Trial, others: Sequence[Trial], fit: Fit) -> list
         ]
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
-    trials = halving(task, begun, ((ADDED_RUNGS[0][0], len(begun)), (ADDED_RUNGS[1][0], len(begun))))
+    trials = halving(
+        task, begun, ((ADDED_RUNGS[0][0], len(begun)), (ADDED_RUNGS[1][0], len(begun)))
+    )
     tried = {t.keys for t in trials} | {chosen.keys}
     for other in ranked(others):
         same_size = len(other.candidates) == len(chosen.candidates)
-        if same_size and other.keys not in tried and np.isfinite(other.fit.cost):
-            if other.fit.is_differentiated and gain(chosen, other).share < NEAR:
-                trials.append(other)
+        fresh = same_size and other.keys not in tried and np.isfinite(other.fit.cost)
+        if fresh and gain(chosen, other).share < NEAR:
+            trials.append(other)
     result: dict[tuple[str, ...], Rival] = {}
     for trial in trials:
         if gain(chosen, trial).share >= NEAR:
@@ -92,7 +94,9 @@ def confusable(chosen: Trial, found: Sequence[Rival]) -> dict[str, tuple[str, ..
 
 
 def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[Similarity]:
-    """Candidates whose response correlates above SIMILAR with the effect of `member`, best first."""
+    """Candidates whose response correlates above SIMILAR with the effect of `member`, best
+    first.
+    """
     residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
     table = stacked(fit, [e.by_parameter for e in fit.evaluations])
     own = [k for k, f in enumerate(fit.free) if f.name in member.parameters]
@@ -135,7 +139,9 @@ def _instead(
     away: FloatArray,
     found: Columns,
 ) -> dict[str, float]:
-    """Values of all parameters where `found` takes up the `residual` of the fit without a member."""
+    """Values of all parameters where `found` takes up the `residual` of the fit without a
+    member.
+    """
     amounts, _ = least(residual, away, found)
     shift = np.zeros(len(fit.free))
     shift[list(others)] = amounts[: len(others)]

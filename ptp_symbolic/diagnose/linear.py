@@ -1,4 +1,6 @@
-"""Linear algebra at a fit: what an effect changes in the residuals, apart from what others follow."""
+"""Linear algebra at a fit: what an effect changes in the residuals, apart from what others
+follow.
+"""
 
 from collections.abc import Sequence
 
@@ -16,7 +18,9 @@ SINGULAR = 1e-8  # relative singular value below which directions are the same
 
 
 def stacked(fit: Fit, columns: Sequence[FloatArray]) -> FloatArray:
-    """Columns [k, c] of every run below one another, without what the unknown starts can explain."""
+    """Columns [k, c] of every run below one another, without what the unknown starts can
+    explain.
+    """
     pairs = zip(columns, fit.evaluations, strict=True)
     return np.vstack([project_out(c, e.by_start) for c, e in pairs])
 
@@ -53,5 +57,3 @@ def canonical_correlation(target: FloatArray, columns: FloatArray) -> float:
     left, values, _ = np.linalg.svd(kept, full_matrices=False)
     basis = left[:, values > SINGULAR * values[0]]
     return float(np.linalg.norm(basis.T @ target) / np.linalg.norm(target))
-
-

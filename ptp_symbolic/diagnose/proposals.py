@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.signatures import brought, locked_signatures, signatures
+from ptp_symbolic.diagnose.signatures import locked_signatures, signatures
 from ptp_symbolic.diagnose.subsets import (
     Regression,
     Subset,
@@ -133,7 +133,9 @@ def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | No
 
 
 def possible(task: Task, values: Mapping[str, float]) -> dict[str, float]:
-    """`values` with every relation met that the machine needs: of two parameters the first raised."""
+    """`values` with every relation met that the machine needs: of two parameters the first
+    raised.
+    """
     found = dict(values)
     margin = np.zeros(len(task.model.module.REQUIREMENTS))
     for names, *_ in task.model.module.REQUIREMENTS:
@@ -198,7 +200,9 @@ def start_of(
         free: list[tuple[FreeParameter, float]] = []
         columns = [rows.base[:, k] for k in range(rows.base.shape[1])]
         for signature, shape in zip(found, shapes, strict=True):
-            for f, column in zip(signature.candidate.defining, signature.slopes[shape], strict=True):
+            for f, column in zip(
+                signature.candidate.defining, signature.slopes[shape], strict=True
+            ):
                 free.append((f, signature.candidate.vanishing[f.name]))
                 columns.append(column)
         table = np.column_stack(columns) * root[:, None]
@@ -206,11 +210,12 @@ def start_of(
         prior = np.zeros((len(declared), table.shape[1]))
         prior[:, : len(declared)] = np.diag([1.0 / f.scale for f in declared])
         table = np.vstack([table, prior])
-        lower = np.array([f.lower - values[f.name] for f in declared] + [f.lower - z for f, z in free])
-        upper = np.array([f.upper - values[f.name] for f in declared] + [f.upper - z for f, z in free])
+        around = [(f, values[f.name]) for f in declared] + free
+        lower = np.array([f.lower - centre for f, centre in around])
+        upper = np.array([f.upper - centre for f, centre in around])
         size = np.maximum(np.linalg.norm(table, axis=0), 1e-300)
-        triangle = np.linalg.qr(np.column_stack([table / size, right]), mode="r")
-        k = table.shape[1]
+        triangle = np.asarray(np.linalg.qr(np.column_stack([table / size, right]), mode="r"))
+        k = int(table.shape[1])
         solved = lsq_linear(
             triangle[:, :k], -triangle[:, k], ((lower - 1e-12) * size, (upper + 1e-12) * size)
         )

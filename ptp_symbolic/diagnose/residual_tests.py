@@ -23,8 +23,8 @@ INDEPENDENT = "what is left over should not follow {name}; where it does, the mo
 def residual_tests(fit: Fit, inputs: tuple[str, ...]) -> list[dict[str, Any]]:
     """Per measured signal: whiteness of its residual, and independence of each of the `inputs`.
 
-    The statistic is the largest correlation over `LAGS` lags; of independent residuals it stays below
-    the threshold in 99 of 100 cases.
+    The statistic is the largest correlation over `LAGS` lags; of independent residuals it stays
+    below the threshold in 99 of 100 cases.
     """
     pairs = [(r, e) for r, e in fit.pairs() if len(r.time) > 4 * LAGS]
     rows: list[dict[str, Any]] = []
@@ -39,7 +39,9 @@ def residual_tests(fit: Fit, inputs: tuple[str, ...]) -> list[dict[str, Any]]:
     return rows
 
 
-def correlations(first: Sequence[FloatArray], other: Sequence[FloatArray]) -> tuple[FloatArray, int]:
+def correlations(
+    first: Sequence[FloatArray], other: Sequence[FloatArray]
+) -> tuple[FloatArray, int]:
     """Correlations [LAGS + 1] of series over runs of any lengths, and the number of samples.
 
     Each run is scaled by itself and counts by its samples, so that the standard deviation of

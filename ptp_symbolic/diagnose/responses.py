@@ -30,8 +30,8 @@ RIDGE = 1e-6  # of the residual per unit column: keeps columns apart that are ne
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """Responses `table` [n, k] of a candidate, per unit of each of its `free` parameters, the others
-    at `base` (shaping values, and candidates that it brings along).
+    """Responses `table` [n, k] of a candidate, per unit of each of its `free` parameters, the
+    others at `base` (shaping values, and candidates that it brings along).
     """
 
     candidate: Candidate
@@ -137,9 +137,7 @@ def _column(
         values = {**base, **dict.fromkeys((f.name, *f.tied), zero + amount)}
         changed = simulated(task, trial.fit, values, None)
         if not any(e.failed for e in changed):
-            differences = [
-                (e.residual - r)[:, None] for e, r in zip(changed, without, strict=True)
-            ]
+            differences = [(e.residual - r)[:, None] for e, r in zip(changed, without, strict=True)]
             change = stacked(trial.fit, differences)[:, 0]
             size = float(np.linalg.norm(change))
             if size == 0.0:
@@ -160,8 +158,8 @@ def least(here: FloatArray, declared: FloatArray, found: Columns) -> tuple[Float
     upper = np.concatenate([reach, [f.upper - z for f, z in zip(found.free, zero, strict=True)]])
     table = np.column_stack([declared, found.table])
     size = np.maximum(np.linalg.norm(table, axis=0), 1e-300)
-    triangle = np.linalg.qr(np.column_stack([table / size, here]), mode="r")
-    k = table.shape[1]
+    triangle = np.asarray(np.linalg.qr(np.column_stack([table / size, here]), mode="r"))
+    k = int(table.shape[1])
     ridge = RIDGE * np.linalg.norm(triangle[:, k]) * np.eye(k)
     solved = lsq_linear(
         np.vstack([triangle[:, :k], ridge]),

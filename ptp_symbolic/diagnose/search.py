@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.floor import carried_noise, leaves_noise_alone
 from ptp_symbolic.diagnose.gain import Gain, gain
-from ptp_symbolic.diagnose.proposals import Proposals, declared_start, propose
 from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
+from ptp_symbolic.diagnose.proposals import Proposals, declared_start, propose
 from ptp_symbolic.diagnose.responses import responses
 from ptp_symbolic.diagnose.trial import (
     ROUGH,
@@ -135,9 +135,7 @@ class Seeker:
             begun.append(self.best_of(starts))
         unseen = responses(task, declared, self.proposals.unseen)[:ADDED]
         return begun + [
-            fitted(
-                task, r.proposal.candidates, r.proposal.values, declared.fit.z, 0, declared.fit
-            )
+            fitted(task, r.proposal.candidates, r.proposal.values, declared.fit.z, 0, declared.fit)
             for r in unseen
         ]
 
@@ -146,6 +144,7 @@ class Seeker:
         return ranked(trials)[0]
 
     def is_at_noise(self, trial: Trial) -> bool:
+        """Whether what a trial leaves cannot be told from noise."""
         return leaves_noise_alone(self.task, trial, self.carried)
 
     def polished(self, trial: Trial) -> Trial:
@@ -178,9 +177,7 @@ class Seeker:
         }
         values = trial.values | {name: self.task.fixed[name] for name in names}
         task = self.task
-        begun = fitted(
-            task, kept, values, trial.fit.z, REMOVED, trial.fit, executor=task.executor
-        )
+        begun = fitted(task, kept, values, trial.fit.z, REMOVED, trial.fit, executor=task.executor)
         smaller = self.polished(begun)
         self.others.append(smaller)
         return smaller
@@ -195,8 +192,8 @@ class Seeker:
         return earned.share >= MATERIAL and earned.is_clear(len(self.task.candidates))
 
     def pruned(self, trial: Trial) -> Trial:
-        """Take candidates out, the one that seems to gain least first, until each that is left gains
-        clearly and materially.
+        """Take candidates out, the one that seems to gain least first, until each that is left
+        gains clearly and materially.
         """
         while trial.candidates:
             expected = {c.key: expected_gain(trial, c) for c in trial.candidates}
@@ -287,5 +284,3 @@ def fullest(task: Task, candidate: Candidate) -> Candidate:
     """The form of a candidate with the most parameters."""
     best = max(forms(task, candidate), key=lambda c: len(c.free))
     return best if len(best.free) > len(candidate.free) else candidate
-
-

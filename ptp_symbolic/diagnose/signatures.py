@@ -75,7 +75,9 @@ def signatures(
 
 
 def brought(candidate: Candidate, by_key: Mapping[str, Candidate]) -> dict[str, float]:
-    """Start values of the candidates that `candidate` brings along, so that it has what to act on."""
+    """Start values of the candidates that `candidate` brings along, so that it has what to act
+    on.
+    """
     return {
         name: f.start
         for key in candidate.brings
@@ -133,8 +135,8 @@ def locked_signatures(
 ) -> list[Signature]:
     """Signatures of candidates with a frequency, at the strongest line of the weighted `residual`.
 
-    A full scan over the place (time, or the angle of the candidate's axis): all frequencies from one
-    cycle over the whole range to those that the windows average away.
+    A full scan over the place (time, or the angle of the candidate's axis): all frequencies from
+    one cycle over the whole range to those that the windows average away.
     """
     by_key = {c.key: c for c in reversed(candidates)}
     own = space.own_torque(space.model.parameter_vector(dict(values)))

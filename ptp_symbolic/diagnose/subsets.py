@@ -30,8 +30,8 @@ PERMUTATION_SEED = 20130801
 
 @dataclass(frozen=True, eq=False)
 class Regression:
-    """Rows [n] that `base` [n, nb], the columns of the `declared` parameters, and the columns of the
-    signatures may take up.
+    """Rows [n] that `base` [n, nb], the columns of the `declared` parameters, and the columns of
+    the signatures may take up.
 
     `scale` [n] is the standard deviation of every row, `weight` [n] its weight in the fit, `block`
     [n] the number of the block of time that it belongs to.
@@ -109,7 +109,7 @@ def ranked_subsets(found: Regression, largest: int) -> list[Subset]:
     """
     folds = _Folds(found)
     entries = range(len(found.signatures))
-    every = {(): folds.subset(())}
+    every: dict[tuple[int, ...], Subset] = {(): folds.subset(())}
     for size in (1, 2):
         for chosen in itertools.combinations(entries, size):
             if size <= largest and folds.is_complete(chosen):
@@ -163,7 +163,7 @@ class _Folds:
             amounts = np.linalg.solve(part + ridge, side[index])
             left = self.found.rows[members] - self.columns[np.ix_(members, index)] @ amounts
             loss[members] = np.minimum((left / self.found.scale[members]) ** 2, CAP**2)
-        losses = np.bincount(self.label, loss)
+        losses = np.asarray(np.bincount(self.label, loss), dtype=np.float64)
         candidates = tuple(self.found.signatures[i].candidate for i in chosen)
         return Subset(candidates, losses, len(index))
 

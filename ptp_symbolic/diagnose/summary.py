@@ -156,7 +156,9 @@ def _row(search: Search, found: Verdict, trial: Trial) -> dict[str, Any]:
         "effect": " + ".join(c.id for c in trial.candidates),
         "axis": axes.pop() if len(axes) == 1 else None,
         "gain": gain_table(earned) if earned else None,
-        "train_error_after": error["rmse"] if error["rmse_counts"] is None else error["rmse_counts"],
+        "train_error_after": error["rmse"]
+        if error["rmse_counts"] is None
+        else error["rmse_counts"],
         "parameters": {
             f.name: {"value": trial.values[f.name], "unit": units[f.name]}
             for c in trial.candidates

@@ -1,4 +1,6 @@
-"""A trial: the declared model with a set of candidates, fitted to the training runs by simulation."""
+"""A trial: the declared model with a set of candidates, fitted to the training runs by
+simulation.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
@@ -18,7 +20,10 @@ FloatArray = NDArray[np.float64]
 Progress = Callable[[str], None]
 
 BEND = 2.5  # a block this many times as far off as the usual one counts only linearly (Huber)
-ROUGH, SHARP = 1e-2, 1e-3  # error of a simulation as a share of the noise, while searching and at last
+ROUGH, SHARP = (
+    1e-2,
+    1e-3,
+)  # error of a simulation as a share of the noise, while searching and at last
 FAR = 20.0  # standard deviations: from here on simulations need no better accuracy
 
 
@@ -117,7 +122,9 @@ def quietest(fit: Fit) -> float:
 
 
 def _inherited(parent: Fit | None, free: Sequence[FreeParameter]) -> list[tuple[int, int]] | None:
-    """The derivatives (run, column) that misled the parent, as columns of `free`; None: not known."""
+    """The derivatives (run, column) that misled the parent, as columns of `free`; None: not
+    known.
+    """
     if parent is None or parent.misleading is None:
         return None
     own = {f.name: k for k, f in enumerate(free)}
@@ -176,7 +183,7 @@ def mean_squares(evaluations: Sequence[Evaluation], runs: Sequence[Run]) -> Floa
     for e, run in zip(evaluations, runs, strict=True):
         table = e.residual.reshape(run.measured.shape)
         failed = e.failed is not None or not np.all(np.isfinite(table))
-        rows.append(np.full(table.shape[1], np.inf) if failed else np.mean(table**2, axis=0))
+        rows.append(np.full(len(run.signals), np.inf) if failed else np.mean(table**2, axis=0))
     return np.array(rows)
 
 
@@ -218,9 +225,7 @@ def ranked(trials: Sequence[Trial]) -> list[Trial]:
     return list(best.values())
 
 
-def halving(
-    task: Task, trials: Sequence[Trial], rungs: Sequence[tuple[int, int]]
-) -> list[Trial]:
+def halving(task: Task, trials: Sequence[Trial], rungs: Sequence[tuple[int, int]]) -> list[Trial]:
     """Successive halving (Jamieson and Talwalkar, 2016): every rung gives the trials that are left
     so many iterations, side by side, and keeps so many of them.
     """

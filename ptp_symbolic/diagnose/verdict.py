@@ -13,7 +13,7 @@ from ptp_symbolic.diagnose.floor import (
     floor_of,
     left_over,
 )
-from ptp_symbolic.diagnose.gain import Gain, compared, gain
+from ptp_symbolic.diagnose.gain import Gain, compared
 from ptp_symbolic.diagnose.groups import Rival, confusable, rivals
 from ptp_symbolic.diagnose.search import MATERIAL, Search, Seeker, Step
 from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy, mean_squares, quietest, ranked
@@ -25,7 +25,9 @@ UP_TO_GROUP = "explained_up_to_group"
 PARTLY = "partly_explained"
 UNEXPLAINED = "unexplained"
 
-MAJOR = 0.5  # share of the loss that an effect must take away where more than noise is left: a model
+MAJOR = (
+    0.5  # share of the loss that an effect must take away where more than noise is left: a model
+)
 # that is slightly wrong everywhere lets many candidates gain a little
 HELD_OUT_ABOVE = 1.25  # times the floor: validation runs are few, and bear the errors of the fit
 HELD_OUT_ITERATIONS = 10  # for the starts of the validation runs
@@ -106,10 +108,8 @@ def _weakness(
     if not answers_to_inputs(task, trial):
         return weakest, "with it the model no longer answers to its inputs"
     if weakest.gain.share < MAJOR and not seeker.is_at_noise(trial):
-        return weakest, (
-            f"takes away {100.0 * weakest.gain.share:.0f} % of the error, too little where more than"
-            " noise is left"
-        )
+        share = f"{100.0 * weakest.gain.share:.0f} %"
+        return weakest, f"takes away {share} of the error, too little where more than noise is left"
     return None
 
 
@@ -142,9 +142,7 @@ def _is_quiet(trial: Trial, floor: Floor, after: Fit) -> bool:
 def held_out_fit(task: Task, trial: Trial) -> Fit:
     """The validation runs by the model of a trial, nothing but their starts fitted."""
     effort = Effort(HELD_OUT_ITERATIONS, 1e-3, accuracy(task, SHARP, quietest(trial.fit)))
-    return fit_parameters(
-        task.model, task.validate, (), trial.values, None, effort, task.executor
-    )
+    return fit_parameters(task.model, task.validate, (), trial.values, None, effort, task.executor)
 
 
 def held_out_gain(after: Fit, before: Fit) -> Gain:

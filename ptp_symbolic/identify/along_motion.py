@@ -60,7 +60,8 @@ def layout_of(model: Model) -> Layout:
     """
     if len(model.sampled):
         raise InputError(
-            f"Model '{model.name}' has sampled states; its equations have no residual along a motion."
+            f"Model '{model.name}' has sampled states;"
+            " its equations have no residual along a motion."
         )
     states, axes = list(model.state_names), model.module.AXES
     rates = [name for name in states if name.startswith("omega_")]

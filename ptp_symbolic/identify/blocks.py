@@ -1,4 +1,4 @@
-"""Statistics of residuals that are correlated in time: blocks that are long enough to be independent.
+"""Statistics of residuals that are correlated in time: blocks long enough to be independent.
 
 Blocks are left out in turn without a refit: near the optimum the residual is linear in the
 parameters, and the normal equations without a block give its prediction and the shift of the
@@ -120,7 +120,8 @@ def jackknife_covariance(shifts: FloatArray) -> FloatArray:
 
 def block_sums(values: FloatArray, label: IntArray) -> FloatArray:
     """Sum [b] of `values` [n] over every block."""
-    return np.bincount(label, weights=values)
+    sums: FloatArray = np.bincount(label, weights=values).astype(np.float64)
+    return sums
 
 
 def bootstrap_share(

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.identify.along_motion import (
     LATE_PARTS,
     PARTS,
@@ -25,7 +26,6 @@ from ptp_symbolic.identify.along_motion import (
     layout_of,
     torques_along,
 )
-from ptp_symbolic.errors import InputError
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.identify.weak_form import local_motion, noise_gain, weak_average
 from ptp_symbolic.runtime.model import Model
@@ -75,8 +75,8 @@ class _Along:
 
 @dataclass(frozen=True, eq=False)
 class _Further:
-    """Further states: what acts on the grid [g, e], measured minus integrated [k, e] at all samples,
-    and by how much they settle elsewhere at another rate [k, e, na].
+    """Further states: what acts on the grid [g, e], measured minus integrated [k, e] at all
+    samples, and by how much they settle elsewhere at another rate [k, e, na].
     """
 
     acting: FloatArray
@@ -200,8 +200,8 @@ class EquationSpace:
         seen = np.full((len(run.time), len(self.layout.further)), np.nan)
         for column, place in self.measured:
             seen[:, place] = run.measured[:, column]
-        smooth = [np.ascontiguousarray(local[:, k]) for k in range(3)]
-        fine = Motion(run.time, *smooth, run.held_inputs, seen)
+        smooth, rate, acceleration = (np.ascontiguousarray(local[:, k]) for k in range(3))
+        fine = Motion(run.time, smooth, rate, acceleration, run.held_inputs, seen)
         coarse = Motion(*(np.ascontiguousarray(column[rows.grid]) for column in fine))
         at, h = rows.grid[rows.chosen], self.half_width
         curvature = weak_average(run.time, angles, h, 2, at)
@@ -275,8 +275,8 @@ class EquationSpace:
         return found
 
     def _acting(self, p: FloatArray) -> FloatArray:
-        """Derivative [na, nu + e] of the torque that every axis lacks by inputs and measured further
-        states, seen in the middle of the first run after they were shifted for good.
+        """Derivative [na, nu + e] of the torque that every axis lacks by inputs and measured
+        further states, seen in the middle of the first run after they were shifted for good.
         """
         inputs, further = len(self.model.input_names), len(self.layout.further)
         shown = {inputs + place for _, place in self.measured}
@@ -310,7 +310,8 @@ def prepare_equation_space(
 
     Which rows count is decided at the parameters p [np] and at `others` (see `decide_rows`);
     `varied` are parameters that differ from p in all that may be searched, to see which of them act
-    on sensors and on further states. Raises InputError for a model with sampled states, and where an axis has no angle among the signals.
+    on sensors and on further states. Raises InputError for a model with sampled states, and where
+    an axis has no angle among the signals.
     """
     layout = layout_of(model)
     axes = model.module.AXES
@@ -398,8 +399,8 @@ def _rows_that_count(
 
 @dataclass(frozen=True, eq=False)
 class _Dependence:
-    """Which parameters [np] act on what the sensors of the angles show, which on the rates of further
-    states, and which of these states [e] act on a torque or on one another.
+    """Which parameters [np] act on what the sensors of the angles show, which on the rates of
+    further states, and which of these states [e] act on a torque or on one another.
     """
 
     sensing: BoolArray

@@ -114,8 +114,8 @@ def start_state(
 def _put_behind_sensors(
     model: Model, run: Run, p: FloatArray, columns: NDArray[np.int64], x: FloatArray, s: FloatArray
 ) -> None:
-    """Move the angles in the state x [n], and their tangents s by the parameters `columns`, to where
-    the sensors show what the run begins with. Errors of sensors are small and smooth.
+    """Move the angles in the state x [n], and their tangents s by the parameters `columns`, to
+    where the sensors show what the run begins with. Errors of sensors are small and smooth.
     """
     n, signals = len(x), len(model.output_names)
     y, yx, yp = np.zeros(signals), np.zeros((signals, n)), np.zeros((signals, len(p)))

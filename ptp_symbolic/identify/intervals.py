@@ -1,8 +1,8 @@
 """Confidence intervals that allow for residuals correlated in time.
 
 The residuals of a simulation error fit are never white: the covariance is that of a jackknife over
-blocks of time, as long as the residual's own correlation asks for, the unknown starts projected out.
-It never gets smaller than that of white noise of the declared size.
+blocks of time, as long as the residual's own correlation asks for, the unknown starts projected
+out. It never gets smaller than that of white noise of the declared size.
 """
 
 from dataclasses import dataclass
@@ -88,9 +88,9 @@ def _interval(
 
 
 def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Covariance [nf, nf] of the search coordinates, the degrees of freedom [nf] behind each, and the
-    directions [2, nf, lost] that the data do not see, in coordinates scaled by what the data see of
-    each alone, and in those of the search; it leaves these out.
+    """Covariance [nf, nf] of the search coordinates, the degrees of freedom [nf] behind each, and
+    the directions [2, nf, lost] that the data do not see, in coordinates scaled by what the data
+    see of each alone, and in those of the search; it leaves these out.
     """
     signals = fit.runs[0].measured.shape[1]
     residuals = [project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations]

@@ -35,8 +35,8 @@ def _trimmed_share(kept: float) -> float:
 def white_noise(signal: FloatArray) -> float:
     """Standard deviation of the white noise of a smooth `signal` [n], also of its rounding.
 
-    Squared differences of order 5, less the largest, corrected for what that takes from normal noise;
-    zero where the signal is too short.
+    Squared differences of order 5, less the largest, corrected for what that takes from normal
+    noise; zero where the signal is too short.
     """
     gain = float(comb(2 * ORDER, ORDER))
     if len(signal) < 4 * ORDER:

@@ -124,8 +124,9 @@ def local_motion(time, values, half_width):
 def noise_gain(period: float, half_width: float, derivative: int) -> float:
     """Standard deviation of a weak average of white noise of deviation 1, sampled every `period` s.
 
-    Continuous limit of the sums above: the integrals of the squared test function and of its squared
-    second derivative are h B(1/2, 9) and (8^2 / h^3) (B(1/2, 7) - 12 B(3/2, 6) + 36 B(5/2, 5)).
+    Continuous limit of the sums above: the integrals of the squared test function and of its
+    squared second derivative are h B(1/2, 9) and
+    (8^2 / h^3) (B(1/2, 7) - 12 B(3/2, 6) + 36 B(5/2, 5)).
     """
     s = np.linspace(-1.0, 1.0, 2001)
     base = 1.0 - s**2

@@ -62,6 +62,9 @@ def output_addresses(module: ModuleType) -> NDArray[np.int64]:
 
 
 def compiled_addresses(module: ModuleType, signatures: dict[str, Any]) -> NDArray[np.int64]:
+    """Address of the compiled function of every name in `signatures`; 0 for an impact function that
+    the module does not have.
+    """
     found = []
     for name, signature in signatures.items():
         if name in IMPACT_SIGNATURES and name not in vars(module):
