@@ -15,7 +15,14 @@ from threadpoolctl import threadpool_limits
 from ptp_symbolic import loop
 from ptp_symbolic.codegen.effect_equations import effect_equations
 from ptp_symbolic.codegen.module import module_text
-from ptp_symbolic.data import Log, read_logs, read_split_logs
+from ptp_symbolic.data import (
+    Log,
+    read_logs,
+    read_split_logs,
+    refuse_motionless,
+    refuse_wrapped_angles,
+    remarks,
+)
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.diagnose.candidates import find_candidates, vanished
 from ptp_symbolic.diagnose.curves import curves_of
@@ -88,6 +95,7 @@ def fit_platform(
     that do not fit each other.
     """
     logs = read_logs(paths, platform)
+    noted = _look_at(platform, logs, logs, progress)
     model = loop.emit(platform)
     with _workers() as executor:
         task = _task(platform, model, logs, logs, (), executor, progress)
@@ -113,6 +121,7 @@ def fit_platform(
         "error": error,
         "far_from_floor": trial.fit.failed is not None or left > FAR_FROM_FLOOR * least,
         "windows": _windows(task),
+        "remarks": list(noted),
     }
     files = {"fit.json": _json(summary), "platform.toml": platform_text(fitted)}
     return Output(summary, files)
@@ -146,6 +155,7 @@ def diagnose_platform(
     Raises InputError for logs and platforms that do not fit each other, and for a run in both.
     """
     train_logs, validate_logs = read_split_logs(train, validate, platform)
+    noted = _look_at(platform, train_logs, (*train_logs, *validate_logs), progress)
     progress("deriving the equations of the platform and its candidates")
     model = loop.emit(loop.with_candidates(platform))
     with _workers() as executor:
@@ -154,7 +164,19 @@ def diagnose_platform(
         )
         found = search(task)
         verdict = decide(task, found)
-        return _write_up(platform, task, found, verdict)
+        return _write_up(platform, task, found, verdict, noted)
+
+
+def _look_at(
+    platform: Platform, train: Sequence[Log], every: Sequence[Log], progress: Progress
+) -> tuple[str, ...]:
+    """Refuse logs that cannot be used, and say what is odd about the others before any fit."""
+    refuse_wrapped_angles(every, platform)
+    refuse_motionless(train, platform)
+    noted = remarks(train, platform)
+    for text in noted:
+        progress(text)
+    return noted
 
 
 def _task(
@@ -196,7 +218,9 @@ def _finest_angle(runs: Sequence[Run]) -> float:
     return float(np.min(1.0 / run.weight[angles or list(range(len(run.weight)))]))
 
 
-def _write_up(platform: Platform, task: Task, found: Search, verdict: Verdict) -> Output:
+def _write_up(
+    platform: Platform, task: Task, found: Search, verdict: Verdict, noted: Sequence[str]
+) -> Output:
     after = replace(verdict.final, fit=unblinded(verdict.final.fit, task.executor))
     declared = found.declared
     intervals = {e.name: e for e in estimates(after.fit)}
@@ -227,6 +251,7 @@ def _write_up(platform: Platform, task: Task, found: Search, verdict: Verdict) -
         "held_out": None if verdict.held_out is None else gain_table(verdict.held_out),
         "refused": dict(verdict.refused),
         "windows": _windows(task),
+        "remarks": list(noted),
         "not_visible": [],
         "equations": equations,
     }

@@ -38,8 +38,7 @@ def free_parameter(
     period: float | None = None,
     tied: tuple[str, ...] = (),
 ) -> FreeParameter:
-    """Choose the coordinate: logarithmic where zero is out of bounds, so that the others can be zero.
-    """
+    """Choose the coordinate: logarithmic where zero is out of bounds; the others can reach it."""
     logarithmic = lower > 0.0
     scale = abs(start) if start != 0.0 else min(1.0, 0.1 * (upper - lower))
     return FreeParameter(name, start, lower, upper, period, tied, logarithmic, scale)

@@ -122,9 +122,9 @@ def linearised(
         moved[owned[index]] += step
         return (space.rows(moved, own) - origin) / step
 
-    run = executor.map if executor else map
-    columns = list(run(quotient, range(len(free))))
-    jacobian = np.column_stack(columns) if columns else np.zeros((len(rows), 0))
+    quotients = (executor.map if executor else map)(quotient, range(len(free)))
+    slopes: list[FloatArray] = list(quotients)
+    jacobian = np.column_stack(slopes) if slopes else np.zeros((len(rows), 0))
     equation, _, _ = space.labels()
     found = all_values_of(free, here)
     return EquationFit(found, rows, jacobian, huber_weight(rows, equation))

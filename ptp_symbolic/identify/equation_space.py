@@ -125,8 +125,8 @@ class EquationSpace:
             for number, (run, rows) in enumerate(zip(self.runs, self.rows_of, strict=True)):
                 time = run.time[rows.grid[rows.chosen[rows.kept[:, equation]]]]
                 parts.append((np.full(len(time), equation), np.full(len(time), number), time))
-        equation, number, time = (np.concatenate(c) for c in zip(*parts, strict=True))
-        return equation, number, time
+        equations, numbers, times = zip(*parts, strict=True)
+        return np.concatenate(equations), np.concatenate(numbers), np.concatenate(times)
 
     def rows(self, p: FloatArray, own: Sequence[FloatArray] | None = None) -> FloatArray:
         """All rows [n] at parameters p, equation by equation and run by run.

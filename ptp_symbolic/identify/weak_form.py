@@ -13,9 +13,7 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 LEAST_SAMPLES = 7  # in a window: fewer do not resolve the second derivative of the test function
-LARGEST_GAP = (
-    0.34  # of the half width: a trapezoid across more misses the bend of the test function
-)
+LARGEST_GAP = 0.34  # of the half width: across more a trapezoid misses the test function's bend
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

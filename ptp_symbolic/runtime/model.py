@@ -100,10 +100,11 @@ class Model:
         """The parameters with unit, default, bounds and where they vanish."""
         search = {row[0]: row[1:] for row in self.module.SEARCH}
         own = {} if self.declared is None else self.declared[2]
-        return tuple(
-            ModelParameter(name, unit, *own.get(name, numbers), meaning, *search.get(name, ()))
-            for name, unit, *numbers, meaning in self.module.PARAMETERS
+        rows = (
+            (name, unit, *own.get(name, (default, lower, upper)), meaning, *search.get(name, ()))
+            for name, unit, default, lower, upper, meaning in self.module.PARAMETERS
         )
+        return tuple(ModelParameter(*row) for row in rows)
 
     @cached_property
     def parameter_names(self) -> tuple[str, ...]:

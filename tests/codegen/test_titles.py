@@ -1,10 +1,14 @@
-"""A title is text of a file: in the emitted module it stays text, whatever it looks like."""
+"""A title is text of a file: in whatever is emitted it stays text, whatever it looks like."""
 
 from pathlib import Path
 
 import pytest
 
 import ptp_symbolic
+from ptp_symbolic.codegen.module import module_text
+from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic.platform import read_platform
+from ptp_symbolic.runtime.loader import load_module
 
 PLATFORM = """[platform]
 name = "named"
@@ -15,20 +19,51 @@ effect = "rigid_bodies"
 """
 MARK = 'open("mark", "w").close()'
 TITLES = {
-    "ends the docstring": f'a""" + str({MARK}) + """',
-    "ends the constant": f'a"; {MARK}; b = "',
-    "ends in a quote": 'called "tracker"',
-    "ends in a backslash": "a\\",
-    "escapes": r"\x41 \N{BULLET} \u0041",
+    "ends the docstring": f'zebra""" + str({MARK}) + """',
+    "ends the constant": f'zebra"; {MARK}; b = "',
+    "ends in a quote": 'called "zebra"',
+    "ends in a backslash": "zebra\\",
+    "escapes": r"zebra \x41 \N{BULLET} \u0041",
 }
 
 
-@pytest.mark.parametrize("title", TITLES.values(), ids=TITLES)
-def test_a_title_is_never_run(title: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def declared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The platform file, in the working folder, where code in a title would leave `mark`."""
     monkeypatch.chdir(tmp_path)
-    path = tmp_path / "named.toml"
-    path.write_text(PLATFORM.format(title=title), encoding="utf-8")
-    model = ptp_symbolic.load(path)
-    assert title == model.module.TITLE
+    return tmp_path / "named.toml"
+
+
+@pytest.mark.parametrize("title", TITLES.values(), ids=TITLES)
+def test_a_title_that_is_written_into_a_module_is_never_run(title: str, declared: Path) -> None:
+    declared.write_text(PLATFORM.format(title=title), encoding="utf-8")
+    path = declared.with_name("named.py")
+    path.write_text(module_text(assemble(read_platform(declared))), encoding="utf-8")
+    model = load_module(path, f"named_{list(TITLES.values()).index(title)}")
+    assert title == model.module.TITLE == model.title
     assert (model.module.__doc__ or "").startswith(f"{title}: equations of motion")
-    assert [p.name for p in tmp_path.iterdir()] == ["named.toml"]
+    assert {p.name for p in declared.parent.iterdir()} == {"named.py", "named.toml"}
+
+
+@pytest.mark.parametrize("title", TITLES.values(), ids=TITLES)
+def test_a_module_that_machines_share_holds_nothing_of_their_titles(
+    title: str, declared: Path
+) -> None:
+    declared.write_text(PLATFORM.format(title=title), encoding="utf-8")
+    model = ptp_symbolic.load(declared)
+    assert (model.name, model.title) == ("named", title)
+    emitted = Path(model.module.__file__ or "").read_text(encoding="utf-8")
+    assert "zebra" not in emitted
+    assert "named" not in emitted
+    assert {p.name for p in declared.parent.iterdir()} == {"named.toml"}
+
+
+def test_machines_that_differ_in_title_and_numbers_share_a_module(declared: Path) -> None:
+    models = []
+    for title, inertia in (("one", 2e-3), ("the other", 3e-3)):
+        number = f'[parameters.J_y_tilt]\nvalue = {inertia}\nunit = "kg m^2"\n'
+        declared.write_text(PLATFORM.format(title=title) + number, encoding="utf-8")
+        models.append(ptp_symbolic.load(declared))
+    assert models[0].module is models[1].module
+    assert [model.title for model in models] == ["one", "the other"]
+    assert [model.defaults["J_y_tilt"] for model in models] == [2e-3, 3e-3]

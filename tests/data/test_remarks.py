@@ -1,0 +1,68 @@
+"""What is said of logs before anything is fitted."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.data import Log, refuse_motionless, refuse_wrapped_angles, remarks
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.platform import read_platform
+
+PLATFORM = read_platform(Path(__file__).parents[1] / "platforms" / "fieldlog_pan.toml")
+COUNT = 2.0 * np.pi / 7200.0
+TIME = np.arange(400) * 0.005
+VOLTAGE = 6.0 * np.sin(3.0 * TIME)
+
+
+def log(angle: np.ndarray, voltage: np.ndarray = VOLTAGE, time: np.ndarray = TIME) -> Log:
+    names = [s.signal for s in PLATFORM.signals if s.role == "output"]
+    columns = [angle if name == "theta_pan" else 0.1 * np.cos(3.0 * TIME) for name in names]
+    return Log("run", time, voltage[:, None], np.column_stack(columns))
+
+
+MOVING = np.round(np.sin(2.0 * TIME) / COUNT) * COUNT
+
+
+def test_an_ordinary_log_gets_no_remark() -> None:
+    refuse_wrapped_angles([log(MOVING)], PLATFORM)
+    refuse_motionless([log(MOVING)], PLATFORM)
+    assert remarks([log(MOVING)], PLATFORM) == ()
+
+
+def test_a_wrapped_angle_is_refused_with_its_time() -> None:
+    turning = 4.0 * TIME + 2.0
+    wrapped = np.angle(np.exp(1j * turning))
+    first = TIME[np.flatnonzero(np.abs(np.diff(wrapped)) > 1.0)[0] + 1]
+    with pytest.raises(InputError, match=rf"jumps by -6\.\d+ rad at {first:.6g} s.*unwrap"):
+        refuse_wrapped_angles([log(wrapped)], PLATFORM)
+    refuse_wrapped_angles([log(turning)], PLATFORM)
+
+
+def test_logs_without_motion_are_refused() -> None:
+    resting = np.where(np.arange(400) % 2 == 0, 0.0, COUNT)
+    with pytest.raises(InputError, match="within 3 counts in all logs"):
+        refuse_motionless([log(resting)], PLATFORM)
+    refuse_motionless([log(resting), log(MOVING)], PLATFORM)
+
+
+def test_constant_inputs_are_noted() -> None:
+    (text,) = remarks([log(MOVING, np.full(400, 3.0))], PLATFORM)
+    assert "No input changes" in text
+    step = np.where(TIME < 1.0, 0.0, 3.0)
+    assert remarks([log(MOVING, step)], PLATFORM) == ()
+
+
+def test_a_saturated_signal_is_noted_and_a_switched_one_is_not() -> None:
+    (text,) = remarks([log(np.clip(3.0 * MOVING, -0.5, 0.5))], PLATFORM)
+    assert "pan_angle" in text and "saturated" in text
+    assert remarks([log(MOVING, np.sign(VOLTAGE))], PLATFORM) == ()
+
+
+def test_pauses_and_jitter_are_noted() -> None:
+    paused = TIME + np.where(TIME > 1.0, 0.4, 0.0)
+    (text,) = remarks([log(MOVING, time=paused)], PLATFORM)
+    assert "no samples from 1 s to 1.405 s" in text
+    shaken = TIME + 0.002 * np.random.default_rng(1).uniform(-1.0, 1.0, 400)
+    (text,) = remarks([log(MOVING, time=shaken)], PLATFORM)
+    assert "sampling period varies" in text
