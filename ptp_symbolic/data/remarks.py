@@ -14,6 +14,7 @@ FloatArray = NDArray[np.float64]
 HALF_TURN = np.pi  # rad: no platform turns further from one sample to the next
 FEW_COUNTS = 3.0  # of an encoder: an angle that stays within them did not move
 SATURATED = 0.5  # share of the samples at the largest or smallest value of a signal that changes
+FEW_LEVELS = 5  # of a signal that is switched
 LONG_PAUSE = 10.0  # sampling periods between two samples
 JITTER = 0.2  # of the sampling period, rms
 
@@ -83,14 +84,13 @@ def _moves(logs: Sequence[Log], column: int, signal: SignalDeclaration) -> bool:
 
 
 def _at_ends(values: FloatArray) -> float:
-    """Share of the samples at the largest or smallest value of a signal with more than two values;
-    a signal that only switches is not saturated.
+    """Share of the samples at the largest or smallest value; none of a signal that only switches
+    between a few levels, which is no saturation.
     """
-    low, high = float(values.min()), float(values.max())
-    inside = (values > low) & (values < high)
-    if not np.any(inside):
+    levels = np.unique(values)
+    if len(levels) <= FEW_LEVELS:
         return 0.0
-    return 1.0 - float(np.mean(inside))
+    return float(np.mean((values == levels[0]) | (values == levels[-1])))
 
 
 def _clock_remarks(log: Log) -> list[str]:
