@@ -13,7 +13,7 @@ from ptp_symbolic.diagnose.floor import carried_noise, leaves_noise_alone
 from ptp_symbolic.diagnose.gain import Gain, gain
 from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
 from ptp_symbolic.diagnose.proposals import Proposals, declared_start, propose
-from ptp_symbolic.diagnose.responses import responses
+from ptp_symbolic.diagnose.responses import Response, responses
 from ptp_symbolic.diagnose.trial import (
     ROUGH,
     SHARP,
@@ -103,20 +103,21 @@ class Seeker:
             self.others += begun
             if found:
                 best = self.best_of([best, self.completed(found[0])])
-        best = self.pruned(best)
+        best, steps = self.pruned(best)
         for _ in range(ROUNDS):
             grown = self.grown(best)
             if grown is None:
                 break
             self.others.append(best)
-            pruned = self.pruned(self.completed(grown))
+            pruned, fewer = self.pruned(self.completed(grown))
             if pruned.keys == best.keys:
                 break
-            best = pruned
+            best, steps = pruned, fewer
         best = self.simplified(best)
-        steps = [self.step(best, c) for c in best.candidates]
+        without = {s.candidate.key: s.without for s in steps}
+        members = [Step(c, gain(best, without[c.key]), without[c.key]) for c in best.candidates]
         return Search(
-            self.declared, best, tuple(steps), tuple(self.others), self.proposals, self.carried
+            self.declared, best, tuple(members), tuple(self.others), self.proposals, self.carried
         )
 
     def proposed(self) -> list[Trial]:
@@ -134,10 +135,18 @@ class Seeker:
             ]
             begun.append(self.best_of(starts))
         unseen = responses(task, declared, self.proposals.unseen)[:ADDED]
-        return begun + [
-            fitted(task, r.proposal.candidates, r.proposal.values, declared.fit.z, 0, declared.fit)
-            for r in unseen
-        ]
+        return begun + [self.begun(r, declared) for r in unseen]
+
+    def begun(self, found: Response, parent: Trial) -> Trial:
+        """A refit begun where a response in the outputs leads, from the fit of `parent`. What the
+        motion does not show has derivatives that mislead: they are looked for at once.
+        """
+        task, proposal = self.task, found.proposal
+        blind = found.candidate.key in {c.key for c in self.proposals.unseen}
+        return fitted(
+            task, proposal.candidates, proposal.values, parent.fit.z, int(blind), parent.fit,
+            secants=blind, executor=task.executor,
+        )  # fmt: skip
 
     def best_of(self, trials: Sequence[Trial]) -> Trial:
         """The trial that fits best."""
@@ -191,20 +200,22 @@ class Seeker:
         """Whether a gain is material, and clear over all candidates that were looked at."""
         return earned.share >= MATERIAL and earned.is_clear(len(self.task.candidates))
 
-    def pruned(self, trial: Trial) -> Trial:
+    def pruned(self, trial: Trial) -> tuple[Trial, list[Step]]:
         """Take candidates out, the one that seems to gain least first, until each that is left
-        gains clearly and materially.
+        gains clearly and materially; with what each of those gains.
         """
         while trial.candidates:
+            steps = []
             expected = {c.key: expected_gain(trial, c) for c in trial.candidates}
             for candidate in sorted(trial.candidates, key=lambda c: expected[c.key]):
                 step = self.step(trial, candidate)
                 if not self.is_needed(step.gain):
                     trial = step.without
                     break
+                steps.append(step)
             else:
-                break
-        return trial
+                return trial, steps
+        return trial, []
 
     def grown(self, trial: Trial) -> Trial | None:
         """The trial with one more candidate that gains clearly and materially; None if none does.
@@ -218,10 +229,7 @@ class Seeker:
             return None
         names = " + ".join(trial.keys) or "the declared model"
         task.progress(f"adding one of {len(found)} candidates to {names}")
-        begun = [
-            fitted(task, r.proposal.candidates, r.proposal.values, trial.fit.z, 0, trial.fit)
-            for r in found[:ADDED]
-        ]
+        begun = [self.begun(r, trial) for r in found[:ADDED]]
         left = halving(task, begun, ADDED_RUNGS)
         self.others += begun
         if not left:

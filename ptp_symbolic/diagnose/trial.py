@@ -231,7 +231,12 @@ def halving(task: Task, trials: Sequence[Trial], rungs: Sequence[tuple[int, int]
     """
     left = list(trials)
     for iterations, kept in rungs:
-        go_on = [task.executor.submit(continued, task, trial, iterations) for trial in left]
+        go_on = [
+            task.executor.submit(
+                continued, task, trial, iterations, secants=trial.fit.misleading is not None
+            )
+            for trial in left
+        ]
         left = [t for t in ranked([job.result() for job in go_on]) if np.isfinite(t.fit.cost)]
         left = left[:kept]
     return left

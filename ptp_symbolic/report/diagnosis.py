@@ -34,8 +34,7 @@ VERDICTS = {
         "good",
         "nothing missing",
         "Nothing is missing from the declared model",
-        "It reproduces the logs down to the noise, and no candidate effect does better on the"
-        " validation runs.",
+        "It reproduces the logs down to the noise, and no candidate effect predicts them better.",
     ),
     "explained": Verdict(
         "found",
@@ -59,8 +58,9 @@ VERDICTS = {
     "unexplained": Verdict(
         "open",
         "unexplained",
-        "Something is missing, and no known effect explains it",
-        "The residual is well above the noise, yet none of the candidates accounts for it.",
+        "Something is missing, and no known effect could be confirmed",
+        "More than noise is left, yet no candidate could be confirmed. The closest one is shown with"
+        " its figures, as a hint and not as a finding.",
     ),
 }
 
@@ -81,7 +81,9 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
     after the first (optional)}}. Loads nothing from elsewhere.
     """
     verdict = VERDICTS[diagnosis["verdict"]]
-    key, unit = tables.error_measure(diagnosis)
+    if not diagnosis.get("added"):
+        diagnosis, curves = _declared_alone(diagnosis, curves)
+    key, unit = tables.error_measure(tables.declared_totals(diagnosis))
     shown, folded = _motion(diagnosis, curves, key)
     page = _environment().get_template("diagnosis.html.j2")
     return page.render(
@@ -99,6 +101,25 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
         residual_maps=_residual_maps(diagnosis, curves),
         equations=_equations(diagnosis),
         window=_window(curves),
+    )
+
+
+def _declared_alone(
+    diagnosis: Mapping[str, Any], curves: Curves
+) -> tuple[Mapping[str, Any], Curves]:
+    """Diagnosis and curves without what comes "after", where nothing was added: it is the same."""
+    parts = {
+        name: {s: e for s, e in part.items() if s != "after"} if name in tables.SETS else part
+        for name, part in (diagnosis.get("error") or {}).items()
+    }
+    fit = {"before": (diagnosis.get("fit") or {}).get("before")}
+    signals = {
+        run: {name: {**signal, "after": None} for name, signal in curve["signals"].items()}
+        for run, curve in curves.items()
+    }
+    return (
+        {**diagnosis, "error": parts, "fit": fit},
+        {run: {**curve, "signals": signals[run]} for run, curve in curves.items()},
     )
 
 
@@ -136,6 +157,7 @@ def _environment() -> jinja2.Environment:
         estimate=quantities.estimate,
         interval=quantities.interval,
         in_degrees=quantities.in_degrees,
+        gain=quantities.gain,
     )
     return environment
 
@@ -149,7 +171,7 @@ def _motion(
     entries = []
     for run, curve in curves.items():
         errors = {s: tables.error_of(diagnosis, curve["set"], s, run) for s in tables.STAGES}
-        svg = figures.motion_figure(curve, errors["noise_floor"].get("rmse_counts"), points)
+        svg = figures.motion_figure(curve, _floors(diagnosis, curve["set"]), points)
         before, after = (errors[stage].get(key) for stage in ("before", "after"))
         entries.append(
             {"run": run, "set": curve["set"], "svg": Markup(svg), "before": before, "after": after}
@@ -162,6 +184,12 @@ def _motion(
     return shown, [entry for entry in rest if entry not in shown]
 
 
+def _floors(diagnosis: Mapping[str, Any], set_name: str) -> dict[str, float]:
+    """Noise floor (rms) of every signal, in counts where it has an encoder."""
+    found = tables.signal_errors(diagnosis, set_name, "noise_floor")
+    return {name: value for name, (value, _) in found.items() if usable(value)}
+
+
 def _residual_maps(diagnosis: Mapping[str, Any], curves: Curves) -> list[dict[str, Any]]:
     """One figure per measured signal, validation runs pooled (all runs when there are none)."""
     pooled = {run: c for run, c in curves.items() if c["set"] == "validate"} or dict(curves)
@@ -172,7 +200,7 @@ def _residual_maps(diagnosis: Mapping[str, Any], curves: Curves) -> list[dict[st
         if not axes:
             continue
         axis = next((axis for axis in axes if signal.endswith(f"_{axis}")), axes[0])
-        floor = tables.error_of(diagnosis, runs[0]["set"], "noise_floor").get("rmse_counts")
+        floor = _floors(diagnosis, runs[0]["set"]).get(signal)
         svg = figures.residual_map_figure(signal, axis, pooled, floor)
         found.append(
             {"signal": signal, "svg": Markup(svg), "runs": len(runs), "set": runs[0]["set"]}

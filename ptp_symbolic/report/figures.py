@@ -68,11 +68,13 @@ def residual_unit(signal: Mapping[str, Any]) -> str:
     return "counts" if signal.get("counts") else str(signal.get("unit") or "")
 
 
-def motion_figure(curve: Mapping[str, Any], floor: float | None, points: int = 800) -> str:
+def motion_figure(
+    curve: Mapping[str, Any], floors: Mapping[str, float], points: int = 800
+) -> str:
     """One run as SVG: every signal measured and simulated, and under it what is left over.
 
-    `floor` in counts: rms noise floor, drawn as a band of twice its height either side of zero.
-    Each line is thinned to `points`, keeping its extremes. Where the run was cut into windows, a
+    `floors`: rms noise floor of signals, in the unit of their residual, drawn as a band of twice its
+    height either side of zero. Each line is thinned to `points`, keeping its extremes. Where the run was cut into windows, a
     thin line marks every start of a new one.
     """
     time = np.asarray(curve["time"], float)
@@ -94,6 +96,7 @@ def motion_figure(curve: Mapping[str, Any], floor: float | None, points: int = 8
             if kind == "motion":
                 _draw_motion(axes, name, signal, time, points)
             else:
+                floor = floors.get(name)
                 _draw_residual(axes, signal, time, floor, points, zoomed=kind == "after")
         grid[-1].set_xlabel("time [s]")
         return _svg(figure)
@@ -134,16 +137,15 @@ def _draw_residual(
     points: int,
     zoomed: bool,
 ) -> None:
-    band = floor if signal.get("counts") else None
     drawn = []
-    _draw_floor(axes, band)
+    _draw_floor(axes, floor)
     for stage, colour in (("before", BEFORE), ("after", AFTER)):
         values = residual(signal, stage)
         if values is None or (zoomed and stage == "before"):
             continue
         axes.plot(*_thinned(time, values, points), color=colour, linewidth=0.9)
         drawn.append(values)
-    _set_limit(axes, np.concatenate(drawn), band)
+    _set_limit(axes, np.concatenate(drawn), floor)
     what = "measured − simulated" + (" with the added effect, enlarged" if zoomed else "")
     axes.set_title(f"{what} [{residual_unit(signal)}]")
 
@@ -177,7 +179,8 @@ def residual_map_figure(
 ) -> str:
     """What one signal leaves over against angle, rate of `axis` and time, runs pooled, as SVG.
 
-    Dots are samples, the line their median in equal bins, the band the noise floor.
+    Dots are samples, the line their median in equal bins, the band twice the noise floor, given in
+    the unit of the residual.
     """
     runs = [run for run in curves.values() if signal_name in run["signals"]]
     against = [
@@ -188,7 +191,6 @@ def residual_map_figure(
     signals = [run["signals"][signal_name] for run in runs]
     stages = [s for s in ("before", "after") if all(x.get(s) is not None for x in signals)]
     unit = residual_unit(signals[0])
-    band = floor if unit == "counts" else None
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(10.4, 0.5 + 1.9 * len(stages)))
         grid = figure.subplots(len(stages), 3, sharey="row", sharex="col", squeeze=False)
@@ -197,9 +199,9 @@ def residual_map_figure(
             left_over = [residual(signal, stage) for signal in signals]
             values = np.concatenate([part for part in left_over if part is not None])
             for axes, (_, coordinates, bins) in zip(row, against, strict=True):
-                _draw_floor(axes, band)
+                _draw_floor(axes, floor)
                 _draw_cloud(axes, np.concatenate(coordinates), values, stage, bins)
-            _set_limit(row[0], values, band)
+            _set_limit(row[0], values, floor)
             row[0].set_ylabel(f"{stage} [{unit}]")
         for axes, (label, _, _) in zip(grid[-1], against, strict=True):
             axes.set_xlabel(label)

@@ -65,6 +65,16 @@ def interval(quantity: Mapping[str, Any] | None) -> str:
     return f"{texts[0]} to {texts[1]}"
 
 
+def gain(earned: Mapping[str, Any] | None) -> str:
+    """A gain {share, ci95} in percent with its 95 % interval; a dash when there is none."""
+    if not earned or not _usable(earned.get("share")):
+        return NOTHING
+    bounds = [100.0 * b if _usable(b) else None for b in earned.get("ci95") or ()]
+    percent = {"value": 100.0 * earned["share"], "ci95": bounds}
+    within = interval(percent)
+    return f"{estimate(percent)} %" + ("" if within == NOTHING else f" ({within} %)")
+
+
 def _exponent(value: Any) -> int:
     return math.floor(math.log10(abs(value))) if _usable(value) and value else 0
 

@@ -8,6 +8,7 @@ from typing import Any, TypeGuard
 Record = Mapping[str, Any]
 
 STAGES = ("before", "after", "noise_floor")
+SETS = ("validate", "train")
 
 
 @dataclass(frozen=True)
@@ -38,11 +39,25 @@ class ErrorRow:
 
 
 @dataclass(frozen=True)
+class SignalRow:
+    """The error of one signal in its own unit, or in counts where it has an encoder."""
+
+    signal: str
+    unit: str
+    before: float | None
+    after: float | None
+    noise_floor: float | None
+
+
+@dataclass(frozen=True)
 class ErrorGroup:
-    """The rows of the validation or the training runs, the total first."""
+    """The rows of the validation or the training runs, the total first, and those of the signals
+    where there are several.
+    """
 
     set: str
     rows: tuple[ErrorRow, ...]
+    signals: tuple[SignalRow, ...]
 
     @property
     def runs(self) -> int:
@@ -72,18 +87,25 @@ def error_of(diagnosis: Record, set_name: str, stage: str, run: str | None = Non
     return (part.get("by_run") or {}).get(run) or (total if stage == "noise_floor" else {})
 
 
-def error_measure(diagnosis: Record) -> tuple[str, str]:
-    """Key and unit of the error that is shown: encoder counts where the log has them, else rad."""
-    totals = [error_of(diagnosis, name, "before") for name in ("validate", "train")]
+def error_measure(totals: Iterable[Record]) -> tuple[str, str]:
+    """Key and unit in which errors are shown: encoder counts where every angle has them, else rad.
+
+    A platform has the same encoders in all runs: one total in counts tells of all.
+    """
     if any(usable(total.get("rmse_counts")) for total in totals):
         return "rmse_counts", "counts"
     return "rmse", "rad"
 
 
+def declared_totals(diagnosis: Record) -> list[Record]:
+    """The errors of the declared model in total, on the validation and on the training runs."""
+    return [error_of(diagnosis, name, "before") for name in SETS]
+
+
 def error_groups(diagnosis: Record, key: str) -> list[ErrorGroup]:
     """The before/after table, the validation runs first; sets without any error are left out."""
     groups = []
-    for name in ("validate", "train"):
+    for name in SETS:
         parts = (diagnosis.get("error") or {}).get(name) or {}
         runs = sorted({r for s in STAGES for r in (parts.get(s) or {}).get("by_run") or {}})
         if parts:
@@ -93,7 +115,11 @@ def error_groups(diagnosis: Record, key: str) -> list[ErrorGroup]:
             groups.append((name, list(zip((None, *runs), errors, strict=True))))
     axis = log_axis(part.get(key) for _, rows in groups for _, e in rows for part in e.values())
     return [
-        ErrorGroup(name, tuple(_error_row(run, errors, key, axis) for run, errors in rows))
+        ErrorGroup(
+            name,
+            tuple(_error_row(run, errors, key, axis) for run, errors in rows),
+            _signal_rows(diagnosis, name),
+        )
         for name, rows in groups
     ]
 
@@ -103,6 +129,30 @@ def _error_row(run: str | None, errors: Mapping[str, Record], key: str, axis: Lo
     ratio = last / floor if usable(last) and usable(floor) and floor else None
     places = {stage: axis.place(errors[stage].get(key)) for stage in STAGES}
     return ErrorRow(run, errors["before"], errors["after"], errors["noise_floor"], ratio, places)
+
+
+def _signal_rows(diagnosis: Record, set_name: str) -> tuple[SignalRow, ...]:
+    """The errors of every signal; none where there is but one, which the total tells already."""
+    stages = [signal_errors(diagnosis, set_name, stage) for stage in STAGES]
+    if len(stages[0]) < 2:
+        return ()
+    return tuple(
+        SignalRow(name, unit, *(stage.get(name, (None, unit))[0] for stage in stages))
+        for name, (_, unit) in stages[0].items()
+    )
+
+
+def signal_errors(
+    diagnosis: Record, set_name: str, stage: str
+) -> dict[str, tuple[float | None, str]]:
+    """Error and unit of every signal at a stage: counts where it has an encoder, else its own."""
+    part: Record = ((diagnosis.get("error") or {}).get(set_name) or {}).get(stage) or {}
+    return {
+        name: (error["rmse_counts"], "counts")
+        if usable(error.get("rmse_counts"))
+        else (error.get("rmse"), str(error.get("unit") or ""))
+        for name, error in (part.get("by_signal") or {}).items()
+    }
 
 
 def doubts(parameter: Record) -> list[str]:
@@ -135,25 +185,28 @@ def parameter_rows(diagnosis: Record) -> list[dict[str, Any]]:
 
 
 def ranking(diagnosis: Record, key: str) -> dict[str, Any]:
-    """Candidates in the order of their validation error, and the marks they are judged against.
+    """Candidates in the order of their error on the training runs, and the marks beside it.
 
-    Those without a validation error, which were dropped before, are apart. `clipped`: some error
-    lies beyond the right end of the axis.
+    Those that were not fitted, and have no such error, are apart. `closest` is the best fit in the
+    order of the diagnosis where nothing was added. `clipped`: some error lies beyond the right end
+    of the axis.
     """
-    marks = {s: error_of(diagnosis, "validate", s).get(key) for s in ("before", "noise_floor")}
+    marks = {s: error_of(diagnosis, "train", s).get(key) for s in ("before", "noise_floor")}
     rows = [dict(candidate) for candidate in diagnosis.get("ranking") or []]
-    judged = [row for row in rows if usable(row.get("validate_error_after"))]
-    judged.sort(key=lambda row: row["validate_error_after"])
-    errors = [row["validate_error_after"] for row in judged]
+    fitted = [row for row in rows if usable(row.get("train_error_after"))]
+    unexplained = diagnosis["verdict"] == "unexplained"
+    closest = fitted[0] if unexplained and fitted else None
+    fitted.sort(key=lambda row: row["train_error_after"])
+    errors = [row["train_error_after"] for row in fitted]
     # a refit that ran away must not squeeze all others into a corner
     ceiling = 4.0 * max([mark for mark in marks.values() if usable(mark)], default=math.inf)
     axis = log_axis([*marks.values(), *[e for e in errors if e < ceiling]])
-    for row, error in zip(judged, errors, strict=True):
+    for row, error in zip(fitted, errors, strict=True):
         row["place"] = axis.place(error)
-    dropped = [row for row in rows if not usable(row.get("validate_error_after"))]
     return {
-        "rows": judged,
-        "dropped": dropped,
-        "clipped": any(row["place"] == 100.0 for row in judged),
+        "rows": fitted,
+        "unfitted": [row for row in rows if not usable(row.get("train_error_after"))],
+        "closest": closest,
+        "clipped": any(row["place"] == 100.0 for row in fitted),
         "place": {stage: axis.place(mark) for stage, mark in marks.items()},
     }

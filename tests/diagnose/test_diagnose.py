@@ -40,25 +40,33 @@ def test_files_are_complete_and_the_extended_platform_reads(sample, tmp_path) ->
     assert extended.effects[-1].effect == "base_tilt"
 
 
+DIRECTION = "direction_dependent_friction"
+FIELD_LOGS = {
+    "log-a": ("fieldlog_pan", ["base_tilt"]),
+    "log-b": ("fieldlog_pan", ["cable_spring"]),
+    "log-c": ("fieldlog_pan", [DIRECTION]),
+    "log-d": ("fieldlog_pan", []),
+    "log-e": ("fieldlog_pan_dc", ["rate_dependent_breakaway"]),
+    "log-f": ("fieldlog_pan_dc", ["winding_heating"]),
+    "log-g": ("fieldlog_two_axis", ["payload_com_offset"]),
+    "log-h": ("fieldlog_pan", ["encoder_eccentricity"]),
+    "log-i": ("fieldlog_pan_dc", ["position_dependent_friction"]),
+    "log-j": ("fieldlog_pan", ["cogging"]),
+    "log-k": ("fieldlog_pan", ["base_tilt", DIRECTION]),
+    "log-l": ("fieldlog_pan", []),
+}
+
+
 @pytest.mark.long
-@pytest.mark.parametrize(
-    ("log", "platform", "effects"),
-    [
-        ("log-a", "fieldlog_pan", ["base_tilt"]),
-        ("log-b", "fieldlog_pan", ["cable_spring"]),
-        ("log-c", "fieldlog_pan", ["direction_dependent_friction"]),
-        ("log-d", "fieldlog_pan", []),
-        ("log-e", "fieldlog_pan_dc", ["rate_dependent_breakaway"]),
-        ("log-f", "fieldlog_pan_dc", ["winding_heating"]),
-        ("log-g", "fieldlog_two_axis", ["payload_com_offset"]),
-    ],
-)
-def test_field_logs(shared: Path, log: str, platform: str, effects: list[str]) -> None:
+@pytest.mark.parametrize("log", FIELD_LOGS)
+def test_field_logs(shared: Path, log: str) -> None:
+    platform, effects = FIELD_LOGS[log]
     folder = shared / "fieldlogs" / log
     declared = read_platform(PLATFORMS / f"{platform}.toml")
     found = diagnose_platform(declared, [folder / "train"], [folder / "validate"]).summary
-    assert found["verdict"] == ("explained" if effects else "nothing_missing")
-    assert [added["effect"] for added in found["added"]] == effects
+    right = {"explained", "explained_up_to_group"} if effects else {"nothing_missing"}
+    assert found["verdict"] in right
+    assert sorted(added["effect"] for added in found["added"]) == effects
     if log != "log-g":
         for part in ("train", "validate"):
             for run in found["error"][part]["after"]["by_run"].values():
