@@ -95,6 +95,9 @@ def fit(source: str, logs: tuple[str, ...], out: Path, as_json: bool) -> None:
 
 
 def _print_fit(summary: Mapping[str, Any]) -> None:
+    from ptp_symbolic.report.tables import error_measure
+
+    _print_remarks(summary)
     _print_parameters(summary["parameters"])
     if not summary["parameters"]:
         click.echo("Nothing is free; give a parameter 'start' in place of 'value' to fit it.")
@@ -105,22 +108,29 @@ def _print_fit(summary: Mapping[str, Any]) -> None:
             " own: over longer ones errors of the start and of the inputs would rule."
         )
     error = summary["error"]
-    after, floor = (error[w]["total"]["rmse_counts"] for w in ("after", "noise_floor"))
+    key, unit = error_measure([error["after"]["total"]])
+    after, floor = (error[w]["total"][key] for w in ("after", "noise_floor"))
     before = error["before"]
     begun = (
         "the start values do not simulate"
         if before is None
-        else f"{before['total']['rmse_counts']:.4g} at the start values"
+        else f"{before['total'][key]:.4g} at the start values"
     )
     advice = (
         ": the model does not fit these logs; run diagnose" if summary["far_from_floor"] else ""
     )
-    click.echo(f"{after:.4g} counts rms over all runs ({begun}), floor {floor:.2g}{advice}.")
+    click.echo(f"{after:.4g} {unit} rms over all runs ({begun}), floor {floor:.2g}{advice}.")
+
+
+def _print_remarks(summary: Mapping[str, Any]) -> None:
+    for text in summary["remarks"]:
+        click.echo(f"Note: {text}")
 
 
 def _print_diagnosis(summary: Mapping[str, Any]) -> None:
     from rich.console import Console
 
+    _print_remarks(summary)
     Console().print(f"{summary['verdict']}: {summary['summary']}", markup=False, soft_wrap=True)
     fitted = summary["fit"]["after"]["parameters"]
     added = {name for effect in summary["added"] for name in effect["parameters"]}
@@ -134,24 +144,38 @@ def _print_diagnosis(summary: Mapping[str, Any]) -> None:
     if doubtful:
         click.echo("Declared parameters that these logs do not settle:")
         _print_parameters(doubtful)
-    _print_errors(summary["error"])
+    if summary["refused"]:
+        click.echo("Gained something, but were not named:")
+    for key, why in summary["refused"].items():
+        click.echo(f"  {key}: {why}")
+    _print_errors(summary)
 
 
-def _print_errors(errors: Mapping[str, Any]) -> None:
+def _print_errors(summary: Mapping[str, Any]) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    for part, error in errors.items():
-        title = "fitted" if part == "train" else "never fitted"
-        table = Table("run", "before", "after", "floor", box=None, title_justify="left")
-        table.title = f"{part} ({title}), counts rms"
+    from ptp_symbolic.report.tables import declared_totals, error_measure
+
+    key, unit = error_measure(declared_totals(summary))
+    errors = summary["error"]
+    for part, title in (("train", "fitted"), ("validate", "never fitted")):
+        error = errors[part]
+        click.echo(f"{part} ({title}), {unit} rms:")
+        table = Table("run", "before", "after", "floor", box=None)
         for run in (*error["before"]["by_run"], "total"):
             cells = [
                 error[when]["total"] if run == "total" else error[when]["by_run"][run]
                 for when in ("before", "after", "noise_floor")
             ]
-            table.add_row(run, *(f"{cell['rmse_counts']:.3f}" for cell in cells))
+            table.add_row(run, *(_written(cell[key], unit) for cell in cells))
         Console().print(table)
+    click.echo(f"Error: {errors['definition']}.")
+
+
+def _written(error: float, unit: str) -> str:
+    """An error as text: thousandths of a count, or three digits of an angle."""
+    return f"{error:.3f}" if unit == "counts" else f"{error:.3g}"
 
 
 def _print_parameters(parameters: Mapping[str, Any]) -> None:

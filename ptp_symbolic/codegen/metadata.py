@@ -1,16 +1,20 @@
 """The head of an emitted module: what it is, names, units, bounds, effects and equations."""
 
-import json
 import textwrap
-from collections.abc import Iterable
 
 import sympy as sp
 
 from ptp_symbolic import kinematics
+from ptp_symbolic.codegen.literals import (
+    listed,
+    long_text,
+    named_tuple_text,
+    number_text,
+    numbers_text,
+    repr_text,
+)
 from ptp_symbolic.derivation.equations import Equations, PlacedEffect
 from ptp_symbolic.parameters import Parameter
-
-TEXT_WIDTH = 80
 
 
 def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]) -> str:
@@ -31,36 +35,36 @@ def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]
 def _signal_lines(equations: Equations) -> list[str]:
     """Names and units of what goes in, what moves and what comes out."""
     return [
-        _tuple("AXES", map(repr_text, equations.axes)),
-        _tuple("STATE_NAMES", (f'"{s}"' for s in equations.state_symbols)),
-        _tuple("STATE_UNITS", map(repr_text, _state_units(equations))),
-        _tuple("STATE_INITIAL", map(repr, _state_initial(equations))),
-        _tuple("INPUT_NAMES", (f'"{i.name}"' for i in equations.inputs)),
-        _tuple("INPUT_UNITS", (f'"{i.unit}"' for i in equations.inputs)),
+        named_tuple_text("AXES", map(repr_text, equations.axes)),
+        named_tuple_text("STATE_NAMES", (f'"{s}"' for s in equations.state_symbols)),
+        named_tuple_text("STATE_UNITS", map(repr_text, _state_units(equations))),
+        named_tuple_text("STATE_INITIAL", map(repr, _state_initial(equations))),
+        named_tuple_text("INPUT_NAMES", (f'"{i.name}"' for i in equations.inputs)),
+        named_tuple_text("INPUT_UNITS", (f'"{i.unit}"' for i in equations.inputs)),
         "# Per input: index of the parameter by which it is late, or -1.",
-        _tuple("INPUT_DELAYS", map(str, _delays(equations))),
+        named_tuple_text("INPUT_DELAYS", map(str, _delays(equations))),
         "# Per input: whether motion depends on it, and not samplers alone.",
-        _tuple("INPUT_ACTS", map(str, _acting(equations))),
-        _tuple("OUTPUT_NAMES", (f'"{name}"' for name, _, _ in equations.outputs)),
-        _tuple("OUTPUT_UNITS", (f'"{unit}"' for _, unit, _ in equations.outputs)),
+        named_tuple_text("INPUT_ACTS", map(str, _acting(equations))),
+        named_tuple_text("OUTPUT_NAMES", (f'"{name}"' for name, _, _ in equations.outputs)),
+        named_tuple_text("OUTPUT_UNITS", (f'"{unit}"' for _, unit, _ in equations.outputs)),
     ]
 
 
 def _motion_lines(equations: Equations) -> list[str]:
     """Modes, samplers, contacts and limits: what a simulation must watch."""
     return [
-        _tuple("MODE_NAMES", (f'"{m}"' for m in equations.mode_symbols)),
+        named_tuple_text("MODE_NAMES", (f'"{m}"' for m in equations.mode_symbols)),
         *_friction_rates(equations),
         "# Per state: the friction that sets it to zero when it comes to rest, or -1.",
-        _tuple("ZERO_AT_REST", map(str, _zero_at_rest(equations))),
+        named_tuple_text("ZERO_AT_REST", map(str, _zero_at_rest(equations))),
         "# Samplers: parameters of the period. Sampled: sampler and state of each update.",
-        _tuple("SAMPLERS", _samplers(equations)),
-        _tuple("SAMPLED", _sampled(equations)),
+        named_tuple_text("SAMPLERS", _samplers(equations)),
+        named_tuple_text("SAMPLED", _sampled(equations)),
         "# Per contact: state index of the angle at the gear output and at the joint.",
-        _tuple("CONTACT_ANGLES", _contact_states(equations)),
+        named_tuple_text("CONTACT_ANGLES", _contact_states(equations)),
         *_rigid_contacts(equations),
         "# Limits of the equations: state, meaning; `domain` gives the bounds.",
-        _tuple("DOMAIN", _domain(equations)),
+        named_tuple_text("DOMAIN", _domain(equations)),
     ]
 
 
@@ -69,33 +73,22 @@ def _parameter_lines(equations: Equations) -> list[str]:
     parameters = equations.parameters
     return [
         "# Relations: parameters, rule, strict; `margins` gives what is at least zero.",
-        _tuple("REQUIREMENTS", _requirements(equations)),
+        named_tuple_text("REQUIREMENTS", _requirements(equations)),
         "# Parameters: name, unit, default, lower and upper bound, meaning.",
-        _tuple("PARAMETERS", map(_parameter, parameters)),
+        named_tuple_text("PARAMETERS", map(_parameter, parameters)),
         "# Searching them: name, value at which the effect vanishes (None: any), starts,",
         "# period, what a frequency is locked to.",
-        _tuple("SEARCH", [_search(p) for p in parameters if _is_searched(p)]),
-        "# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of"
-        " the",
+        named_tuple_text("SEARCH", [_search(p) for p in parameters if _is_searched(p)]),
+        "# Effects: id, axis, parameters, nested members (title, parameters, tied ones),"
+        " keys of the",
         "# effects that it acts on, title, reference, separating experiment.",
-        _tuple("EFFECTS", _effects(equations)),
+        named_tuple_text("EFFECTS", _effects(equations)),
     ]
 
 
 def _imports(equations: Equations) -> str:
     arrays = "import numpy as np\n" if equations.mode_symbols else ""
     return f"import math\n\n{arrays}from numba import njit"
-
-
-def _long_text(value: str) -> str:
-    """A literal over as many lines as it needs."""
-    lines = textwrap.wrap(value, TEXT_WIDTH, drop_whitespace=False) or [""]
-    return "\n        ".join(repr_text(line) for line in lines)
-
-
-def repr_text(value: str) -> str:
-    """Return `value` as a double-quoted literal, whatever it holds: titles come from files."""
-    return json.dumps(value, ensure_ascii=False)
 
 
 def _docstring(equations: Equations, operations: tuple[int, int]) -> str:
@@ -141,14 +134,6 @@ def _wrapped(name: str, expression: sp.Expr) -> list[str]:
     return textwrap.wrap(text, 96, initial_indent="  ", subsequent_indent="      ")
 
 
-def _tuple(name: str, items: Iterable[str]) -> str:
-    items = list(items)
-    line = f"{name} = ({', '.join(items)}{',' if len(items) == 1 else ''})"
-    if len(line) <= 100:
-        return line
-    return f"{name} = (\n" + "".join(f"    {item},\n" for item in items) + ")"
-
-
 def _parameter(parameter: Parameter) -> str:
     p = parameter
     fields = [repr_text(p.name), repr_text(p.unit)]
@@ -162,17 +147,14 @@ def _is_searched(p: Parameter) -> bool:
 
 def _search(p: Parameter) -> str:
     lock = "None" if p.locked_to is None else repr_text(p.locked_to)
-    fields = [repr_text(p.name), _number(p.vanishes), _floats(p.starts), _number(p.period), lock]
+    fields = [
+        repr_text(p.name),
+        number_text(p.vanishes),
+        numbers_text(p.starts),
+        number_text(p.period),
+        lock,
+    ]
     return f"({', '.join(fields)})"
-
-
-def _number(value: float | None) -> str:
-    return "None" if value is None else repr(float(value))
-
-
-def _floats(values: tuple[float, ...]) -> str:
-    items = ", ".join(repr(float(v)) for v in values)
-    return f"({items}{',' if len(values) == 1 else ''})"
 
 
 def _state_units(equations: Equations) -> list[str]:
@@ -204,7 +186,7 @@ def _samplers(equations: Equations) -> list[str]:
     for sampler in equations.samplers:
         symbols = {str(symbol) for symbol in sampler.period.free_symbols}
         names = [repr_text(p.name) for p in equations.parameters if p.name in symbols]
-        rows.append(f"({', '.join(names)}{',' if len(names) == 1 else ''})")
+        rows.append(f"({listed(names)})")
     return rows
 
 
@@ -237,7 +219,7 @@ def _requirements(equations: Equations) -> list[str]:
     for own in equations.requirements:
         symbols = {str(symbol) for symbol in own.holds.free_symbols}
         names = [repr_text(p.name) for p in equations.parameters if p.name in symbols]
-        inner = f"({', '.join(names)}{',' if len(names) == 1 else ''})"
+        inner = f"({listed(names)})"
         strict = isinstance(own.holds, sp.StrictGreaterThan | sp.StrictLessThan)
         rows.append(f"({inner}, {repr_text(own.rule)}, {strict})")
     return rows
@@ -248,7 +230,7 @@ def _friction_rates(equations: Equations) -> list[str]:
     states = list(equations.state_symbols)
     indices = [str(states.index(friction.rate)) for friction in equations.frictions]
     if not equations.mode_symbols:
-        return [_tuple("FRICTION_RATES", indices)]
+        return [named_tuple_text("FRICTION_RATES", indices)]
     return [f"FRICTION_RATES = np.array([{', '.join(indices)}], dtype=np.int64)"]
 
 
@@ -277,12 +259,12 @@ def _effects(equations: Equations) -> list[str]:
     rows = []
     for placed in equations.effects:
         names = [f'"{name}"' for name in placed.parameters if name in used]
-        inner = f"({', '.join(names)}{',' if len(names) == 1 else ''})"
+        inner = f"({listed(names)})"
         effect = placed.effect
         axis = "None" if placed.axis is None else f'"{placed.axis}"'
         texts = (effect.title, effect.reference, effect.separating_experiment)
-        members, acted_on = _members(placed, used), f"({_listed(map(repr_text, placed.acts_on))})"
-        fields = [f'"{effect.id}"', axis, inner, members, acted_on, *map(_long_text, texts)]
+        members, acted_on = _members(placed, used), f"({listed(map(repr_text, placed.acts_on))})"
+        fields = [f'"{effect.id}"', axis, inner, members, acted_on, *map(long_text, texts)]
         rows.append("(\n" + "".join(f"        {f},\n" for f in fields) + "    )")
     return rows
 
@@ -294,12 +276,6 @@ def _members(placed: PlacedEffect, used: set[str]) -> str:
         own = [name.format(axis=placed.axis) for name in member.parameters]
         tied = [tuple(n.format(axis=placed.axis) for n in pair) for pair in member.tied.items()]
         if set(own) <= used:
-            pairs = _listed(f"({repr_text(a)}, {repr_text(b)})" for a, b in tied)
-            rows.append(f"({repr_text(member.title)}, ({_listed(map(repr_text, own))}), ({pairs}))")
-    return f"({_listed(rows)})"
-
-
-def _listed(items: Iterable[str]) -> str:
-    """Items of a tuple, without its parentheses."""
-    found = list(items)
-    return f"{found[0]}," if len(found) == 1 else ", ".join(found)
+            pairs = listed(f"({repr_text(a)}, {repr_text(b)})" for a, b in tied)
+            rows.append(f"({repr_text(member.title)}, ({listed(map(repr_text, own))}), ({pairs}))")
+    return f"({listed(rows)})"

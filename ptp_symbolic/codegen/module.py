@@ -1,45 +1,22 @@
 """Write a model as a self-contained numba module."""
 
 import hashlib
-import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import sympy as sp
 
 from ptp_symbolic.codegen import dynamics
 from ptp_symbolic.codegen.impacts import impact_expressions
+from ptp_symbolic.codegen.kernel import MODE_ARGUMENTS, Vectors, kernel_text
 from ptp_symbolic.codegen.metadata import metadata_text
-from ptp_symbolic.codegen.printer import print_expression, print_factor
 from ptp_symbolic.codegen.sharing import Line, share
 from ptp_symbolic.codegen.templates import state_derivative_text
 from ptp_symbolic.codegen.words import words_of
 from ptp_symbolic.derivation.equations import Equations
 from ptp_symbolic.simplify.base_parameters import base_form
 
-WIDTH = 100
 SEAL = "# END sha256 "
-MODE_ARGUMENTS = "t, x, u, p, m"
-
-
-@dataclass(frozen=True)
-class Vectors:
-    """Names of the entries of the argument arrays of a kernel."""
-
-    x: tuple[str, ...]
-    u: tuple[str, ...]
-    p: tuple[str, ...]
-    m: tuple[str, ...]
-
-    def unpack(self, lines: Sequence[Line]) -> list[str]:
-        """Assignments that unpack what `lines` use, states first."""
-        used = {str(symbol) for _, expression in lines for symbol in expression.free_symbols}
-        return [
-            f"{name} = {array}[{index}]"
-            for array, names in (("x", self.x), ("u", self.u), ("p", self.p), ("m", self.m))
-            for index, name in enumerate(names)
-            if name in used
-        ]
 
 
 def module_text(equations: Equations) -> str:
@@ -92,34 +69,6 @@ def _operations(equations: Equations, solve: dynamics.Solve) -> tuple[int, int]:
     return before, after
 
 
-def _kernel(name: str, arguments: str, doc: str, vectors: Vectors, lines: Sequence[Line]) -> str:
-    rows = [f'"""{doc}"""', *vectors.unpack(lines)]
-    for target, expression in lines:
-        rows.append(_assignment(target, expression))
-    if not lines:
-        rows.append("return")
-    head = f'@njit(cache=True, error_model="numpy", nogil=True)\ndef {name}({arguments}):\n'
-    return head + textwrap.indent("\n".join(rows), "    ")
-
-
-def _assignment(target: str, expression: sp.Expr) -> str:
-    source = print_expression(expression)
-    if len(target) + len(source) + 7 <= WIDTH:
-        return f"{target} = {source}"
-    return "\n".join(_wrapped(target, expression))
-
-
-def _wrapped(target: str, expression: sp.Expr) -> list[str]:
-    """A long sum, one term per line; anything else in parentheses, broken at operators."""
-    if expression.is_Add:
-        terms = [print_expression(t) for t in expression.as_ordered_terms()]
-        first, *rest = terms
-        signed = [f"- {t[1:].strip()}" if t.startswith("-") else f"+ {t}" for t in rest]
-        return [f"{target} = (", f"    {first}", *(f"    {t}" for t in signed), ")"]
-    factors = [print_factor(f) for f in expression.as_ordered_factors()]
-    return [f"{target} = (", f"    {factors[0]}", *(f"    * {f}" for f in factors[1:]), ")"]
-
-
 def _shared(
     equations: Equations, definitions: Sequence[Line], outputs: Sequence[Line]
 ) -> list[Line]:
@@ -130,7 +79,7 @@ def _shared(
 def _mode_derivative(equations: Equations, vectors: Vectors) -> str:
     doc = "Write the time derivative of the state into dx in the modes m."
     lines = _state_lines(equations)
-    return _kernel("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
+    return kernel_text("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
 
 
 def _state_lines(equations: Equations) -> list[Line]:
@@ -169,7 +118,7 @@ def _jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> 
                 outputs.append((f"f{letter}[{i}, {j}]", rows[state]))
     doc = "Write the non-zero derivatives of mode_derivative by state, input and parameter."
     lines = _shared(equations, (*solve.definitions, *solve.chain.lines), outputs)
-    return _kernel("jacobian", f"{MODE_ARGUMENTS}, fx, fu, fp", doc, vectors, lines)
+    return kernel_text("jacobian", f"{MODE_ARGUMENTS}, fx, fu, fp", doc, vectors, lines)
 
 
 def _guards(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
@@ -179,14 +128,14 @@ def _guards(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> st
     ]
     doc = "Write holding and breakaway torques, gap separations and contact torques into g."
     lines = share(solve.definitions, outputs, words_of(equations)) if outputs else []
-    return _kernel("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
+    return kernel_text("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
 
 
 def _guard_jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
     outputs = _derivatives(equations, solve, "g", dynamics.guard_expressions(equations, solve))
     doc = "Write the non-zero derivatives of guards by state and parameter."
     lines = _shared(equations, (*solve.definitions, *solve.chain.lines), outputs)
-    return _kernel("guard_jacobian", f"{MODE_ARGUMENTS}, gx, gp", doc, vectors, lines)
+    return kernel_text("guard_jacobian", f"{MODE_ARGUMENTS}, gx, gp", doc, vectors, lines)
 
 
 def _derivatives(
@@ -214,18 +163,20 @@ def _impacts(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> l
     outputs = [(f"strike[{i}]", e) for i, e in enumerate(expressions)]
     doc = "Write what a strike changes in the state, restitution and energy, per contact."
     lines = _shared(equations, definitions, outputs)
-    kernel = _kernel("impacts", f"{MODE_ARGUMENTS}, strike", doc, vectors, lines)
+    kernel = kernel_text("impacts", f"{MODE_ARGUMENTS}, strike", doc, vectors, lines)
     outputs = _derivatives(equations, solve, "strike", expressions)
     doc = "Write the non-zero derivatives of impacts by state and parameter."
     lines = _shared(equations, definitions, outputs)
     arguments = f"{MODE_ARGUMENTS}, strikex, strikep"
-    return [kernel, _kernel("impact_jacobian", arguments, doc, vectors, lines)]
+    return [kernel, kernel_text("impact_jacobian", arguments, doc, vectors, lines)]
 
 
 def _outputs(equations: Equations, vectors: Vectors) -> str:
     outputs = [(f"y[{i}]", e) for i, (_, _, e) in enumerate(equations.outputs)]
     lines = share((), outputs, words_of(equations))
-    return _kernel("outputs", "t, x, u, p, y", "Write the measured signals into y.", vectors, lines)
+    return kernel_text(
+        "outputs", "t, x, u, p, y", "Write the measured signals into y.", vectors, lines
+    )
 
 
 def _output_jacobian(equations: Equations, vectors: Vectors) -> str:
@@ -238,7 +189,7 @@ def _output_jacobian(equations: Equations, vectors: Vectors) -> str:
     ]
     doc = "Write the non-zero derivatives of outputs by state and parameter."
     lines = _shared(equations, (), outputs)
-    return _kernel("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
+    return kernel_text("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
 
 
 def _energy(equations: Equations, vectors: Vectors) -> str:
@@ -247,7 +198,7 @@ def _energy(equations: Equations, vectors: Vectors) -> str:
     doc = "Write stored energy in J, power in and dissipated power in W into e."
     terms = [(str(symbol), term) for symbol, term in equations.terms]
     lines = share(terms, outputs, words_of(equations))
-    return _kernel("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, lines)
+    return kernel_text("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, lines)
 
 
 def _equation_error(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
@@ -266,7 +217,7 @@ def _equation_error(equations: Equations, solve: dynamics.Solve, vectors: Vector
     doc = (
         "Write the torque that every row lacks, then rates of other states into r; x ends in accel."
     )
-    return _kernel("equation_error", f"{MODE_ARGUMENTS}, r", doc, extended, lines)
+    return kernel_text("equation_error", f"{MODE_ARGUMENTS}, r", doc, extended, lines)
 
 
 def _domain(equations: Equations, vectors: Vectors) -> str:
@@ -276,7 +227,7 @@ def _domain(equations: Equations, vectors: Vectors) -> str:
         for side, bound in enumerate((own.lower, own.upper))
     ]
     doc = "Write lower and upper bound of the state of every row of DOMAIN into bounds."
-    return _kernel("domain", "p, bounds", doc, vectors, share((), outputs, words_of(equations)))
+    return kernel_text("domain", "p, bounds", doc, vectors, share((), outputs, words_of(equations)))
 
 
 def _samplers(equations: Equations, vectors: Vectors) -> list[str]:
@@ -302,8 +253,8 @@ def _samplers(equations: Equations, vectors: Vectors) -> list[str]:
     by = "Write the non-zero derivatives of sample by state, input and parameter."
     arguments = f"{MODE_ARGUMENTS}, zx, zu, zp"
     return [
-        _kernel("sample", f"{MODE_ARGUMENTS}, z", doc, vectors, lines),
-        _kernel("sample_jacobian", arguments, by, vectors, derived),
+        kernel_text("sample", f"{MODE_ARGUMENTS}, z", doc, vectors, lines),
+        kernel_text("sample_jacobian", arguments, by, vectors, derived),
     ]
 
 
@@ -313,4 +264,6 @@ def _margins(equations: Equations, vectors: Vectors) -> str:
         for k, own in enumerate(equations.requirements)
     ]
     doc = "Write by how much the parameters meet every row of REQUIREMENTS into margin."
-    return _kernel("margins", "p, margin", doc, vectors, share((), outputs, words_of(equations)))
+    return kernel_text(
+        "margins", "p, margin", doc, vectors, share((), outputs, words_of(equations))
+    )

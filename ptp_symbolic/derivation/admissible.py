@@ -7,7 +7,7 @@ import sympy as sp
 
 from ptp_symbolic.bodies import Body
 from ptp_symbolic.derivation.equations import Equations
-from ptp_symbolic.effects.effect import Requirement
+from ptp_symbolic.effects.conditions import Requirement
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import Platform, naming_file
 

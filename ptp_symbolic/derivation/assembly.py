@@ -16,7 +16,8 @@ from ptp_symbolic.derivation.placement import acts_on, place_effects, resolved_p
 from ptp_symbolic.derivation.prescribed import constraint_power, reduced, released
 from ptp_symbolic.derivation.rigid_play import rigid_contact
 from ptp_symbolic.derivation.transmission import Transmission, transmission
-from ptp_symbolic.effects.effect import Input, Limit, Sampler, State
+from ptp_symbolic.effects.conditions import Limit
+from ptp_symbolic.effects.effect import Input, Sampler, State
 from ptp_symbolic.effects.effect import quantity as quantity_symbol
 from ptp_symbolic.kinematics import TIME
 from ptp_symbolic.parameters import Parameter

@@ -5,15 +5,8 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic.bodies import RigidConfiguration, RigidEquations
-from ptp_symbolic.effects.effect import (
-    Effect,
-    Friction,
-    Input,
-    Limit,
-    Requirement,
-    Sampler,
-    State,
-)
+from ptp_symbolic.effects.conditions import Limit, Requirement
+from ptp_symbolic.effects.effect import Effect, Friction, Input, Sampler, State
 from ptp_symbolic.parameters import Parameter
 
 

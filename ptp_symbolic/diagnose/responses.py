@@ -51,12 +51,13 @@ class Columns:
 @dataclass(frozen=True, eq=False)
 class Response:
     """A candidate added to a trial: the share of the squared residual that is predicted to be left,
-    and where a refit should start.
+    where a refit should start, and the values that shape it.
     """
 
     candidate: Candidate
     left: float
     proposal: Proposal
+    shape: Mapping[str, float]
 
 
 def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list[Response]:
@@ -82,7 +83,9 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
         phi = to_search(fit.free, fit.values) + amounts[:nf]
         values = {**trial.values, **all_values(fit.free, phi), **found.values(amounts[nf:])}
         added = [by_key[key] for key in candidate.brings if key not in have]
-        return Response(candidate, left, Proposal((*trial.candidates, *added, candidate), values))
+        return Response(
+            candidate, left, Proposal((*trial.candidates, *added, candidate), values), shape
+        )
 
     jobs = list(task.executor.map(respond, wanted))
     best: dict[tuple[str, int], Response] = {}

@@ -29,10 +29,14 @@ FloatArray = NDArray[np.float64]
 
 MATERIAL = 0.1  # share of the predictive loss below which a candidate is not worth a name
 DECLARED_RUNGS = ((4, 1),)  # iterations, and how many trials go on
-PROPOSED_RUNGS = ((2, 4), (3, 2), (5, 1))
+PROPOSED_RUNGS = ((2, 3), (3, 1))
+UNSEEN_RUNGS = ((4, 1),)
+LAST_RUNG = ((4, 1),)
+PARTS_OF_THE_WAY = (1.0, 0.5, 0.25)  # of a response: finite amounts may be far from linear
 ADDED_RUNGS = ((3, 2), (5, 1))
 POLISH = 12  # iterations to the end of a fit that is begun well
 REMOVED = 4  # iterations without a candidate, before the fit is polished
+CERTAIN = 0.9  # share of the loss from which on a gain is no matter of where a fit ended
 ADDED = 4  # candidates that are refitted when one is added
 ROUNDS = 3  # of growing: as many effects as a set may gain after the first choice
 
@@ -97,10 +101,11 @@ class Seeker:
         """Propose, refit, complete, prune, grow, simplify."""
         task, best = self.task, self.declared
         if not self.is_at_noise(best):
-            begun = self.proposed()
-            task.progress(f"refitting {len(begun)} proposed sets")
-            found = halving(task, begun, PROPOSED_RUNGS)
-            self.others += begun
+            sets, unseen = self.proposed(), self.unseen(best)
+            task.progress(f"refitting {len(sets) + len(unseen)} proposed sets")
+            found = halving(task, sets, PROPOSED_RUNGS) + halving(task, unseen, UNSEEN_RUNGS)
+            found = halving(task, found, LAST_RUNG)
+            self.others += sets
             if found:
                 best = self.best_of([best, self.completed(found[0])])
         best, steps = self.pruned(best)
@@ -122,7 +127,7 @@ class Seeker:
 
     def proposed(self) -> list[Trial]:
         """The proposed sets at the better of two starts, that of the rows and that of the declared
-        model; and what the rows cannot show, at its response in the outputs.
+        model.
         """
         task, declared = self.task, self.declared
         begun = []
@@ -134,19 +139,30 @@ class Seeker:
                 fitted(task, s.candidates, beside, declared.fit.z, 0, declared.fit),
             ]
             begun.append(self.best_of(starts))
-        unseen = responses(task, declared, self.proposals.unseen)[:ADDED]
-        return begun + [self.begun(r, declared) for r in unseen]
+        return begun
+
+    def unseen(self, trial: Trial) -> list[Trial]:
+        """The trial with each candidate that the rows cannot show, at its response in the
+        outputs.
+        """
+        found = responses(self.task, trial, self.proposals.unseen)
+        return [self.begun(r, trial) for r in found[:ADDED]]
 
     def begun(self, found: Response, parent: Trial) -> Trial:
-        """A refit begun where a response in the outputs leads, from the fit of `parent`. What the
-        motion does not show has derivatives that mislead: they are looked for at once.
+        """A refit begun where a response in the outputs leads from `parent`, or part of the way
+        where that fits better. What the motion does not show has derivatives that mislead: they are
+        looked for at once.
         """
         task, proposal = self.task, found.proposal
-        blind = found.candidate.key in {c.key for c in self.proposals.unseen}
-        return fitted(
-            task, proposal.candidates, proposal.values, parent.fit.z, int(blind), parent.fit,
-            secants=blind, executor=task.executor,
-        )  # fmt: skip
+        origin = parent.values | dict(found.shape)
+        begun = []
+        for part in PARTS_OF_THE_WAY:
+            values = {n: origin[n] + part * (v - origin[n]) for n, v in proposal.values.items()}
+            begun.append(fitted(task, proposal.candidates, values, parent.fit.z, 0, parent.fit))
+        best = self.best_of(begun)
+        if found.candidate.key not in {c.key for c in self.proposals.unseen}:
+            return best
+        return continued(task, best, 1, secants=True, executor=task.executor)
 
     def best_of(self, trials: Sequence[Trial]) -> Trial:
         """The trial that fits best."""
@@ -161,14 +177,29 @@ class Seeker:
         trial = polished(self.task, trial)
         return polished(self.task, trial, SHARP) if self.is_at_noise(trial) else trial
 
+    def restarted(self, trial: Trial) -> Trial:
+        """A polished trial, or a better end from where the rows start the declared parameters: a
+        friction that breaks away at one sample or the next makes the misfit a staircase, on which
+        a fit may stop.
+        """
+        if self.is_at_noise(trial):
+            return trial
+        task, start = self.task, self.proposals.start
+        values = trial.values | {n: start[n] for f in task.free for n in (f.name, *f.tied)}
+        again = fitted(
+            task, trial.candidates, values, trial.fit.z, REMOVED, trial.fit, executor=task.executor
+        )
+        return self.best_of([trial, self.polished(again)])
+
     def completed(self, trial: Trial) -> Trial:
         """The trial polished, each of its candidates in its fullest form: an effect is allowed all
         that it can do before another is called.
         """
         full = tuple(fullest(self.task, c) for c in trial.candidates)
         if all(a is b for a, b in zip(full, trial.candidates, strict=True)):
-            return self.polished(trial)
-        return self.polished(fitted(self.task, full, trial.values, trial.fit.z, 0, trial.fit))
+            return self.restarted(self.polished(trial))
+        begun = fitted(self.task, full, trial.values, trial.fit.z, 0, trial.fit)
+        return self.restarted(self.polished(begun))
 
     def without(self, trial: Trial, candidate: Candidate) -> Trial:
         """The trial refitted without one of its candidates, and without what needs it."""
@@ -188,6 +219,8 @@ class Seeker:
         task = self.task
         begun = fitted(task, kept, values, trial.fit.z, REMOVED, trial.fit, executor=task.executor)
         smaller = self.polished(begun)
+        if gain(trial, smaller).share < CERTAIN:
+            smaller = self.restarted(smaller)
         self.others.append(smaller)
         return smaller
 
@@ -234,7 +267,7 @@ class Seeker:
         self.others += begun
         if not left:
             return None
-        best = self.polished(left[0])
+        best = self.restarted(self.polished(left[0]))
         return best if self.is_needed(gain(best, trial)) else None
 
     def simplified(self, trial: Trial) -> Trial:

@@ -2,7 +2,8 @@
 
 import sympy as sp
 
-from ptp_symbolic.effects.effect import Contribution, Effect, Place, harmonic_members
+from ptp_symbolic.effects.effect import Contribution, Effect, Place
+from ptp_symbolic.effects.harmonics import harmonic_members
 from ptp_symbolic.parameters import Parameter, harmonics
 
 AMPLITUDES = harmonics(

@@ -2,14 +2,8 @@
 
 import sympy as sp
 
-from ptp_symbolic.effects.effect import (
-    Contribution,
-    Effect,
-    Friction,
-    Member,
-    Place,
-    Requirement,
-)
+from ptp_symbolic.effects.conditions import Requirement
+from ptp_symbolic.effects.effect import Contribution, Effect, Friction, Member, Place
 from ptp_symbolic.parameters import Parameter
 
 PARAMETERS = (

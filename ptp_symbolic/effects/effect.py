@@ -12,6 +12,7 @@ import sympy as sp
 
 from ptp_symbolic import kinematics
 from ptp_symbolic.bodies import Body
+from ptp_symbolic.effects.conditions import Limit, Requirement
 from ptp_symbolic.parameters import Parameter
 
 LOADS = ("driving_torque", "load_torque", "load_inertia")
@@ -140,27 +141,6 @@ class Drive:
 
 
 @dataclass(frozen=True)
-class Limit:
-    """Bounds of a state, functions of parameters, outside of which the equations do not hold."""
-
-    state: sp.Symbol
-    lower: sp.Expr
-    upper: sp.Expr
-    meaning: str
-
-
-@dataclass(frozen=True)
-class Requirement:
-    """A relation between parameters without which the effect cannot exist.
-
-    `rule` says what is allowed and what to do, as the end of a message that starts with the values.
-    """
-
-    holds: sp.Rel
-    rule: str
-
-
-@dataclass(frozen=True)
 class Contribution:
     """Everything that an effect may add to the machine.
 
@@ -270,19 +250,6 @@ def slide(axis: str) -> sp.Symbol:
     return sp.Symbol(f"slide_{axis}", real=True)
 
 
-def wave(
-    place: Place, amplitudes: tuple[tuple[Parameter, Parameter], ...], angle: sp.Expr
-) -> sp.Expr:
-    """Sum of the harmonics of `angle` with sine and cosine `amplitudes` (see `harmonics`)."""
-    return sp.Add(
-        *(
-            place.parameter(sine.name) * sp.sin(order * angle)
-            + place.parameter(cosine.name) * sp.cos(order * angle)
-            for order, (sine, cosine) in enumerate(amplitudes, start=1)
-        )
-    )
-
-
 def _without_conditions(place: Place) -> tuple[Requirement, ...]:
     return ()
 
@@ -298,17 +265,6 @@ class Member:
     title: str
     parameters: tuple[str, ...]
     tied: Mapping[str, str] = field(default_factory=dict)
-
-
-def harmonic_members(
-    amplitudes: tuple[tuple[Parameter, Parameter], ...], beside: tuple[str, ...] = ()
-) -> tuple[Member, ...]:
-    """Members of an effect with one harmonic, two, and all; the parameters `beside` are in each."""
-    titles = ("one harmonic", "two harmonics", "three harmonics")
-    return tuple(
-        Member(title, (*(p.name for pair in amplitudes[:count] for p in pair), *beside))
-        for count, title in enumerate(titles, start=1)
-    )
 
 
 @dataclass(frozen=True)

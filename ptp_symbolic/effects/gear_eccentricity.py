@@ -1,13 +1,7 @@
 """A gear that does not run true: its output leads and lags once per turn."""
 
-from ptp_symbolic.effects.effect import (
-    Change,
-    Contribution,
-    Effect,
-    Place,
-    harmonic_members,
-    wave,
-)
+from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.effects.harmonics import harmonic_members, wave
 from ptp_symbolic.parameters import Parameter, harmonics
 
 AMPLITUDES = harmonics(

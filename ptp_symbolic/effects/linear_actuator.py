@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import sympy as sp
 
+from ptp_symbolic.effects.conditions import Limit, Requirement
 from ptp_symbolic.effects.dc_motor import electric_drive, motor_parameters
-from ptp_symbolic.effects.effect import Contribution, Effect, Friction, Limit, Place, Requirement
+from ptp_symbolic.effects.effect import Contribution, Effect, Friction, Place
 from ptp_symbolic.linkage import Linkage
 from ptp_symbolic.parameters import Parameter
 from ptp_symbolic.screw import Screw, ScrewFriction

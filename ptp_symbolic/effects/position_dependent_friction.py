@@ -2,14 +2,8 @@
 
 import sympy as sp
 
-from ptp_symbolic.effects.effect import (
-    Change,
-    Contribution,
-    Effect,
-    Place,
-    harmonic_members,
-    wave,
-)
+from ptp_symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.effects.harmonics import harmonic_members, wave
 from ptp_symbolic.parameters import Parameter, harmonics
 
 AMPLITUDES = harmonics(

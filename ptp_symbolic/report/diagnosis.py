@@ -59,8 +59,8 @@ VERDICTS = {
         "open",
         "unexplained",
         "Something is missing, and no known effect could be confirmed",
-        "More than noise is left, yet no candidate could be confirmed. The closest one is shown with"
-        " its figures, as a hint and not as a finding.",
+        "More than noise is left, yet no candidate could be confirmed. The closest one is shown"
+        " with its figures, as a hint and not as a finding.",
     ),
 }
 

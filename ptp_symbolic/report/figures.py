@@ -68,14 +68,12 @@ def residual_unit(signal: Mapping[str, Any]) -> str:
     return "counts" if signal.get("counts") else str(signal.get("unit") or "")
 
 
-def motion_figure(
-    curve: Mapping[str, Any], floors: Mapping[str, float], points: int = 800
-) -> str:
+def motion_figure(curve: Mapping[str, Any], floors: Mapping[str, float], points: int = 800) -> str:
     """One run as SVG: every signal measured and simulated, and under it what is left over.
 
-    `floors`: rms noise floor of signals, in the unit of their residual, drawn as a band of twice its
-    height either side of zero. Each line is thinned to `points`, keeping its extremes. Where the run was cut into windows, a
-    thin line marks every start of a new one.
+    `floors`: rms noise floor of signals, in the unit of their residual, drawn as a band of twice
+    its height either side of zero. Each line is thinned to `points`, keeping its extremes. Where
+    the run was cut into windows, a thin line marks every start of a new one.
     """
     time = np.asarray(curve["time"], float)
     panels = [

@@ -69,10 +69,16 @@ def gain(earned: Mapping[str, Any] | None) -> str:
     """A gain {share, ci95} in percent with its 95 % interval; a dash when there is none."""
     if not earned or not _usable(earned.get("share")):
         return NOTHING
-    bounds = [100.0 * b if _usable(b) else None for b in earned.get("ci95") or ()]
-    percent = {"value": 100.0 * earned["share"], "ci95": bounds}
-    within = interval(percent)
-    return f"{estimate(percent)} %" + ("" if within == NOTHING else f" ({within} %)")
+    bounds = earned.get("ci95") or ()
+    known = bounds and all(map(_usable, bounds))
+    within = f" ({' to '.join(map(_percent, bounds))} %)" if known else ""
+    return f"{_percent(earned['share'])} %{within}"
+
+
+def _percent(share: float) -> str:
+    """Tenths of a percent; of a share far outside -1 to 1 three digits."""
+    percent = 100.0 * share
+    return number(percent) if abs(percent) >= 1000.0 else f"{percent:.1f}".replace("-", "−")
 
 
 def _exponent(value: Any) -> int:

@@ -1,11 +1,13 @@
 """Fitting at the command line: what it says, and what it writes."""
 
 import json
+import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from ptp_symbolic.cli.diagnose import _print_diagnosis
+from ptp_symbolic.cli.diagnose import _print_diagnosis, _print_fit
 from ptp_symbolic.platform import read_platform
 
 SAMPLE = Path(__file__).parents[2] / "ptp_symbolic" / "samples" / "tilted_base"
@@ -70,6 +72,53 @@ def test_a_log_to_fit_is_no_log_to_judge_by(call, tmp_path: Path) -> None:
         assert not (tmp_path / "out").exists()
 
 
+def diagnosis(counts: float | None, angle: float) -> dict[str, Any]:
+    """What is printed of a diagnosis, the same error everywhere."""
+    error = {"rmse_counts": counts, "rmse": angle}
+    stage = {"total": error, "by_run": {"log": error}}
+    part = {"before": stage, "after": stage, "noise_floor": stage}
+    return {
+        "verdict": "explained", "summary": "Missing: x.", "added": [], "refused": {},
+        "remarks": [], "fit": {"after": {"parameters": {}}},
+        "error": {"definition": "root mean square", "train": part, "validate": part},
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("counts", "angle", "unit", "shown"),
+    [(0.3, 5e-4, "counts", "0.300"), (None, 5.1234e-4, "rad", "0.000512")],
+)
+def test_errors_are_in_counts_or_where_there_is_no_encoder_in_rad(
+    counts: float | None, angle: float, unit: str, shown: str, capsys
+) -> None:
+    _print_diagnosis(diagnosis(counts, angle))
+    text = capsys.readouterr().out
+    for part in ("train (fitted)", "validate (never fitted)"):
+        assert f"{part}, {unit} rms" in text
+    assert re.findall(r"^ total +(\S+)", text, re.MULTILINE) == [shown, shown]
+    assert "Error: root mean square." in text
+
+
+def test_what_was_refused_and_remarks_on_the_logs_are_printed(capsys) -> None:
+    refused = {"gear_eccentricity@pan": "takes away only 3 % of the error"}
+    _print_diagnosis({**diagnosis(0.3, 5e-4), "refused": refused, "remarks": ["An axis rests."]})
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "Note: An axis rests."
+    at = lines.index("Gained something, but were not named:")
+    assert lines[at + 1] == "  gear_eccentricity@pan: takes away only 3 % of the error"
+
+
+def test_a_fit_without_an_encoder_is_reported_in_rad(capsys) -> None:
+    def error(rms: float) -> dict[str, Any]:
+        return {"total": {"rmse_counts": None, "rmse": rms}}
+
+    errors = {"before": error(0.02), "after": error(5e-4), "noise_floor": error(4e-4)}
+    summary = {"parameters": {}, "windows": None, "error": errors, "remarks": []}
+    _print_fit({**summary, "far_from_floor": False})
+    text = "0.0005 rad rms over all runs (0.02 at the start values), floor 0.0004."
+    assert text in capsys.readouterr().out
+
+
 def test_a_diagnosis_prints_what_the_logs_do_not_settle(capsys) -> None:
     def fitted(value: float, identified: bool, at_bound: bool = False) -> dict[str, object]:
         return {
@@ -85,11 +134,9 @@ def test_a_diagnosis_prints_what_the_logs_do_not_settle(capsys) -> None:
         "alpha_base": fitted(-0.6, False),
         "F_v_pan": fitted(0.4, False) | {"only_with": ["b_pan"]},
     }
-    error = {"total": {"rmse_counts": 0.3}, "by_run": {"log": {"rmse_counts": 0.3}}}
-    errors = {"train": {"before": error, "after": error, "noise_floor": error}}
     added = [{"parameters": {"beta_base": {}, "alpha_base": {}}}]
-    summary = {"verdict": "explained", "summary": "Missing: x.", "added": added, "error": errors}
-    _print_diagnosis({**summary, "fit": {"after": {"parameters": parameters}}})
+    fit = {"after": {"parameters": parameters}}
+    _print_diagnosis({**diagnosis(0.3, 5e-4), "added": added, "fit": fit})
     lines = capsys.readouterr().out.splitlines()
     assert "  beta_base = 0.07 N m  [0, 1]" in lines
     assert "  alpha_base = -0.6 N m  [0, 1]  (not identified)" in lines

@@ -26,8 +26,8 @@ def straight_line(columns: dict[str, np.ndarray], noise: float) -> Fit:
     return cast(
         Fit,
         SimpleNamespace(
-            free=free, values=dict.fromkeys(columns, 2.0), runs=(run,),
-            cost=float(residual @ residual), pairs=lambda: [(run, evaluation)],
+            free=free, values=dict.fromkeys(columns, 2.0), runs=(run,), evaluations=(evaluation,),
+            cost=float(residual @ residual),
         ),
     )  # fmt: skip
 

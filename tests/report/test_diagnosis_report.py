@@ -14,11 +14,13 @@ import pytest
 
 from ptp_symbolic.report.diagnosis import VERDICTS, render_diagnosis, write_curves_csv
 from ptp_symbolic.report.figures import BORDER, motion_figure
+from ptp_symbolic.report.figures import FLOOR as FLOOR_COLOUR
 from ptp_symbolic.report.quantities import number
 from tests.report.synthetic_diagnosis import (
     ADDED,
     COUNT,
     EQUATION,
+    REFUSED,
     RUNS,
     synthetic_curves,
     synthetic_diagnosis,
@@ -31,7 +33,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stab
 def page(verdict: str, samples: int = 600, current: bool = True) -> str:
     diagnosis = synthetic_diagnosis(verdict)
     drift = 0.0 if verdict == "nothing_missing" else 40.0
-    curves = synthetic_curves(samples, bool(diagnosis["added"]), current, drift)
+    curves = synthetic_curves(samples, current=current, drift_counts=drift)
     return render_diagnosis(diagnosis, curves)
 
 
@@ -48,6 +50,9 @@ def test_every_verdict_has_its_headline_errors_and_figures(verdict: str) -> None
     assert ("base that is not level" in headline[1]) == bool(diagnosis["added"])
     assert ('id="equations"' in html) == bool(diagnosis["added"])
     assert ('id="hints"' in html) == (verdict == "unexplained")
+    assert ('id="closest"' in html) == (verdict == "unexplained")
+    assert ("with the added effect" in html) == bool(diagnosis["added"])
+    assert f"Error: {diagnosis['error']['definition']}." in html
 
 
 def test_the_numbers_of_the_diagnosis_are_on_the_page() -> None:
@@ -63,8 +68,69 @@ def test_the_numbers_of_the_diagnosis_are_on_the_page() -> None:
 def test_look_alikes_come_with_the_experiment_that_separates_them() -> None:
     html = page("explained_up_to_group")
     limits = html[html.index('<section id="limits">') : html.index('<section id="parameters">')]
-    assert "constant_torque" in limits
+    assert "<code>cable_spring</code>" in limits
+    assert '<code>constant_torque</code> <span class="soft nowrap">(tilt axis)</span>' in limits
     assert "Sweep the pan axis over a full turn." in limits
+
+
+def test_gains_are_in_percent_with_their_interval() -> None:
+    html = page("explained")
+    cards = html[: html.index("<nav")]
+    assert "98.7 % (98.5 to 98.9 %), predicted on the training runs" in cards
+    assert "on the validation runs, 97.5 % (97.1 to 97.9 %) is taken away" in cards
+    table = html[html.index('<section id="ranking">') : html.index('<section id="limits">')]
+    assert "92.0 % (91.8 to 92.2 %)" in table
+    assert "−0.2 % (−0.4 to 0.0 %)" in table
+    assert '<td class="n">–</td>' in table  # a fit without derivatives has no gain
+
+
+def test_the_closest_fit_is_shown_with_its_figures_where_nothing_was_confirmed() -> None:
+    html = page("unexplained")
+    card = html[html.index('id="closest"') : html.index("<nav")]
+    for text in ("base_tilt", "not confirmed", "0.08731", "5.002°", "29.8 counts rms"):
+        assert text in card
+    assert "98.7 % (98.5 to 98.9 %)" in card
+    diagnosis = synthetic_diagnosis("unexplained")
+    diagnosis["ranking"] = [row for row in diagnosis["ranking"] if row["effect"] == "backlash"]
+    assert 'id="closest"' not in render_diagnosis(diagnosis, {})
+
+
+def test_what_was_refused_is_listed_with_its_reason() -> None:
+    html = page("explained")
+    part = html[html.index('<section id="refused">') : html.index('<section id="ranking">')]
+    assert "Gained something, but were not named" in part
+    for key, why in REFUSED.items():
+        effect, _, axis = key.partition("@")
+        named = f"<code>{effect}</code>" + (
+            f' <span class="soft nowrap">({axis} axis)</span>' if axis else ""
+        )
+        assert f'{named}</th><td class="why">{why}</td>' in part
+    assert 'id="refused"' not in page("nothing_missing")
+
+
+def test_errors_without_an_encoder_are_in_rad_and_every_signal_is_in_its_own_unit() -> None:
+    html = page("explained")
+    signals = html[html.index('<table id="signals">') : html.index('<section id="equations">')]
+    current = '<code>i_pan</code></th><td class="unit">A</td><td class="n">0.408</td>'
+    assert current in signals
+    angle = '<code>theta_pan</code></th><td class="unit">counts</td><td class="n">29.8</td>'
+    assert angle in signals
+    diagnosis = synthetic_diagnosis("explained")
+    for part in ("train", "validate"):
+        for stage in diagnosis["error"][part].values():
+            for error in (stage["total"], *stage["by_run"].values(), *stage["by_signal"].values()):
+                error["rmse_counts"] = None
+    html = render_diagnosis(diagnosis, synthetic_curves(200))
+    assert "rms error [rad]" in html
+    assert f"<b>{number(29.8 * COUNT)}</b>" in html
+    assert "counts rms" not in html
+
+
+def test_remarks_on_the_logs_stand_with_what_they_cannot_tell() -> None:
+    diagnosis = synthetic_diagnosis("nothing_missing")
+    diagnosis["remarks"] = ["'pan_angle' never moves: nothing can be told of that axis."]
+    html = unescape(render_diagnosis(diagnosis, {}))
+    assert diagnosis["remarks"][0] in html[html.index('<section id="limits">') :]
 
 
 def test_two_effects_are_both_in_the_headline() -> None:
@@ -74,17 +140,19 @@ def test_two_effects_are_both_in_the_headline() -> None:
     assert "<h1>Missing effects found: base that is not level and cable spring</h1>" in html
 
 
-def test_candidates_are_ordered_by_validation_error_and_failures_come_last() -> None:
+def test_candidates_are_ordered_by_training_error_and_those_not_fitted_come_last() -> None:
     html = page("explained")
     table = html[html.index('<section id="ranking">') : html.index('<section id="limits">')]
     shown, folded = table.split("<details>")
     order = re.findall(r'<th scope="row"><code>(\w+)</code>', shown)
-    assert order[:2] == ["base_tilt", "cable_spring"]
+    assert order[:3] == ["base_tilt", "cable_spring", "constant_torque"]
+    assert order[-1] == "viscous_friction"
     assert "backlash" not in order
     assert "backlash" in folded
-    assert "1 candidate dropped" in folded
+    assert "1 candidate that was not simulated" in folded
     assert "0.3000 N m/rad" in shown
-    assert "score" not in table
+    assert "on the training runs" in shown
+    assert "validation" not in table
 
 
 def test_values_that_are_declared_wrong_have_a_heading_of_their_own() -> None:
@@ -98,7 +166,7 @@ def test_values_that_are_declared_wrong_have_a_heading_of_their_own() -> None:
 def test_windows_are_marked_in_the_figures_and_their_length_is_in_the_captions() -> None:
     curves = synthetic_curves(samples=400)
     assert "start of a window" not in render_diagnosis(synthetic_diagnosis("explained"), curves)
-    without = {run: motion_figure(curve, None, 300) for run, curve in curves.items()}
+    without = {run: motion_figure(curve, {}, 300) for run, curve in curves.items()}
     for curve in curves.values():
         curve["borders"] = [float(t) for t in np.linspace(*curve["time"][[0, -1]], 11)[1:-1]]
     html = render_diagnosis(synthetic_diagnosis("explained"), curves)
@@ -108,7 +176,23 @@ def test_windows_are_marked_in_the_figures_and_their_length_is_in_the_captions()
     for run, curve in curves.items():
         panels = without[run].count(f"stroke: {BORDER}")
         assert panels == 0
-        assert motion_figure(curve, None, 300).count(f"stroke: {BORDER}") == 6
+        assert motion_figure(curve, {}, 300).count(f"stroke: {BORDER}") == 6
+
+
+def test_the_band_of_the_noise_floor_is_that_of_every_signal() -> None:
+    curve = synthetic_curves(samples=200)["step"]
+    bands = [
+        motion_figure(curve, floors, 300).count(f"fill: {FLOOR_COLOUR}")
+        for floors in ({}, {"i_pan": 0.004}, {"i_pan": 0.004, "theta_pan": 0.29})
+    ]
+    assert bands == [0, 2, 4]  # residuals of both models, and that of the final one enlarged
+
+
+def test_the_windows_of_the_training_runs_are_counted() -> None:
+    diagnosis = synthetic_diagnosis("explained")
+    diagnosis["windows"] = {"count": 24, "seconds": 1.25}
+    assert "cut into 24 windows of 1.2 s" in render_diagnosis(diagnosis, {})
+    assert "windows of" not in page("explained")
 
 
 def test_every_parameter_has_its_meaning_and_a_search_from_several_starts_a_dash() -> None:
@@ -156,6 +240,8 @@ def test_text_from_files_is_escaped_and_mathml_that_is_more_than_a_formula_is_le
     diagnosis["platform"]["title"] = evil
     diagnosis["summary"] = evil
     diagnosis["hints"] = [evil]
+    diagnosis["refused"] = {f"{evil}@pan": evil}
+    diagnosis["error"]["definition"] = evil
     diagnosis["equations"] = [{**EQUATION, "mathml": f"<mi>x</mi>{evil}", "latex": evil}]
     curves = synthetic_curves(samples=50)
     curves[evil] = curves.pop("step")

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from ptp_symbolic.report.quantities import estimate, in_degrees, interval, number, unit
+from ptp_symbolic.report.quantities import estimate, gain, in_degrees, interval, number, unit
 
 
 def _quantity(value: float, half: float, unit: str) -> dict[str, Any]:
@@ -29,3 +29,17 @@ def test_intervals_set_the_digits_of_their_value() -> None:
     assert in_degrees(_quantity(math.radians(5.0), 0.001, "rad")) == "5.00°"
     assert in_degrees(_quantity(5.0, 0.1, "N m")) == ""
     assert unit("N m/rad^3") == "N m/rad³"
+
+
+@pytest.mark.parametrize(
+    ("share", "bounds", "text"),
+    [(0.9873, [0.9851, 0.9894], "98.7 % (98.5 to 98.9 %)"), (-0.012, [-0.05, 0.021],
+     "−1.2 % (−5.0 to 2.1 %)"), (0.5, None, "50.0 %"), (-2.5e4, [None, 0.1], "−2.50 × 10⁶ %"),
+     (math.nan, [0.0, 1.0], "–")],
+)  # fmt: skip
+def test_gains_are_written_in_tenths_of_a_percent(share: float, bounds: Any, text: str) -> None:
+    assert gain({"share": share, "ci95": bounds}) == text
+
+
+def test_no_gain_is_a_dash() -> None:
+    assert gain(None) == "–"

@@ -1,5 +1,6 @@
-"""What a diagnosis says in words and tests, from trials with known numbers."""
+"""What a diagnosis says in words, tables and tests, from fits with known residuals."""
 
+from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,32 +10,69 @@ import pytest
 from ptp_symbolic.diagnose import summary
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.curves import curves_of
+from ptp_symbolic.diagnose.errors import error_of
 from ptp_symbolic.diagnose.residual_tests import residual_tests
-from ptp_symbolic.diagnose.verdict import EXPLAINED
+from ptp_symbolic.diagnose.trial import Trial
+from ptp_symbolic.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED
 from ptp_symbolic.identify.coordinates import free_parameter
+from ptp_symbolic.identify.intervals import Estimate
 
 DECLARED = 6.5e-4
+COUNT = 1e-3  # rad
+UNITS = {"theta_pan": "rad", "theta_tilt": "rad", "i_pan": "A", "J_y_tilt": "kg m^2"}
 
 
-def _candidate(identity: str, *starts: float) -> Candidate:
-    free = tuple((free_parameter("J_y_tilt", start, 0.0, 1.0),) for start in starts)
-    return Candidate(identity, None, "a cause", "an experiment", free)
+def _candidate(identity: str, axis: str | None = None, declared: float = 0.0) -> Candidate:
+    free = free_parameter("J_y_tilt", DECLARED, 0.0, 1.0)
+    return Candidate(identity, axis, "a cause", "an experiment", (free,), {"J_y_tilt": declared})
 
 
-def _trial(candidate: Candidate, value: float) -> Any:
+def _fit(
+    left: np.ndarray,
+    counts: tuple[float, ...] = (COUNT, COUNT),
+    inputs: np.ndarray | None = None,
+    signals: tuple[str, ...] = ("theta_pan", "theta_tilt"),
+    value: float = DECLARED,
+    windows: int = 2,
+) -> Any:
+    """Windows of 4 s of one run, with residuals `left` [k, ny] in the units of the signals, which
+    have a weight of one per count.
+    """
+    weight = np.array([1.0 / c if np.isfinite(c) else 10.0 for c in counts])
+    runs = tuple(
+        SimpleNamespace(
+            name=f"run#{number}", time=4.0 * number + np.linspace(0.0, 4.0, len(left)),
+            held_inputs=inputs, measured=np.ones_like(left), weight=weight,
+            counts=np.array(counts), signals=signals,
+        )
+        for number in range(windows)
+    )  # fmt: skip
+    residual = (left * weight).ravel()
+    evaluation = SimpleNamespace(
+        residual=residual, by_parameter=np.zeros((residual.size, 0)),
+        by_start=np.zeros((residual.size, 0)), failed=None,
+    )  # fmt: skip
     parameter = SimpleNamespace(name="J_y_tilt", meaning="inertia of the tilt body about y")
-    model = SimpleNamespace(parameters=(parameter,), units={"J_y_tilt": "kg m^2"})
-    train = SimpleNamespace(values={"J_y_tilt": value}, model=model, free=candidate.starts[0])
-    validate = SimpleNamespace(pairs=list)
-    return SimpleNamespace(candidates=(candidate,), train=train, validate=validate, keys=())
+    return SimpleNamespace(
+        runs=runs, evaluations=(evaluation,) * windows, cost=float(residual @ residual),
+        pairs=lambda: [(run, evaluation) for run in runs], is_differentiated=False,
+        model=SimpleNamespace(parameters=(parameter,), units=UNITS),
+        values={"J_y_tilt": value}, free=(), failed=None,
+    )  # fmt: skip
 
 
-def _headline(monkeypatch: pytest.MonkeyPatch, candidate: Candidate, value: float) -> str:
-    trial = _trial(candidate, value)
-    monkeypatch.setattr(summary, "held_out_cost", lambda _: 0.25)
-    verdict = SimpleNamespace(word=EXPLAINED, accepted=trial, rivals=(), floor=0.3)
-    found: Any = SimpleNamespace(base=trial, verdict=verdict)
-    return summary.headline(found)
+def _trial(*candidates: Candidate, value: float = DECLARED, left: float = 1.0) -> Trial:
+    return Trial(candidates, _fit(np.full((20, 2), left * COUNT), value=value))
+
+
+def _verdict(word: str, final: Trial, **more: Any) -> Any:
+    usual = {"confusable": {}, "closest": None, "rivals": (), "refused": {}}
+    return SimpleNamespace(word=word, final=final, **{**usual, **more})
+
+
+def _errors(counts: float | None = 0.5) -> dict[str, Any]:
+    stage = {"total": {"rmse_counts": counts, "rmse": 5.4321e-4}}
+    return {"validate": {"before": stage, "after": stage, "noise_floor": stage}}
 
 
 @pytest.mark.parametrize(
@@ -43,52 +81,94 @@ def _headline(monkeypatch: pytest.MonkeyPatch, candidate: Candidate, value: floa
      (0.5, "wrong by +50.0 %", False), (0.0099, "wrong by +0.99 %", True)],
 )  # fmt: skip
 def test_a_declared_value_is_wrong_by_so_many_percent(
-    monkeypatch: pytest.MonkeyPatch, share: float, words: str, small: bool
+    share: float, words: str, small: bool
 ) -> None:
-    candidate = _candidate("declared_value:J_y_tilt", DECLARED)
-    text = _headline(monkeypatch, candidate, DECLARED * (1.0 + share))
+    candidate = _candidate("declared_value:J_y_tilt", declared=DECLARED)
+    trial = _trial(candidate, value=DECLARED * (1.0 + share))
+    text = summary.headline(_verdict(EXPLAINED, trial), _errors())
     assert text.startswith(f"Declared value of J_y_tilt is {words} (inertia of the tilt body")
     assert ("statistically clear but small" in text) == small
 
 
-def test_an_effect_is_called_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    text = _headline(monkeypatch, _candidate("cable_spring", 0.1), DECLARED)
-    assert text == "Missing: a cause; validation error 0.500 to 0.500 counts rms."
+@pytest.mark.parametrize(("counts", "shown"), [(0.5, "0.500 counts"), (None, "0.000543 rad")])
+def test_an_effect_is_called_missing(counts: float | None, shown: str) -> None:
+    text = summary.headline(_verdict(EXPLAINED, _trial(_candidate("x"))), _errors(counts))
+    assert text == f"Missing: a cause; validation error {shown} rms to {shown} rms."
 
 
-@pytest.mark.parametrize(("starts", "shown"), [((0.1,), 0.1), ((0.1, 0.2), None)])
-def test_the_start_of_an_added_parameter_is_where_its_search_began(
-    starts: tuple[float, ...], shown: float | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    trial = _trial(_candidate("cable_spring", *starts), 0.3)
-    estimate = SimpleNamespace(name="J_y_tilt", value=0.3, lower=0.2, upper=0.4, at_bound=False,
-                               identified=True, only_with=())  # fmt: skip
-    monkeypatch.setattr(summary, "estimates", lambda _: (estimate,))
-    row = summary.fit_table(trial)["J_y_tilt"]
-    assert row["start"] == shown
-    assert row["meaning"] == "inertia of the tilt body about y"
+def test_look_alikes_and_a_remainder_are_in_the_headline() -> None:
+    alike = {"x": ("gear_eccentricity@pan", "cogging@pan"), "y": ("cogging@pan",)}
+    found = _verdict(PARTLY, _trial(_candidate("x")), confusable=alike)
+    text = summary.headline(found, _errors())
+    assert "These logs cannot tell it from: cogging@pan, gear_eccentricity@pan." in text
+    assert "a remainder is left unexplained" in text
 
 
-def _validated(left: np.ndarray, inputs: np.ndarray) -> Any:
-    """Two windows with encoder residuals `left` [k, 2] in counts."""
-    pairs = []
-    for begin in (0.0, 4.0):
-        run = SimpleNamespace(
-            name="run#1", time=begin + np.linspace(0.0, 4.0, len(left)), held_inputs=inputs,
-            measured=left, outputs=np.array([0, 1]), weight=np.ones(2), counts=np.ones(2),
-            signals=("theta_pan", "theta_tilt"),
-        )  # fmt: skip
-        pairs.append((run, SimpleNamespace(residual=left.ravel(), outputs=0.0 * left)))
-    fit = SimpleNamespace(runs=[pairs[0][0]], pairs=lambda: pairs, model=SimpleNamespace(
-        units={"theta_pan": "rad", "theta_tilt": "rad"}))  # fmt: skip
-    return SimpleNamespace(train=fit, validate=fit)
+def test_what_cannot_be_confirmed_is_a_hint_and_not_a_name() -> None:
+    closest = _trial(_candidate("cogging", "pan"), _candidate("backlash", "tilt"))
+    text = summary.headline(_verdict(UNEXPLAINED, _trial(), closest=closest), _errors())
+    assert text.startswith("Something is missing")
+    assert "closest candidate, not confirmed: backlash@tilt + cogging@pan." in text
+    assert "Nothing is missing" in summary.headline(_verdict(NOTHING_MISSING, _trial()), _errors())
+
+
+def test_a_declared_parameter_has_a_start_and_that_of_an_effect_has_none() -> None:
+    trial = _trial(_candidate("x"))
+    own = SimpleNamespace(name="J_y_tilt", table=0.1)
+    added = SimpleNamespace(name="i_pan", table=None)
+    fit: Any = trial.fit
+    fit.free = (own, added)
+    fit.model.parameters += (SimpleNamespace(name="i_pan", meaning="a current"),)
+    found = [Estimate(name, 0.3, 0.2, np.inf, False, True) for name in ("J_y_tilt", "i_pan")]
+    rows = summary.fit_table(trial, found)
+    assert (rows["J_y_tilt"]["start"], rows["i_pan"]["start"]) == (0.1, None)
+    assert rows["J_y_tilt"]["meaning"] == "inertia of the tilt body about y"
+    assert rows["J_y_tilt"]["ci95"] == [0.2, None]
+
+
+def test_the_ranking_has_every_fitted_set_by_its_error_and_the_others_after_it() -> None:
+    first, second, third = _candidate("cogging", "pan"), _candidate("backlash"), _candidate("drag")
+    best, worse = _trial(first, left=0.5), _trial(first, second, left=0.8)
+    search: Any = SimpleNamespace(declared=_trial(left=3.0), chosen=best, others=(worse, best))
+    refused = {"backlash": "takes away only 3 % of the error"}
+    found = _verdict(EXPLAINED, best, refused=refused)
+    rows = summary.ranking(search, found, (first, second, third))
+    assert [row["effect"] for row in rows] == ["cogging", "cogging + backlash", "drag"]
+    assert [row["train_error_after"] for row in rows] == pytest.approx([0.5, 0.8, None])
+    assert [row["accepted"] for row in rows] == [True, False, False]
+    assert rows[0]["axis"] == "pan"
+    assert rows[1]["why"] == "backlash takes away only 3 % of the error"
+    assert rows[0]["gain"] is None  # a fit without derivatives predicts nothing that was left out
+
+
+def test_errors_pool_the_angles_and_tell_every_signal_in_its_own_unit() -> None:
+    left = np.tile([3.0 * COUNT, 4.0 * COUNT, 0.7], (50, 1))
+    fit = _fit(left, (COUNT, COUNT, np.nan), signals=("theta_pan", "theta_tilt", "i_pan"))
+    found = error_of(fit, UNITS)
+    assert found["total"]["rmse_counts"] == pytest.approx(np.sqrt(12.5))
+    assert found["total"]["rmse"] == pytest.approx(np.sqrt(12.5) * COUNT)
+    assert found["by_run"].keys() == {"run"}
+    assert found["by_signal"]["theta_tilt"]["rmse_counts"] == pytest.approx(4.0)
+    assert found["by_signal"]["i_pan"] == {
+        "rmse": pytest.approx(0.7), "unit": "A", "rmse_counts": None,
+    }  # fmt: skip
+    floor = error_of(fit, UNITS, np.array([1.0, 2.0, 1.0]))
+    assert floor["by_signal"]["theta_tilt"]["rmse_counts"] == pytest.approx(2.0)
+    assert floor["by_signal"]["i_pan"]["rmse"] == pytest.approx(0.1)
+
+
+def test_an_angle_without_an_encoder_leaves_no_error_in_counts() -> None:
+    found = error_of(_fit(np.full((50, 2), COUNT), (COUNT, np.nan)), UNITS)
+    assert found["total"]["rmse_counts"] is None
+    assert found["total"]["rmse"] == pytest.approx(COUNT)
+    assert found["by_signal"]["theta_pan"]["rmse_counts"] == pytest.approx(1.0)
 
 
 def test_every_signal_is_tested_against_every_input() -> None:
     noise = np.random.default_rng(1).standard_normal((4000, 4))
     left, inputs = noise[:, :2].copy(), noise[:, 2:]
     left[:, 1] += 0.5 * inputs[:, 0]
-    rows = residual_tests(_validated(left, inputs), ("tau_pan", "tau_tilt"))
+    rows = residual_tests(_fit(left, inputs=inputs), ("tau_pan", "tau_tilt"))
     found = {(row["signal"], row["name"]): row["passed"] for row in rows}
     assert len(found) == 6
     assert not found["theta_tilt", "independence of tau_pan"]
@@ -96,7 +176,12 @@ def test_every_signal_is_tested_against_every_input() -> None:
 
 
 def test_the_curves_of_a_run_carry_the_borders_of_its_windows() -> None:
-    trial = _validated(np.zeros((200, 2)), np.zeros((200, 2)))
-    for curve in curves_of(trial, trial).values():
+    fit = _fit(np.zeros((200, 2)))
+    curves: Mapping[str, Any] = curves_of({"train": (fit, fit), "validate": (fit, fit)})
+    assert {name: curve["set"] for name, curve in curves.items()} == {
+        "run": "train", "run (validate)": "validate",
+    }  # fmt: skip
+    for curve in curves.values():
         assert curve["borders"] == [4.0]
+        assert len(curve["time"]) == 399
         assert curve["signals"]["theta_tilt"]["unit"] == "rad"
