@@ -20,6 +20,7 @@ from ptp_symbolic.identify.blocks import (
 )
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.intervals import project_out
+from ptp_symbolic.identify.run import by_source
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -55,7 +56,8 @@ def gain(larger: Trial, smaller: Trial) -> Gain:
         (b**2 - a**2).reshape(-1, signals).sum(axis=1)
         for a, b in zip(residuals[0][0], residuals[1][0], strict=True)
     ]
-    labels = block_labels([len(d) for d in difference], block_length(difference))
+    series = [np.concatenate([difference[k] for k in group]) for group in by_source(runs)]
+    labels = block_labels([len(s) for s in series], block_length(series))
     label = np.concatenate(labels)
     squares = [_block_squares(parts, label, signals) for parts in residuals]
     size = np.bincount(label)
@@ -68,7 +70,7 @@ def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
     """The gain from the losses [b] of the same blocks by two models."""
     taken = smaller - larger
     share, lower, upper = bootstrap_share(taken, smaller, CONFIDENCE)
-    influence = (taken - share * smaller) / max(smaller.sum(), 1e-300)
+    influence = (taken - taken.mean()) / max(float(smaller.sum()), 1e-300)
     b = len(taken)
     error = float(np.sqrt(b / max(b - 1, 1) * np.sum(influence**2)))
     return Gain(share, lower, upper, share / max(error, LEAST_SPREAD), b - 1)

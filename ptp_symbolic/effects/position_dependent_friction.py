@@ -9,7 +9,7 @@ from ptp_symbolic.parameters import Parameter, harmonics
 AMPLITUDES = harmonics(
     Parameter(
         "F_sin_{axis}", "N m", 0.0, -1e4, 1e4,
-        "part of dry friction that goes with the sine of the joint angle",
+        "part of dry friction that goes with the sine of the angle at the gear output",
         vanishes=0.0, starts=(0.0, 0.1),
     ),
     Parameter(
@@ -25,7 +25,7 @@ def _parameters(place: Place) -> tuple[Parameter, ...]:
 
 def _contribute(place: Place) -> Contribution:
     added = Change(
-        addition=wave(place, AMPLITUDES, place.angle),
+        addition=wave(place, AMPLITUDES, place.gear_angle),
         through=lambda torque: sp.Max(torque, 0),
     )
     return Contribution(

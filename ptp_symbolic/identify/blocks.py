@@ -105,7 +105,7 @@ def leave_blocks_out(
         own = scaled[rows]
         rest = information - own.T @ own
         score = own.T @ residual[rows]
-        shift = np.linalg.lstsq(rest + ridge * np.eye(nf), score, rcond=ridge)[0]
+        shift = np.linalg.lstsq(rest + ridge * np.eye(nf), score, rcond=1e2 * ridge)[0]
         predicted[rows] = residual[rows] + own @ shift
         shifts[block] = shift / size
     return LeftOut(predicted, shifts)

@@ -8,7 +8,7 @@ and contact are set-valued.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,71 +17,37 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.identify.along_motion import (
     LATE_PARTS,
     PARTS,
-    Layout,
-    Motion,
-    angles_behind_sensors,
-    equation_addresses,
     further_states,
     gear_ahead,
-    layout_of,
     torques_along,
 )
+from ptp_symbolic.identify.dependence import dependence_of
+from ptp_symbolic.identify.equation_rows import (
+    RunRows,
+    every_row,
+    half_width_of,
+    resting_rates,
+    rows_that_count,
+)
+from ptp_symbolic.identify.layout import Layout, equation_addresses, layout_of
+from ptp_symbolic.identify.measured_motion import (
+    FurtherStates,
+    MeasuredMotion,
+    angles_of,
+    measured_motion,
+)
 from ptp_symbolic.identify.run import Run
-from ptp_symbolic.identify.weak_form import local_motion, noise_gain, weak_average
+from ptp_symbolic.identify.sample_averages import cell_averages, grid_averages, part_averages
+from ptp_symbolic.identify.weak_form import weak_average
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.delays import delays_of
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
+Torques = tuple[FloatArray, FloatArray, FloatArray]  # see `torques_along`
 
-ROWS_PER_WINDOW = 8  # rows overlap: more are copies of each other
-SAMPLES_PER_WINDOW = 32  # on the grid: enough for the bends of the test function
-RESTING = 5.0  # standard deviations of the estimated rate: slower may be at rest
-CALM = 5e-3  # noise of the averaged acceleration over that of what accelerates
-SENSOR_ITERATIONS = 4  # an error of 2 % of the angle is left to 2e-7 of it
-MOST_COARSE = 16.0  # samples in a window: fewer do not resolve the test function
-CLEAN = 1e-9  # share of a window at rest
 SHIFT = 1e-3  # of an input or state, in its own unit, for a difference quotient
-DRAWS, DRAW_SEED = 3, 20130801
-HALF_WIDTHS = (0.08, 0.11, 0.16, 0.22)  # s
-
-
-@dataclass(frozen=True, eq=False)
-class RunRows:
-    """The rows of a run: `grid` [g] are the samples at which torques are taken, `chosen` [c] those
-    of the grid that have a row, `kept` [c, equations] the rows that count; `face` [g, na] is the
-    face that every gear output touches.
-    """
-
-    grid: IntArray
-    chosen: IntArray
-    kept: BoolArray
-    face: FloatArray
-
-
-@dataclass(frozen=True, eq=False)
-class _Along:
-    """The motion of one run at all samples and on the grid, the averaged second derivatives [c, na]
-    of its angles, and by how much the averages of angles and rates [c, 2 na] differ from those of
-    the smoothed ones.
-    """
-
-    fine: Motion
-    coarse: Motion
-    curvature: FloatArray
-    missed: FloatArray
-
-
-@dataclass(frozen=True, eq=False)
-class _Further:
-    """Further states: what acts on the grid [g, e], measured minus integrated [k, e] at all
-    samples, and by how much they settle elsewhere at another rate [k, e, na].
-    """
-
-    acting: FloatArray
-    left: FloatArray
-    by_rate: FloatArray
 
 
 @dataclass(eq=False)
@@ -105,8 +71,8 @@ class EquationSpace:
     moving: BoolArray
     acting: BoolArray
     rows_of: tuple[RunRows, ...] = ()
-    _motions: dict[tuple[int, bytes], _Along] = field(default_factory=dict, repr=False)
-    _states: dict[tuple[int, bytes, int], _Further] = field(default_factory=dict, repr=False)
+    _motions: dict[tuple[int, bytes], MeasuredMotion] = field(default_factory=dict, repr=False)
+    _states: dict[tuple[int, bytes, int], FurtherStates] = field(default_factory=dict, repr=False)
 
     @property
     def equations(self) -> int:
@@ -165,7 +131,7 @@ class EquationSpace:
 
     def _torques(
         self, number: int, p: FloatArray, own: FloatArray | None
-    ) -> tuple[_Along, FloatArray, tuple[FloatArray, FloatArray, FloatArray], _Further]:
+    ) -> tuple[MeasuredMotion, FloatArray, Torques, FurtherStates]:
         """Motion, lead of the gears, what `torques_along` gives on the grid, and further states."""
         run, addresses = self.runs[number], equation_addresses(self.model)
         rows, along = self.rows_of[number], self._motion(number, p)
@@ -183,40 +149,26 @@ class EquationSpace:
         )
         return along, ahead, torques, further
 
-    def _motion(self, number: int, p: FloatArray) -> _Along:
+    def _motion(self, number: int, p: FloatArray) -> MeasuredMotion:
         """The measured motion, errors of the sensors at p taken out."""
         key = (number, p[self.sensing].tobytes())
         if key in self._motions:
             return self._motions[key]
-        run, axes, rows = self.runs[number], self.model.module.AXES, self.rows_of[number]
-        columns = [run.signals.index(f"theta_{a}") for a in axes]
-        shown = [self.model.output_names.index(f"theta_{a}") for a in axes]
-        angles = angles_behind_sensors(
-            equation_addresses(self.model), self.layout, np.array(shown), run.time,
-            np.ascontiguousarray(run.measured[:, columns]), run.held_inputs, p,
-            len(self.model.output_names), SENSOR_ITERATIONS if self.sensing.any() else 0,
-        )  # fmt: skip
-        local = local_motion(run.time, angles, self.rate_width)
-        seen = np.full((len(run.time), len(self.layout.further)), np.nan)
-        for column, place in self.measured:
-            seen[:, place] = run.measured[:, column]
-        smooth, rate, acceleration = (np.ascontiguousarray(local[:, k]) for k in range(3))
-        fine = Motion(run.time, smooth, rate, acceleration, run.held_inputs, seen)
-        coarse = Motion(*(np.ascontiguousarray(column[rows.grid]) for column in fine))
-        at, h = rows.grid[rows.chosen], self.half_width
-        curvature = weak_average(run.time, angles, h, 2, at)
-        exact = [weak_average(run.time, angles, h, d, at) for d in (0, 1)]
-        taken = [weak_average(coarse.time, c, h, 0, rows.chosen) for c in coarse[1:3]]
-        missed = np.column_stack([e - s for e, s in zip(exact, taken, strict=True)])
-        self._motions[key] = _Along(fine, coarse, curvature, missed)
+        run, rows, further = self.runs[number], self.rows_of[number], len(self.layout.further)
+        angles = angles_of(self.model, self.layout, run, p, bool(self.sensing.any()))
+        self._motions[key] = measured_motion(
+            run, angles, further, self.measured, rows, self.half_width, self.rate_width
+        )
         return self._motions[key]
 
-    def _further(self, number: int, p: FloatArray, along: _Along, added: FloatArray) -> _Further:
+    def _further(
+        self, number: int, p: FloatArray, along: MeasuredMotion, added: FloatArray
+    ) -> FurtherStates:
         """Further states along the motion, with what is `added` [g, nu] to the inputs."""
         run, fine, grid = self.runs[number], along.fine, self.rows_of[number].grid
         count = len(self.layout.further)
         if not count:
-            return _Further(
+            return FurtherStates(
                 np.zeros((len(grid), 0)), np.zeros((len(run.time), 0)), np.zeros((0, 0, 0))
             )
         key = (number, p[self.moving | self.sensing].tobytes(), int(np.any(added)))
@@ -234,8 +186,8 @@ class EquationSpace:
                 shown, late,
             )  # fmt: skip
             left = fine.measured - found
-            acting = np.where(np.isnan(left), mean, mean + left)
-            self._states[key] = _Further(_averaged(acting, grid), np.nan_to_num(left), by_rate)
+            acts = grid_averages(np.where(np.isnan(left), mean, mean + left), grid)
+            self._states[key] = FurtherStates(acts, np.nan_to_num(left), by_rate)
         return self._states[key]
 
     def decide_rows(self, p: FloatArray, others: Sequence[FloatArray]) -> None:
@@ -244,10 +196,23 @@ class EquationSpace:
         A row counts where no face changes at p nor at `others`: an inertia or a friction that is
         far from its true value would miss the changes, and between two faces no torque passes.
         """
-        self.rows_of = tuple(_every_row(self, run) for run in self.runs)
+        axes = len(self.layout.angle)
+        every = [every_row(run, self.half_width, axes, self.equations) for run in self.runs]
+        self.rows_of = tuple(every)
         self.forget()
-        self.rows_of = tuple(_rows_that_count(self, k, p, others) for k in range(len(self.runs)))
+        self.rows_of = tuple(self._that_count(k, p, others) for k in range(len(self.runs)))
         self.forget()
+
+    def _that_count(self, number: int, p: FloatArray, others: Sequence[FloatArray]) -> RunRows:
+        """The rows of a run, those that count decided anew."""
+        rows, motion = self.rows_of[number], self._motion(number, p).coarse
+        addresses = equation_addresses(self.model)
+        faces = [
+            gear_ahead(addresses, self.layout, motion, q, self.resting, rows.face)[1]
+            for q in (p, *others)
+        ]
+        measured = len(self.measured)
+        return rows_that_count(rows, motion, faces, self.resting, self.half_width, measured)
 
     def forget(self) -> None:
         """Drop what is kept of motions and states: after a search over sensors or currents."""
@@ -293,12 +258,6 @@ class EquationSpace:
         return result
 
 
-def _averaged(values: FloatArray, grid: IntArray) -> FloatArray:
-    """Averages [g, v] of `values` [k, v] over the samples nearest to every one of the grid."""
-    edges = np.concatenate([[0], (grid[1:] + grid[:-1] + 1) // 2, [len(values)]])
-    return np.add.reduceat(values, edges[:-1], axis=0) / np.diff(edges)[:, None]
-
-
 def prepare_equation_space(
     model: Model,
     runs: Sequence[Run],
@@ -324,15 +283,13 @@ def prepare_equation_space(
         for column, name in enumerate(runs[0].signals)
         if name in further
     )
-    depends = _dependence(model, layout, runs, p, varied)
+    depends = dependence_of(model, layout, runs, p, varied)
     columns = [runs[0].signals.index(f"theta_{axis}") for axis in axes]
     noise = 1.0 / runs[0].weight[columns]
     period = float(np.median(np.concatenate([np.diff(run.time) for run in runs])))
-    half_width = _half_width(runs, columns, noise, period)
+    half_width = half_width_of(runs, columns, noise, period)
     rate_width = 0.5 * half_width
-    rounding = np.nan_to_num(runs[0].counts[columns]) / np.sqrt(12.0)
-    samples = 2.0 * rate_width / period + 1.0
-    resting = RESTING * np.hypot(noise * np.sqrt(3.0 / samples), rounding) / rate_width
+    resting = resting_rates(runs[0].counts[columns], noise, period, rate_width)
     frictions = set(layout.friction_axis.tolist())
     resting = np.where([a in frictions for a in range(len(axes))], resting, 0.0)
     space = EquationSpace(
@@ -341,139 +298,3 @@ def prepare_equation_space(
     )  # fmt: skip
     space.decide_rows(p, others)
     return space
-
-
-def _half_width(
-    runs: Sequence[Run], columns: Sequence[int], noise: FloatArray, period: float
-) -> float:
-    """The shortest window in which noise hardly shows beside what accelerates the joints."""
-    for half_width in HALF_WIDTHS:
-        if 2.0 * half_width / period < MOST_COARSE:
-            continue
-        gain = noise_gain(period, half_width, 2)
-        curved = [
-            weak_average(
-                run.time, np.ascontiguousarray(run.measured[:, columns]), half_width, 2,
-                np.arange(0, len(run.time), max(1, int(half_width / period))),
-            )
-            for run in runs
-        ]  # fmt: skip
-        size = np.sqrt(np.nanmean(np.concatenate(curved) ** 2, axis=0))
-        if np.all(noise * gain <= CALM * size):
-            return half_width
-    return max(HALF_WIDTHS[-1], 0.5 * MOST_COARSE * period)
-
-
-def _every_row(space: EquationSpace, run: Run) -> RunRows:
-    """The grid of a run and the samples of it that have a row, all of which count for now."""
-    period = float(np.median(np.diff(run.time)))
-    window = 2.0 * space.half_width / period
-    grid = np.arange(0, len(run.time), max(1, int(window / SAMPLES_PER_WINDOW)))
-    spacing = window / max(1, int(window / SAMPLES_PER_WINDOW))
-    chosen = np.arange(0, len(grid), max(1, round(spacing / ROWS_PER_WINDOW)))
-    kept = np.ones((len(chosen), space.equations), dtype=np.bool_)
-    return RunRows(grid, chosen, kept, np.zeros((len(grid), len(space.layout.angle))))
-
-
-def _rows_that_count(
-    space: EquationSpace, number: int, p: FloatArray, others: Sequence[FloatArray]
-) -> RunRows:
-    """Samples of a run whose windows are whole and hold neither rest nor a change of face."""
-    rows, motion = space.rows_of[number], space._motion(number, p).coarse
-    addresses, layout = equation_addresses(space.model), space.layout
-    faces = [
-        gear_ahead(addresses, layout, motion, q, space.resting, rows.face)[1] for q in (p, *others)
-    ]
-    resting = (np.abs(motion.rate) < space.resting).astype(np.float64)
-    changed = np.zeros_like(resting)
-    for face in faces:
-        changed[1:] = np.maximum(changed[1:], face[1:] != face[:-1])
-    both = np.column_stack([resting, changed])
-    both = weak_average(motion.time, both, space.half_width, 0, rows.chosen)
-    axes = resting.shape[1]
-    slides = (both[:, :axes] < CLEAN) & (both[:, axes:] < CLEAN)
-    electric = np.all(both[:, axes:] < CLEAN, axis=1)
-    kept = np.column_stack([slides, *[electric] * len(space.measured)])
-    return replace(rows, kept=kept, face=faces[0])
-
-
-@dataclass(frozen=True, eq=False)
-class _Dependence:
-    """Which parameters [np] act on what the sensors of the angles show, which on the rates of
-    further states, and which of these states [e] act on a torque or on one another.
-    """
-
-    sensing: BoolArray
-    moving: BoolArray
-    acting: BoolArray
-
-
-def _dependence(
-    model: Model, layout: Layout, runs: Sequence[Run], p: FloatArray, varied: FloatArray
-) -> _Dependence:
-    """What depends on what, seen at states drawn at random, with parameters p and with others."""
-    rng = np.random.default_rng(DRAW_SEED)
-    count = len(layout.further)
-    found = _Dependence(
-        np.zeros(len(p), dtype=np.bool_), np.zeros(len(p), dtype=np.bool_),
-        np.zeros(count, dtype=np.bool_),
-    )  # fmt: skip
-    shown = [model.output_names.index(f"theta_{a}") for a in model.module.AXES]
-    largest = np.max([np.max(np.abs(run.held_inputs), axis=0) for run in runs], axis=0)
-    steps = np.where(varied != p, varied - p, 0.01 * p + 1e-3)
-
-    def seen(x: FloatArray, u: FloatArray, q: FloatArray, m: FloatArray) -> tuple[FloatArray, ...]:
-        r, y = np.zeros(layout.rows + count), np.zeros(len(model.output_names))
-        model.module.equation_error(0.5, x, u, q, m, r)
-        model.module.outputs(0.5, x, u, q, y)
-        return y[shown], r[layout.rows :], r
-
-    for base in (p, varied) * DRAWS:
-        x, m = (
-            rng.standard_normal(layout.states + layout.rows),
-            rng.choice([-1.0, 1.0], layout.modes),
-        )
-        u = largest * rng.choice([-1.0, 1.0], len(largest))
-        here = seen(x, u, base, m)
-        for j, step in enumerate(steps if base is p else -steps):
-            moved = base.copy()
-            moved[j] += step
-            there = seen(x, u, moved, m)
-            found.sensing[j] |= bool(np.any(there[0] != here[0]))
-            found.moving[j] |= bool(np.any(there[1] != here[1]))
-        for e, state in enumerate(layout.further):
-            moved = x.copy()
-            moved[state] += 1.0
-            other = seen(moved, u, base, m)[2] - here[2]
-            other[layout.rows + e] = 0.0
-            found.acting[e] |= bool(np.any(other))
-    found.moving[[j for j in model.input_delays if j >= 0 and count]] = True
-    return found
-
-
-def cell_averages(run: Run, column: int, delay: float, grid: IntArray) -> FloatArray:
-    """A held input [g], late by `delay` s, averaged over the cell around every sample of a grid."""
-    time = run.time[grid]
-    middle = 0.5 * (time[1:] + time[:-1])
-    edges = np.concatenate(
-        [[1.5 * time[0] - 0.5 * time[1]], middle, [1.5 * time[-1] - 0.5 * time[-2]]]
-    )
-    return _averages(run, column, edges - delay)
-
-
-def part_averages(run: Run, column: int, delay: float, parts: int) -> FloatArray:
-    """A held input, late by `delay` s, averaged over equal parts of every sample [k - 1, parts]."""
-    shares = np.arange(parts) / parts
-    edges = run.time[:-1, None] + np.diff(run.time)[:, None] * shares
-    flat = np.append(edges.ravel(), run.time[-1])
-    return _averages(run, column, flat - delay).reshape(-1, parts)
-
-
-def _averages(run: Run, column: int, edges: FloatArray) -> FloatArray:
-    """Averages of a held input between neighbouring `edges`; before the first sample it is that."""
-    time, held = run.time, run.held_inputs[:, column]
-    integral = np.concatenate([[0.0], np.cumsum(held[:-1] * np.diff(time))])
-    at = np.interp(edges, time, integral)
-    at += np.where(edges < time[0], (edges - time[0]) * held[0], 0.0)
-    at += np.where(edges > time[-1], (edges - time[-1]) * held[-1], 0.0)
-    return np.diff(at) / np.diff(edges)

@@ -19,6 +19,7 @@ from ptp_symbolic.identify.blocks import (
 )
 from ptp_symbolic.identify.coordinates import FreeParameter, slopes, to_search, wrapped
 from ptp_symbolic.identify.fit import Fit
+from ptp_symbolic.identify.run import by_source
 
 FloatArray = NDArray[np.float64]
 
@@ -95,7 +96,8 @@ def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
     signals = fit.runs[0].measured.shape[1]
     residuals = [project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations]
     columns = np.vstack([project_out(e.by_parameter, e.by_start) for e in fit.evaluations])
-    series = [r.reshape(-1, signals).sum(axis=1) for r in residuals]
+    sums = [r.reshape(-1, signals).sum(axis=1) for r in residuals]
+    series = [np.concatenate([sums[k] for k in group]) for group in by_source(fit.runs)]
     labels = block_labels([len(s) for s in series], block_length(series))
     residual, label = np.concatenate(residuals), np.repeat(np.concatenate(labels), signals)
     inverse, lost = _inverse(columns.T @ columns)

@@ -22,6 +22,7 @@ KEPT = 0.99  # of the squared differences: the rest may be jumps of the motion
 PIECE = 256  # samples; the median over pieces is that of the quiet ones where motion is rough
 SEGMENT = 64  # samples of a periodogram: its lowest frequency resolves poles up to 0.95
 LOWEST = 3  # first bin used of a segment: those below belong to the window and to the motion
+SCORINGS = 20  # reweighted steps: the variances of a gamma model settle to a part in a thousand
 POLES = np.concatenate([[0.0], np.linspace(0.3, 0.97, 40)])
 
 
@@ -69,10 +70,9 @@ def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
     power, count = _spectrum(series)
     if count == 0:
         return Noise(least, 0.0, least)
-    omega = 2.0 * np.pi * np.arange(LOWEST, SEGMENT // 2 + 1) / SEGMENT
     power = power[LOWEST:]
     degrees = 2.0 * count / OVERLAP_CORRELATION
-    fits = [_profiled(power, omega, pole, least**2, degrees) for pole in POLES]
+    fits = [_profiled(power, pole, least**2, degrees) for pole in POLES]
     likelihood = np.array([f[0] for f in fits])
     best = int(np.argmax(likelihood))
     allowed = likelihood >= likelihood[best] - 0.5 * float(stats.chi2.ppf(0.95, 1))
@@ -97,29 +97,44 @@ def _spectrum(series: Sequence[FloatArray]) -> tuple[FloatArray, int]:
     return total / max(count, 1) / float(np.sum(taper**2)), count
 
 
+@lru_cache(maxsize=64)
+def _expected(pole: float) -> FloatArray:
+    """Expected periodogram [SEGMENT/2 + 1] under the window of an autoregression with innovations of
+    variance 1: the window smears a steep spectrum far beyond its corner (Sykulski et al., 2019).
+    """
+    taper = np.hanning(SEGMENT + 1)[:-1]
+    overlap = np.correlate(taper, taper, "full")[SEGMENT - 1 :] / np.sum(taper**2)
+    lags = np.arange(SEGMENT)
+    covariance = overlap * pole**lags / (1.0 - pole**2)
+    omega = 2.0 * np.pi * np.arange(SEGMENT // 2 + 1) / SEGMENT
+    sums = np.cos(np.outer(omega, lags)) @ covariance
+    return np.asarray(2.0 * sums - covariance[0])
+
+
 def _profiled(
-    power: FloatArray, omega: FloatArray, pole: float, least: float, degrees: float
+    power: FloatArray, pole: float, least: float, degrees: float
 ) -> tuple[float, float]:
-    """Largest log likelihood at `pole`, and the variance there."""
-    shape = 1.0 / np.abs(1.0 - pole * np.exp(-1j * omega)) ** 2
-    best = (-np.inf, least)
-    for share in SHARES if pole > 0.0 else (0.0,):
-        # the white part is `least` or more; the autoregressive innovations have variance v
-        for white in (least, None):
-            if white is None:
-                mixture = share * shape * (1.0 - pole**2) + (1.0 - share)
-                variance = float(np.mean(power / mixture))
-                model, whole = variance * mixture, variance
-                if (1.0 - share) * variance < least:
-                    continue
-            else:
-                innovation = share * float(np.mean(np.maximum(power - white, 0.0) / shape)) * 2.0
-                model = white + innovation * shape
-                whole = white + innovation / (1.0 - pole**2)
-            likelihood = -0.5 * degrees * float(np.sum(np.log(model) + power / model))
-            if likelihood > best[0]:
-                best = (likelihood, whole)
-    return best
+    """Largest log likelihood at `pole`, and the variance there: white noise of at least `least`, and
+    an autoregression, both by reweighted least squares (the scoring of a gamma model).
+    """
+    if pole == 0.0:
+        white = max(float(np.mean(power)), least)
+        return _likelihood(power, np.full_like(power, white), degrees), white
+    shape = _expected(pole)[LOWEST:]
+    white, innovation = least, max(float(np.mean(power / shape)), 1e-300)
+    for _ in range(SCORINGS):
+        weight = 1.0 / (white + innovation * shape) ** 2
+        ww, ws, ss = weight.sum(), weight @ shape, weight @ shape**2
+        pw, ps = weight @ power, weight @ (power * shape)
+        white = (pw * ss - ps * ws) / max(ww * ss - ws**2, 1e-300)
+        white = max(float(white), least)
+        innovation = max(float((ps - white * ws) / ss), 0.0)
+        if innovation == 0.0:
+            white = max(float(pw / ww), least)
+    likelihood = _likelihood(power, white + innovation * shape, degrees)
+    return likelihood, white + innovation / (1.0 - pole**2)
 
 
-SHARES = np.linspace(0.0, 1.0, 21)
+def _likelihood(power: FloatArray, model: FloatArray, degrees: float) -> float:
+    """Whittle's log likelihood of a mean periodogram with so many `degrees` of freedom."""
+    return -0.5 * degrees * float(np.sum(np.log(model) + power / model))

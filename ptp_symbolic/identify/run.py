@@ -252,3 +252,11 @@ def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
         )
         windows.append(with_start(model, piece))
     return tuple(windows)
+
+
+def by_source(runs: Sequence[Run]) -> list[list[int]]:
+    """Indices of the runs, the windows of one run together."""
+    grouped: dict[str, list[int]] = {}
+    for index, run in enumerate(runs):
+        grouped.setdefault(run.name.partition("#")[0], []).append(index)
+    return list(grouped.values())

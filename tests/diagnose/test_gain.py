@@ -59,21 +59,20 @@ def gains(losses: Floats) -> list[Gain]:
 
 
 def test_equally_good_models_are_hardly_ever_told_apart() -> None:
-    """600 draws of 12 blocks: one in 800 is expected where forty sets are tried; four or more come
-    with a chance of 1 %. Without Bonferroni thirty are, with a standard error of 5.
+    """400 draws of 12 blocks: one in 800 is expected where forty sets are tried; three or more come
+    with a chance of 1.5 %. Without Bonferroni twenty are, with a standard error of 4.4.
     """
     rng = np.random.default_rng(62)
-    found = gains(1.0 + 0.1 * rng.standard_normal((600, 2, 12)))
-    assert sum(g.is_clear(40) for g in found) <= 3
-    assert 15 <= sum(g.is_clear(1) for g in found) <= 45
+    found = gains(1.0 + 0.1 * rng.standard_normal((400, 2, 12)))
+    assert sum(g.is_clear(40) for g in found) <= 2
+    assert 8 <= sum(g.is_clear(1) for g in found) <= 33
 
 
-@pytest.mark.xfail(strict=True, reason="the error of the share shrinks where the share is positive")
 def test_a_false_gain_is_as_rare_where_blocks_differ_widely() -> None:
-    """Losses of three degrees of freedom each: 30 of 600 draws, with a standard error of 5."""
+    """Losses of three degrees of freedom each: 15 of 300 draws, with a standard error of 3.8."""
     rng = np.random.default_rng(63)
-    found = gains(rng.chisquare(3.0, (600, 2, 12)))
-    assert sum(g.is_clear(1) for g in found) <= 45
+    found = gains(rng.chisquare(3.0, (300, 2, 12)))
+    assert sum(g.is_clear(1) for g in found) <= 26
 
 
 def huber(square: Floats) -> Floats:
@@ -118,14 +117,14 @@ def test_a_gain_is_that_of_runs_predicted_by_the_others() -> None:
 def test_a_parameter_that_fits_noise_alone_gains_nothing() -> None:
     """In sample it always does; on blocks left out a column loses as much as it took."""
     rng, clear = np.random.default_rng(65), []
-    for _ in range(20):
+    for _ in range(12):
         columns, noise = rng.standard_normal((20, 60, 3)), rng.standard_normal((20, 60))
         found = np.linalg.lstsq(columns.reshape(-1, 3), noise.ravel())[0]
         larger = trial(list(noise - columns @ found), list(columns))
         clear.append(gain(larger, trial(list(noise))))
         assert larger.fit.cost < np.sum(noise**2)
     assert np.mean([g.share for g in clear]) < 0.0
-    assert sum(g.is_clear(1) for g in clear) <= 3
+    assert sum(g.is_clear(1) for g in clear) <= 2
 
 
 def test_a_signal_of_a_large_unit_does_not_outweigh_another() -> None:

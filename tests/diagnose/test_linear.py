@@ -27,6 +27,14 @@ def test_nothing_of_nearly_equal_columns_is_left(apart: float) -> None:
     assert np.linalg.norm(left) > 0.98 * np.linalg.norm(COLUMNS)
 
 
+def test_a_column_that_is_there_twice_counts_once() -> None:
+    """What tells a copy from its original is rounding, which is no direction."""
+    once, twice = AWAY[:, :2], AWAY[:, [0, 1, 0, 0, 1]] * [1.0, 1.0, 1 / 3, -7.0, 0.1]
+    assert outside(COLUMNS, twice) == pytest.approx(outside(COLUMNS, once), abs=1e-10)
+    expected = canonical_correlation(COLUMNS[:, 0], once)
+    assert canonical_correlation(COLUMNS[:, 0], twice) == pytest.approx(expected, rel=1e-10)
+
+
 def test_what_is_outside_stays_so_and_nothing_takes_nothing_away() -> None:
     left = outside(COLUMNS, AWAY)
     assert outside(left, AWAY) == pytest.approx(left, abs=1e-12)

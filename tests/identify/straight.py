@@ -15,11 +15,13 @@ from tests.identify.curves import Floats
 MODEL = ptp_symbolic.load("ideal")  # a Fit has one; the statistics never ask it for anything
 
 
-def run_of(samples: int, signals: int = 1, inputs: Floats | None = None) -> Run:
+def run_of(
+    samples: int, signals: int = 1, inputs: Floats | None = None, name: str = "run"
+) -> Run:
     """A run of analog signals and `inputs` [k, nu] (default: one zero); all measured is zero."""
     held = np.zeros((samples, 1)) if inputs is None else inputs
     return Run(
-        "run", np.arange(samples) / 50.0, stack([constant(0.0)] * held.shape[1]), held,
+        name, np.arange(samples) / 50.0, stack([constant(0.0)] * held.shape[1]), held,
         np.zeros((samples, signals)), np.arange(signals), np.ones(signals),
         np.full(signals, np.nan), tuple(f"y{k}" for k in range(signals)), np.zeros(0), (),
     )  # fmt: skip
@@ -41,7 +43,8 @@ def finished(
     by_parameter = none if by_parameter is None else by_parameter
     by_start = none if by_start is None else by_start
     held = [None] * len(tables) if inputs is None else inputs
-    runs = [run_of(*r.shape, u) for r, u in zip(tables, held, strict=True)]
+    pairs = enumerate(zip(tables, held, strict=True))
+    runs = [run_of(*r.shape, u, f"run {k}") for k, (r, u) in pairs]
     ends = [
         Evaluation(r.ravel(), j, s) for r, j, s in zip(tables, by_parameter, by_start, strict=True)
     ]

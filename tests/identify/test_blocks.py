@@ -111,7 +111,6 @@ def test_what_no_block_sees_does_not_move_and_nothing_free_predicts_nothing() ->
     assert np.array_equal(nothing.predicted, MEASURED) and nothing.shifts.shape == (13, 0)
 
 
-@pytest.mark.xfail(strict=True, reason="the ridge, 1e-10, passes the cut of singular values, 1e-10")
 def test_what_one_block_alone_sees_does_not_move_either() -> None:
     """As after a fit that ended early: the score of the block is not quite zero."""
     wave, once = np.sin(0.3 * np.arange(300)), np.where(LABEL == 7, DESIGN[:, 0], 0.0)
@@ -152,11 +151,11 @@ def test_a_share_is_that_of_the_sums_and_its_interval_that_of_a_ratio_of_means()
 
 
 def test_the_interval_of_a_share_holds_the_truth_as_often_as_it_promises() -> None:
-    """300 sets of 40 blocks: 95 %, with a standard error of 1.3 %."""
+    """200 sets of 40 blocks: 95 %, with a standard error of 1.5 %."""
     rng = np.random.default_rng(13)
     held = 0
-    for _ in range(300):
+    for _ in range(200):
         whole = 10.0 + rng.standard_normal(40)
         _, low, high = bootstrap_share(0.3 * whole + rng.standard_normal(40), whole, 0.95)
         held += low <= 0.3 <= high
-    assert 0.912 < held / 300 < 0.988
+    assert 0.90 < held / 200 < 0.99

@@ -22,7 +22,7 @@ def straight_line(columns: dict[str, np.ndarray], noise: float) -> Fit:
     evaluation = SimpleNamespace(
         residual=residual, by_parameter=-2.0 * matrix, by_start=np.zeros((len(TIME), 0))
     )
-    run = SimpleNamespace(time=TIME, measured=np.zeros((len(TIME), 1)), size=len(TIME))
+    run = SimpleNamespace(name="run", time=TIME, measured=np.zeros((len(TIME), 1)), size=len(TIME))
     return cast(
         Fit,
         SimpleNamespace(

@@ -48,9 +48,9 @@ def cogging_torque(drive: Any, gear_angle: float) -> float:
 
 
 @numba.njit(cache=True)
-def dry_change(drive: Any, angle: float, gear_angle: float, load: float) -> float:
-    """What angle and transmitted torque `load` add to Coulomb and to static friction."""
-    change = harmonics(drive.friction_by_angle, angle) + drive.friction_by_load * abs(load)
+def dry_change(drive: Any, gear_angle: float, load: float) -> float:
+    """What gear angle and transmitted torque `load` add to Coulomb and to static friction."""
+    change = harmonics(drive.friction_by_angle, gear_angle) + drive.friction_by_load * abs(load)
     if drive.friction_ripple != 0.0:
         turned = drive.ripple_count * gear_angle - drive.ripple_phase
         change += 0.5 * drive.friction_ripple * (1.0 - math.cos(turned))

@@ -109,7 +109,7 @@ def _slope(
     out[LOAD_RATE] = load / drive.J_load
     out[GEAR_RATE] = 0.0
     if slip != 0:
-        change = dry_change(drive, y[LOAD_ANGLE], y[GEAR_ANGLE], shaft)
+        change = dry_change(drive, y[GEAR_ANGLE], shaft)
         friction = sliding_friction(drive, t, y[GEAR_RATE], slip, change)
         torque = _gear_torque(y, shaft, drive) - friction
         out[GEAR_RATE] = torque / (drive.J_motor * drive.N**2)
@@ -151,7 +151,7 @@ def _holds(t: float, y: Floats, contact: int, rest_since: float, drive: Any) -> 
     shaft = _contact_torque(y, contact, drive)
     torque = _gear_torque(y, shaft, drive)
     side = 1 if torque > 0.0 else -1
-    change = dry_change(drive, y[LOAD_ANGLE], y[GEAR_ANGLE], shaft)
+    change = dry_change(drive, y[GEAR_ANGLE], shaft)
     limit = breakaway(drive, t, side, t - rest_since, change)
     return 0 if abs(torque) <= limit else side
 

@@ -131,7 +131,7 @@ def _motion(t: float, y: Floats, slip: Any, drives: Any, frame: Any) -> None:
             driving = motor_torque(k, y, drives, frame)
             torque[k] = driving + _torque_but_friction(t, y, k, drives, frame) - bias[k]
             if slip[k] != 0:
-                change = dry_change(drives[k], y[k, ANGLE], y[k, ANGLE], driving)
+                change = dry_change(drives[k], y[k, ANGLE], driving)
                 torque[k] -= sliding_friction(drives[k], t, y[k, RATE], slip[k], change)
     if frame.voltage_driven == 1:
         pan += drives[0].J_motor * drives[0].N ** 2
@@ -188,7 +188,7 @@ def _breaks_away(t: float, y: Floats, k: int, rest: Floats, drives: Any, frame: 
     """Whether the friction left in the frame is more than stuck joint `k` can carry."""
     friction, angle = frame.friction[k], y[k, ANGLE]
     side = 1 if friction > 0.0 else -1
-    change = dry_change(drives[k], angle, angle, motor_torque(k, y, drives, frame))
+    change = dry_change(drives[k], angle, motor_torque(k, y, drives, frame))
     return abs(friction) > breakaway(drives[k], t, side, t - rest[k], change)
 
 

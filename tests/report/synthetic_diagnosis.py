@@ -1,9 +1,12 @@
 """A made-up diagnosis and its curves, for every verdict, as the report receives them."""
 
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
+
+from ptp_symbolic.report.diagnosis import render_diagnosis
 
 COUNT = 2.0 * math.pi / 7200.0
 FLOOR = 0.289
@@ -176,3 +179,11 @@ def synthetic_diagnosis(verdict: str) -> dict[str, Any]:
         "equations": [EQUATION] if added else [],
         "runtime_seconds": 41.7,
     }  # fmt: skip
+
+
+@cache
+def page(verdict: str, samples: int = 600, current: bool = True) -> str:
+    diagnosis = synthetic_diagnosis(verdict)
+    drift = 0.0 if verdict == "nothing_missing" else 40.0
+    curves = synthetic_curves(samples, current=current, drift_counts=drift)
+    return render_diagnosis(diagnosis, curves)
