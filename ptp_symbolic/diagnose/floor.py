@@ -49,7 +49,9 @@ def carried_noise(task: Task, trial: Trial) -> FloatArray:
 
 
 def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
-    """The floor with the colour of the noise as the remainder of `trial` shows it."""
+    """The floor, with the colour of the noise as the remainder of `trial` shows it. Where more is
+    left than noise of that colour, it is model error that has a colour: the floor is white then.
+    """
     runs = trial.fit.runs
     rms, most = np.ones(len(runs[0].signals)), np.ones(len(runs[0].signals))
     for column, signal in enumerate(runs[0].signals):
@@ -59,14 +61,20 @@ def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
             ]
             noise = coloured_noise(series, 1.0)
             rms[column], most[column] = noise.rms, noise.most
-    return Floor(np.hypot(rms, carried), np.hypot(most, carried))
+    floor = Floor(np.hypot(rms, carried), np.hypot(most, carried))
+    if leaves_noise_alone(trial, floor):
+        return floor
+    white = np.hypot(1.0, carried)
+    return Floor(white, white)
 
 
-def leaves_noise_alone(task: Task, trial: Trial, carried: FloatArray) -> bool:
+def leaves_white_noise(trial: Trial, carried: FloatArray) -> bool:
+    """Whether a trial leaves no more than rounding, white noise and what the inputs carry there; a
+    search goes on where it does, whatever the colour of the remainder.
+    """
+    return bool(np.all(left_over(trial) <= ABOVE_NOISE * np.hypot(1.0, carried)))
+
+
+def leaves_noise_alone(trial: Trial, floor: Floor) -> bool:
     """Whether what a trial leaves cannot be told from noise, in any signal."""
-    left = left_over(trial)
-    if np.all(left <= ABOVE_NOISE):
-        return True
-    if not np.all(np.isfinite(left)):
-        return False
-    return bool(np.all(left <= ABOVE_NOISE * floor_of(task, trial, carried).most))
+    return bool(np.all(left_over(trial) <= ABOVE_NOISE * floor.most))

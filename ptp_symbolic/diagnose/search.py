@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.floor import carried_noise, leaves_noise_alone
+from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise
 from ptp_symbolic.diagnose.gain import Gain, gain
 from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
 from ptp_symbolic.diagnose.proposals import Proposals, declared_start, propose
@@ -169,8 +169,8 @@ class Seeker:
         return ranked(trials)[0]
 
     def is_at_noise(self, trial: Trial) -> bool:
-        """Whether what a trial leaves cannot be told from noise."""
-        return leaves_noise_alone(self.task, trial, self.carried)
+        """Whether a trial leaves white noise alone."""
+        return leaves_white_noise(trial, self.carried)
 
     def polished(self, trial: Trial) -> Trial:
         """The trial fitted to its end; with sharp simulations where little but noise is left."""

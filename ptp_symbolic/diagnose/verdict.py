@@ -7,10 +7,10 @@ import numpy as np
 
 from ptp_symbolic.diagnose.confirm import answers_to_inputs, why_unconfirmed
 from ptp_symbolic.diagnose.floor import (
-    ABOVE_NOISE,
     Floor,
     carried_noise,
     floor_of,
+    leaves_noise_alone,
     left_over,
 )
 from ptp_symbolic.diagnose.gain import Gain, compared
@@ -107,7 +107,8 @@ def _weakness(
             return step, reason
     if not answers_to_inputs(task, trial):
         return weakest, "with it the model no longer answers to its inputs"
-    if weakest.gain.share < MAJOR and not seeker.is_at_noise(trial):
+    quiet = leaves_noise_alone(trial, floor_of(task, trial, seeker.carried))
+    if weakest.gain.share < MAJOR and not quiet:
         share = f"{100.0 * weakest.gain.share:.0f} %"
         return weakest, f"takes away {share} of the error, too little where more than noise is left"
     return None
@@ -134,7 +135,7 @@ def _is_quiet(trial: Trial, floor: Floor, after: Fit) -> bool:
     """Whether neither training nor validation runs show more than noise."""
     held_out = Trial(trial.candidates, after)
     return bool(
-        np.all(left_over(trial) <= ABOVE_NOISE * floor.most)
+        leaves_noise_alone(trial, floor)
         and np.all(left_over(held_out) <= HELD_OUT_ABOVE * floor.most)
     )
 

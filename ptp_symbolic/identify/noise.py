@@ -99,8 +99,8 @@ def _spectrum(series: Sequence[FloatArray]) -> tuple[FloatArray, int]:
 
 @lru_cache(maxsize=64)
 def _expected(pole: float) -> FloatArray:
-    """Expected periodogram [SEGMENT/2 + 1] under the window of an autoregression with innovations of
-    variance 1: the window smears a steep spectrum far beyond its corner (Sykulski et al., 2019).
+    """Expected periodogram [SEGMENT/2 + 1] under the window of an autoregression with innovations
+    of variance 1: the window smears a steep spectrum far beyond its corner (Sykulski et al., 2019).
     """
     taper = np.hanning(SEGMENT + 1)[:-1]
     overlap = np.correlate(taper, taper, "full")[SEGMENT - 1 :] / np.sum(taper**2)
@@ -111,11 +111,9 @@ def _expected(pole: float) -> FloatArray:
     return np.asarray(2.0 * sums - covariance[0])
 
 
-def _profiled(
-    power: FloatArray, pole: float, least: float, degrees: float
-) -> tuple[float, float]:
-    """Largest log likelihood at `pole`, and the variance there: white noise of at least `least`, and
-    an autoregression, both by reweighted least squares (the scoring of a gamma model).
+def _profiled(power: FloatArray, pole: float, least: float, degrees: float) -> tuple[float, float]:
+    """Largest log likelihood at `pole`, and the variance there: white noise of at least `least`,
+    and an autoregression, both by reweighted least squares (the scoring of a gamma model).
     """
     if pole == 0.0:
         white = max(float(np.mean(power)), least)

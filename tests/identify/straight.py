@@ -15,9 +15,7 @@ from tests.identify.curves import Floats
 MODEL = ptp_symbolic.load("ideal")  # a Fit has one; the statistics never ask it for anything
 
 
-def run_of(
-    samples: int, signals: int = 1, inputs: Floats | None = None, name: str = "run"
-) -> Run:
+def run_of(samples: int, signals: int = 1, inputs: Floats | None = None, name: str = "run") -> Run:
     """A run of analog signals and `inputs` [k, nu] (default: one zero); all measured is zero."""
     held = np.zeros((samples, 1)) if inputs is None else inputs
     return Run(
