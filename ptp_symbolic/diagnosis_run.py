@@ -60,6 +60,7 @@ Progress = Callable[[str], None]
 SCHEMA_VERSION = 1
 FAR_FROM_FLOOR = 3.0  # times the floor: from here on a fit is called far from it
 START_ITERATIONS = 10  # for the starts of the runs at the declared values
+SHORT_WINDOW = 1.0  # s: long beside the time constants of a drive, short beside its rests
 START_SHARE = 1e-2  # error of those simulations, as a share of the noise
 
 
@@ -203,7 +204,7 @@ def _task(
     length = window_length(model, runs[0], model.parameter_vector(start), noise)
     cut_train, cut_validate = (cut(model, part, length) for part in runs)
     return Task(
-        model, runs[0], cut_train, cut_validate, free, fixed,
+        model, runs[0], cut_train, cut(model, runs[0], SHORT_WINDOW), cut_validate, free, fixed,
         find_candidates(model, declared, known) if declared else (),
         executor, progress, noise,
         frozenset(name for name, size in noises.items() if size is not None),

@@ -49,7 +49,9 @@ class Similarity:
     values: dict[str, float]
 
 
-def rivals(task: Task, chosen: Trial, others: Sequence[Trial], fit: Fit) -> list[Rival]:
+def rivals(
+    task: Task, chosen: Trial, others: Sequence[Trial], fit: Fit, carried: FloatArray
+) -> list[Rival]:
     """Sets as large as the chosen one, of which these logs do not prefer the chosen one clearly and
     materially, `others` among them. `fit` is its fit with derivatives that are not blind.
     """
@@ -76,7 +78,7 @@ def rivals(task: Task, chosen: Trial, others: Sequence[Trial], fit: Fit) -> list
     for trial in trials:
         if gain(chosen, trial).share >= NEAR:
             continue
-        refitted = polished(task, trial)
+        refitted = polished(task, trial, carried)
         rival = Rival(refitted, gain(chosen, refitted))
         if not (rival.gain.share >= MATERIAL and rival.gain.is_clear(len(trials))):
             result.setdefault(refitted.keys, rival)

@@ -106,6 +106,27 @@ def _refined(
     return Proposal(placed, possible(task, {**begun, **found.values}))
 
 
+def start_for(
+    task: Task,
+    found: Proposals,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+) -> dict[str, float]:
+    """Where the rows start a set; what they do not show, and its candidates, stays at `values`."""
+    rows = found.regression
+    seen = (
+        set() if rows is None else {(s.candidate.key, s.candidate.member) for s in rows.signatures}
+    )
+    shown = [c for c in candidates if (c.key, c.member) in seen]
+    own = {name for c in candidates if c not in shown for f in c.free for name in (f.name, *f.tied)}
+    kept = {name: values[name] for name in own}
+    if rows is None or found.space is None:
+        return found.start | {
+            name: values[name] for c in candidates for f in c.free for name in (f.name, *f.tied)
+        }
+    return _refined(task, found.space, rows, found.start, shown).values | kept
+
+
 def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | None:
     """The equation space of the training runs; None where angles are missing or states sampled."""
     vector = task.model.parameter_vector

@@ -2,7 +2,8 @@
 completed, pruned and grown until every candidate in it is needed and none outside would add to it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +13,7 @@ from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise
 from ptp_symbolic.diagnose.gain import Gain, gain
 from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
-from ptp_symbolic.diagnose.proposals import Proposals, declared_start, propose
+from ptp_symbolic.diagnose.proposals import Proposals, declared_start, propose, start_for
 from ptp_symbolic.diagnose.responses import Response, responses
 from ptp_symbolic.diagnose.trial import (
     ROUGH,
@@ -22,6 +23,7 @@ from ptp_symbolic.diagnose.trial import (
     continued,
     fitted,
     halving,
+    misfits,
     ranked,
 )
 
@@ -31,9 +33,12 @@ MATERIAL = 0.1  # share of the predictive loss below which a candidate is not wo
 DECLARED_RUNGS = ((4, 1),)  # iterations, and how many trials go on
 PROPOSED_RUNGS = ((2, 3), (3, 1))
 UNSEEN_RUNGS = ((4, 1),)
-LAST_RUNG = ((4, 1),)
+RESTARTED_RUNG = ((4, 1),)
+WINDOWED = 4  # iterations over short windows, where a fit from afar settles fast
 PARTS_OF_THE_WAY = (1.0, 0.5, 0.25)  # of a response: finite amounts may be far from linear
 ADDED_RUNGS = ((3, 2), (5, 1))
+CYCLES = 3  # of a polished fit
+LITTLE = 0.02  # gain of a cycle, of the logarithm of the mean square, with which it ends
 POLISH = 12  # iterations to the end of a fit that is begun well
 REMOVED = 4  # iterations without a candidate, before the fit is polished
 CERTAIN = 0.9  # share of the loss from which on a gain is no matter of where a fit ended
@@ -76,16 +81,53 @@ def search(task: Task) -> Search:
 
 
 def fit_declared(task: Task, proposals: Proposals) -> Trial:
-    """The declared model, from the start that the rows give and from the declared one."""
+    """The declared model, from where the rows start it, from there over short windows, and from the
+    declared start.
+    """
     starts = [proposals.start, declared_start(task)]
+    short = over_windows(task, (), proposals.start, task.executor)
+    starts += [] if short is None else [short]
     begun = [fitted(task, (), values, None) for values in starts]
     best = halving(task, begun, DECLARED_RUNGS)
-    return polished(task, best[0] if best else begun[-1])
+    best = best or begun[-1:]
+    return polished(task, best[0], carried_noise(task, best[0]))
 
 
-def polished(task: Task, trial: Trial, share: float = ROUGH) -> Trial:
-    """The trial fitted to its end, derivatives that mislead replaced."""
-    return continued(task, trial, POLISH, share, True, task.executor)
+def over_windows(
+    task: Task,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+    executor: Executor | None = None,
+) -> dict[str, float] | None:
+    """Values fitted over short windows, each with a start of its own: a whole run that sticks where
+    the machine slid leads a fit astray, windows do not (multiple shooting: Bock, 1983). None where
+    the runs are windows already, or the fit fails.
+    """
+    if len(task.train) > len(task.whole):
+        return None
+    short = replace(task, train=task.short)
+    trial = fitted(short, candidates, values, None, WINDOWED, executor=executor)
+    return None if trial.fit.failed else trial.values
+
+
+def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+    """The trial fitted to its end: with derivatives where the motion is smooth, with finite
+    differences where friction makes it a staircase, in turn; with sharp simulations where little
+    but noise is left.
+    """
+    for _ in range(CYCLES):
+        before = misfits([trial])[0]
+        trial = continued(task, trial, POLISH, ROUGH, False, task.executor)
+        if leaves_white_noise(trial, carried):
+            break
+        trial = continued(task, trial, POLISH, ROUGH, True, task.executor)
+        size = sum(run.size for run in trial.fit.runs)
+        if before - misfits([trial])[0] < LITTLE * size:
+            break
+    if leaves_white_noise(trial, carried):
+        trial = continued(task, trial, POLISH, SHARP, False, task.executor)
+        trial = continued(task, trial, POLISH, SHARP, True, task.executor)
+    return trial
 
 
 class Seeker:
@@ -104,10 +146,8 @@ class Seeker:
             sets, unseen = self.proposed(), self.unseen(best)
             task.progress(f"refitting {len(sets) + len(unseen)} proposed sets")
             found = halving(task, sets, PROPOSED_RUNGS) + halving(task, unseen, UNSEEN_RUNGS)
-            found = halving(task, found, LAST_RUNG)
             self.others += sets
-            if found:
-                best = self.best_of([best, self.completed(found[0])])
+            best = self.best_of([best, *(self.completed(t) for t in found)])
         best, steps = self.pruned(best)
         for _ in range(ROUNDS):
             grown = self.grown(best)
@@ -126,18 +166,21 @@ class Seeker:
         )
 
     def proposed(self) -> list[Trial]:
-        """The proposed sets at the better of two starts, that of the rows and that of the declared
-        model.
+        """The proposed sets at the best of their starts: where the rows lead, from there over short
+        windows, and beside the declared model.
         """
-        task, declared = self.task, self.declared
+        task, declared, sets = self.task, self.declared, self.proposals.sets
+        fits = [task.executor.submit(over_windows, task, s.candidates, s.values) for s in sets]
         begun = []
-        for s in self.proposals.sets:
+        for s, short in zip(sets, [fit.result() for fit in fits], strict=True):
             own = {name for c in s.candidates for f in c.free for name in (f.name, *f.tied)}
             beside = declared.values | {name: s.values[name] for name in own}
             starts = [
                 fitted(task, s.candidates, s.values, None),
                 fitted(task, s.candidates, beside, declared.fit.z, 0, declared.fit),
             ]
+            if short is not None:
+                starts.append(fitted(task, s.candidates, short, None))
             begun.append(self.best_of(starts))
         return begun
 
@@ -173,23 +216,22 @@ class Seeker:
         return leaves_white_noise(trial, self.carried)
 
     def polished(self, trial: Trial) -> Trial:
-        """The trial fitted to its end; with sharp simulations where little but noise is left."""
-        trial = polished(self.task, trial)
-        return polished(self.task, trial, SHARP) if self.is_at_noise(trial) else trial
+        """The trial fitted to its end."""
+        return polished(self.task, trial, self.carried)
 
     def restarted(self, trial: Trial) -> Trial:
-        """A polished trial, or a better end from where the rows start the declared parameters: a
-        friction that breaks away at one sample or the next makes the misfit a staircase, on which
-        a fit may stop.
+        """A polished trial, or a better end from where the rows start its set, and from there over
+        short windows: friction makes the misfit of whole runs a staircase.
         """
         if self.is_at_noise(trial):
             return trial
-        task, start = self.task, self.proposals.start
-        values = trial.values | {n: start[n] for f in task.free for n in (f.name, *f.tied)}
-        again = fitted(
-            task, trial.candidates, values, trial.fit.z, REMOVED, trial.fit, executor=task.executor
-        )
-        return self.best_of([trial, self.polished(again)])
+        task, candidates = self.task, trial.candidates
+        starts = [start_for(task, self.proposals, candidates, trial.values)]
+        short = over_windows(task, candidates, starts[0], task.executor)
+        starts += [] if short is None else [short]
+        begun = [fitted(task, candidates, values, None) for values in starts]
+        left = halving(task, begun, RESTARTED_RUNG)
+        return self.best_of([trial, *(self.polished(t) for t in left)])
 
     def completed(self, trial: Trial) -> Trial:
         """The trial polished, each of its candidates in its fullest form: an effect is allowed all

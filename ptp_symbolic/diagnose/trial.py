@@ -31,16 +31,18 @@ FAR = 20.0  # standard deviations: from here on simulations need no better accur
 class Task:
     """What stays the same through a diagnosis.
 
-    `whole` are the training runs as they were logged, `train` the same or their windows, `validate`
-    those that only the report sees. `free` are the declared free parameters, `fixed` the values of
-    all others, every candidate switched off. `input_noise` is the declared noise of every input
-    (None: as the logs show it), `declared_noise` names the outputs whose noise is declared, and
-    `resolution` is the noise of the finest angle in rad.
+    `whole` are the training runs as they were logged, `train` the same or their windows, `short`
+    windows of about a second, `validate` the runs that only the report sees. `free` are the
+    declared free parameters, `fixed` the values of all others, every candidate switched off.
+    `input_noise` is the declared noise of every input (None: as the logs show it), `declared_noise`
+    names the outputs whose noise is declared, and `resolution` is the noise of the finest angle in
+    rad.
     """
 
     model: Model
     whole: tuple[Run, ...]
     train: tuple[Run, ...]
+    short: tuple[Run, ...]
     validate: tuple[Run, ...]
     free: tuple[FreeParameter, ...]
     fixed: Mapping[str, float]
@@ -134,7 +136,7 @@ def _inherited(parent: Fit | None, free: Sequence[FreeParameter]) -> list[tuple[
     return found + [(run, k) for run in range(len(parent.runs)) for k in fresh]
 
 
-GAIN = 1e-3  # relative gain of an iteration below which two in a row end a fit
+GAIN = 2e-4  # relative gain of an iteration below which two in a row end a fit
 
 
 def accuracy(task: Task, share: float, rms: float = 1.0) -> Tolerance:
