@@ -29,8 +29,9 @@ from ptp_symbolic.diagnose.curves import curves_of
 from ptp_symbolic.diagnose.errors import error_of
 from ptp_symbolic.diagnose.floor import carried_noise, floor_of
 from ptp_symbolic.diagnose.proposals import propose
+from ptp_symbolic.diagnose.refits import fit_declared
 from ptp_symbolic.diagnose.residual_tests import residual_tests
-from ptp_symbolic.diagnose.search import Search, fit_declared, search
+from ptp_symbolic.diagnose.search import Search, search
 from ptp_symbolic.diagnose.summary import (
     cause,
     error_table,
@@ -60,7 +61,7 @@ Progress = Callable[[str], None]
 SCHEMA_VERSION = 1
 FAR_FROM_FLOOR = 3.0  # times the floor: from here on a fit is called far from it
 START_ITERATIONS = 10  # for the starts of the runs at the declared values
-SHORT_WINDOW = 1.0  # s: long beside the time constants of a drive, short beside its rests
+WINDOWS = (1.0, 3.0)  # s: long beside the time constants of a drive, short beside its runs
 START_SHARE = 1e-2  # error of those simulations, as a share of the noise
 
 
@@ -204,12 +205,19 @@ def _task(
     length = window_length(model, runs[0], model.parameter_vector(start), noise)
     cut_train, cut_validate = (cut(model, part, length) for part in runs)
     return Task(
-        model, runs[0], cut_train, cut(model, runs[0], SHORT_WINDOW), cut_validate, free, fixed,
+        model, runs[0], cut_train, _windows_of(model, runs[0], length), cut_validate, free, fixed,
         find_candidates(model, declared, known) if declared else (),
         executor, progress, noise,
         frozenset(name for name, size in noises.items() if size is not None),
         _finest_angle(runs[0]),
     )  # fmt: skip
+
+
+def _windows_of(
+    model: Model, runs: Sequence[Run], length: float | None
+) -> tuple[tuple[Run, ...], ...]:
+    """Runs in ever longer windows; none where they are cut into windows of `length` anyway."""
+    return () if length is not None else tuple(cut(model, runs, w) for w in WINDOWS)
 
 
 def _finest_angle(runs: Sequence[Run]) -> float:

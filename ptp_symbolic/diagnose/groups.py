@@ -15,12 +15,9 @@ from numpy.typing import NDArray
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.gain import Gain, gain
 from ptp_symbolic.diagnose.linear import canonical_correlation, effect_of, outside, stacked
+from ptp_symbolic.diagnose.refits import ITERATIONS, polished
 from ptp_symbolic.diagnose.responses import REACH, Columns, least, response_columns
-from ptp_symbolic.diagnose.search import (
-    ADDED_RUNGS,
-    MATERIAL,
-    polished,
-)
+from ptp_symbolic.diagnose.search import MATERIAL
 from ptp_symbolic.diagnose.trial import Task, Trial, fitted, halving, ranked
 from ptp_symbolic.identify.coordinates import to_search, to_values
 from ptp_symbolic.identify.fit import Fit
@@ -65,9 +62,7 @@ def rivals(
         ]
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
-    trials = halving(
-        task, begun, ((ADDED_RUNGS[0][0], len(begun)), (ADDED_RUNGS[1][0], len(begun)))
-    )
+    trials = halving(task, begun, ((2 * ITERATIONS, len(begun)),))
     tried = {t.keys for t in trials} | {chosen.keys}
     for other in ranked(others):
         same_size = len(other.candidates) == len(chosen.candidates)

@@ -2,9 +2,8 @@
 completed, pruned and grown until every candidate in it is needed and none outside would add to it.
 """
 
-from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,35 +11,32 @@ from numpy.typing import NDArray
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise
 from ptp_symbolic.diagnose.gain import Gain, gain
-from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
 from ptp_symbolic.diagnose.proposals import Proposals, declared_start, propose, start_for
+from ptp_symbolic.diagnose.refits import (
+    ITERATIONS,
+    LAST_RUNG,
+    RUNGS,
+    expected_gain,
+    fit_declared,
+    forms,
+    fullest,
+    over_windows,
+    polished,
+)
 from ptp_symbolic.diagnose.responses import Response, responses
 from ptp_symbolic.diagnose.trial import (
-    ROUGH,
-    SHARP,
     Task,
     Trial,
     continued,
     fitted,
     halving,
-    misfits,
     ranked,
 )
 
 FloatArray = NDArray[np.float64]
 
 MATERIAL = 0.1  # share of the predictive loss below which a candidate is not worth a name
-DECLARED_RUNGS = ((4, 1),)  # iterations, and how many trials go on
-PROPOSED_RUNGS = ((2, 3), (3, 1))
-UNSEEN_RUNGS = ((4, 1),)
-RESTARTED_RUNG = ((4, 1),)
-WINDOWED = 4  # iterations over short windows, where a fit from afar settles fast
 PARTS_OF_THE_WAY = (1.0, 0.5, 0.25)  # of a response: finite amounts may be far from linear
-ADDED_RUNGS = ((3, 2), (5, 1))
-CYCLES = 3  # of a polished fit
-LITTLE = 0.02  # gain of a cycle, of the logarithm of the mean square, with which it ends
-POLISH = 12  # iterations to the end of a fit that is begun well
-REMOVED = 4  # iterations without a candidate, before the fit is polished
 CERTAIN = 0.9  # share of the loss from which on a gain is no matter of where a fit ended
 ADDED = 4  # candidates that are refitted when one is added
 ROUNDS = 3  # of growing: as many effects as a set may gain after the first choice
@@ -80,56 +76,6 @@ def search(task: Task) -> Search:
     return seeker.search()
 
 
-def fit_declared(task: Task, proposals: Proposals) -> Trial:
-    """The declared model, from where the rows start it, from there over short windows, and from the
-    declared start.
-    """
-    starts = [proposals.start, declared_start(task)]
-    short = over_windows(task, (), proposals.start, task.executor)
-    starts += [] if short is None else [short]
-    begun = [fitted(task, (), values, None) for values in starts]
-    best = halving(task, begun, DECLARED_RUNGS)
-    best = best or begun[-1:]
-    return polished(task, best[0], carried_noise(task, best[0]))
-
-
-def over_windows(
-    task: Task,
-    candidates: Sequence[Candidate],
-    values: Mapping[str, float],
-    executor: Executor | None = None,
-) -> dict[str, float] | None:
-    """Values fitted over short windows, each with a start of its own: a whole run that sticks where
-    the machine slid leads a fit astray, windows do not (multiple shooting: Bock, 1983). None where
-    the runs are windows already, or the fit fails.
-    """
-    if len(task.train) > len(task.whole):
-        return None
-    short = replace(task, train=task.short)
-    trial = fitted(short, candidates, values, None, WINDOWED, executor=executor)
-    return None if trial.fit.failed else trial.values
-
-
-def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
-    """The trial fitted to its end: with derivatives where the motion is smooth, with finite
-    differences where friction makes it a staircase, in turn; with sharp simulations where little
-    but noise is left.
-    """
-    for _ in range(CYCLES):
-        before = misfits([trial])[0]
-        trial = continued(task, trial, POLISH, ROUGH, False, task.executor)
-        if leaves_white_noise(trial, carried):
-            break
-        trial = continued(task, trial, POLISH, ROUGH, True, task.executor)
-        size = sum(run.size for run in trial.fit.runs)
-        if before - misfits([trial])[0] < LITTLE * size:
-            break
-    if leaves_white_noise(trial, carried):
-        trial = continued(task, trial, POLISH, SHARP, False, task.executor)
-        trial = continued(task, trial, POLISH, SHARP, True, task.executor)
-    return trial
-
-
 class Seeker:
     """A search in progress; `others` collects the trials that were not chosen."""
 
@@ -145,7 +91,7 @@ class Seeker:
         if not self.is_at_noise(best):
             sets, unseen = self.proposed(), self.unseen(best)
             task.progress(f"refitting {len(sets) + len(unseen)} proposed sets")
-            found = halving(task, sets, PROPOSED_RUNGS) + halving(task, unseen, UNSEEN_RUNGS)
+            found = halving(task, sets, RUNGS) + halving(task, unseen, LAST_RUNG)
             self.others += sets
             best = self.best_of([best, *(self.completed(t) for t in found)])
         best, steps = self.pruned(best)
@@ -170,18 +116,23 @@ class Seeker:
         windows, and beside the declared model.
         """
         task, declared, sets = self.task, self.declared, self.proposals.sets
-        fits = [task.executor.submit(over_windows, task, s.candidates, s.values) for s in sets]
-        begun = []
-        for s, short in zip(sets, [fit.result() for fit in fits], strict=True):
+        both = []
+        for s in sets:
             own = {name for c in s.candidates for f in c.free for name in (f.name, *f.tied)}
-            beside = declared.values | {name: s.values[name] for name in own}
-            starts = [
-                fitted(task, s.candidates, s.values, None),
+            added = {name: s.values[name] for name in own}
+            both.append((declared.values | added, [s.values, declared_start(task) | added]))
+        led = [
+            task.executor.submit(over_windows, task, s.candidates, starts)
+            for s, (_, starts) in zip(sets, both, strict=True)
+        ]
+        begun = []
+        for s, (beside, starts), fit in zip(sets, both, led, strict=True):
+            trials = fit.result()
+            trials += [
                 fitted(task, s.candidates, beside, declared.fit.z, 0, declared.fit),
+                fitted(task, s.candidates, starts[0], None),
             ]
-            if short is not None:
-                starts.append(fitted(task, s.candidates, short, None))
-            begun.append(self.best_of(starts))
+            begun.append(self.best_of(trials))
         return begun
 
     def unseen(self, trial: Trial) -> list[Trial]:
@@ -226,11 +177,12 @@ class Seeker:
         if self.is_at_noise(trial):
             return trial
         task, candidates = self.task, trial.candidates
-        starts = [start_for(task, self.proposals, candidates, trial.values)]
-        short = over_windows(task, candidates, starts[0], task.executor)
-        starts += [] if short is None else [short]
-        begun = [fitted(task, candidates, values, None) for values in starts]
-        left = halving(task, begun, RESTARTED_RUNG)
+        start = start_for(task, self.proposals, candidates, trial.values)
+        own = {n: start[n] for c in candidates for f in c.free for n in (f.name, *f.tied)}
+        starts = [start, declared_start(task) | own]
+        begun = over_windows(task, candidates, starts, task.executor)
+        begun.append(fitted(task, candidates, start, None))
+        left = halving(task, begun, LAST_RUNG)
         return self.best_of([trial, *(self.polished(t) for t in left)])
 
     def completed(self, trial: Trial) -> Trial:
@@ -259,7 +211,9 @@ class Seeker:
         }
         values = trial.values | {name: self.task.fixed[name] for name in names}
         task = self.task
-        begun = fitted(task, kept, values, trial.fit.z, REMOVED, trial.fit, executor=task.executor)
+        begun = fitted(
+            task, kept, values, trial.fit.z, ITERATIONS, trial.fit, executor=task.executor
+        )
         smaller = self.polished(begun)
         if gain(trial, smaller).share < CERTAIN:
             smaller = self.restarted(smaller)
@@ -305,7 +259,7 @@ class Seeker:
         names = " + ".join(trial.keys) or "the declared model"
         task.progress(f"adding one of {len(found)} candidates to {names}")
         begun = [self.begun(r, trial) for r in found[:ADDED]]
-        left = halving(task, begun, ADDED_RUNGS)
+        left = halving(task, begun, RUNGS)
         self.others += begun
         if not left:
             return None
@@ -335,35 +289,6 @@ class Seeker:
         task = self.task
         return self.polished(
             fitted(
-                task, candidates, values, trial.fit.z, REMOVED, trial.fit, executor=task.executor
+                task, candidates, values, trial.fit.z, ITERATIONS, trial.fit, executor=task.executor
             )
         )
-
-
-def expected_gain(trial: Trial, candidate: Candidate) -> float:
-    """The share of the squared residual without `candidate` that it takes away, predicted from the
-    derivatives at the fit.
-    """
-    fit = trial.fit
-    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
-    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
-    others = [k for k, f in enumerate(fit.free) if f.name not in candidate.parameters]
-    effect = outside(effect_of(fit, candidate, columns)[:, None], columns[:, others])[:, 0]
-    taken = float(effect @ effect)
-    return taken / max(taken + float(residual @ residual), 1e-300)
-
-
-def forms(task: Task, candidate: Candidate) -> list[Candidate]:
-    """All forms of a candidate, a scanned frequency where it was found."""
-    starts = {f.name: f for f in candidate.free}
-    return [
-        replace(c, free=tuple(starts.get(f.name, f) for f in c.free))
-        for c in task.candidates
-        if c.key == candidate.key
-    ]
-
-
-def fullest(task: Task, candidate: Candidate) -> Candidate:
-    """The form of a candidate with the most parameters."""
-    best = max(forms(task, candidate), key=lambda c: len(c.free))
-    return best if len(best.free) > len(candidate.free) else candidate

@@ -31,8 +31,8 @@ FAR = 20.0  # standard deviations: from here on simulations need no better accur
 class Task:
     """What stays the same through a diagnosis.
 
-    `whole` are the training runs as they were logged, `train` the same or their windows, `short`
-    windows of about a second, `validate` the runs that only the report sees. `free` are the
+    `whole` are the training runs as they were logged, `train` the same or their windows, `windows`
+    the same in ever longer windows, `validate` the runs that only the report sees. `free` are the
     declared free parameters, `fixed` the values of all others, every candidate switched off.
     `input_noise` is the declared noise of every input (None: as the logs show it), `declared_noise`
     names the outputs whose noise is declared, and `resolution` is the noise of the finest angle in
@@ -42,7 +42,7 @@ class Task:
     model: Model
     whole: tuple[Run, ...]
     train: tuple[Run, ...]
-    short: tuple[Run, ...]
+    windows: tuple[tuple[Run, ...], ...]
     validate: tuple[Run, ...]
     free: tuple[FreeParameter, ...]
     fixed: Mapping[str, float]

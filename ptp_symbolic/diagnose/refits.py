@@ -1,0 +1,116 @@
+"""Refits of a set by simulation: over short windows first, then whole runs, at last to the end."""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise
+from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
+from ptp_symbolic.diagnose.proposals import Proposals, declared_start
+from ptp_symbolic.diagnose.trial import (
+    ROUGH,
+    SHARP,
+    Task,
+    Trial,
+    continued,
+    fitted,
+    halving,
+    misfits,
+    ranked,
+)
+
+FloatArray = NDArray[np.float64]
+
+ITERATIONS = 4  # in which a fit shows whether its start is worth more
+RUNGS = ((ITERATIONS, 2), (ITERATIONS, 1))  # of successive halving: iterations, and how many go on
+LAST_RUNG = RUNGS[1:]
+CYCLES = 3  # of a polished fit
+LITTLE = 0.02  # gain of a cycle, of the logarithm of the mean square, with which it ends
+POLISH = 12  # iterations of each half of a cycle
+
+
+def fit_declared(task: Task, proposals: Proposals) -> Trial:
+    """The declared model, from where windows lead from the rows' start and from the declared one,
+    and from those two themselves.
+    """
+    starts = [proposals.start, declared_start(task)]
+    begun = over_windows(task, (), starts, task.executor)
+    begun += [fitted(task, (), values, None) for values in starts]
+    best = halving(task, begun, LAST_RUNG) or begun[-1:]
+    return polished(task, best[0], carried_noise(task, best[0]))
+
+
+def over_windows(
+    task: Task,
+    candidates: Sequence[Candidate],
+    starts: Sequence[Mapping[str, float]],
+    executor: Executor | None = None,
+) -> list[Trial]:
+    """The trial that begins where fits over ever longer windows lead from the best of `starts`: a
+    whole run that sticks where the machine slid leads a fit astray, windows do not (multiple
+    shooting: Bock, 1983). None where the runs are windows already, or no fit succeeds.
+    """
+    trials: list[Trial] = []
+    for windows in task.windows:
+        part = replace(task, train=windows)
+        trials = [
+            fitted(part, candidates, values, None, ITERATIONS, executor=executor)
+            for values in ([t.values for t in trials] or starts)
+        ]
+        trials = [t for t in ranked(trials)[:1] if not t.fit.failed]
+        if not trials:
+            return []
+    return [fitted(task, candidates, t.values, None) for t in trials]
+
+
+def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+    """The trial fitted to its end: with derivatives where the motion is smooth, with finite
+    differences where friction makes it a staircase, in turn; with sharp simulations where little
+    but noise is left.
+    """
+    for _ in range(CYCLES):
+        before = misfits([trial])[0]
+        trial = continued(task, trial, POLISH, ROUGH, False, task.executor)
+        if leaves_white_noise(trial, carried):
+            break
+        trial = continued(task, trial, POLISH, ROUGH, True, task.executor)
+        size = sum(run.size for run in trial.fit.runs)
+        if before - misfits([trial])[0] < LITTLE * size:
+            break
+    if leaves_white_noise(trial, carried):
+        trial = continued(task, trial, POLISH, SHARP, False, task.executor)
+        trial = continued(task, trial, POLISH, SHARP, True, task.executor)
+    return trial
+
+
+def expected_gain(trial: Trial, candidate: Candidate) -> float:
+    """The share of the squared residual without `candidate` that it takes away, predicted from the
+    derivatives at the fit.
+    """
+    fit = trial.fit
+    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    others = [k for k, f in enumerate(fit.free) if f.name not in candidate.parameters]
+    effect = outside(effect_of(fit, candidate, columns)[:, None], columns[:, others])[:, 0]
+    taken = float(effect @ effect)
+    return taken / max(taken + float(residual @ residual), 1e-300)
+
+
+def forms(task: Task, candidate: Candidate) -> list[Candidate]:
+    """All forms of a candidate, a scanned frequency where it was found."""
+    starts = {f.name: f for f in candidate.free}
+    return [
+        replace(c, free=tuple(starts.get(f.name, f) for f in c.free))
+        for c in task.candidates
+        if c.key == candidate.key
+    ]
+
+
+def fullest(task: Task, candidate: Candidate) -> Candidate:
+    """The form of a candidate with the most parameters."""
+    best = max(forms(task, candidate), key=lambda c: len(c.free))
+    return best if len(best.free) > len(candidate.free) else candidate
