@@ -22,6 +22,7 @@ from ptp_symbolic.diagnose.trial import (
     misfits,
     ranked,
 )
+from ptp_symbolic.identify.secants import STEP, WIDE_STEP
 
 FloatArray = NDArray[np.float64]
 
@@ -42,6 +43,11 @@ def fit_declared(task: Task, proposals: Proposals) -> Trial:
     begun += [fitted(task, (), values, None) for values in starts]
     best = halving(task, begun, LAST_RUNG) or begun[-1:]
     return polished(task, best[0], carried_noise(task, best[0]))
+
+
+def unbiased(trial: Trial) -> Trial:
+    """The trial with nothing known of which derivatives mislead: they are looked for anew."""
+    return replace(trial, fit=replace(trial.fit, misleading=None))
 
 
 def over_windows(
@@ -74,16 +80,16 @@ def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
     """
     for _ in range(CYCLES):
         before = misfits([trial])[0]
-        trial = continued(task, trial, POLISH, ROUGH, False, task.executor)
+        trial = continued(task, trial, POLISH, executor=task.executor)
         if leaves_white_noise(trial, carried):
             break
-        trial = continued(task, trial, POLISH, ROUGH, True, task.executor)
+        trial = continued(task, unbiased(trial), POLISH, ROUGH, WIDE_STEP, task.executor)
         size = sum(run.size for run in trial.fit.runs)
         if before - misfits([trial])[0] < LITTLE * size:
             break
     if leaves_white_noise(trial, carried):
-        trial = continued(task, trial, POLISH, SHARP, False, task.executor)
-        trial = continued(task, trial, POLISH, SHARP, True, task.executor)
+        trial = continued(task, trial, POLISH, SHARP, executor=task.executor)
+        trial = continued(task, unbiased(trial), POLISH, SHARP, STEP, task.executor)
     return trial
 
 

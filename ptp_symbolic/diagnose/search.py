@@ -3,7 +3,7 @@ completed, pruned and grown until every candidate in it is needed and none outsi
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,12 +32,14 @@ from ptp_symbolic.diagnose.trial import (
     halving,
     ranked,
 )
+from ptp_symbolic.identify.secants import WIDE_STEP
 
 FloatArray = NDArray[np.float64]
 
 MATERIAL = 0.1  # share of the predictive loss below which a candidate is not worth a name
-PARTS_OF_THE_WAY = (1.0, 0.5, 0.25)  # of a response: finite amounts may be far from linear
+PARTS_OF_THE_WAY = (1.0, 0.5)  # of a response: finite amounts may be far from linear
 CERTAIN = 0.9  # share of the loss from which on a gain is no matter of where a fit ended
+PROPOSED = 3  # sets that are refitted to whole runs, of those that the rows propose
 ADDED = 4  # candidates that are refitted when one is added
 ROUNDS = 3  # of growing: as many effects as a set may gain after the first choice
 
@@ -112,40 +114,37 @@ class Seeker:
         )
 
     def proposed(self) -> list[Trial]:
-        """The proposed sets at the best of their starts: where the rows lead, from there over short
-        windows, and beside the declared model.
+        """The proposed sets that do best over short windows, each at the better of two starts:
+        where the windows lead, and beside the declared model.
         """
         task, declared, sets = self.task, self.declared, self.proposals.sets
-        both = []
-        for s in sets:
-            own = {name for c in s.candidates for f in c.free for name in (f.name, *f.tied)}
-            added = {name: s.values[name] for name in own}
-            both.append((declared.values | added, [s.values, declared_start(task) | added]))
-        led = [
-            task.executor.submit(over_windows, task, s.candidates, starts)
-            for s, (_, starts) in zip(sets, both, strict=True)
+        part = replace(task, train=task.windows[0]) if task.windows else task
+        jobs = [
+            task.executor.submit(fitted, part, s.candidates, s.values, None, ITERATIONS)
+            for s in sets
         ]
         begun = []
-        for s, (beside, starts), fit in zip(sets, both, led, strict=True):
-            trials = fit.result()
-            trials += [
-                fitted(task, s.candidates, beside, declared.fit.z, 0, declared.fit),
-                fitted(task, s.candidates, starts[0], None),
+        for led in ranked([job.result() for job in jobs])[:PROPOSED]:
+            own = {name for c in led.candidates for f in c.free for name in (f.name, *f.tied)}
+            beside = declared.values | {name: led.values[name] for name in own}
+            starts = [
+                fitted(task, led.candidates, led.values, None),
+                fitted(task, led.candidates, beside, declared.fit.z, 0, declared.fit),
             ]
-            begun.append(self.best_of(trials))
+            begun.append(self.best_of(starts))
         return begun
 
     def unseen(self, trial: Trial) -> list[Trial]:
-        """The trial with each candidate that the rows cannot show, at its response in the
-        outputs.
+        """The trial with each candidate that the rows cannot show, begun at its response in the
+        outputs and part of the way there.
         """
         found = responses(self.task, trial, self.proposals.unseen)
-        return [self.begun(r, trial) for r in found[:ADDED]]
+        return [t for r in found[:ADDED] for t in self.begun(r, trial)]
 
-    def begun(self, found: Response, parent: Trial) -> Trial:
-        """A refit begun where a response in the outputs leads from `parent`, or part of the way
-        where that fits better. What the motion does not show has derivatives that mislead: they are
-        looked for at once.
+    def begun(self, found: Response, parent: Trial) -> list[Trial]:
+        """Refits begun where a response in the outputs leads from `parent`, and part of the way
+        there. What the motion does not show has derivatives that mislead: they are looked for at
+        once.
         """
         task, proposal = self.task, found.proposal
         origin = parent.values | dict(found.shape)
@@ -153,10 +152,9 @@ class Seeker:
         for part in PARTS_OF_THE_WAY:
             values = {n: origin[n] + part * (v - origin[n]) for n, v in proposal.values.items()}
             begun.append(fitted(task, proposal.candidates, values, parent.fit.z, 0, parent.fit))
-        best = self.best_of(begun)
         if found.candidate.key not in {c.key for c in self.proposals.unseen}:
-            return best
-        return continued(task, best, 1, secants=True, executor=task.executor)
+            return [self.best_of(begun)]
+        return [continued(task, t, 1, secants=WIDE_STEP, executor=task.executor) for t in begun]
 
     def best_of(self, trials: Sequence[Trial]) -> Trial:
         """The trial that fits best."""
@@ -258,7 +256,7 @@ class Seeker:
             return None
         names = " + ".join(trial.keys) or "the declared model"
         task.progress(f"adding one of {len(found)} candidates to {names}")
-        begun = [self.begun(r, trial) for r in found[:ADDED]]
+        begun = [t for r in found[:ADDED] for t in self.begun(r, trial)]
         left = halving(task, begun, RUNGS)
         self.others += begun
         if not left:

@@ -14,6 +14,7 @@ from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters
 from ptp_symbolic.identify.run import Run
+from ptp_symbolic.identify.secants import WIDE_STEP
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
@@ -96,21 +97,21 @@ def fitted(
     iterations: int = 0,
     parent: Fit | None = None,
     share: float = ROUGH,
-    secants: bool = False,
+    secants: float | None = None,
     executor: Executor | None = None,
 ) -> Trial:
     """Fit from `values` (all parameters of the model) and the starts `z` of the runs.
 
     Simulations are as accurate as what the `parent`, from which the fit goes on, leaves asks for.
-    With `secants`, derivatives that mislead are replaced by differences; those that misled the
-    parent are known to mislead.
+    `secants` is the step of the differences that replace derivatives which mislead; those that
+    misled the parent are known to mislead.
     """
     free = freed(task, candidates, values)
     names = {name for f in free for name in (f.name, *f.tied)}
     fixed = {name: value for name, value in task.fixed.items() if name not in names}
     rms = 1.0 if parent is None else quietest(parent)
     effort = Effort(iterations, GAIN, accuracy(task, share, rms), secants=secants)
-    known = _inherited(parent, free) if secants else None
+    known = None if secants is None else _inherited(parent, free)
     fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known)
     return Trial(tuple(candidates), fit)
 
@@ -151,7 +152,7 @@ def continued(
     trial: Trial,
     iterations: int,
     share: float = ROUGH,
-    secants: bool = False,
+    secants: float | None = None,
     executor: Executor | None = None,
 ) -> Trial:
     """Fit a trial on from where it ended; a worse end is not taken."""
@@ -235,7 +236,11 @@ def halving(task: Task, trials: Sequence[Trial], rungs: Sequence[tuple[int, int]
     for iterations, kept in rungs:
         go_on = [
             task.executor.submit(
-                continued, task, trial, iterations, secants=trial.fit.misleading is not None
+                continued,
+                task,
+                trial,
+                iterations,
+                secants=None if trial.fit.misleading is None else WIDE_STEP,
             )
             for trial in left
         ]

@@ -11,7 +11,6 @@ from ptp_symbolic.diagnose.floor import (
     carried_noise,
     floor_of,
     leaves_noise_alone,
-    left_over,
 )
 from ptp_symbolic.diagnose.gain import Gain, compared
 from ptp_symbolic.diagnose.groups import Rival, confusable, rivals
@@ -132,11 +131,13 @@ def _word(trial: Trial, named: Mapping[str, tuple[str, ...]], floor: Floor, afte
 
 
 def _is_quiet(trial: Trial, floor: Floor, after: Fit) -> bool:
-    """Whether neither training nor validation runs show more than noise."""
-    held_out = Trial(trial.candidates, after)
-    return bool(
-        leaves_noise_alone(trial, floor)
-        and np.all(left_over(held_out) <= HELD_OUT_ABOVE * floor.most)
+    """Whether neither training nor validation runs show more than noise; of the latter the median
+    run counts, for one that sticks at another sample than it did is off by counts.
+    """
+    squares = mean_squares(after.evaluations, after.runs)
+    held_out = np.sqrt(np.median(squares, axis=0))
+    return leaves_noise_alone(trial, floor) and bool(
+        np.all(held_out <= HELD_OUT_ABOVE * floor.most)
     )
 
 

@@ -18,7 +18,7 @@ from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.least_squares import Optimum, Problem, cost_of, minimise
 from ptp_symbolic.identify.requirements import keep_possible
 from ptp_symbolic.identify.run import Run
-from ptp_symbolic.identify.secants import Secants, Shift
+from ptp_symbolic.identify.secants import STEP, Secants, Shift
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
@@ -36,14 +36,15 @@ class Effort:
     how many steps in a row may be rejected.
 
     `prior_sigma` holds parameters with a table value (see `FreeParameter.table`) near it, as a
-    natural logarithm. `secants` mends derivatives that mislead (see `identify.secants`).
+    natural logarithm. `secants` is the step of the differences that
+    replace derivatives which mislead (see `identify.secants`); None: none are replaced.
     """
 
     iterations: int = 30
     gain: float = 1e-5
     tolerance: Tolerance = DEFAULT_TOLERANCE
     prior_sigma: float | None = None
-    secants: bool = False
+    secants: float | None = None
     rejections: int = 5
 
 
@@ -133,7 +134,7 @@ def unblinded(fit: Fit, executor: Executor | None = None) -> Fit:
     """
     if not fit.free or fit.failed:
         return fit
-    effort = Effort(tolerance=fit.tolerance, secants=True)
+    effort = Effort(tolerance=fit.tolerance, secants=STEP)
     problem = _problem(fit.model, fit.runs, fit.free, fit.values, effort, executor)
     assert problem.refine is not None
     phi = to_search(fit.free, fit.values)
@@ -231,7 +232,9 @@ def _problem(
         [np.array([u.sigma for u in run.unknowns]) for run in runs],
         centre,
         precision,
-        Secants(simulations.residual, upper, executor) if effort.secants else None,
+        None
+        if effort.secants is None
+        else Secants(simulations.residual, upper, executor, step=effort.secants),
         keep_possible(model, free, simulations.parameters),
     )
 

@@ -18,8 +18,9 @@ FloatArray = NDArray[np.float64]
 Shift = tuple[int, int]
 Residual = Callable[[int, FloatArray, FloatArray], FloatArray | None]
 
-STEP = 0.02
-MISLEADING = 0.25
+STEP = 0.02  # of a search coordinate: as far as an interval reaches, for derivatives at the end
+WIDE_STEP = 0.1  # while searching: wide enough to see over the treads of a staircase
+MISLEADING = 0.25  # of the difference: a derivative further off is replaced
 
 
 @dataclass(eq=False)
@@ -27,13 +28,15 @@ class Secants:
     """Replaces misleading derivatives by phi with differences.
 
     `residual(run, phi, z)` simulates one run (None: it failed); `upper` [nf] bounds phi. The first
-    call compares every column of every run, later ones only those that misled, `chosen`.
+    call compares every column of every run, later ones only those that misled, `chosen`; `step` is
+    that of the differences.
     """
 
     residual: Residual
     upper: FloatArray
     executor: Executor | None = None
     chosen: list[Shift] | None = None
+    step: float = STEP
 
     def __call__(
         self, phi: FloatArray, z: Sequence[FloatArray], evaluations: Sequence[Evaluation]
@@ -44,7 +47,7 @@ class Secants:
 
         def difference(shift: Shift) -> FloatArray:
             run, column = shift
-            step = STEP if phi[column] + STEP <= self.upper[column] else -STEP
+            step = self.step if phi[column] + self.step <= self.upper[column] else -self.step
             moved = phi.copy()
             moved[column] += step
             after = self.residual(run, moved, z[run])
