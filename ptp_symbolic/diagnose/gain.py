@@ -4,7 +4,7 @@ Every block of the training runs is left out in turn and predicted by the others
 `identify.blocks`); the losses of two models on the same blocks are compared in pairs.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,8 +16,10 @@ from ptp_symbolic.identify.blocks import (
     block_labels,
     block_length,
     bootstrap_share,
+    jackknife_covariance,
     leave_blocks_out,
 )
+from ptp_symbolic.identify.coordinates import to_search
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.intervals import project_out
 from ptp_symbolic.identify.run import by_source
@@ -74,6 +76,31 @@ def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
     b = len(taken)
     error = float(np.sqrt(b / max(b - 1, 1) * np.sum(influence**2)))
     return Gain(share, lower, upper, share / max(error, LEAST_SPREAD), b - 1)
+
+
+def p_value(trial: Trial, zero: Mapping[str, float]) -> float:
+    """Probability that parameters this far from `zero`, or further, are found where they are zero.
+
+    Hotelling's T^2 (1931) of their search coordinates, with the covariance of a jackknife over
+    blocks of time under the model that has them: an effect that a few blocks show is as clear as
+    one that all show. 1 where the blocks are too few.
+    """
+    fit = trial.fit
+    own = [k for k, f in enumerate(fit.free) if f.name in zero]
+    residual, jacobian = (np.concatenate(parts) for parts in _projected(fit))
+    signals = fit.runs[0].measured.shape[1]
+    sums = [e.residual.reshape(-1, signals).sum(axis=1) for e in fit.evaluations]
+    series = [np.concatenate([sums[k] for k in group]) for group in by_source(fit.runs)]
+    labels = block_labels([len(s) for s in series], block_length(series))
+    label = np.repeat(np.concatenate(labels), signals)
+    shifts = leave_blocks_out(residual, jacobian, label).shifts[:, own]
+    b, k = shifts.shape
+    if b <= k + 1:
+        return 1.0
+    away = (to_search(fit.free, fit.values) - to_search(fit.free, {**fit.values, **zero}))[own]
+    inverse = np.linalg.pinv(jackknife_covariance(shifts), rcond=1e-10, hermitian=True)
+    statistic = float(away @ inverse @ away) * (b - k) / (k * (b - 1))
+    return float(stats.f.sf(statistic, k, b - k))
 
 
 def _projected(fit: Fit) -> tuple[list[FloatArray], list[FloatArray]]:

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.gain import Gain, gain
 from ptp_symbolic.diagnose.linear import canonical_correlation, effect_of, outside, stacked
+from ptp_symbolic.diagnose.needed import MATERIAL
 from ptp_symbolic.diagnose.refits import ITERATIONS, polished
 from ptp_symbolic.diagnose.responses import REACH, Columns, least, response_columns
-from ptp_symbolic.diagnose.search import MATERIAL
 from ptp_symbolic.diagnose.trial import Task, Trial, fitted, halving, ranked
 from ptp_symbolic.identify.coordinates import to_search, to_values
 from ptp_symbolic.identify.fit import Fit

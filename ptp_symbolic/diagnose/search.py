@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise
-from ptp_symbolic.diagnose.gain import Gain, gain
+from ptp_symbolic.diagnose.gain import Gain, gain, p_value
+from ptp_symbolic.diagnose.needed import MATERIAL, Step, is_earned, step_of
 from ptp_symbolic.diagnose.proposals import Proposals, declared_start, propose, start_for
 from ptp_symbolic.diagnose.refits import (
     ITERATIONS,
@@ -36,21 +37,11 @@ from ptp_symbolic.identify.secants import WIDE_STEP
 
 FloatArray = NDArray[np.float64]
 
-MATERIAL = 0.1  # share of the predictive loss below which a candidate is not worth a name
 PARTS_OF_THE_WAY = (1.0, 0.5)  # of a response: finite amounts may be far from linear
 CERTAIN = 0.9  # share of the loss from which on a gain is no matter of where a fit ended
 PROPOSED = 3  # sets that are refitted to whole runs, of those that the rows propose
 ADDED = 4  # candidates that are refitted when one is added
 ROUNDS = 3  # of growing: as many effects as a set may gain after the first choice
-
-
-@dataclass(frozen=True, eq=False)
-class Step:
-    """A candidate of the chosen set, what it gains, and the trial without it."""
-
-    candidate: Candidate
-    gain: Gain
-    without: Trial
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +99,7 @@ class Seeker:
             best, steps = pruned, fewer
         best = self.simplified(best)
         without = {s.candidate.key: s.without for s in steps}
-        members = [Step(c, gain(best, without[c.key]), without[c.key]) for c in best.candidates]
+        members = [step_of(best, c, without[c.key]) for c in best.candidates]
         return Search(
             self.declared, best, tuple(members), tuple(self.others), self.proposals, self.carried
         )
@@ -220,12 +211,15 @@ class Seeker:
 
     def step(self, trial: Trial, candidate: Candidate) -> Step:
         """What a candidate gains."""
-        smaller = self.without(trial, candidate)
-        return Step(candidate, gain(trial, smaller), smaller)
+        return step_of(trial, candidate, self.without(trial, candidate))
 
-    def is_needed(self, earned: Gain) -> bool:
+    def is_needed(self, step: Step) -> bool:
+        """Whether a candidate gains materially, and clearly over all that were looked at."""
+        return self.is_earned(step.gain, step.p_value)
+
+    def is_earned(self, earned: Gain, p: float) -> bool:
         """Whether a gain is material, and clear over all candidates that were looked at."""
-        return earned.share >= MATERIAL and earned.is_clear(len(self.task.candidates))
+        return is_earned(earned, p, len(self.task.candidates))
 
     def pruned(self, trial: Trial) -> tuple[Trial, list[Step]]:
         """Take candidates out, the one that seems to gain least first, until each that is left
@@ -236,7 +230,7 @@ class Seeker:
             expected = {c.key: expected_gain(trial, c) for c in trial.candidates}
             for candidate in sorted(trial.candidates, key=lambda c: expected[c.key]):
                 step = self.step(trial, candidate)
-                if not self.is_needed(step.gain):
+                if not self.is_needed(step):
                     trial = step.without
                     break
                 steps.append(step)
@@ -262,7 +256,9 @@ class Seeker:
         if not left:
             return None
         best = self.restarted(self.polished(left[0]))
-        return best if self.is_needed(gain(best, trial)) else None
+        have = {f.name for c in trial.candidates for f in c.free}
+        added = {n: v for c in best.candidates for n, v in c.vanishing.items() if n not in have}
+        return best if self.is_earned(gain(best, trial), p_value(best, added)) else None
 
     def simplified(self, trial: Trial) -> Trial:
         """Every candidate in the simplest of its forms that loses nothing clear and material."""
@@ -274,7 +270,9 @@ class Seeker:
             )
             for form in simpler:
                 smaller = self.in_form(trial, candidate, form)
-                if not self.is_needed(gain(trial, smaller)):
+                names = {f.name for f in form.free}
+                lost = {n: v for n, v in candidate.vanishing.items() if n not in names}
+                if not self.is_earned(gain(trial, smaller), p_value(trial, lost)):
                     trial = smaller
                     break
         return trial

@@ -14,7 +14,8 @@ from ptp_symbolic.diagnose.floor import (
 )
 from ptp_symbolic.diagnose.gain import Gain, compared
 from ptp_symbolic.diagnose.groups import Rival, confusable, rivals
-from ptp_symbolic.diagnose.search import MATERIAL, Search, Seeker, Step
+from ptp_symbolic.diagnose.needed import MATERIAL, Step
+from ptp_symbolic.diagnose.search import Search, Seeker
 from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy, mean_squares, quietest, ranked
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, unblinded
 
@@ -98,7 +99,7 @@ def _weakness(
 ) -> tuple[Step, str] | None:
     """The candidate of a trial that is confirmed least, and why not; None where all are."""
     weakest = min(steps, key=lambda s: s.gain.share)
-    if not seeker.is_needed(weakest.gain):
+    if not seeker.is_needed(weakest):
         return weakest, f"takes away only {100.0 * weakest.gain.share:.0f} % of the error"
     for step in steps:
         reason = why_unconfirmed(task, trial, fit, step.candidate)
