@@ -115,7 +115,8 @@ def _block_squares(
 ) -> FloatArray:
     """Mean square [b, signals] of the residuals of every block, predicted by the other blocks."""
     residual, jacobian = np.concatenate(parts[0]), np.vstack(parts[1])
-    left = leave_blocks_out(residual, jacobian, np.repeat(label, signals))
+    prior = float(np.mean(residual**2))  # without the block no parameter moves by more than a unit
+    left = leave_blocks_out(residual, jacobian, np.repeat(label, signals), prior)
     table = left.predicted.reshape(-1, signals) ** 2
     size = np.bincount(label)
     return np.column_stack([np.bincount(label, weights=c) / size for c in table.T])

@@ -86,10 +86,15 @@ class LeftOut:
 
 
 def leave_blocks_out(
-    residual: FloatArray, jacobian: FloatArray, label: IntArray, ridge: float = 1e-10
+    residual: FloatArray,
+    jacobian: FloatArray,
+    label: IntArray,
+    prior: float = 0.0,
+    ridge: float = 1e-10,
 ) -> LeftOut:
     """Leave every block out of a least squares fit with `residual` [n] and `jacobian` [n, nf] (by
-    the parameters) at its optimum. Directions that nothing else sees do not move.
+    the parameters) at its optimum. Directions that nothing else sees do not move; `prior` is the
+    precision with which every parameter is known without the data to be where it is.
     """
     blocks = int(label.max()) + 1 if len(label) else 0
     nf = jacobian.shape[1]
@@ -99,7 +104,7 @@ def leave_blocks_out(
     size = np.linalg.norm(jacobian, axis=0)
     size = np.where(size > 0.0, size, 1.0)
     scaled = jacobian / size
-    information = scaled.T @ scaled
+    information = scaled.T @ scaled + np.diag(prior / size**2)
     for block in range(blocks):
         rows = np.flatnonzero(label == block)
         own = scaled[rows]

@@ -182,14 +182,24 @@ def with_start(model: Model, run: Run) -> Run:
 
 
 def _first_rate(run: Run, column: int) -> tuple[float, float]:
-    """Rate at the first sample, and its standard deviation: noise as if white, rounding as if it
-    were the same in half of the samples.
+    """Rate at the first sample, and its standard deviation: that of the noise, and what half the
+    span tells otherwise, for motion is no parabola.
     """
-    count = max(LEAST_START, int(np.searchsorted(run.time, run.time[0] + START_SPAN)))
+    whole = max(LEAST_START, int(np.searchsorted(run.time, run.time[0] + START_SPAN)))
+    half = max(LEAST_START, whole // 2)
+    rate, noise = _rate_over(run, column, whole)
+    other, _ = _rate_over(run, column, half)
+    return rate, float(np.hypot(noise, other - rate))
+
+
+def _rate_over(run: Run, column: int, count: int) -> tuple[float, float]:
+    """Rate at the first of so many samples by a parabola, and its standard deviation: noise as if
+    white, rounding as if it were the same in half of the samples.
+    """
     time = run.time[:count] - run.time[0]
     columns = np.vander(time / time[-1], 3, increasing=True)
     inverse = np.linalg.pinv(columns)
-    rate = float(inverse[1] @ run.measured[:count, column]) / time[-1]
+    rate = float(inverse[1] @ run.measured[:count, column]) / float(time[-1])
     sigma = 1.0 / run.weight[column]
     rounding = float(np.nan_to_num(run.counts[column])) * ROUNDING
     white = np.sqrt(max(sigma**2 - rounding**2, 0.0)) * float(np.linalg.norm(inverse[1]))

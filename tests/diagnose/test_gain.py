@@ -110,7 +110,8 @@ def test_a_gain_is_that_of_runs_predicted_by_the_others() -> None:
         losses.append(huber(square / scale))
     found = gain(*trials)
     assert found.degrees == 199
-    assert found.share == pytest.approx(1.0 - losses[0].sum() / losses[1].sum(), rel=1e-7)
+    # The prior of one search unit weighs as much as one of 2400 samples.
+    assert found.share == pytest.approx(1.0 - losses[0].sum() / losses[1].sum(), rel=1e-4)
     assert 0.05 < found.lower < found.share < found.upper < 0.25
 
 
