@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ptp_symbolic import loop
@@ -24,10 +23,10 @@ from ptp_symbolic.data import (
     remarks,
 )
 from ptp_symbolic.derivation.assembly import assemble
-from ptp_symbolic.diagnose.candidates import find_candidates, vanished
 from ptp_symbolic.diagnose.curves import curves_of
 from ptp_symbolic.diagnose.errors import error_of
 from ptp_symbolic.diagnose.floor import carried_noise, floor_of
+from ptp_symbolic.diagnose.preparation import task_of
 from ptp_symbolic.diagnose.proposals import propose
 from ptp_symbolic.diagnose.refits import fit_declared
 from ptp_symbolic.diagnose.residual_tests import residual_tests
@@ -44,8 +43,7 @@ from ptp_symbolic.diagnose.trial import Task, Trial, accuracy
 from ptp_symbolic.diagnose.verdict import Verdict, decide
 from ptp_symbolic.identify.fit import Effort, all_values_at_start, fit_parameters, unblinded
 from ptp_symbolic.identify.intervals import Estimate, estimates
-from ptp_symbolic.identify.run import Run, prepare_runs
-from ptp_symbolic.identify.windows import cut, window_length
+from ptp_symbolic.identify.run import prepare_runs
 from ptp_symbolic.platform import (
     EffectDeclaration,
     ParameterDeclaration,
@@ -61,7 +59,6 @@ Progress = Callable[[str], None]
 SCHEMA_VERSION = 1
 FAR_FROM_FLOOR = 3.0  # times the floor: from here on a fit is called far from it
 START_ITERATIONS = 10  # for the starts of the runs at the declared values
-WINDOWS = (1.0, 3.0)  # s: long beside the time constants of a drive, short beside its runs
 START_SHARE = 1e-2  # error of those simulations, as a share of the noise
 
 
@@ -193,38 +190,11 @@ def _task(
     """All that stays the same; `declared` are the keys of the effects that are not candidates."""
     progress("preparing the simulation (compiles for about a minute once on a new machine)")
     loop.refuse_unknown_signals(platform, model)
-    free = loop.free_parameters(platform, model)
-    known = loop.known_values(platform, model)
-    off = vanished(model, declared) if declared else {}
-    fixed = {**model.defaults, **off, **{name: value for name, (value, _) in known.items()}}
     with naming_file(platform):
         runs = [prepare_runs(model, platform, tuple(logs)) for logs in (train, validate)]
-    start = {**fixed, **all_values_at_start(free)}
+    free, known = loop.free_parameters(platform, model), loop.known_values(platform, model)
     noises = {s.signal: s.noise for s in platform.signals}
-    noise = tuple(noises[name] for name in model.input_names)
-    length = window_length(model, runs[0], model.parameter_vector(start), noise)
-    cut_train, cut_validate = (cut(model, part, length) for part in runs)
-    return Task(
-        model, runs[0], cut_train, _windows_of(model, runs[0], length), cut_validate, free, fixed,
-        find_candidates(model, declared, known) if declared else (),
-        executor, progress, noise,
-        frozenset(name for name, size in noises.items() if size is not None),
-        _finest_angle(runs[0]),
-    )  # fmt: skip
-
-
-def _windows_of(
-    model: Model, runs: Sequence[Run], length: float | None
-) -> tuple[tuple[Run, ...], ...]:
-    """Runs in ever longer windows; none where they are cut into windows of `length` anyway."""
-    return () if length is not None else tuple(cut(model, runs, w) for w in WINDOWS)
-
-
-def _finest_angle(runs: Sequence[Run]) -> float:
-    """Smallest noise of a measured angle in rad; of any signal where no angle is measured."""
-    run = runs[0]
-    angles = [k for k, name in enumerate(run.signals) if name.startswith("theta_")]
-    return float(np.min(1.0 / run.weight[angles or list(range(len(run.weight)))]))
+    return task_of(model, runs[0], runs[1], free, known, declared, noises, executor, progress)
 
 
 def _write_up(

@@ -16,8 +16,11 @@ from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.gain import Gain, gain
 from ptp_symbolic.diagnose.linear import canonical_correlation, effect_of, outside, stacked
 from ptp_symbolic.diagnose.needed import MATERIAL
-from ptp_symbolic.diagnose.refits import ITERATIONS, polished
+from ptp_symbolic.diagnose.proposals import Proposals
+from ptp_symbolic.diagnose.refits import ITERATIONS
 from ptp_symbolic.diagnose.responses import REACH, Columns, least, response_columns
+from ptp_symbolic.diagnose.search import Seeker
+from ptp_symbolic.diagnose.signatures import Signature
 from ptp_symbolic.diagnose.trial import Task, Trial, fitted, halving, ranked
 from ptp_symbolic.identify.coordinates import to_search, to_values
 from ptp_symbolic.identify.fit import Fit
@@ -46,20 +49,18 @@ class Similarity:
     values: dict[str, float]
 
 
-def rivals(
-    task: Task, chosen: Trial, others: Sequence[Trial], fit: Fit, carried: FloatArray
-) -> list[Rival]:
+def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> list[Rival]:
     """Sets as large as the chosen one, of which these logs do not prefer the chosen one clearly and
     materially, `others` among them. `fit` is its fit with derivatives that are not blind.
     """
+    task = seeker.task
     begun: list[Trial] = []
     for member in chosen.candidates:
-        alike = look_alikes(task, chosen, fit, member)
         kept = tuple(c for c in chosen.candidates if c is not member)
-        begun += [
-            fitted(task, (*kept, s.candidate), s.values, chosen.fit.z, 0, fit)
-            for s in alike[:MOST_REFITTED]
-        ]
+        alike = look_alikes(task, chosen, fit, member)[:MOST_REFITTED]
+        begun += [fitted(task, (*kept, s.candidate), s.values, chosen.fit.z, 0, fit) for s in alike]
+        for candidate in alike_along_motion(seeker.proposals, chosen, member)[:MOST_REFITTED]:
+            begun += seeker.led((*kept, candidate), chosen.values)
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
     trials = halving(task, begun, ((2 * ITERATIONS, len(begun)),))
@@ -71,13 +72,52 @@ def rivals(
             trials.append(other)
     result: dict[tuple[str, ...], Rival] = {}
     for trial in trials:
-        if gain(chosen, trial).share >= NEAR:
-            continue
-        refitted = polished(task, trial, carried)
+        refitted = seeker.polished(trial)
         rival = Rival(refitted, gain(chosen, refitted))
         if not (rival.gain.share >= MATERIAL and rival.gain.is_clear(len(trials))):
             result.setdefault(refitted.keys, rival)
     return list(result.values())
+
+
+def alike_along_motion(found: Proposals, chosen: Trial, member: Candidate) -> list[Candidate]:
+    """Candidates whose signature correlates above SIMILAR with that of `member`, as it is fitted,
+    apart from what the declared parameters and the other members can follow; best first.
+    """
+    rows = found.regression
+    if rows is None:
+        return []
+    root = np.sqrt(rows.weight)[:, None]
+    own = {c.key for c in chosen.candidates}
+    mine = [s for s in rows.signatures if s.candidate.key == member.key]
+    named = {f.name for f in member.defining}
+    whole = [s for s in mine if {f.name for f in s.candidate.defining} == named]
+    if not whole:
+        return []
+    parts = [
+        slope * (chosen.values[f.name] - member.vanishing[f.name])
+        for f, slope in zip(whole[0].candidate.defining, _nearest(whole[0], chosen), strict=True)
+    ]
+    rest = [s.columns for s in rows.signatures if s.candidate.key in own - {member.key}]
+    away = np.column_stack([rows.base, *rest]) * root
+    target = outside(np.sum(parts, axis=0)[:, None] * root, away)[:, 0]
+    correlation: dict[str, tuple[float, Candidate]] = {}
+    for s in rows.signatures:
+        if s.candidate.key in own:
+            continue
+        value = canonical_correlation(target, outside(s.columns * root, away))
+        if value > max(SIMILAR, correlation.get(s.candidate.key, (0.0, s.candidate))[0]):
+            correlation[s.candidate.key] = value, s.candidate
+    return [c for _, c in sorted(correlation.values(), key=lambda pair: -pair[0])]
+
+
+def _nearest(signature: Signature, chosen: Trial) -> tuple[FloatArray, ...]:
+    """The slopes at the shaping values nearest to the fitted ones."""
+    here = chosen.values
+    far = [
+        sum(abs(v - here[name]) / max(abs(v), abs(here[name]), 1e-300) for name, v in shape.items())
+        for shape in signature.candidate.shapes
+    ]
+    return signature.slopes[int(np.argmin(far))]
 
 
 def confusable(chosen: Trial, found: Sequence[Rival]) -> dict[str, tuple[str, ...]]:

@@ -2,7 +2,7 @@
 completed, pruned and grown until every candidate in it is needed and none outside would add to it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -165,14 +165,19 @@ class Seeker:
         """
         if self.is_at_noise(trial):
             return trial
-        task, candidates = self.task, trial.candidates
-        start = start_for(task, self.proposals, candidates, trial.values)
-        own = {n: start[n] for c in candidates for f in c.free for n in (f.name, *f.tied)}
-        starts = [start, declared_start(task) | own]
-        begun = over_windows(task, candidates, starts, task.executor)
-        begun.append(fitted(task, candidates, start, None))
-        left = halving(task, begun, LAST_RUNG)
+        begun = self.led(trial.candidates, trial.values)
+        left = halving(self.task, begun, LAST_RUNG)
         return self.best_of([trial, *(self.polished(t) for t in left)])
+
+    def led(self, candidates: Sequence[Candidate], values: Mapping[str, float]) -> list[Trial]:
+        """A set where the rows start it (what they do not show stays at `values`), and where
+        windows lead from there and from the declared start.
+        """
+        task = self.task
+        start = start_for(task, self.proposals, candidates, values)
+        own = {n: start[n] for c in candidates for f in c.free for n in (f.name, *f.tied)}
+        begun = over_windows(task, candidates, [start, declared_start(task) | own], task.executor)
+        return [*begun, fitted(task, candidates, start, None)]
 
     def completed(self, trial: Trial) -> Trial:
         """The trial polished, each of its candidates in its fullest form: an effect is allowed all

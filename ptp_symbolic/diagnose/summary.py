@@ -149,13 +149,13 @@ def ranking(
 
 def _row(search: Search, found: Verdict, trial: Trial) -> dict[str, Any]:
     units = trial.fit.model.units
-    earned = gain(trial, search.declared) if trial.fit.is_differentiated else None
+    earned = gain(trial, search.declared)
     error = error_of(trial.fit, units)["total"]
     axes = {c.axis for c in trial.candidates}
     return {
         "effect": " + ".join(c.id for c in trial.candidates),
         "axis": axes.pop() if len(axes) == 1 else None,
-        "gain": gain_table(earned) if earned else None,
+        "gain": gain_table(earned),
         "train_error_after": error["rmse"]
         if error["rmse_counts"] is None
         else error["rmse_counts"],

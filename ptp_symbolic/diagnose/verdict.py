@@ -73,7 +73,7 @@ def decide(task: Task, found: Search) -> Verdict:
         fit = unblinded(trial.fit, task.executor)
     alike: list[Rival] = []
     if trial.candidates:
-        alike = rivals(task, trial, (*found.others, *seeker.others), fit, found.carried)
+        alike = rivals(seeker, trial, (*found.others, *seeker.others), fit)
     task.progress("simulating the validation runs")
     before = held_out_fit(task, found.declared)
     after = held_out_fit(task, trial) if trial.candidates else before

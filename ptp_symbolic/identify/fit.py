@@ -35,15 +35,13 @@ class Effort:
     """How hard to search: iterations, relative gain at which to stop, simulation tolerance, and
     how many steps in a row may be rejected.
 
-    `prior_sigma` holds parameters with a table value (see `FreeParameter.table`) near it, as a
-    natural logarithm. `secants` is the step of the differences that
+    `secants` is the step of the differences that
     replace derivatives which mislead (see `identify.secants`); None: none are replaced.
     """
 
     iterations: int = 30
     gain: float = 1e-5
     tolerance: Tolerance = DEFAULT_TOLERANCE
-    prior_sigma: float | None = None
     secants: float | None = None
     rejections: int = 5
 
@@ -67,19 +65,6 @@ class Fit:
         """Root mean square of the residual of all encoder signals, in counts."""
         squares = np.concatenate([run_counts(r, e) for r, e in self.pairs()])
         return float(np.sqrt(np.mean(squares**2)))
-
-    @property
-    def is_differentiated(self) -> bool:
-        """Whether the evaluations hold derivatives by the free parameters."""
-        return all(e.by_parameter.shape[1] == len(self.free) for e in self.evaluations)
-
-    def lightened(self) -> "Fit":
-        """This fit without derivatives, which take most of its memory."""
-        kept = tuple(
-            replace(e, by_parameter=e.by_parameter[:, :0].copy(), by_start=e.by_start[:, :0].copy())
-            for e in self.evaluations
-        )
-        return replace(self, evaluations=kept)
 
     def pairs(self) -> list[tuple[Run, Evaluation]]:
         """Runs with their evaluations."""
@@ -222,7 +207,6 @@ def _problem(
         effort.tolerance, executor,
     )  # fmt: skip
     lower, upper = limits(free)
-    centre, precision = _prior(free, effort.prior_sigma)
     return Problem(
         simulations.evaluate,
         lower,
@@ -230,23 +214,13 @@ def _problem(
         [np.array([u.lower for u in run.unknowns]) for run in runs],
         [np.array([u.upper for u in run.unknowns]) for run in runs],
         [np.array([u.sigma for u in run.unknowns]) for run in runs],
-        centre,
-        precision,
+        np.zeros(len(free)),
+        np.zeros(len(free)),
         None
         if effort.secants is None
         else Secants(simulations.residual, upper, executor, step=effort.secants),
         keep_possible(model, free, simulations.parameters),
     )
-
-
-def _prior(free: Sequence[FreeParameter], sigma: float | None) -> tuple[FloatArray, FloatArray]:
-    """Centre and precision of the prior in search coordinates; precision 0 where there is none."""
-    held = [sigma is not None and f.logarithmic and f.table is not None for f in free]
-    centre = [
-        np.log(f.table / f.start) if h and f.table else 0.0 for f, h in zip(free, held, strict=True)
-    ]
-    precision = [1.0 / sigma**2 if h and sigma else 0.0 for h in held]
-    return np.array(centre), np.array(precision)
 
 
 def _fit_starts(
