@@ -28,7 +28,7 @@ from ptp_symbolic.identify.fit import Fit
 FloatArray = NDArray[np.float64]
 
 SIMILAR = 0.9  # canonical correlation from which on a candidate is refitted in the place of another
-MOST_REFITTED = 6  # look-alikes of one effect that are refitted, the most similar first
+MOST_REFITTED = 3  # look-alikes of one effect that are refitted, the most similar first
 NEAR = 0.5  # share of its loss that a set may lose to the chosen one and still be polished
 
 
@@ -63,7 +63,7 @@ def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> 
             begun += seeker.led((*kept, candidate), chosen.values)
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
-    trials = halving(task, begun, ((2 * ITERATIONS, len(begun)),))
+    trials = halving(task, begun, ((ITERATIONS, len(begun)),))
     tried = {t.keys for t in trials} | {chosen.keys}
     for other in ranked(others):
         same_size = len(other.candidates) == len(chosen.candidates)

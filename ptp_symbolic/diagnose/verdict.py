@@ -12,9 +12,9 @@ from ptp_symbolic.diagnose.floor import (
     floor_of,
     leaves_noise_alone,
 )
-from ptp_symbolic.diagnose.gain import Gain, compared
+from ptp_symbolic.diagnose.gain import Gain, compared, gain
 from ptp_symbolic.diagnose.groups import Rival, confusable, rivals
-from ptp_symbolic.diagnose.needed import MATERIAL, Step
+from ptp_symbolic.diagnose.needed import MATERIAL, Step, step_of
 from ptp_symbolic.diagnose.search import Search, Seeker
 from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy, mean_squares, quietest, ranked
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, unblinded
@@ -74,6 +74,7 @@ def decide(task: Task, found: Search) -> Verdict:
     alike: list[Rival] = []
     if trial.candidates:
         alike = rivals(seeker, trial, (*found.others, *seeker.others), fit)
+        trial, steps, alike = _simplest(trial, steps, alike)
     task.progress("simulating the validation runs")
     before = held_out_fit(task, found.declared)
     after = held_out_fit(task, trial) if trial.candidates else before
@@ -92,6 +93,20 @@ def decide(task: Task, found: Search) -> Verdict:
         word, trial, tuple(steps), named, tuple(alike), closest, refused, floor, before, after,
         held_out,
     )  # fmt: skip
+
+
+def _simplest(
+    chosen: Trial, steps: list[Step], alike: list[Rival]
+) -> tuple[Trial, list[Step], list[Rival]]:
+    """Of one effect and those that cannot be told from it, the one with the fewest parameters."""
+    best = min(alike, key=lambda r: len(r.trial.fit.free), default=None)
+    if len(steps) != 1 or best is None or len(best.trial.fit.free) >= len(chosen.fit.free):
+        return chosen, steps, alike
+    if len(best.trial.candidates) != 1:
+        return chosen, steps, alike
+    (candidate,) = best.trial.candidates
+    rest = [Rival(chosen, gain(best.trial, chosen)), *(r for r in alike if r is not best)]
+    return best.trial, [step_of(best.trial, candidate, steps[0].without)], rest
 
 
 def _weakness(
