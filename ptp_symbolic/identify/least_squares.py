@@ -19,6 +19,8 @@ FloatArray = NDArray[np.float64]
 Evaluate = Callable[[FloatArray, Sequence[FloatArray], bool], list[Evaluation]]
 
 LARGEST_STEP = 1.0
+SHARE_TO_BOUND = 1.0 - np.exp(-1.0)  # of the way there in one step: LARGEST_STEP of its logarithm
+AT_BOUND = 0.1  # of a search coordinate: from nearer than that one step may reach the bound
 FIRST_DAMPING = 1e-3
 TOO_STEEP = 1e15
 MANY_RUNS, BEND, NEARBY = 20, 2.5, 8.0
@@ -224,15 +226,28 @@ def _step(
     step = np.zeros(nf)
     if free.any():
         matrix = schur[np.ix_(free, free)] + np.diag(damping * diagonal[free])
-        step[free] = _limited(matrix, right[free], np.sqrt(diagonal[free]))
+        down, up = _reach(phi - problem.lower), _reach(problem.upper - phi)
+        step[free] = _limited(matrix, right[free], np.sqrt(diagonal[free]), -down[free], up[free])
     return step, [inverse @ (gz - jk.T @ step) for jk, inverse, gz in blocks]
 
 
-def _limited(matrix: FloatArray, right: FloatArray, size: FloatArray) -> FloatArray:
-    """Solve matrix @ step = right with no coordinate beyond LARGEST_STEP; `size` scales them [nf].
+def _reach(distance: FloatArray) -> FloatArray:
+    """How far one step may go [nf] towards bounds at `distance` [nf].
 
-    The one that wants furthest is held there and the others solved anew: scaling all alike would
-    let a parameter on its way to zero stop the rest.
+    A parameter that one step takes from its start to zero takes the others to where no step leads
+    back: the share is that of an interior point method (Coleman and Li, 1996).
+    """
+    share = np.where(distance > AT_BOUND, SHARE_TO_BOUND, 1.0)
+    return np.minimum(LARGEST_STEP, share * distance)
+
+
+def _limited(
+    matrix: FloatArray, right: FloatArray, size: FloatArray, low: FloatArray, high: FloatArray
+) -> FloatArray:
+    """Solve matrix @ step = right with low <= step <= high [nf]; `size` scales them [nf].
+
+    The one that wants furthest beyond is held there and the others solved anew: scaling all alike
+    would let a parameter on its way to zero stop the rest.
     """
     step, moves = np.zeros(len(right)), np.ones(len(right), dtype=np.bool_)
     matrix, right = matrix / np.outer(size, size), right / size
@@ -240,9 +255,10 @@ def _limited(matrix: FloatArray, right: FloatArray, size: FloatArray) -> FloatAr
         rest = right[moves] - matrix[np.ix_(moves, ~moves)] @ (size * step)[~moves]
         found = np.linalg.lstsq(matrix[np.ix_(moves, moves)], rest, rcond=1e-14)[0]
         step[moves] = found / size[moves]
-        worst = int(np.argmax(np.where(moves, np.abs(step), 0.0)))
-        if abs(step[worst]) <= LARGEST_STEP:
+        allowed = np.clip(step, low, high)
+        worst = int(np.argmax(np.abs(step - allowed)))
+        if step[worst] == allowed[worst]:
             break
-        step[worst] = np.copysign(LARGEST_STEP, step[worst])
+        step[worst] = allowed[worst]
         moves[worst] = False
     return step

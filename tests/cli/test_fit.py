@@ -30,7 +30,10 @@ def test_a_fit_far_from_the_floor_says_so(call, tmp_path: Path) -> None:
     path = changed(tmp_path, (low, low.replace("5.0]", "0.06]")))
     done = call("fit", "--platform", path, LOG, "--out", out)
     assert (done.code, done.err) == (0, "")
-    assert ", floor 0.29: the model does not fit these logs; run diagnose." in done.out
+    # Rounding, 0.289 counts, and what the noise of the torques adds to it.
+    far = r", floor (\S+): the model does not fit these logs; run diagnose"
+    (floor,) = re.findall(far, done.out)
+    assert 0.288 < float(floor) < 0.31
     assert "The runs were cut into 8 windows of 1 s, each with a start of its own" in done.out
     assert "b_pan = 0.06 N m s/rad" in done.out
 
