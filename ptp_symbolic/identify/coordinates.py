@@ -1,4 +1,4 @@
-"""The coordinates in which a fit searches: logarithms of positive parameters, scaled others."""
+"""The coordinates in which a fit searches: logarithms where zero is out of bounds, or scaled."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

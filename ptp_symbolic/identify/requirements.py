@@ -76,17 +76,27 @@ class _Relation:
             kept, lost = (middle, lost) if self.holds(phi + middle * step) else (kept, middle)
         return phi + kept * step
 
+    def at_bound(self, phi: FloatArray, step: FloatArray) -> NDArray[np.bool_]:
+        """Which coordinates [nf] a bound keeps from going the way of `step`."""
+        lower, upper = self.bounds
+        return ((phi <= lower) & (step < 0.0)) | ((phi >= upper) & (step > 0.0))
+
     def bent(self, phi: FloatArray, trial: FloatArray) -> FloatArray:
         """`trial` with the coordinates of the relation moved to the boundary and along it."""
         step = np.where(self.about, trial - phi, 0.0)
         boundary = self.boundary(phi, step)
         rest, slope = phi + step - boundary, self.gradient(boundary)
-        inward = slope / max(float(slope @ slope), 1e-300)
-        rest -= inward * min(0.0, float(slope @ rest))
+        rest -= _inward(slope) * min(0.0, float(slope @ rest))
         for _ in range(CORRECTIONS):
             there = np.clip(boundary + rest, *self.bounds)
             if self.holds(there):
                 return np.where(self.about, there, trial)
             by = self.margin(there)
+            inward = _inward(np.where(self.at_bound(there, slope), 0.0, slope))
             rest = there - boundary + inward * (DIFFERENCE * abs(by) - by)
         return np.where(self.about, boundary, trial)
+
+
+def _inward(slope: FloatArray) -> FloatArray:
+    """The shortest step [nf] that gains a margin of one where its derivatives are `slope` [nf]."""
+    return slope / max(float(slope @ slope), 1e-300)

@@ -18,7 +18,7 @@ FloatArray = NDArray[np.float64]
 
 START_SPAN = 0.1  # s of motion that tell the rate at the start
 LEAST_START = 5  # samples of a parabola with two degrees of freedom left
-AT_REST = 4.0  # standard deviations: a rate below may be zero
+AT_REST = 4.0  # standard deviations: a signal that stays within, either way, may be at rest
 EDGE_SPAN = 0.1  # s over which the speed at the edge of a window is taken
 GAP_PLACES = (-0.9, -0.45, 0.45, 0.9)
 ROUNDING = 1.0 / np.sqrt(12.0)  # standard deviation of rounding, in counts
@@ -167,7 +167,7 @@ def with_start(model: Model, run: Run) -> Run:
         limit = 10.0 * sigma
         unknowns.append(_unknown(states, signal, angles, limit, sigma))
         may_rest = bool(rubbing & set(rates))
-        if may_rest and abs(rate) <= AT_REST * error:
+        if may_rest and _stays(run, column):
             continue
         start[[states.index(name) for name in rates]] = rate
         places = (0.0, -rate) if may_rest and abs(rate) <= 3.0 * AT_REST * error else ()
@@ -179,6 +179,12 @@ def with_start(model: Model, run: Run) -> Run:
             StartUnknown(f"gap_place_{contact}", tangent, -1.0, 1.0, 1.0, contact, GAP_PLACES)
         )
     return replace(run, start=start, unknowns=tuple(unknowns))
+
+
+def _stays(run: Run, column: int) -> bool:
+    """Whether a signal stays within its noise at the start of a run."""
+    count = max(LEAST_START, int(np.searchsorted(run.time, run.time[0] + START_SPAN)))
+    return float(np.ptp(run.measured[:count, column])) <= 2.0 * AT_REST / run.weight[column]
 
 
 def _first_rate(run: Run, column: int) -> tuple[float, float]:

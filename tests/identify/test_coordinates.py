@@ -24,11 +24,12 @@ SIGNED = st.one_of(st.just(0.0), SIZES, SIZES.map(lambda size: -size))
 
 @st.composite
 def parameters(draw: st.DrawFn) -> tuple[FreeParameter, float]:
-    """A free parameter of either kind, and a value that it may take."""
-    if draw(st.booleans()):
+    """A free parameter above zero, from zero on or of either sign, and a value it may take."""
+    smallest = draw(st.sampled_from([1e-6, 0.0, None]))
+    if smallest is not None:
         start = draw(SIZES)
-        free = free_parameter("J", start, 0.0, 1e3 * start)
-        return free, start * draw(st.floats(1e-5, 1e3))
+        free = free_parameter("J", start, smallest * start, 1e3 * start)
+        return free, start * draw(st.floats(smallest, 1e3))
     start, value = draw(SIGNED), draw(SIGNED)
     reach = 2.0 * max(abs(start), abs(value), 1.0)
     return free_parameter("J", start, -reach, reach), value
@@ -43,8 +44,10 @@ def test_there_and_back_is_the_same_value(pair: tuple[FreeParameter, float]) -> 
 
 @given(parameters())
 def test_slopes_are_what_differences_give(pair: tuple[FreeParameter, float]) -> None:
+    """At a bound, where values end, beside it: the difference reaches h to either side."""
     free, value = pair
-    phi, h = to_search([free], {"J": value}), 1e-6
+    (low, high), h = limits([free]), 1e-6
+    phi = np.clip(to_search([free], {"J": value}), low + h, high - h)
     above, below = (to_values([free], phi + step)["J"] for step in (h, -h))
     size = max(abs(value), free.scale)
     assert slopes([free], phi)[0] == pytest.approx((above - below) / (2 * h), abs=1e-8 * size)
@@ -55,16 +58,15 @@ def test_every_allowed_value_lies_within_the_limits(pair: tuple[FreeParameter, f
     free, value = pair
     (low,), (high,) = limits([free])
     (phi,) = to_search([free], {"J": value})
-    assert low <= phi <= high + 1e-12
+    assert low - 1e-12 <= phi <= high + 1e-12
     assert to_values([free], np.array([high]))["J"] == pytest.approx(free.upper, rel=1e-12)
-    if not free.logarithmic:
-        assert to_values([free], np.array([low]))["J"] == pytest.approx(free.lower, rel=1e-12)
+    assert to_values([free], np.array([low]))["J"] == pytest.approx(free.lower, rel=1e-12)
 
 
 @pytest.mark.parametrize(
     ("start", "lower", "upper", "logarithmic", "scale"),
     [
-        (0.05, 0.0, 1.0, True, 0.05),
+        (0.05, 0.0, 1.0, False, 0.05),
         (0.05, 0.01, 1.0, True, 0.05),
         (0.05, -1.0, 1.0, False, 0.05),
         (-0.4, -1.0, 1.0, False, 0.4),
@@ -90,9 +92,16 @@ def test_several_parameters_side_by_side_by_hand() -> None:
     assert high == pytest.approx([math.log(20.0), 5.0])
 
 
-def test_zero_is_a_millionth_of_the_start_where_logarithms_are_used() -> None:
+def test_zero_is_reached_where_it_is_a_bound() -> None:
     free = free_parameter("F_s", 0.5, 0.0, 30.0)
-    assert to_search([free], {"F_s": 0.0})[0] == pytest.approx(math.log(1e-6))
+    assert to_search([free], {"F_s": 0.0})[0] == limits([free])[0][0] == 0.0
+    assert to_values([free], np.zeros(1))["F_s"] == 0.0
+    assert slopes([free], np.zeros(1))[0] == 0.5
+
+
+def test_next_to_zero_is_a_millionth_of_the_start_where_logarithms_are_used() -> None:
+    free = free_parameter("J", 0.5, 1e-12, 30.0)
+    assert to_search([free], {"J": 1e-12})[0] == pytest.approx(math.log(1e-6))
     assert limits([free])[0][0] == pytest.approx(math.log(1e-6))
 
 

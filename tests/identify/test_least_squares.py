@@ -98,6 +98,39 @@ def test_one_parameter_that_wants_far_does_not_stop_the_others(coupling: float) 
     assert found.phi[0] == LARGEST_STEP
 
 
+def straight(matrix: Floats, target: Floats) -> Problem:
+    """As many residuals as parameters, linear, parameters above zero, no start unknowns."""
+    zero, none = np.zeros(len(target)), [np.zeros(0)]
+    return Problem(
+        lambda phi, z, tangents: [evaluation(target - matrix @ phi, -matrix, zero[:, None][:, :0])],
+        zero, zero + 1e6, none, none, none, zero, zero,
+    )  # fmt: skip
+
+
+def test_a_bound_is_neared_by_one_share_per_step_and_then_reached() -> None:
+    """The first parameter wants to -1. In its logarithm the steps would be of length one too, but
+    would never end at zero. Beyond 0.1 the second one, at 0.05 already, is not held up.
+    """
+    problem = straight(np.eye(2), np.array([-1.0, -1.0]))
+    begin = np.array([1.0, 0.05])
+    for steps, first in enumerate([np.exp(-1.0), np.exp(-2.0), np.exp(-3.0), 0.0], start=1):
+        found = minimise(problem, begin, [np.zeros(0)], iterations=steps)
+        assert found.phi[0] == pytest.approx(first, rel=1e-12, abs=0.0)
+        assert found.phi[1] == 0.0
+
+
+def test_what_a_bound_holds_up_the_others_make_good_at_once() -> None:
+    """The first step is SciPy's minimum in the box that may be reached in one."""
+    matrix, target = np.array([[1.0, 0.6], [0.6, 1.0]]), np.array([-1.0, 0.8])
+    begin = np.array([0.5, 1.0])
+    box = begin * np.exp(-1.0), begin + LARGEST_STEP
+    exact = lsq_linear(matrix, target, box).x
+    found = minimise(straight(matrix, target), begin, [np.zeros(0)], iterations=1)
+    assert exact[0] == pytest.approx(box[0][0])
+    assert box[0][1] < exact[1] < box[1][1]
+    assert found.phi == pytest.approx(exact, abs=2e-3)
+
+
 def location(values: Floats) -> Problem:
     """One parameter for runs without start unknowns: run r measures 50 times `values[r]`."""
     wave = np.tile([1.0, -1.0], 25)
