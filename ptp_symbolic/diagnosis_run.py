@@ -162,7 +162,7 @@ def diagnose_platform(
             platform, model, train_logs, validate_logs, effect_keys(platform), executor, progress
         )
         found = search(task)
-        verdict = decide(task, found)
+        verdict = decide(found)
         return _write_up(platform, task, found, verdict, noted)
 
 

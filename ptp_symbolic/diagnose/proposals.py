@@ -106,6 +106,19 @@ def _refined(
     return Proposal(placed, possible(task, {**begun, **found.values}))
 
 
+def with_lines(candidates: Sequence[Candidate], found: Proposals) -> tuple[Candidate, ...]:
+    """Candidates, those with a frequency at the line that was found, or left out without one."""
+    if found.regression is None:
+        return tuple(c for c in candidates if c.locked is None)
+    lines = {
+        (s.candidate.key, s.candidate.member): s.candidate
+        for s in found.regression.signatures
+        if s.candidate.locked is not None
+    }
+    placed = [c if c.locked is None else lines.get((c.key, c.member)) for c in candidates]
+    return tuple(c for c in placed if c is not None)
+
+
 def start_for(
     task: Task,
     found: Proposals,

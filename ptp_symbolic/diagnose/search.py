@@ -12,7 +12,13 @@ from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise
 from ptp_symbolic.diagnose.gain import Gain, gain, p_value
 from ptp_symbolic.diagnose.needed import MATERIAL, Step, is_earned, step_of
-from ptp_symbolic.diagnose.proposals import Proposals, declared_start, propose, start_for
+from ptp_symbolic.diagnose.proposals import (
+    Proposals,
+    declared_start,
+    propose,
+    start_for,
+    with_lines,
+)
 from ptp_symbolic.diagnose.refits import (
     ITERATIONS,
     LAST_RUNG,
@@ -48,9 +54,11 @@ ROUNDS = 3  # of growing: as many effects as a set may gain after the first choi
 class Search:
     """What the search found: the declared model, the chosen set (the same where nothing is added),
     what every member of it gains, all other trials, and the noise of the inputs [ny] as the
-    declared model carries it to the outputs.
+    declared model carries it to the outputs. `task` has the candidates with a frequency where a
+    line was found, and without those that have none.
     """
 
+    task: Task
     declared: Trial
     chosen: Trial
     members: tuple[Step, ...]
@@ -63,6 +71,7 @@ def search(task: Task) -> Search:
     """Find the set of candidates that the training runs ask for."""
     task.progress("comparing all sets of effects along the measured motion")
     proposals = propose(task)
+    task = replace(task, candidates=with_lines(task.candidates, proposals))
     task.progress("fitting the declared model")
     declared = fit_declared(task, proposals)
     seeker = Seeker(task, declared, proposals, carried_noise(task, declared))
@@ -101,7 +110,13 @@ class Seeker:
         without = {s.candidate.key: s.without for s in steps}
         members = [step_of(best, c, without[c.key]) for c in best.candidates]
         return Search(
-            self.declared, best, tuple(members), tuple(self.others), self.proposals, self.carried
+            self.task,
+            self.declared,
+            best,
+            tuple(members),
+            tuple(self.others),
+            self.proposals,
+            self.carried,
         )
 
     def proposed(self) -> list[Trial]:

@@ -19,6 +19,9 @@ FloatArray = NDArray[np.float64]
 
 SAME_DIRECTION = 1e-3  # singular value, relative: columns closer than this count once
 CYCLES_APART = 0.2  # of a period over the whole range: finer frequencies cannot be told apart
+LEAST_CYCLES = (
+    3.0  # over the whole range; with harmonics a slower wave fits any function of the place
+)
 ATTENUATED = 2.0  # cycles within a window: faster ones are averaged away
 SMALL_AMOUNT = 0.01  # of the amount at which a search begins: the rows are linear there
 DECLARED_AMOUNT = 0.05  # share of a declared value by which it is changed
@@ -145,21 +148,24 @@ def locked_signatures(
     def rows(changed: Mapping[str, float]) -> FloatArray:
         return space.rows(space.model.parameter_vector({**values, **changed}), own)
 
-    lines: dict[tuple[str, str | None], float] = {}
+    lines: dict[tuple[str, str | None], tuple[float, float]] = {}
     for candidate in candidates:
         if candidate.locked is None:
             continue
         name, place = candidate.locked
         if (place, candidate.axis) not in lines:
             lines[place, candidate.axis] = _strongest(space, candidate, residual, weight)
-        frequency = lines[place, candidate.axis]
+        frequency, lowest = lines[place, candidate.axis]
         limits = next(f for f in candidate.free if f.name == name)
-        if not limits.lower < frequency < limits.upper:
+        if not max(lowest, limits.lower) < frequency < limits.upper:
             continue
-        free = tuple(
-            replace(f, start=frequency, scale=CYCLES_APART * frequency) if f.name == name else f
-            for f in candidate.free
+        line = replace(
+            limits,
+            start=frequency,
+            scale=CYCLES_APART * frequency,
+            lower=max(lowest, limits.lower),
         )
+        free = tuple(line if f.name == name else f for f in candidate.free)
         shapes = tuple({**shape, name: frequency} for shape in candidate.shapes)
         placed = replace(candidate, free=free, shapes=shapes)
         found.append(_signature(placed, brought(placed, by_key), rows, weight))
@@ -168,8 +174,10 @@ def locked_signatures(
 
 def _strongest(
     space: EquationSpace, candidate: Candidate, residual: FloatArray, weight: FloatArray
-) -> float:
-    """The frequency in Hz, or in cycles per turn, of the strongest line of the residual torques."""
+) -> tuple[float, float]:
+    """The frequency in Hz, or in cycles per turn, of the strongest line of the residual torques,
+    and the lowest that is a line.
+    """
     equation, run, time = space.labels()
     assert candidate.locked is not None
     by_angle = candidate.locked[1] == "angle"
@@ -183,14 +191,15 @@ def _strongest(
     span = float(np.ptp(place)) / turn
     slow = float(np.quantile(np.abs(speed), 0.1)) / turn
     highest = ATTENUATED / max(2.0 * space.half_width * slow, 1e-12)
-    grid = np.arange(1.0 / span, highest, CYCLES_APART / span)
+    lowest = LEAST_CYCLES / span
+    grid = np.arange(lowest, highest, CYCLES_APART / span)
     value = residual[rows] * np.sqrt(weight[rows])
     power = np.zeros(len(grid))
     for axis in own:
         here = equation[rows] == axis
         phase = np.exp(2j * np.pi * np.outer(grid, place[here] / turn))
         power += np.abs(phase @ value[here]) ** 2 / np.sum(weight[rows][here])
-    return float(grid[int(np.argmax(power))]) if len(grid) else 0.0
+    return (float(grid[int(np.argmax(power))]) if len(grid) else 0.0), 0.9 * lowest
 
 
 def _angles(

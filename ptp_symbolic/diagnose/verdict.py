@@ -56,8 +56,9 @@ class Verdict:
     held_out: Gain | None
 
 
-def decide(task: Task, found: Search) -> Verdict:
+def decide(found: Search) -> Verdict:
     """Confirm the chosen set, find what it cannot be told from, and judge the validation runs."""
+    task = found.task
     refused: dict[str, str] = {}
     seeker = Seeker(task, found.declared, found.proposals, found.carried)
     trial, steps = found.chosen, list(found.members)
