@@ -25,12 +25,13 @@ from ptp_symbolic.data import (
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.diagnose.curves import curves_of
 from ptp_symbolic.diagnose.errors import error_of
+from ptp_symbolic.diagnose.findings import Search
 from ptp_symbolic.diagnose.floor import carried_noise, floor_of
 from ptp_symbolic.diagnose.preparation import task_of
 from ptp_symbolic.diagnose.proposals import propose
 from ptp_symbolic.diagnose.refits import fit_declared
 from ptp_symbolic.diagnose.residual_tests import residual_tests
-from ptp_symbolic.diagnose.search import Search, search
+from ptp_symbolic.diagnose.search import search
 from ptp_symbolic.diagnose.summary import (
     cause,
     error_table,

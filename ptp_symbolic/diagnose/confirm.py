@@ -61,7 +61,9 @@ def unstable_without(fit: Fit, candidate: Candidate) -> str | None:
     left = leave_blocks_out(residual, columns, label)
     own = [k for k, f in enumerate(fit.free) if f.name in candidate.parameters]
     others = [k for k in range(len(fit.free)) if k not in own]
-    effect = outside(effect_of(fit, candidate, columns)[:, None], columns[:, others])[:, 0]
+    effect = outside(effect_of(fit, candidate.vanishing, columns)[:, None], columns[:, others])[
+        :, 0
+    ]
     mine = outside(columns[:, own], columns[:, others])
     square = float(effect @ effect)
     if square == 0.0:

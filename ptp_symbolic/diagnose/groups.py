@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.findings import MATERIAL
 from ptp_symbolic.diagnose.gain import Gain, gain
 from ptp_symbolic.diagnose.linear import canonical_correlation, effect_of, outside, stacked
-from ptp_symbolic.diagnose.needed import MATERIAL
 from ptp_symbolic.diagnose.proposals import Proposals
-from ptp_symbolic.diagnose.refits import ITERATIONS
+from ptp_symbolic.diagnose.refits import CERTAIN, ITERATIONS
 from ptp_symbolic.diagnose.responses import REACH, Columns, least, response_columns
 from ptp_symbolic.diagnose.search import Seeker
 from ptp_symbolic.diagnose.signatures import Signature
@@ -59,7 +59,10 @@ def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> 
         kept = tuple(c for c in chosen.candidates if c is not member)
         alike = look_alikes(task, chosen, fit, member)[:MOST_REFITTED]
         begun += [fitted(task, (*kept, s.candidate), s.values, chosen.fit.z, 0, fit) for s in alike]
+        refitted_already = {s.candidate.key for s in alike}
         for candidate in alike_along_motion(seeker.proposals, chosen, member)[:MOST_REFITTED]:
+            if candidate.key in refitted_already:
+                continue
             begun += seeker.led((*kept, candidate), chosen.values)
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
@@ -71,10 +74,11 @@ def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> 
         if fresh and gain(chosen, other).share < NEAR:
             trials.append(other)
     result: dict[tuple[str, ...], Rival] = {}
-    for trial in trials:
+    near = [t for t in ranked(trials) if gain(chosen, t).share < CERTAIN]
+    for trial in near[:MOST_REFITTED]:
         refitted = seeker.polished(trial)
         rival = Rival(refitted, gain(chosen, refitted))
-        if not (rival.gain.share >= MATERIAL and rival.gain.is_clear(len(trials))):
+        if not (rival.gain.share >= MATERIAL and rival.gain.is_clear(len(near))):
             result.setdefault(refitted.keys, rival)
     return list(result.values())
 
@@ -138,7 +142,7 @@ def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[S
     table = stacked(fit, [e.by_parameter for e in fit.evaluations])
     own = [k for k, f in enumerate(fit.free) if f.name in member.parameters]
     others = [k for k in range(len(fit.free)) if k not in own]
-    effect = effect_of(fit, member, table)
+    effect = effect_of(fit, member.vanishing, table)
     away = table[:, others]
     target = outside(effect[:, None], away)[:, 0]
     size = float(np.linalg.norm(target))

@@ -2,12 +2,11 @@
 follow.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.identify.coordinates import slopes, to_search
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.intervals import project_out
@@ -25,15 +24,15 @@ def stacked(fit: Fit, columns: Sequence[FloatArray]) -> FloatArray:
     return np.vstack([project_out(c, e.by_start) for c, e in pairs])
 
 
-def effect_of(fit: Fit, member: Candidate, table: FloatArray) -> FloatArray:
-    """What `member` changes in the residuals [n] at the fit, linearly: `table` [n, nf] are the
-    derivatives by the search coordinates.
+def effect_of(fit: Fit, vanishing: Mapping[str, float], table: FloatArray) -> FloatArray:
+    """What parameters change in the residuals [n] at the fit against their values in `vanishing`,
+    linearly: `table` [n, nf] are the derivatives by the search coordinates.
     """
     unit = slopes(fit.free, to_search(fit.free, fit.values))
     effect = np.zeros(len(table))
     for k, f in enumerate(fit.free):
-        if f.name in member.vanishing:
-            effect += table[:, k] / unit[k] * (fit.values[f.name] - member.vanishing[f.name])
+        if f.name in vanishing:
+            effect += table[:, k] / unit[k] * (fit.values[f.name] - vanishing[f.name])
     return effect
 
 

@@ -31,6 +31,7 @@ RUNGS = ((ITERATIONS, 2), (ITERATIONS, 1))  # of successive halving: iterations,
 LAST_RUNG = RUNGS[1:]
 CYCLES = 3  # of a polished fit
 LITTLE = 0.02  # gain of a cycle, of the logarithm of the mean square, with which it ends
+CERTAIN = 0.9  # share of the loss from which on a gain is no matter of where a fit ended
 POLISH = 12  # iterations of each half of a cycle
 
 
@@ -93,15 +94,15 @@ def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
     return trial
 
 
-def expected_gain(trial: Trial, candidate: Candidate) -> float:
-    """The share of the squared residual without `candidate` that it takes away, predicted from the
-    derivatives at the fit.
+def expected_gain(trial: Trial, vanishing: Mapping[str, float]) -> float:
+    """The share of the squared residual with the parameters in `vanishing` at their values there
+    that those at the fit take away, predicted from the derivatives.
     """
     fit = trial.fit
     residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
     columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
-    others = [k for k, f in enumerate(fit.free) if f.name not in candidate.parameters]
-    effect = outside(effect_of(fit, candidate, columns)[:, None], columns[:, others])[:, 0]
+    others = [k for k, f in enumerate(fit.free) if f.name not in vanishing]
+    effect = outside(effect_of(fit, vanishing, columns)[:, None], columns[:, others])[:, 0]
     taken = float(effect @ effect)
     return taken / max(taken + float(residual @ residual), 1e-300)
 

@@ -3,15 +3,15 @@ completed, pruned and grown until every candidate in it is needed and none outsi
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.findings import MATERIAL, Search, Step, is_earned, step_of
 from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise
 from ptp_symbolic.diagnose.gain import Gain, gain, p_value
-from ptp_symbolic.diagnose.needed import MATERIAL, Step, is_earned, step_of
 from ptp_symbolic.diagnose.proposals import (
     Proposals,
     declared_start,
@@ -20,6 +20,7 @@ from ptp_symbolic.diagnose.proposals import (
     with_lines,
 )
 from ptp_symbolic.diagnose.refits import (
+    CERTAIN,
     ITERATIONS,
     LAST_RUNG,
     RUNGS,
@@ -37,6 +38,7 @@ from ptp_symbolic.diagnose.trial import (
     continued,
     fitted,
     halving,
+    misfits,
     ranked,
 )
 from ptp_symbolic.identify.secants import WIDE_STEP
@@ -44,27 +46,9 @@ from ptp_symbolic.identify.secants import WIDE_STEP
 FloatArray = NDArray[np.float64]
 
 PARTS_OF_THE_WAY = (1.0, 0.5)  # of a response: finite amounts may be far from linear
-CERTAIN = 0.9  # share of the loss from which on a gain is no matter of where a fit ended
 PROPOSED = 3  # sets that are refitted to whole runs, of those that the rows propose
 ADDED = 4  # candidates that are refitted when one is added
 ROUNDS = 3  # of growing: as many effects as a set may gain after the first choice
-
-
-@dataclass(frozen=True, eq=False)
-class Search:
-    """What the search found: the declared model, the chosen set (the same where nothing is added),
-    what every member of it gains, all other trials, and the noise of the inputs [ny] as the
-    declared model carries it to the outputs. `task` has the candidates with a frequency where a
-    line was found, and without those that have none.
-    """
-
-    task: Task
-    declared: Trial
-    chosen: Trial
-    members: tuple[Step, ...]
-    others: tuple[Trial, ...]
-    proposals: Proposals
-    carried: FloatArray
 
 
 def search(task: Task) -> Search:
@@ -95,6 +79,7 @@ class Seeker:
             task.progress(f"refitting {len(sets) + len(unseen)} proposed sets")
             found = halving(task, sets, RUNGS) + halving(task, unseen, LAST_RUNG)
             self.others += sets
+            found = [t for t in ranked(found) if self.is_near(t, found)]
             best = self.best_of([best, *(self.completed(t) for t in found)])
         best, steps = self.pruned(best)
         for _ in range(ROUNDS):
@@ -165,6 +150,11 @@ class Seeker:
     def best_of(self, trials: Sequence[Trial]) -> Trial:
         """The trial that fits best."""
         return ranked(trials)[0]
+
+    def is_near(self, trial: Trial, others: Sequence[Trial]) -> bool:
+        """Whether a trial leaves at most e times the mean square of the best of others."""
+        cost = misfits([trial, *others])
+        return cost[0] - min(cost) <= sum(run.size for run in trial.fit.runs)
 
     def is_at_noise(self, trial: Trial) -> bool:
         """Whether a trial leaves white noise alone."""
@@ -247,7 +237,7 @@ class Seeker:
         """
         while trial.candidates:
             steps = []
-            expected = {c.key: expected_gain(trial, c) for c in trial.candidates}
+            expected = {c.key: expected_gain(trial, c.vanishing) for c in trial.candidates}
             for candidate in sorted(trial.candidates, key=lambda c: expected[c.key]):
                 step = self.step(trial, candidate)
                 if not self.is_needed(step):
@@ -289,9 +279,11 @@ class Seeker:
                 key=lambda c: len(c.free),
             )
             for form in simpler:
-                smaller = self.in_form(trial, candidate, form)
                 names = {f.name for f in form.free}
                 lost = {n: v for n, v in candidate.vanishing.items() if n not in names}
+                if expected_gain(trial, lost) > CERTAIN:
+                    continue
+                smaller = self.in_form(trial, candidate, form)
                 if not self.is_earned(gain(trial, smaller), p_value(trial, lost)):
                     trial = smaller
                     break

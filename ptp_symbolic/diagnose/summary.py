@@ -7,9 +7,9 @@ import numpy as np
 
 from ptp_symbolic.diagnose.candidates import DECLARED_VALUE, Candidate
 from ptp_symbolic.diagnose.errors import DEFINITION, error_of
+from ptp_symbolic.diagnose.findings import Search
 from ptp_symbolic.diagnose.floor import Floor
 from ptp_symbolic.diagnose.gain import Gain, gain
-from ptp_symbolic.diagnose.search import Search
 from ptp_symbolic.diagnose.trial import Trial, ranked
 from ptp_symbolic.diagnose.verdict import (
     EXPLAINED,

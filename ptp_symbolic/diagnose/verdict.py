@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ptp_symbolic.diagnose.confirm import answers_to_inputs, why_unconfirmed
+from ptp_symbolic.diagnose.findings import MATERIAL, Search, Step, step_of
 from ptp_symbolic.diagnose.floor import (
     Floor,
     carried_noise,
@@ -14,8 +15,7 @@ from ptp_symbolic.diagnose.floor import (
 )
 from ptp_symbolic.diagnose.gain import Gain, compared, gain
 from ptp_symbolic.diagnose.groups import Rival, confusable, rivals
-from ptp_symbolic.diagnose.needed import MATERIAL, Step, step_of
-from ptp_symbolic.diagnose.search import Search, Seeker
+from ptp_symbolic.diagnose.search import Seeker
 from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy, mean_squares, quietest, ranked
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, unblinded
 

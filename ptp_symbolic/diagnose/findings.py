@@ -1,10 +1,16 @@
-"""Whether a candidate is needed: what it gains, and how likely that is where it is not there."""
+"""What a search finds: the chosen set, what its members gain, and whether that is enough."""
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.gain import Gain, gain, p_value
-from ptp_symbolic.diagnose.trial import Trial
+from ptp_symbolic.diagnose.proposals import Proposals
+from ptp_symbolic.diagnose.trial import Task, Trial
+
+FloatArray = NDArray[np.float64]
 
 MATERIAL = 0.1  # share of the predictive loss below which a candidate is not worth a name
 FALSE_ALARM = 0.05  # over all candidates that a search looks at
@@ -20,6 +26,23 @@ class Step:
     gain: Gain
     p_value: float
     without: Trial
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What the search found: the declared model, the chosen set (the same where nothing is added),
+    what every member of it gains, all other trials, and the noise of the inputs [ny] as the
+    declared model carries it to the outputs. `task` has the candidates with a frequency where a
+    line was found, and without those that have none.
+    """
+
+    task: Task
+    declared: Trial
+    chosen: Trial
+    members: tuple[Step, ...]
+    others: tuple[Trial, ...]
+    proposals: Proposals
+    carried: FloatArray
 
 
 def step_of(trial: Trial, candidate: Candidate, without: Trial) -> Step:
