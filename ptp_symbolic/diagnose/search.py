@@ -232,9 +232,7 @@ class Seeker:
         return is_earned(earned, p, len(self.task.candidates))
 
     def pruned(self, trial: Trial) -> tuple[Trial, list[Step]]:
-        """Take candidates out, the one that seems to gain least first, until each that is left
-        gains clearly and materially; with what each of those gains.
-        """
+        """Take out what seems to gain least until all that is left is needed, with its gains."""
         while trial.candidates:
             steps = []
             expected = {c.key: expected_gain(trial, c.vanishing) for c in trial.candidates}
