@@ -202,10 +202,9 @@ def _write_up(
     platform: Platform, task: Task, found: Search, verdict: Verdict, noted: Sequence[str]
 ) -> Output:
     after = replace(verdict.final, fit=unblinded(verdict.final.fit, task.executor))
-    declared = found.declared
     intervals = {e.name: e for e in estimates(after.fit)}
     parts = {
-        "train": (declared.fit, after.fit),
+        "train": (found.declared.fit, after.fit),
         "validate": (verdict.before, verdict.after),
     }
     errors = error_table(parts, verdict.floor)
@@ -225,7 +224,7 @@ def _write_up(
         "error": errors,
         "residual_tests": residual_tests(verdict.after, task.model.input_names),
         "fit": {
-            "before": {"parameters": fit_table(declared, estimates(declared.fit))},
+            "before": {"parameters": fit_table(found.declared, estimates(found.declared.fit))},
             "after": {"parameters": fit_table(after, tuple(intervals.values()))},
         },
         "held_out": None if verdict.held_out is None else gain_table(verdict.held_out),
