@@ -22,6 +22,7 @@ CYCLES_APART = 0.2  # of a period over the whole range: finer frequencies cannot
 LEAST_CYCLES = (
     3.0  # over the whole range; with harmonics a slower wave fits any function of the place
 )
+BINS_PER_CYCLE = 4.0  # of the highest frequency of a scan: a bin dims it by a tenth
 ATTENUATED = 2.0  # cycles within a window: faster ones are averaged away
 SMALL_AMOUNT = 0.01  # of the amount at which a search begins: the rows are linear there
 DECLARED_AMOUNT = 0.05  # share of a declared value by which it is changed
@@ -188,18 +189,26 @@ def _strongest(
     if by_angle:
         place, speed = _angles(space, own[0], run[rows], time[rows])
     turn = 2.0 * np.pi if by_angle else 1.0
-    span = float(np.ptp(place)) / turn
+    place = (place - place.min()) / turn
+    span = max(float(place.max()), 1e-12)
     slow = float(np.quantile(np.abs(speed), 0.1)) / turn
-    highest = ATTENUATED / max(2.0 * space.half_width * slow, 1e-12)
+    limits = next(f for f in candidate.free if f.name == candidate.locked[0])
+    highest = min(ATTENUATED / max(2.0 * space.half_width * slow, 1e-12), limits.upper)
     lowest = LEAST_CYCLES / span
-    grid = np.arange(lowest, highest, CYCLES_APART / span)
+    if highest <= lowest:
+        return 0.0, 0.9 * lowest
+    width = 1.0 / (BINS_PER_CYCLE * highest)
+    bins = (place / width).astype(np.int64)
     value = residual[rows] * np.sqrt(weight[rows])
-    power = np.zeros(len(grid))
+    count = int(span / (width * CYCLES_APART)) + 1
+    frequency = np.fft.rfftfreq(count, width)
+    power = np.zeros(len(frequency))
     for axis in own:
         here = equation[rows] == axis
-        phase = np.exp(2j * np.pi * np.outer(grid, place[here] / turn))
-        power += np.abs(phase @ value[here]) ** 2 / np.sum(weight[rows][here])
-    return (float(grid[int(np.argmax(power))]) if len(grid) else 0.0), 0.9 * lowest
+        summed = np.bincount(bins[here], weights=value[here], minlength=int(bins.max()) + 1)
+        power += np.abs(np.fft.rfft(summed, count)) ** 2 / np.sum(weight[rows][here])
+    power[(frequency < lowest) | (frequency > highest)] = 0.0
+    return float(frequency[int(np.argmax(power))]), 0.9 * lowest
 
 
 def _angles(

@@ -7,7 +7,7 @@ import pytest
 
 from ptp_symbolic.identify.coordinates import free_parameter
 from ptp_symbolic.identify.evaluate import Tolerance, evaluate
-from ptp_symbolic.identify.fit import Fit, fit_parameters, run_counts
+from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, run_counts, unblinded
 from ptp_symbolic.identify.intervals import estimates
 from tests.identify.pan_runs import (
     FINE_STEPS,
@@ -143,3 +143,25 @@ def test_derivatives_by_start_and_gap_are_those_of_differences(z: np.ndarray) ->
         step = h * np.eye(2)[index]
         slope = (residual(np.zeros(2), z + step) - residual(np.zeros(2), z - step)) / (2 * h)
         assert e.by_start[:, index] == pytest.approx(slope, abs=2e-3 * np.max(np.abs(slope)))
+
+
+def test_a_parameter_without_influence_is_not_seen_through_coarse_simulations() -> None:
+    """Without a Stribeck effect nothing depends on its rate: differences at the tolerance of the
+    fit say so, those of a coarse simulation against a fine one would not.
+    """
+    made = make_runs(PanDrive(F_s_forward=0.24, F_s_backward=0.24), [sine()[:400]], 6)
+    free = starts_off({"F_v_pan": 14.0, "v_s_pan": 0.02}, 6)
+    fixed = {**KNOWN, **TRUTH, "F_c_pan": 0.24, "F_s_pan": 0.24}
+    coarse = Effort(2, tolerance=Tolerance(1e-3, 1e-5))
+    fit = unblinded(fit_parameters(MODEL, made.runs, free, fixed, None, coarse))
+    viscous, stribeck = (np.linalg.norm(fit.evaluations[0].by_parameter, axis=0)).tolist()
+    assert viscous > 1.0
+    assert stribeck < 1e-6 * viscous
+
+
+def test_the_tolerance_follows_the_resolution_of_the_encoder() -> None:
+    """A count of 20 bits is a hundred and forty times finer than one of 7200 per turn."""
+    usual = Tolerance.for_resolution(COUNT / np.sqrt(12.0), 0.01)
+    fine = Tolerance.for_resolution(2.0 * np.pi / 2**20 / np.sqrt(12.0), 0.01)
+    assert (usual.relative, usual.angle) == pytest.approx((1e-4, 1e-6), rel=1e-9)
+    assert usual.angle / fine.angle == pytest.approx(2**20 / 7200, rel=1e-9)

@@ -1,0 +1,70 @@
+"""What an effect must stand before it is named, on fits of straight models."""
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.confirm import at_bound, unstable_without
+from ptp_symbolic.diagnose.findings import FALSE_ALARM, MATERIAL, is_earned
+from ptp_symbolic.diagnose.gain import Gain, p_value
+from ptp_symbolic.diagnose.trial import Trial
+from ptp_symbolic.identify.coordinates import free_parameter
+from tests.identify.curves import Floats
+from tests.identify.straight import finished
+
+SPRING = free_parameter("k", 1.0, -5.0, 5.0)
+EFFECT = Candidate("spring", None, "", "", (SPRING,), {"k": 0.0})
+
+
+def fit_of(columns: list[Floats], truths: list[float], noise: float = 0.01):
+    """Runs [k] that follow `truths` times their column, fitted by one spring for all."""
+    rng = np.random.default_rng(8)
+    pairs = list(zip(truths, columns, strict=True))
+    measured = [k * c + noise * rng.standard_normal(len(c)) for k, c in pairs]
+    whole, right = np.concatenate(columns), np.concatenate(measured)
+    value = float(whole @ right / (whole @ whole))
+    residuals = [m - value * c for m, c in zip(measured, columns, strict=True)]
+    slopes = [-c[:, None] * SPRING.scale for c in columns]
+    return finished(residuals, slopes, None, (SPRING,), {"k": value})
+
+
+def waves(count: int) -> list[Floats]:
+    return [np.sin(0.1 * np.arange(300) + k) for k in range(count)]
+
+
+def test_an_effect_that_all_runs_ask_for_holds() -> None:
+    assert unstable_without(fit_of(waves(4), [1.0] * 4), EFFECT) is None
+
+
+def test_an_effect_that_one_run_asks_for_and_others_deny_does_not_hold() -> None:
+    """Of the four the last asks for 4, the others for nothing: 1 in all, 0 without it."""
+    assert unstable_without(fit_of(waves(4), [0.0, 0.0, 0.0, 4.0]), EFFECT) == "run 3"
+
+
+def test_an_effect_that_one_run_alone_can_show_is_let_be() -> None:
+    columns = [0.0 * w for w in waves(3)] + waves(1)
+    assert unstable_without(fit_of(columns, [0.0, 0.0, 0.0, 1.0]), EFFECT) is None
+
+
+@pytest.mark.parametrize(("value", "named"), [(4.9999, "k"), (-5.0, "k"), (0.0, None), (2.0, None)])
+def test_a_parameter_pressed_against_a_bound_is_named(value: float, named: str | None) -> None:
+    fit = finished([np.ones(9)], [np.ones((9, 1))], None, (SPRING,), {"k": value})
+    assert at_bound(fit, EFFECT) == named
+
+
+def test_what_a_few_blocks_show_beyond_doubt_is_clear() -> None:
+    """One run in six shows the effect, in a third of its samples; noise alone is not clear."""
+    pulse = np.where(np.arange(600) % 300 < 100, np.sin(0.1 * np.arange(600)), 0.0)
+    columns = [0.0 * pulse] * 5 + [pulse]
+    found = Trial((), fit_of(columns, [1.0] * 6))
+    assert p_value(found, {"k": 0.0}) < 1e-6
+    nothing = Trial((), fit_of(columns, [0.0] * 6))
+    assert p_value(nothing, {"k": 0.0}) > 0.01
+
+
+def test_a_gain_must_be_material_and_clear_over_all_candidates() -> None:
+    p = FALSE_ALARM / 40
+    assert is_earned(Gain(MATERIAL, 0.01, 0.2, 9.0, 20), 0.9 * p, 40)
+    assert not is_earned(Gain(0.9 * MATERIAL, 0.01, 0.2, 9.0, 20), 0.9 * p, 40)
+    assert not is_earned(Gain(MATERIAL, -0.01, 0.2, 9.0, 20), 0.9 * p, 40)
+    assert not is_earned(Gain(MATERIAL, 0.01, 0.2, 9.0, 20), 1.1 * p, 40)

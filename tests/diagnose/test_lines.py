@@ -1,0 +1,59 @@
+"""Frequencies are found by a full scan, also in long logs."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.signatures import CYCLES_APART, LEAST_CYCLES, _strongest
+from ptp_symbolic.identify.coordinates import free_parameter
+from tests.identify.curves import Floats
+
+
+def space_of(time: Floats, angle: Floats) -> Any:
+    """One axis that was measured at `angle`, with a row at every sample."""
+    rows = np.zeros(len(time), dtype=np.int64)
+    run = SimpleNamespace(time=time, signals=("theta_pan",), measured=angle[:, None])
+    return SimpleNamespace(
+        labels=lambda: (rows, rows, time), runs=(run,), half_width=0.05,
+        model=SimpleNamespace(module=SimpleNamespace(AXES=("pan",))),
+    )  # fmt: skip
+
+
+def locked_to(place: str) -> Candidate:
+    free = (free_parameter("n", 9.0, 0.5, 1e3),)
+    return Candidate("cogging", "pan", "", "", free, {}, locked=("n", place))
+
+
+@pytest.mark.parametrize("seconds", [10.0, 300.0])
+@pytest.mark.parametrize("cycles", [8.3, 24.0, 61.0])
+def test_cogging_is_found_at_its_cycles_per_turn(cycles: float, seconds: float) -> None:
+    """To the spacing of the scan; the axis sways by 1.4 rad, slowly in long logs."""
+    time = np.linspace(0.0, seconds, 6000)
+    angle = 1.4 * np.sin(2.0 * np.pi * time / seconds)
+    residual = 0.3 * np.sin(cycles * angle + 0.4)
+    residual += 0.3 * np.random.default_rng(2).standard_normal(6000)
+    space = space_of(time, angle)
+    found, _ = _strongest(space, locked_to("angle"), residual, np.ones(6000))
+    assert found == pytest.approx(cycles, abs=CYCLES_APART / (2.8 / (2.0 * np.pi)))
+
+
+def test_a_slow_wave_is_no_line() -> None:
+    """Two thirds of a turn hold three cycles of four and a half per turn, not of two."""
+    time = np.linspace(0.0, 20.0, 4000)
+    angle = (2.0 / 3.0) * np.pi * np.sin(2.0 * np.pi * time / 20.0)
+    found, lowest = _strongest(
+        space_of(time, angle), locked_to("angle"), np.sin(2.0 * angle), np.ones(4000)
+    )
+    assert found >= LEAST_CYCLES * 1.5 - 1e-6
+    assert lowest == pytest.approx(0.9 * 4.5, rel=1e-6)
+
+
+def test_a_line_in_time_is_found_in_hertz() -> None:
+    time = np.linspace(0.0, 60.0, 12000)
+    residual = np.sin(2.0 * np.pi * 7.31 * time) + np.random.default_rng(3).standard_normal(12000)
+    space = space_of(time, np.zeros(12000))
+    found, _ = _strongest(space, locked_to("time"), residual, np.ones(12000))
+    assert found == pytest.approx(7.31, abs=CYCLES_APART / 60.0)

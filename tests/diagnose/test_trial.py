@@ -1,0 +1,41 @@
+"""How trials are ranked: one scale for all, and runs far off do not decide."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.diagnose.trial import BEND, Trial, misfits, ranked
+from tests.identify.curves import Floats
+from tests.identify.straight import finished
+
+WAVE = np.where(np.arange(60) % 2, 1.0, -1.0)
+
+
+def trial(residuals: Sequence[Floats]) -> Trial:
+    return Trial((), finished(residuals))
+
+
+def test_a_misfit_is_the_logarithm_of_the_mean_square_of_every_signal() -> None:
+    two = [np.column_stack([2.0 * WAVE, 3.0 * WAVE])] * 4
+    (found,) = misfits([trial(two)])
+    assert found == pytest.approx(240 * (np.log(4.0) + np.log(9.0)), rel=1e-12)
+
+
+def test_trials_are_compared_in_the_scale_of_the_best() -> None:
+    """One run of five is off by 10: it counts linearly beside the others, alike in both trials,
+    though by its own median the second would bend five times later.
+    """
+    first = trial([WAVE] * 4 + [10.0 * WAVE])
+    second = trial([5.0 * WAVE] * 4 + [10.0 * WAVE])
+    bent = 2.0 * np.sqrt(BEND**2 * 100.0) - BEND**2
+    steady = 2.0 * np.sqrt(BEND**2 * 25.0) - BEND**2
+    expected = [300 * np.log((4.0 + bent) / 5.0), 300 * np.log((4.0 * steady + bent) / 5.0)]
+    assert misfits([first, second]) == pytest.approx(expected, rel=1e-12)
+    assert misfits([second, first]) == pytest.approx(expected[::-1], rel=1e-12)
+
+
+def test_a_failed_simulation_ranks_last() -> None:
+    good, failed = trial([WAVE]), trial([np.full(60, np.nan)])
+    assert misfits([failed, good])[0] == np.inf
+    assert ranked([failed, good])[0] is good
