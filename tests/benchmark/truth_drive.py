@@ -142,6 +142,6 @@ def torque_along(drive: Any, time: Floats, motion: Floats) -> Floats:
         torque[k] += cogging_torque(drive, gear_angle)
         if gear_rate != 0.0:
             slip = 1 if gear_rate > 0.0 else -1
-            change = dry_change(drive, angle, gear_angle, load)
+            change = dry_change(drive, gear_angle, load)
             torque[k] -= sliding_friction(drive, time[k], gear_rate, slip, change)
     return torque
