@@ -25,7 +25,6 @@ ROUGH, SHARP = (
     1e-2,
     1e-3,
 )  # error of a simulation as a share of the noise, while searching and at last
-FAR = 20.0  # standard deviations: from here on simulations need no better accuracy
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,26 +101,16 @@ def fitted(
 ) -> Trial:
     """Fit from `values` (all parameters of the model) and the starts `z` of the runs.
 
-    Simulations are as accurate as what the `parent`, from which the fit goes on, leaves asks for.
     `secants` is the step of the differences that replace derivatives which mislead; those that
     misled the parent are known to mislead.
     """
     free = freed(task, candidates, values)
     names = {name for f in free for name in (f.name, *f.tied)}
     fixed = {name: value for name, value in task.fixed.items() if name not in names}
-    rms = 1.0 if parent is None else quietest(parent)
-    effort = Effort(iterations, GAIN, accuracy(task, share, rms), secants=secants)
+    effort = Effort(iterations, GAIN, accuracy(task, share), secants=secants)
     known = None if secants is None else _inherited(parent, free)
     fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known)
     return Trial(tuple(candidates), fit)
-
-
-def quietest(fit: Fit) -> float:
-    """The smallest rms, in standard deviations, that a fit leaves in an angle."""
-    squares = mean_squares(fit.evaluations, fit.runs)
-    angles = [k for k, name in enumerate(fit.runs[0].signals) if name.startswith("theta_")]
-    left = squares[:, angles] if angles else squares
-    return float(np.sqrt(np.min(np.median(left, axis=0))))
 
 
 def _inherited(parent: Fit | None, free: Sequence[FreeParameter]) -> list[tuple[int, int]] | None:
@@ -140,11 +129,11 @@ def _inherited(parent: Fit | None, free: Sequence[FreeParameter]) -> list[tuple[
 GAIN = 2e-4  # relative gain of an iteration below which two in a row end a fit
 
 
-def accuracy(task: Task, share: float, rms: float = 1.0) -> Tolerance:
-    """Tolerance that keeps angles good to a `share` of their noise, or of what a model leaves
-    (`rms` in standard deviations).
+def accuracy(task: Task, share: float) -> Tolerance:
+    """Tolerance that keeps angles good to a `share` of their noise: a coarser one, where more is
+    left, makes a misfit jump wherever friction lets go a sample later.
     """
-    return Tolerance.for_resolution(task.resolution * max(1.0, min(rms, FAR)), share)
+    return Tolerance.for_resolution(task.resolution, share)
 
 
 def continued(
@@ -171,7 +160,7 @@ def simulated(
 ) -> list[Evaluation]:
     """All runs of `fit` with `values` in place of its own, without derivatives."""
     p, none = task.model.parameter_vector({**fit.values, **values}), np.zeros(0, dtype=np.int64)
-    tolerance = accuracy(task, ROUGH, quietest(fit))
+    tolerance = accuracy(task, ROUGH)
 
     def one(pair: tuple[Run, FloatArray]) -> Evaluation:
         return evaluate(task.model, pair[0], p, pair[1], none, False, tolerance)

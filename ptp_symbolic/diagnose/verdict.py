@@ -16,7 +16,7 @@ from ptp_symbolic.diagnose.floor import (
 from ptp_symbolic.diagnose.gain import Gain, compared, gain
 from ptp_symbolic.diagnose.groups import Rival, confusable, rivals
 from ptp_symbolic.diagnose.search import Seeker
-from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy, mean_squares, quietest, ranked
+from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy, mean_squares, ranked
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, unblinded
 
 NOTHING_MISSING = "nothing_missing"
@@ -160,7 +160,7 @@ def _is_quiet(trial: Trial, floor: Floor, after: Fit) -> bool:
 
 def held_out_fit(task: Task, trial: Trial) -> Fit:
     """The validation runs by the model of a trial, nothing but their starts fitted."""
-    effort = Effort(HELD_OUT_ITERATIONS, 1e-3, accuracy(task, SHARP, quietest(trial.fit)))
+    effort = Effort(HELD_OUT_ITERATIONS, 1e-3, accuracy(task, SHARP))
     return fit_parameters(task.model, task.validate, (), trial.values, None, effort, task.executor)
 
 
