@@ -3,6 +3,7 @@
 import re
 
 import sympy as sp
+from sympy.printing.latex import LatexPrinter
 from sympy.printing.mathml import mathml
 
 GREEK = {
@@ -11,6 +12,7 @@ GREEK = {
 }  # fmt: skip
 DERIVATIVES = {"dc": r"\Delta c", "dF": r"\Delta F"}
 LINE_WIDTH = 92
+ARGUMENT_WIDTH = 40  # of a maximum, beside what it is multiplied with
 _SIGN = '<mo form="infix">{}</mo>'
 
 
@@ -38,7 +40,24 @@ def latex_of(expression: sp.Expr) -> str:
     """LaTeX of an expression, symbols as `symbol_latex` writes them."""
     expression = _with_decimals(expression)
     names = {s: symbol_latex(str(s)) for s in expression.free_symbols}
-    return str(sp.latex(expression, symbol_names=names, order="lex"))
+    return str(_Printer({"symbol_names": names, "order": "lex"}).doprint(expression))
+
+
+class _Printer(LatexPrinter):
+    """Prints long arguments of a maximum on several lines, so that they stay on the page."""
+
+    def _print_Max(self, expression: sp.Max, exp: str | None = None) -> str:
+        lines = [latex_lines(a, ARGUMENT_WIDTH) for a in sorted(expression.args, key=str)]
+        if all(len(own) == 1 for own in lines):
+            return str(self._hprint_variadic_function(expression, exp))
+        written = [
+            own[0]
+            if len(own) == 1
+            else "\\begin{aligned}& " + " \\\\ & ".join(own) + "\\end{aligned}"
+            for own in lines
+        ]
+        power = "" if exp is None else f"^{{{exp}}}"
+        return f"\\max{power}\\left({', '.join(written)}\\right)"
 
 
 def latex_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
