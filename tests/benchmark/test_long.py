@@ -15,7 +15,7 @@ from tests.benchmark.runner import line_of, run_one
 pytestmark = pytest.mark.long
 
 EVERY = 10  # one set of ten, and at least one of each kind
-LEAST_RIGHT = 0
+LEAST_RIGHT = 12  # of 30; a good half of the sets is right, effects below the threshold among them
 
 
 def sample() -> list[Entry]:
