@@ -51,6 +51,11 @@ class Candidate:
         return tuple(f.name for f in self.free)
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the parameters that it frees and of those tied to them."""
+        return tuple(name for f in self.free for name in (f.name, *f.tied))
+
+    @property
     def defining(self) -> tuple[FreeParameter, ...]:
         """The parameters that switch it on."""
         return tuple(f for f in self.free if f.name in self.vanishing)

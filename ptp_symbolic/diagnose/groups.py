@@ -63,7 +63,7 @@ def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> 
         for candidate in alike_along_motion(seeker.proposals, chosen, member)[:MOST_REFITTED]:
             if candidate.key in refitted_already:
                 continue
-            begun += seeker.led((*kept, candidate), chosen.values)
+            begun += seeker.in_place((*kept, candidate), chosen)
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
     trials = halving(task, begun, ((ITERATIONS, len(begun)),))

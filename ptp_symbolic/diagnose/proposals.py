@@ -131,12 +131,9 @@ def start_for(
         set() if rows is None else {(s.candidate.key, s.candidate.member) for s in rows.signatures}
     )
     shown = [c for c in candidates if (c.key, c.member) in seen]
-    own = {name for c in candidates if c not in shown for f in c.free for name in (f.name, *f.tied)}
-    kept = {name: values[name] for name in own}
+    kept = {name: values[name] for c in candidates if c not in shown for name in c.names}
     if rows is None or found.space is None:
-        return found.start | {
-            name: values[name] for c in candidates for f in c.free for name in (f.name, *f.tied)
-        }
+        return found.start | {name: values[name] for c in candidates for name in c.names}
     return _refined(task, found.space, rows, found.start, shown).values | kept
 
 

@@ -80,13 +80,13 @@ def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
     but noise is left.
     """
     for _ in range(CYCLES):
-        before = misfits([trial])[0]
         trial = continued(task, trial, POLISH, executor=task.executor)
         if leaves_white_noise(trial, carried):
             break
+        smooth = trial
         trial = continued(task, unbiased(trial), POLISH, ROUGH, WIDE_STEP, task.executor)
-        size = sum(run.size for run in trial.fit.runs)
-        if before - misfits([trial])[0] < LITTLE * size:
+        before, after = misfits([smooth, trial])
+        if before - after < LITTLE * sum(run.size for run in trial.fit.runs):
             break
     if leaves_white_noise(trial, carried):
         trial = continued(task, trial, POLISH, SHARP, executor=task.executor)

@@ -116,7 +116,7 @@ class Seeker:
         ]
         begun = []
         for led in ranked([job.result() for job in jobs])[:PROPOSED]:
-            own = {name for c in led.candidates for f in c.free for name in (f.name, *f.tied)}
+            own = {name for c in led.candidates for name in c.names}
             beside = declared.values | {name: led.values[name] for name in own}
             starts = [
                 fitted(task, led.candidates, led.values, None),
@@ -180,9 +180,17 @@ class Seeker:
         """
         task = self.task
         start = start_for(task, self.proposals, candidates, values)
-        own = {n: start[n] for c in candidates for f in c.free for n in (f.name, *f.tied)}
+        own = {name: start[name] for c in candidates for name in c.names}
         begun = over_windows(task, candidates, [start, declared_start(task) | own], task.executor)
         return [*begun, fitted(task, candidates, start, None)]
+
+    def in_place(self, candidates: Sequence[Candidate], trial: Trial) -> list[Trial]:
+        """A set like that of `trial`, where the rows start it, and where they start its candidates
+        alone.
+        """
+        start = start_for(self.task, self.proposals, candidates, trial.values)
+        beside = trial.values | {name: start[name] for c in candidates for name in c.names}
+        return [fitted(self.task, candidates, values, None) for values in (start, beside)]
 
     def completed(self, trial: Trial) -> Trial:
         """The trial polished, each of its candidates in its fullest form: an effect is allowed all
@@ -201,13 +209,7 @@ class Seeker:
         )
         if not kept:
             return self.declared
-        names = {
-            name
-            for c in trial.candidates
-            if c not in kept
-            for f in c.free
-            for name in (f.name, *f.tied)
-        }
+        names = {name for c in trial.candidates if c not in kept for name in c.names}
         values = trial.values | {name: self.task.fixed[name] for name in names}
         task = self.task
         begun = fitted(

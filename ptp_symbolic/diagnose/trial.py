@@ -21,10 +21,8 @@ FloatArray = NDArray[np.float64]
 Progress = Callable[[str], None]
 
 BEND = 2.5  # a block this many times as far off as the usual one counts only linearly (Huber)
-ROUGH, SHARP = (
-    1e-2,
-    1e-3,
-)  # error of a simulation as a share of the noise, while searching and at last
+ROUGH, SHARP = 1e-2, 1e-3  # error of simulations over the noise, while searching and at last
+GAIN = 0.1  # of that share: two iterations in a row that gain less of the misfit end a fit
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +105,7 @@ def fitted(
     free = freed(task, candidates, values)
     names = {name for f in free for name in (f.name, *f.tied)}
     fixed = {name: value for name, value in task.fixed.items() if name not in names}
-    effort = Effort(iterations, GAIN, accuracy(task, share), secants=secants)
+    effort = Effort(iterations, GAIN * share, accuracy(task, share), secants=secants)
     known = None if secants is None else _inherited(parent, free)
     fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known)
     return Trial(tuple(candidates), fit)
@@ -124,9 +122,6 @@ def _inherited(parent: Fit | None, free: Sequence[FreeParameter]) -> list[tuple[
     found = [(run, own[names[c]]) for run, c in parent.misleading if names[c] in own]
     fresh = [k for name, k in own.items() if name not in names]
     return found + [(run, k) for run in range(len(parent.runs)) for k in fresh]
-
-
-GAIN = 2e-4  # relative gain of an iteration below which two in a row end a fit
 
 
 def accuracy(task: Task, share: float) -> Tolerance:

@@ -18,7 +18,7 @@ from scipy import stats
 FloatArray = NDArray[np.float64]
 
 ORDER = 5  # of the differences: a motion at a tenth of the sampling rate leaves 1 % of itself
-KEPT = 0.99  # of the squared differences: the rest may be jumps of the motion
+CLIPPED = 4.0  # standard deviations: larger differences are jumps of the motion
 PIECE = 256  # samples; the median over pieces is that of the quiet ones where motion is rough
 SEGMENT = 64  # samples of a periodogram: its lowest frequency resolves poles up to 0.95
 LOWEST = 3  # first bin used of a segment: those below belong to the window and to the motion
@@ -26,29 +26,28 @@ SCORINGS = 20  # reweighted steps: the variances of a gamma model settle to a pa
 POLES = np.concatenate([[0.0], np.linspace(0.3, 0.97, 40)])
 
 
-@lru_cache(maxsize=8)
-def _trimmed_share(kept: float) -> float:
-    """Mean of the smallest share `kept` of the squares of normal numbers of variance 1."""
-    z = stats.norm.ppf(0.5 + 0.5 * kept)
-    return float((kept - 2.0 * z * stats.norm.pdf(z)) / kept)
-
-
 def white_noise(signal: FloatArray) -> float:
     """Standard deviation of the white noise of a smooth `signal` [n], also of its rounding.
 
-    Squared differences of order 5, less the largest, corrected for what that takes from normal
-    noise; zero where the signal is too short.
+    Squared differences of order 5, without those that are clipped; zero where the signal is too
+    short.
     """
-    gain = float(comb(2 * ORDER, ORDER))
     if len(signal) < 4 * ORDER:
         return 0.0
-    square = np.diff(signal, ORDER) ** 2
+    square = np.diff(signal, ORDER) ** 2 / float(comb(2 * ORDER, ORDER))
     pieces = np.array_split(square, max(1, len(square) // PIECE))
-    values = []
-    for piece in pieces:
-        kept = np.sort(piece)[: max(1, int(KEPT * len(piece)))]
-        values.append(float(kept.mean()) / (gain * _trimmed_share(KEPT)))
-    return float(np.sqrt(np.median(values)))
+    return float(np.sqrt(np.median([_clipped_mean(piece) for piece in pieces])))
+
+
+def _clipped_mean(square: FloatArray) -> float:
+    """Mean of the squares of normal numbers, begun at their median, until no more are clipped."""
+    mean = float(np.median(square)) / float(stats.chi2.median(1))
+    for _ in range(len(square)):
+        kept = square[square <= CLIPPED**2 * mean]
+        if not kept.size or float(kept.mean()) == mean:
+            break
+        mean = float(kept.mean())
+    return mean
 
 
 @dataclass(frozen=True)

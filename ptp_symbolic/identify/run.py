@@ -68,6 +68,15 @@ class Run:
         return int(self.measured.size)
 
 
+@dataclass(frozen=True, eq=False)
+class Around:
+    """The whole log of a window: time [n] in s and measured [n, ny], and its `first` sample."""
+
+    time: FloatArray
+    measured: FloatArray
+    first: int
+
+
 def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple[Run, ...]:
     """Match the columns of `logs` to `model` and guess the start of every run.
 
@@ -142,10 +151,11 @@ def _sigma(signal: SignalDeclaration, count: float, measured: Sequence[FloatArra
     return sigma
 
 
-def with_start(model: Model, run: Run) -> Run:
+def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
     """`run` with a guess of the state at its first sample, and what is unknown of it.
 
-    A parabola through the first tenth of a second gives angle and rate. A joint with dry friction
+    A parabola through a tenth of a second gives the rate, in the middle of it where the run is a
+    window and `around` it is the rest of a log. A joint with dry friction
     whose rate is within its noise is taken to be at rest; one that is near it may be.
     """
     states = list(model.state_names)
@@ -160,7 +170,7 @@ def with_start(model: Model, run: Run) -> Run:
             start[states.index(signal)] = run.measured[0, column]
             continue
         sigma = 1.0 / run.weight[column]
-        rate, error = _first_rate(run, column)
+        rate, error = _first_rate(run, column, around)
         angles = [name for name in (signal, f"theta_gear_{axis}") if name in states]
         rates = [name for name in (f"omega_{axis}", f"omega_gear_{axis}") if name in states]
         start[[states.index(name) for name in angles]] = run.measured[0, column]
@@ -187,29 +197,36 @@ def _stays(run: Run, column: int) -> bool:
     return float(np.ptp(run.measured[:count, column])) <= 2.0 * AT_REST / run.weight[column]
 
 
-def _first_rate(run: Run, column: int) -> tuple[float, float]:
-    """Rate at the first sample, and its standard deviation: that of the noise, and what half the
-    span tells otherwise, for motion is no parabola.
+def _first_rate(run: Run, column: int, around: Around | None) -> tuple[float, float]:
+    """Rate at the first sample, and its standard deviation: that of the noise, and what a cubic
+    tells otherwise, for motion is no parabola.
     """
-    whole = max(LEAST_START, int(np.searchsorted(run.time, run.time[0] + START_SPAN)))
-    half = max(LEAST_START, whole // 2)
-    rate, noise = _rate_over(run, column, whole)
-    other, _ = _rate_over(run, column, half)
+    if around is None:
+        time, values = run.time - run.time[0], run.measured[:, column]
+        part = slice(0, max(LEAST_START, int(np.searchsorted(time, START_SPAN))))
+    else:
+        time, values = around.time - run.time[0], around.measured[:, column]
+        half = max(LEAST_START // 2, int(np.searchsorted(time, 0.5 * START_SPAN) - around.first))
+        part = slice(max(0, around.first - half), around.first + half + 1)
+    rate, noise = _rate_over(run, column, time[part], values[part], 2)
+    other, _ = _rate_over(run, column, time[part], values[part], 3)
     return rate, float(np.hypot(noise, other - rate))
 
 
-def _rate_over(run: Run, column: int, count: int) -> tuple[float, float]:
-    """Rate at the first of so many samples by a parabola, and its standard deviation: noise as if
-    white, rounding as if it were the same in half of the samples.
+def _rate_over(
+    run: Run, column: int, time: FloatArray, values: FloatArray, degree: int
+) -> tuple[float, float]:
+    """Rate at time zero by a polynomial, and its standard deviation: noise as if white, rounding as
+    if it were the same in half of the samples.
     """
-    time = run.time[:count] - run.time[0]
-    columns = np.vander(time / time[-1], 3, increasing=True)
+    longest = float(np.max(np.abs(time)))
+    columns = np.vander(time / longest, degree + 1, increasing=True)
     inverse = np.linalg.pinv(columns)
-    rate = float(inverse[1] @ run.measured[:count, column]) / float(time[-1])
+    rate = float(inverse[1] @ values) / longest
     sigma = 1.0 / run.weight[column]
     rounding = float(np.nan_to_num(run.counts[column])) * ROUNDING
     white = np.sqrt(max(sigma**2 - rounding**2, 0.0)) * float(np.linalg.norm(inverse[1]))
-    return rate, float(np.hypot(white, 2.0 * rounding)) / float(time[-1])
+    return rate, float(np.hypot(white, 2.0 * rounding)) / longest
 
 
 def _unknown(
@@ -266,7 +283,7 @@ def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
             held_inputs=np.ascontiguousarray(run.held_inputs[part]),
             measured=np.ascontiguousarray(run.measured[part]),
         )
-        windows.append(with_start(model, piece))
+        windows.append(with_start(model, piece, Around(run.time, run.measured, int(a))))
     return tuple(windows)
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.identify.intervals import project_out
+from ptp_symbolic.identify.noise import white_noise
 from ptp_symbolic.identify.run import Run, split_run
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.inputs import stack, table
@@ -28,10 +29,9 @@ REPLAY_SEED = 20130801
 
 
 def input_noise(run: Run, declared: Sequence[float | None]) -> FloatArray:
-    """Noise (rms) of every input [nu]: as declared, else from its third differences (robustly)."""
-    third = np.diff(run.held_inputs, 3, axis=0)
-    seen = 1.4826 * np.median(np.abs(third), axis=0) / np.sqrt(20.0)
-    return np.array([s if d is None else d for s, d in zip(seen, declared, strict=True)])
+    """Noise (rms) of every input [nu]: as declared, else as its samples show it."""
+    columns = zip(run.held_inputs.T, declared, strict=True)
+    return np.array([white_noise(column) if d is None else d for column, d in columns])
 
 
 def window_length(

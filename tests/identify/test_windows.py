@@ -95,7 +95,7 @@ def test_a_payload_above_the_axis_is_cut_where_errors_grow_tenfold(
     assert window_length(MODEL, [run], p, (0.0, 0.0)) == length
 
 
-def test_noise_that_is_not_declared_is_seen_in_third_differences() -> None:
+def test_noise_of_an_input_that_is_not_declared_is_seen_in_its_samples() -> None:
     rng = np.random.default_rng(2)
     t = 0.005 * np.arange(4000)
     smooth = 3.0 * np.sin(2.0 * t)
@@ -226,3 +226,20 @@ def test_signals_that_the_model_lacks_or_that_have_no_size_are_refused() -> None
     bare = replace(SIGNALS[2], counts_per_revolution=None)
     with pytest.raises(InputError, match="give its noise"):
         prepare_runs(MODEL, replace(PLATFORM, signals=(*SIGNALS[:2], bare, SIGNALS[3])), [log])
+
+
+@pytest.mark.parametrize("period", [0.005, 0.02])
+def test_the_rate_at_the_start_of_a_window_is_as_uncertain_as_it_says(period: float) -> None:
+    """A motion whose acceleration oscillates at 3 Hz, its rate by calculus: at 50 Hz too few samples
+    span a tenth of a second for noise to tell how far a parabola is off.
+    """
+    t = period * np.arange(round(6.0 / period) + 1)
+    omega = 2.0 * math.pi * 3.0
+    run = run_of(np.sin(omega * t) + t, np.zeros(len(t)), np.zeros(len(t)), period)
+    off = []
+    for window in split_run(MODEL, run, 0.5)[1:]:
+        rate = next(u for u in window.unknowns if u.name == "omega_pan")
+        true = omega * math.cos(omega * window.time[0]) + 1.0
+        off.append((window.start[MODEL.state_names.index("omega_pan")] - true) / rate.sigma)
+    assert len(off) == 11
+    assert math.sqrt(np.mean(np.square(off))) < 1.5
