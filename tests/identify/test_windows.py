@@ -230,8 +230,8 @@ def test_signals_that_the_model_lacks_or_that_have_no_size_are_refused() -> None
 
 @pytest.mark.parametrize("period", [0.005, 0.02])
 def test_the_rate_at_the_start_of_a_window_is_as_uncertain_as_it_says(period: float) -> None:
-    """A motion whose acceleration oscillates at 3 Hz, its rate by calculus: at 50 Hz too few samples
-    span a tenth of a second for noise to tell how far a parabola is off.
+    """A motion whose acceleration oscillates at 3 Hz, its rate by calculus: at 50 Hz a tenth of a
+    second has too few samples for noise to tell how far a parabola is off.
     """
     t = period * np.arange(round(6.0 / period) + 1)
     omega = 2.0 * math.pi * 3.0
