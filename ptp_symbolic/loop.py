@@ -46,9 +46,11 @@ def emit(platform: Platform) -> Model:
     refuse_impossible(equations, platform)
     usual = declared_parameters(place_effects(platform))
     shared = replace(
-        equations, name="machine", title="Machine of a user",
+        equations,
+        name="machine",
+        title="Machine of a user",
         parameters=tuple(usual[p.name] for p in equations.parameters),
-    )  # fmt: skip
+    )
     text = module_text(shared)
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     name = f"ptp_model_{digest}"

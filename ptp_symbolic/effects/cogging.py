@@ -6,21 +6,14 @@ from ptp_symbolic.effects.effect import Contribution, Effect, Place
 from ptp_symbolic.effects.harmonics import harmonic_members
 from ptp_symbolic.parameters import Parameter, harmonics
 
+OF_SINE = "cogging torque that goes with the sine of the gear output's angle"
+OF_COSINE = "cogging torque that goes with the cosine"
+OF_CYCLES = "cogging cycles per turn of the gear output"
 AMPLITUDES = harmonics(
-    Parameter(
-        "T_sin_{axis}", "N m", 0.0, -1e4, 1e4,
-        "cogging torque that goes with the sine of the gear output's angle",
-        vanishes=0.0, starts=(0.2,),
-    ),
-    Parameter(
-        "T_cos_{axis}", "N m", 0.0, -1e4, 1e4, "cogging torque that goes with the cosine",
-        vanishes=0.0, starts=(0.2,),
-    ),
-)  # fmt: skip
-CYCLES = Parameter(
-    "n_cog_{axis}", "1", 60.0, 0.5, 1e5, "cogging cycles per turn of the gear output",
-    locked_to="angle",
-)  # fmt: skip
+    Parameter("T_sin_{axis}", "N m", 0.0, -1e4, 1e4, OF_SINE, vanishes=0.0, starts=(0.2,)),
+    Parameter("T_cos_{axis}", "N m", 0.0, -1e4, 1e4, OF_COSINE, vanishes=0.0, starts=(0.2,)),
+)
+CYCLES = Parameter("n_cog_{axis}", "1", 60.0, 0.5, 1e5, OF_CYCLES, locked_to="angle")
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

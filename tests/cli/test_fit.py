@@ -81,10 +81,14 @@ def diagnosis(counts: float | None, angle: float) -> dict[str, Any]:
     stage = {"total": error, "by_run": {"log": error}}
     part = {"before": stage, "after": stage, "noise_floor": stage}
     return {
-        "verdict": "explained", "summary": "Missing: x.", "added": [], "refused": {},
-        "remarks": [], "fit": {"after": {"parameters": {}}},
+        "verdict": "explained",
+        "summary": "Missing: x.",
+        "added": [],
+        "refused": {},
+        "remarks": [],
+        "fit": {"after": {"parameters": {}}},
         "error": {"definition": "root mean square", "train": part, "validate": part},
-    }  # fmt: skip
+    }
 
 
 @pytest.mark.parametrize(

@@ -53,14 +53,12 @@ def test_rigid_models_against_an_independent_newton_euler_program(name: str) -> 
 @pytest.mark.parametrize("name", ["ideal", "payload"])
 def test_torques_that_a_motion_lacks_against_an_independent_newton_euler_program(name: str) -> None:
     model, rng = ptp_symbolic.load(name), np.random.default_rng(9)
-    values = model.defaults
+    values, p, no_modes = model.defaults, model.parameter_vector(), np.zeros(0)
     for _ in range(STATES):
         angles, rates, wanted, given = rng.normal(size=(4, 2))
         lacking = np.zeros(2)
-        model.module.equation_error(
-            0.0, np.concatenate([angles, rates, wanted]), given, model.parameter_vector(),
-            np.zeros(0), lacking,
-        )  # fmt: skip
+        x = np.concatenate([angles, rates, wanted])
+        model.module.equation_error(0.0, x, given, p, no_modes, lacking)
         mass = rigid_platform.mass_matrix(angles, values)
         free = rigid_platform.accelerations(angles, rates, given, values)
         truth = mass @ (wanted - free)

@@ -37,9 +37,15 @@ class Servo(NamedTuple):
 
 @numba.njit(cache=True)
 def _sample(
-    drives: Any, frame: Any, state: Floats, inputs: Floats, pushes: Floats, k: int, period: float,
+    drives: Any,
+    frame: Any,
+    state: Floats,
+    inputs: Floats,
+    pushes: Floats,
+    k: int,
+    period: float,
     step: float,
-) -> None:  # fmt: skip
+) -> None:
     """Move the state [2, 7] over sample `k`, each input late by its drive's delay; in place."""
     y, rest = state[:, :SMOOTH].copy(), state[:, REST].copy()
     slip, late, change = np.empty(2, np.int64), np.empty(2, np.int64), np.empty(2)

@@ -12,6 +12,7 @@ import pytest
 from tests.report.synthetic_diagnosis import RUNS, page
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+UNSEEN = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage")
 
 
 @pytest.fixture(scope="module")
@@ -22,18 +23,20 @@ def browser() -> str:
     pytest.skip(f"no browser on PATH (looked for {', '.join(BROWSERS)})")
 
 
+def opened(file: Path, browser: str, *options: str) -> subprocess.CompletedProcess[str]:
+    """The document that the browser makes of `file`, and on stderr what it complains of."""
+    profile = f"--user-data-dir={file.with_name('profile')}"
+    command = [browser, *UNSEEN, profile, *options, "--dump-dom", file.as_uri()]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+
+
 @pytest.mark.parametrize("verdict", ["explained", "nothing_missing"])
 def test_a_browser_shows_every_part_and_reports_no_error(
     verdict: str, browser: str, tmp_path: Path
 ) -> None:
     file = tmp_path / "report.html"
     file.write_text(page(verdict), encoding="utf-8")
-    command = [
-        browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-        f"--user-data-dir={tmp_path / 'profile'}", "--enable-logging=stderr", "--v=0",
-        "--dump-dom", file.as_uri(),
-    ]  # fmt: skip
-    shown = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    shown = opened(file, browser, "--enable-logging=stderr", "--v=0")
     assert "CONSOLE" not in shown.stderr, shown.stderr
     assert "</footer>" in shown.stdout
     for part in ("verdict", "errors", "motion", "residuals", "ranking", "limits", "parameters"):
@@ -56,13 +59,9 @@ def too_wide(html: str, width: int, selector: str, browser: str, folder: Path) -
     script = MEASURE.replace("SELECTOR", selector).replace("WIDTH", str(width))
     inner = escape(html.replace("</head>", f"{script}</head>"), quote=True)
     frame = f'<body><iframe style="border:0;width:{width}px;height:900px" srcdoc="{inner}">'
-    (folder / "frame.html").write_text(f"<!DOCTYPE html>{frame}", encoding="utf-8")
-    command = [
-        browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-        f"--user-data-dir={folder / 'profile'}", "--virtual-time-budget=5000", "--dump-dom",
-        (folder / "frame.html").as_uri(),
-    ]  # fmt: skip
-    shown = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    file = folder / "frame.html"
+    file.write_text(f"<!DOCTYPE html>{frame}", encoding="utf-8")
+    shown = opened(file, browser, "--virtual-time-budget=5000")
     found = re.search(r'data-result="([^"]*)"', shown.stdout)
     assert found is not None
     real_width, bad = json.loads(unescape(found[1]))

@@ -33,10 +33,14 @@ def test_intervals_set_the_digits_of_their_value() -> None:
 
 @pytest.mark.parametrize(
     ("share", "bounds", "text"),
-    [(0.9873, [0.9851, 0.9894], "98.7 % (98.5 to 98.9 %)"), (-0.012, [-0.05, 0.021],
-     "−1.2 % (−5.0 to 2.1 %)"), (0.5, None, "50.0 %"), (-2.5e4, [None, 0.1], "−2.50 × 10⁶ %"),
-     (math.nan, [0.0, 1.0], "–")],
-)  # fmt: skip
+    [
+        (0.9873, [0.9851, 0.9894], "98.7 % (98.5 to 98.9 %)"),
+        (-0.012, [-0.05, 0.021], "−1.2 % (−5.0 to 2.1 %)"),
+        (0.5, None, "50.0 %"),
+        (-2.5e4, [None, 0.1], "−2.50 × 10⁶ %"),
+        (math.nan, [0.0, 1.0], "–"),
+    ],
+)
 def test_gains_are_written_in_tenths_of_a_percent(share: float, bounds: Any, text: str) -> None:
     assert gain({"share": share, "ci95": bounds}) == text
 

@@ -41,24 +41,34 @@ def _fit(
     weight = np.array([1.0 / c if np.isfinite(c) else 10.0 for c in counts])
     runs = tuple(
         SimpleNamespace(
-            name=f"run#{number}", time=4.0 * number + np.linspace(0.0, 4.0, len(left)),
-            held_inputs=inputs, measured=np.ones_like(left), weight=weight,
-            counts=np.array(counts), signals=signals,
+            name=f"run#{number}",
+            time=4.0 * number + np.linspace(0.0, 4.0, len(left)),
+            held_inputs=inputs,
+            measured=np.ones_like(left),
+            weight=weight,
+            counts=np.array(counts),
+            signals=signals,
         )
         for number in range(windows)
-    )  # fmt: skip
+    )
     residual = (left * weight).ravel()
     evaluation = SimpleNamespace(
-        residual=residual, by_parameter=np.zeros((residual.size, 0)),
-        by_start=np.zeros((residual.size, 0)), failed=None,
-    )  # fmt: skip
+        residual=residual,
+        by_parameter=np.zeros((residual.size, 0)),
+        by_start=np.zeros((residual.size, 0)),
+        failed=None,
+    )
     parameter = SimpleNamespace(name="J_y_tilt", meaning="inertia of the tilt body about y")
     return SimpleNamespace(
-        runs=runs, evaluations=(evaluation,) * windows, cost=float(residual @ residual),
+        runs=runs,
+        evaluations=(evaluation,) * windows,
+        cost=float(residual @ residual),
         pairs=lambda: [(run, evaluation) for run in runs],
         model=SimpleNamespace(parameters=(parameter,), units=UNITS),
-        values={"J_y_tilt": value}, free=(), failed=None,
-    )  # fmt: skip
+        values={"J_y_tilt": value},
+        free=(),
+        failed=None,
+    )
 
 
 def _trial(*candidates: Candidate, value: float = DECLARED, left: float = 1.0) -> Trial:
@@ -151,8 +161,10 @@ def test_errors_pool_the_angles_and_tell_every_signal_in_its_own_unit() -> None:
     assert found["by_run"].keys() == {"run"}
     assert found["by_signal"]["theta_tilt"]["rmse_counts"] == pytest.approx(4.0)
     assert found["by_signal"]["i_pan"] == {
-        "rmse": pytest.approx(0.7), "unit": "A", "rmse_counts": None,
-    }  # fmt: skip
+        "rmse": pytest.approx(0.7),
+        "unit": "A",
+        "rmse_counts": None,
+    }
     floor = error_of(fit, UNITS, np.array([1.0, 2.0, 1.0]))
     assert floor["by_signal"]["theta_tilt"]["rmse_counts"] == pytest.approx(2.0)
     assert floor["by_signal"]["i_pan"]["rmse"] == pytest.approx(0.1)
@@ -180,8 +192,9 @@ def test_the_curves_of_a_run_carry_the_borders_of_its_windows() -> None:
     fit = _fit(np.zeros((200, 2)))
     curves: Mapping[str, Any] = curves_of({"train": (fit, fit), "validate": (fit, fit)})
     assert {name: curve["set"] for name, curve in curves.items()} == {
-        "run": "train", "run (validate)": "validate",
-    }  # fmt: skip
+        "run": "train",
+        "run (validate)": "validate",
+    }
     for curve in curves.values():
         assert curve["borders"] == [4.0]
         assert len(curve["time"]) == 399
