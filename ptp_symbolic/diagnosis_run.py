@@ -29,7 +29,7 @@ from ptp_symbolic.diagnose.findings import Search
 from ptp_symbolic.diagnose.floor import carried_noise, floor_of
 from ptp_symbolic.diagnose.preparation import task_of
 from ptp_symbolic.diagnose.proposals import propose
-from ptp_symbolic.diagnose.refits import fit_declared
+from ptp_symbolic.diagnose.refits import fit_declared, refitted_without_chaos
 from ptp_symbolic.diagnose.residual_tests import residual_tests
 from ptp_symbolic.diagnose.search import search
 from ptp_symbolic.diagnose.summary import (
@@ -103,7 +103,7 @@ def fit_platform(
         trial = begun
         if task.free:
             progress("fitting")
-            trial = fit_declared(task, propose(task))
+            task, trial = refitted_without_chaos(task, fit_declared(task, propose(task)))
             trial = replace(trial, fit=unblinded(trial.fit, executor))
         floor = floor_of(task, trial, carried_noise(task, trial))
     units = model.units

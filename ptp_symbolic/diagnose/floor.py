@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.trial import BEND, Task, Trial, huber, mean_squares
-from ptp_symbolic.identify.least_squares import MANY_RUNS
+from ptp_symbolic.identify.fit import Fit
+from ptp_symbolic.identify.least_squares import MANY_RUNS, weighted_median
 from ptp_symbolic.identify.noise import coloured_noise
 from ptp_symbolic.identify.windows import propagated_noise
 
@@ -31,27 +32,32 @@ class Floor:
     most: FloatArray
 
 
-def left_over(trial: Trial) -> FloatArray:
-    """Root mean square [ny] of what a trial leaves in every signal.
+def left_over(fit: Fit) -> FloatArray:
+    """Root mean square [ny] of what a fit leaves in every signal.
 
-    Of many windows the median counts, for one in twenty begins on the wrong side of a rest; of few
-    runs, those far worse than usual count linearly.
+    Of many windows the median of the samples counts, for one in twenty begins on the wrong side of
+    a rest; of few runs, those far worse than usual count linearly.
     """
-    squares = mean_squares(trial.fit.evaluations, trial.fit.runs)
+    squares = mean_squares(fit.evaluations, fit.runs)
     if not np.all(np.isfinite(squares)):
         return np.full(squares.shape[1], np.inf)
-    usual = np.median(squares, axis=0)
+    size = np.array([len(run.time) for run in fit.runs], dtype=np.float64)
+    usual = weighted_median(squares, size)
     if len(squares) >= MANY_RUNS:
         return np.asarray(np.sqrt(usual))
-    size = np.array([len(run.time) for run in trial.fit.runs], dtype=np.float64)
     bounded = huber(squares, BEND**2 * np.maximum(usual, 1.0))
     return np.asarray(np.sqrt(size @ bounded / size.sum()))
 
 
 def carried_noise(task: Task, trial: Trial) -> FloatArray:
-    """What the noise of the inputs leaves in every signal [ny], by the model of `trial`."""
-    p = task.model.parameter_vector(trial.values)
-    return propagated_noise(task.model, trial.fit.runs, trial.fit.z, p, task.input_noise)
+    """What the noise of the inputs leaves in every signal [ny], by the model of `trial`.
+
+    The median of the samples counts, so that a replay which sticks elsewhere does not.
+    """
+    p, runs = task.model.parameter_vector(trial.values), trial.fit.runs
+    every = propagated_noise(task.model, runs, trial.fit.z, p, task.input_noise)
+    size = np.array([len(run.time) for run in runs], dtype=np.float64)
+    return weighted_median(np.nan_to_num(every), size)
 
 
 def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
@@ -60,10 +66,14 @@ def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
     """
     runs = trial.fit.runs
     rms, most = np.ones(len(runs[0].signals)), np.ones(len(runs[0].signals))
+    squares = mean_squares(trial.fit.evaluations, runs)
+    usual = squares <= BEND**2 * np.maximum(left_over(trial.fit) ** 2, 1.0)
     for column, signal in enumerate(runs[0].signals):
         if signal not in task.declared_noise:
             series = [
-                e.residual.reshape(run.measured.shape)[:, column] for run, e in trial.fit.pairs()
+                e.residual.reshape(run.measured.shape)[:, column]
+                for (run, e), as_usual in zip(trial.fit.pairs(), usual[:, column], strict=True)
+                if as_usual
             ]
             noise = coloured_noise(series, 1.0)
             rms[column], most[column] = noise.rms, noise.most
@@ -78,9 +88,9 @@ def leaves_white_noise(trial: Trial, carried: FloatArray) -> bool:
     """Whether a trial leaves no more than rounding, white noise and what the inputs carry there; a
     search goes on where it does, whatever the colour of the remainder.
     """
-    return bool(np.all(left_over(trial) <= ABOVE_NOISE * np.hypot(1.0, carried)))
+    return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * np.hypot(1.0, carried)))
 
 
 def leaves_noise_alone(trial: Trial, floor: Floor) -> bool:
     """Whether what a trial leaves cannot be told from noise, in any signal."""
-    return bool(np.all(left_over(trial) <= ABOVE_NOISE * floor.most))
+    return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.most))

@@ -23,6 +23,7 @@ from ptp_symbolic.diagnose.trial import (
     ranked,
 )
 from ptp_symbolic.identify.secants import STEP, WIDE_STEP
+from ptp_symbolic.identify.windows import without_chaos
 
 FloatArray = NDArray[np.float64]
 
@@ -46,6 +47,23 @@ def fit_declared(task: Task, proposals: Proposals) -> Trial:
     return polished(task, best[0], carried_noise(task, best[0]))
 
 
+def refitted_without_chaos(task: Task, declared: Trial) -> tuple[Task, Trial]:
+    """The task with runs cut into windows where the fitted model carries the noise of the inputs
+    further than the noise of the outputs (see `without_chaos`), and the declared model refitted.
+    """
+    model, noise = task.model, task.input_noise
+    p = model.parameter_vector(declared.values)
+    train = without_chaos(model, task.train, declared.fit.z, p, noise)
+    if len(train) == len(task.train):
+        return task, declared
+    task.progress("refitting, runs that multiply the noise of their inputs in windows")
+    starts = [np.zeros(len(run.unknowns)) for run in task.validate]
+    validate = without_chaos(model, task.validate, starts, p, noise)
+    task = replace(task, train=train, validate=validate)
+    begun = fitted(task, (), declared.values, None)
+    return task, polished(task, begun, carried_noise(task, begun))
+
+
 def unbiased(trial: Trial) -> Trial:
     """The trial with nothing known of which derivatives mislead: they are looked for anew."""
     return replace(trial, fit=replace(trial.fit, misleading=None))
@@ -65,7 +83,7 @@ def over_windows(
     for windows in task.windows:
         part = replace(task, train=windows)
         trials = [
-            fitted(part, candidates, values, None, ITERATIONS, executor=executor)
+            fitted(part, candidates, values, None, POLISH, executor=executor)
             for values in ([t.values for t in trials] or starts)
         ]
         trials = [t for t in ranked(trials)[:1] if not t.fit.failed]

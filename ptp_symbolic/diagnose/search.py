@@ -30,6 +30,7 @@ from ptp_symbolic.diagnose.refits import (
     fullest,
     over_windows,
     polished,
+    refitted_without_chaos,
 )
 from ptp_symbolic.diagnose.responses import Response, responses
 from ptp_symbolic.diagnose.trial import (
@@ -38,7 +39,7 @@ from ptp_symbolic.diagnose.trial import (
     continued,
     fitted,
     halving,
-    misfits,
+    is_near,
     ranked,
 )
 from ptp_symbolic.identify.secants import WIDE_STEP
@@ -58,6 +59,7 @@ def search(task: Task) -> Search:
     task = replace(task, candidates=with_lines(task.candidates, proposals))
     task.progress("fitting the declared model")
     declared = fit_declared(task, proposals)
+    task, declared = refitted_without_chaos(task, declared)
     seeker = Seeker(task, declared, proposals, carried_noise(task, declared))
     return seeker.search()
 
@@ -79,7 +81,7 @@ class Seeker:
             task.progress(f"refitting {len(sets) + len(unseen)} proposed sets")
             found = halving(task, sets, RUNGS) + halving(task, unseen, LAST_RUNG)
             self.others += sets
-            found = [t for t in ranked(found) if self.is_near(t, found)]
+            found = [t for t in ranked(found) if is_near(t, found)]
             best = self.best_of([best, *(self.completed(t) for t in found)])
         best, steps = self.pruned(best)
         for _ in range(ROUNDS):
@@ -150,11 +152,6 @@ class Seeker:
     def best_of(self, trials: Sequence[Trial]) -> Trial:
         """The trial that fits best."""
         return ranked(trials)[0]
-
-    def is_near(self, trial: Trial, others: Sequence[Trial]) -> bool:
-        """Whether a trial leaves at most e times the mean square of the best of others."""
-        cost = misfits([trial, *others])
-        return cost[0] - min(cost) <= sum(run.size for run in trial.fit.runs)
 
     def is_at_noise(self, trial: Trial) -> bool:
         """Whether a trial leaves white noise alone."""

@@ -13,6 +13,7 @@ from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters
+from ptp_symbolic.identify.least_squares import weighted_median
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.identify.secants import WIDE_STEP
 from ptp_symbolic.runtime.model import Model
@@ -181,8 +182,8 @@ def misfits(trials: Sequence[Trial]) -> list[float]:
     Runs or windows far worse than usual count only linearly; "usual" is that of the best trial.
     """
     squares = [mean_squares(t.fit.evaluations, t.fit.runs) for t in trials]
-    usual = np.min([np.median(s, axis=0) for s in squares], axis=0)
     size = np.array([len(run.time) for run in trials[0].fit.runs], dtype=np.float64)
+    usual = np.min([weighted_median(s, size) for s in squares], axis=0)
     result = []
     for square in squares:
         if not np.all(np.isfinite(square)):
@@ -210,6 +211,12 @@ def ranked(trials: Sequence[Trial]) -> list[Trial]:
         members = tuple(sorted((c.key, c.member) for c in trials[k].candidates))
         best.setdefault(members, trials[k])
     return list(best.values())
+
+
+def is_near(trial: Trial, others: Sequence[Trial]) -> bool:
+    """Whether a trial leaves at most e times the mean square of the best of others."""
+    cost = misfits([trial, *others])
+    return cost[0] - min(cost) <= sum(run.size for run in trial.fit.runs)
 
 
 def halving(task: Task, trials: Sequence[Trial], rungs: Sequence[tuple[int, int]]) -> list[Trial]:

@@ -18,6 +18,7 @@ from ptp_symbolic.diagnose.groups import Rival, confusable, rivals
 from ptp_symbolic.diagnose.search import Seeker
 from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy, mean_squares, ranked
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, unblinded
+from ptp_symbolic.identify.least_squares import weighted_median
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"
@@ -149,10 +150,11 @@ def _word(trial: Trial, named: Mapping[str, tuple[str, ...]], floor: Floor, afte
 
 def _is_quiet(trial: Trial, floor: Floor, after: Fit) -> bool:
     """Whether neither training nor validation runs show more than noise; of the latter the median
-    run counts, for one that sticks at another sample than it did is off by counts.
+    of the samples counts, for a run that sticks at another sample than it did is off by counts.
     """
     squares = mean_squares(after.evaluations, after.runs)
-    held_out = np.sqrt(np.median(squares, axis=0))
+    size = np.array([len(run.time) for run in after.runs], dtype=np.float64)
+    held_out = np.sqrt(weighted_median(squares, size))
     return leaves_noise_alone(trial, floor) and bool(
         np.all(held_out <= HELD_OUT_ABOVE * floor.most)
     )

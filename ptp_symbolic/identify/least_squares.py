@@ -58,28 +58,42 @@ class Optimum:
     failed: str | None = None
 
 
+def weighted_median(values: FloatArray, weight: FloatArray) -> FloatArray:
+    """Medians [v] of the columns of `values` [k, v], whose rows count by `weight` [k]."""
+    order = np.argsort(values, axis=0, kind="stable")
+    below = np.cumsum(weight[order], axis=0) - 0.5 * weight[order]
+    at = 0.5 * weight.sum()
+    ordered = np.take_along_axis(values, order, axis=0)
+    columns = zip(below.T, ordered.T, strict=True)
+    return np.array([np.interp(at, b, v) for b, v in columns])
+
+
 def robust_bend(evaluations: Sequence[Evaluation]) -> float:
-    """Root mean square above which a window counts only linearly.
+    """Root mean square at which a window counts half.
 
     Infinite for a few whole runs, and while most windows are still far off.
     """
     if len(evaluations) < MANY_RUNS or any(e.failed for e in evaluations):
         return np.inf
-    rms = [float(np.sqrt(np.mean(e.residual**2))) for e in evaluations]
-    middle = float(np.median(rms))
+    squares = np.array([[float(np.mean(e.residual**2))] for e in evaluations])
+    size = np.array([float(e.residual.size) for e in evaluations])
+    middle = float(np.sqrt(weighted_median(squares, size)[0]))
     return BEND * middle if middle < NEARBY else np.inf
 
 
 def _loss(e: Evaluation, bend: float) -> float:
-    """Huber's loss of a window: square up to the bend, linear beyond."""
+    """Cauchy's loss of a window: square well below the bend, its logarithm beyond: a window that
+    began on the wrong side of a rest says nothing about the parameters (Black and Anandan, 1996).
+    """
     square = float(e.residual @ e.residual)
-    rms = np.sqrt(square / e.residual.size)
-    return square if rms <= bend else e.residual.size * (2.0 * bend * rms - bend**2)
+    if np.isinf(bend):
+        return square
+    return float(e.residual.size * bend**2 * np.log1p(square / e.residual.size / bend**2))
 
 
 def _share(e: Evaluation, bend: float) -> float:
     """Weight of a window in the normal equations."""
-    return min(1.0, bend / max(float(np.sqrt(np.mean(e.residual**2))), 1e-300))
+    return 1.0 / (1.0 + float(np.mean(e.residual**2)) / bend**2)
 
 
 def cost_of(

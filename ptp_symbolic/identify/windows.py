@@ -23,6 +23,7 @@ FloatArray = NDArray[np.float64]
 ALLOWED_COUNTS = 0.5
 ALLOWED_RISE = 2.0  # of the drift in the shortest window: a machine that forgets adds little more
 ALLOWED_GROWTH = 10.0
+MOST_CARRIED = 1.0  # of the noise of a signal: more noise than that is not its own
 GROWING_LENGTH = 1.0
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)
 REPLAY_SEED = 20130801
@@ -120,22 +121,36 @@ def propagated_noise(
     p: FloatArray,
     declared_noise: Sequence[float | None],
 ) -> FloatArray:
-    """What input noise leaves in the residual of a perfect model: rms [ny], in units of the noise
-    of every signal (see `Run.weight`).
+    """What input noise leaves in the residual of a perfect model: rms [runs, ny], in units of the
+    noise of every signal (see `Run.weight`); nan where a run cannot be simulated.
 
     Every run is replayed with noisy inputs; what its unknown start can take up is projected out.
-    The median over runs counts, so that a replay which sticks elsewhere does not.
     """
     rng = np.random.default_rng(REPLAY_SEED)
-    squares = []
-    for run, start in zip(runs, z, strict=True):
+    squares = np.full((len(runs), runs[0].measured.shape[1]), np.nan)
+    for row, (run, start) in enumerate(zip(runs, z, strict=True)):
         found = _replay(model, run, p, start, input_noise(run, declared_noise), rng)
         if found is not None:
             change = project_out(found[0][:, None], found[1])[:, 0]
-            squares.append(np.mean(change.reshape(run.measured.shape) ** 2, axis=0))
-    if not squares:
-        return np.zeros(runs[0].measured.shape[1])
-    return np.asarray(np.sqrt(np.median(np.array(squares), axis=0)))
+            squares[row] = np.mean(change.reshape(run.measured.shape) ** 2, axis=0)
+    return np.sqrt(squares)
+
+
+def without_chaos(
+    model: Model,
+    runs: Sequence[Run],
+    z: Sequence[FloatArray],
+    p: FloatArray,
+    declared_noise: Sequence[float | None],
+) -> tuple[Run, ...]:
+    """The runs, those cut into windows in which the noise of the inputs leaves more than the noise
+    of the signals: bounces in a gap and breakaways make it grow until nothing can be predicted.
+    """
+    carried = propagated_noise(model, runs, z, p, declared_noise)
+    found: list[Run] = []
+    for run, left in zip(runs, carried, strict=True):
+        found += split_run(model, run, GROWING_LENGTH) if np.any(left > MOST_CARRIED) else (run,)
+    return tuple(found)
 
 
 def cut(model: Model, runs: Sequence[Run], length: float | None) -> tuple[Run, ...]:
