@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.diagnose.trial import BEND, Task, Trial, huber, mean_squares
+from ptp_symbolic.diagnose.trial import Task, Trial, huber, mean_squares
 from ptp_symbolic.identify.fit import Fit
-from ptp_symbolic.identify.least_squares import MANY_RUNS, weighted_median
+from ptp_symbolic.identify.least_squares import BEND, MANY_RUNS, weighted_median
 from ptp_symbolic.identify.noise import coloured_noise
 from ptp_symbolic.identify.windows import propagated_noise
 

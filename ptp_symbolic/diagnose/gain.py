@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from ptp_symbolic.diagnose.trial import BEND, Trial, huber
+from ptp_symbolic.diagnose.trial import Trial, huber
 from ptp_symbolic.identify.blocks import (
     block_labels,
     block_length,
@@ -22,6 +22,7 @@ from ptp_symbolic.identify.blocks import (
 from ptp_symbolic.identify.coordinates import to_search
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.intervals import project_out
+from ptp_symbolic.identify.least_squares import BEND
 from ptp_symbolic.identify.run import by_source
 
 FloatArray = NDArray[np.float64]

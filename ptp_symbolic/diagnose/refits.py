@@ -19,7 +19,8 @@ from ptp_symbolic.diagnose.trial import (
     continued,
     fitted,
     halving,
-    misfits,
+    is_alike,
+    mean_squares,
     ranked,
 )
 from ptp_symbolic.identify.secants import STEP, WIDE_STEP
@@ -31,7 +32,6 @@ ITERATIONS = 4  # in which a fit shows whether its start is worth more
 RUNGS = ((ITERATIONS, 2), (ITERATIONS, 1))  # of successive halving: iterations, and how many go on
 LAST_RUNG = RUNGS[1:]
 CYCLES = 3  # of a polished fit
-LITTLE = 0.02  # gain of a cycle, of the logarithm of the mean square, with which it ends
 CERTAIN = 0.9  # share of the loss from which on a gain is no matter of where a fit ended
 POLISH = 12  # iterations of each half of a cycle
 
@@ -53,12 +53,14 @@ def refitted_without_chaos(task: Task, declared: Trial) -> tuple[Task, Trial]:
     """
     model, noise = task.model, task.input_noise
     p = model.parameter_vector(declared.values)
-    train = without_chaos(model, task.train, declared.fit.z, p, noise)
+    left = np.sqrt(mean_squares(declared.fit.evaluations, task.train))
+    train = without_chaos(model, task.train, declared.fit.z, left, p, noise)
     if len(train) == len(task.train):
         return task, declared
     task.progress("refitting, runs that multiply the noise of their inputs in windows")
     starts = [np.zeros(len(run.unknowns)) for run in task.validate]
-    validate = without_chaos(model, task.validate, starts, p, noise)
+    any_left = np.zeros((len(starts), left.shape[1]))
+    validate = without_chaos(model, task.validate, starts, any_left, p, noise)
     task = replace(task, train=train, validate=validate)
     begun = fitted(task, (), declared.values, None)
     return task, polished(task, begun, carried_noise(task, begun))
@@ -103,8 +105,7 @@ def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
             break
         smooth = trial
         trial = continued(task, unbiased(trial), POLISH, ROUGH, WIDE_STEP, task.executor)
-        before, after = misfits([smooth, trial])
-        if before - after < LITTLE * sum(run.size for run in trial.fit.runs):
+        if is_alike(trial, smooth):
             break
     if leaves_white_noise(trial, carried):
         trial = continued(task, trial, POLISH, SHARP, executor=task.executor)

@@ -39,6 +39,7 @@ from ptp_symbolic.diagnose.trial import (
     continued,
     fitted,
     halving,
+    is_alike,
     is_near,
     ranked,
 )
@@ -82,7 +83,7 @@ class Seeker:
             found = halving(task, sets, RUNGS) + halving(task, unseen, LAST_RUNG)
             self.others += sets
             found = [t for t in ranked(found) if is_near(t, found)]
-            best = self.best_of([best, *(self.completed(t) for t in found)])
+            best = ranked([best, *(self.completed(t) for t in found)])[0]
         best, steps = self.pruned(best)
         for _ in range(ROUNDS):
             grown = self.grown(best)
@@ -124,7 +125,7 @@ class Seeker:
                 fitted(task, led.candidates, led.values, None),
                 fitted(task, led.candidates, beside, declared.fit.z, 0, declared.fit),
             ]
-            begun.append(self.best_of(starts))
+            begun.append(ranked(starts)[0])
         return begun
 
     def unseen(self, trial: Trial) -> list[Trial]:
@@ -146,12 +147,8 @@ class Seeker:
             values = {n: origin[n] + part * (v - origin[n]) for n, v in proposal.values.items()}
             begun.append(fitted(task, proposal.candidates, values, parent.fit.z, 0, parent.fit))
         if found.candidate.key not in {c.key for c in self.proposals.unseen}:
-            return [self.best_of(begun)]
+            return [ranked(begun)[0]]
         return [continued(task, t, 1, secants=WIDE_STEP, executor=task.executor) for t in begun]
-
-    def best_of(self, trials: Sequence[Trial]) -> Trial:
-        """The trial that fits best."""
-        return ranked(trials)[0]
 
     def is_at_noise(self, trial: Trial) -> bool:
         """Whether a trial leaves white noise alone."""
@@ -169,7 +166,8 @@ class Seeker:
             return trial
         begun = self.led(trial.candidates, trial.values)
         left = halving(self.task, begun, LAST_RUNG)
-        return self.best_of([trial, *(self.polished(t) for t in left)])
+        fresh = [t for t in left if is_near(t, [trial]) and not is_alike(t, trial)]
+        return ranked([trial, *(self.polished(t) for t in fresh)])[0]
 
     def led(self, candidates: Sequence[Candidate], values: Mapping[str, float]) -> list[Trial]:
         """A set where the rows start it (what they do not show stays at `values`), and where
@@ -258,8 +256,8 @@ class Seeker:
         names = " + ".join(trial.keys) or "the declared model"
         task.progress(f"adding one of {len(found)} candidates to {names}")
         begun = [t for r in found[:ADDED] for t in self.begun(r, trial)]
-        left = halving(task, begun, RUNGS)
         self.others += begun
+        left = halving(task, begun, RUNGS)
         if not left:
             return None
         best = self.restarted(self.polished(left[0]))

@@ -13,7 +13,7 @@ from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters
-from ptp_symbolic.identify.least_squares import weighted_median
+from ptp_symbolic.identify.least_squares import BEND, weighted_median
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.identify.secants import WIDE_STEP
 from ptp_symbolic.runtime.model import Model
@@ -21,8 +21,8 @@ from ptp_symbolic.runtime.model import Model
 FloatArray = NDArray[np.float64]
 Progress = Callable[[str], None]
 
-BEND = 2.5  # a block this many times as far off as the usual one counts only linearly (Huber)
 ROUGH, SHARP = 1e-2, 1e-3  # error of simulations over the noise, while searching and at last
+LITTLE = 0.02  # of the logarithm of the mean square: less is no other place
 GAIN = 0.1  # of that share: two iterations in a row that gain less of the misfit end a fit
 
 
@@ -217,6 +217,12 @@ def is_near(trial: Trial, others: Sequence[Trial]) -> bool:
     """Whether a trial leaves at most e times the mean square of the best of others."""
     cost = misfits([trial, *others])
     return cost[0] - min(cost) <= sum(run.size for run in trial.fit.runs)
+
+
+def is_alike(trial: Trial, other: Trial) -> bool:
+    """Whether two trials of one set leave the same, so that they end in one place."""
+    cost = misfits([trial, other])
+    return abs(cost[0] - cost[1]) < LITTLE * sum(run.size for run in trial.fit.runs)
 
 
 def halving(task: Task, trials: Sequence[Trial], rungs: Sequence[tuple[int, int]]) -> list[Trial]:

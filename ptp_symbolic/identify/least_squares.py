@@ -23,7 +23,9 @@ SHARE_TO_BOUND = 1.0 - np.exp(-1.0)  # of the way there in one step: LARGEST_STE
 AT_BOUND = 0.1  # of a search coordinate: from nearer than that one step may reach the bound
 FIRST_DAMPING = 1e-3
 TOO_STEEP = 1e15
-MANY_RUNS, BEND, NEARBY = 20, 2.5, 8.0
+MANY_RUNS = 20  # windows: from so many on the median stands for all
+BEND = 2.5  # times the usual root mean square: a block so far off counts half, or linearly
+NEARBY = 8.0  # standard deviations: while the usual window is further off, all count alike
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.identify.intervals import project_out
+from ptp_symbolic.identify.least_squares import BEND
 from ptp_symbolic.identify.noise import white_noise
 from ptp_symbolic.identify.run import Run, split_run
 from ptp_symbolic.runtime.model import Model
@@ -140,16 +141,19 @@ def without_chaos(
     model: Model,
     runs: Sequence[Run],
     z: Sequence[FloatArray],
+    left: FloatArray,
     p: FloatArray,
     declared_noise: Sequence[float | None],
 ) -> tuple[Run, ...]:
     """The runs, those cut into windows in which the noise of the inputs leaves more than the noise
-    of the signals: bounces in a gap and breakaways make it grow until nothing can be predicted.
+    of the signals and may be most of what is `left` [runs, ny]: bounces in a gap and breakaways
+    make it grow until nothing can be predicted.
     """
     carried = propagated_noise(model, runs, z, p, declared_noise)
+    grows = np.any((carried > MOST_CARRIED) & (left < BEND * carried), axis=1)
     found: list[Run] = []
-    for run, left in zip(runs, carried, strict=True):
-        found += split_run(model, run, GROWING_LENGTH) if np.any(left > MOST_CARRIED) else (run,)
+    for run, chaotic in zip(runs, grows, strict=True):
+        found += split_run(model, run, GROWING_LENGTH) if chaotic else (run,)
     return tuple(found)
 
 
