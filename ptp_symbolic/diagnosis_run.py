@@ -105,7 +105,7 @@ def fit_platform(
             progress("fitting")
             task, trial = refitted_without_chaos(task, fit_declared(task, propose(task)))
             trial = replace(trial, fit=unblinded(trial.fit, executor))
-        floor = floor_of(task, trial, carried_noise(task, trial))
+        floor = floor_of(task, trial, carried_noise(task, trial.fit))
     units = model.units
     error = {
         "before": None if begun.fit.failed else error_of(begun.fit, units),

@@ -23,13 +23,24 @@ ABOVE_NOISE = 1.1  # times the floor: what a model leaves below cannot be told f
 
 @dataclass(frozen=True, eq=False)
 class Floor:
-    """What a perfect model leaves in every signal: rms [ny], in units of the rounding and noise
-    that weights stand for, and the largest rms [ny] that may be noise at 95 % (noise of unknown
-    colour).
+    """What a perfect model leaves in every signal [ny], in units of the rounding and noise that
+    weights stand for: the `noise` of the signal, the `largest` that it may have at 95 % (noise of
+    unknown colour), and what the inputs `carried` there.
     """
 
-    level: FloatArray
-    most: FloatArray
+    noise: FloatArray
+    largest: FloatArray
+    carried: FloatArray
+
+    @property
+    def level(self) -> FloatArray:
+        """Root mean square [ny] of all that a perfect model leaves."""
+        return np.hypot(self.noise, self.carried)
+
+    @property
+    def most(self) -> FloatArray:
+        """The largest root mean square [ny] that may be noise."""
+        return np.hypot(self.largest, self.carried)
 
 
 def left_over(fit: Fit) -> FloatArray:
@@ -49,13 +60,13 @@ def left_over(fit: Fit) -> FloatArray:
     return np.asarray(np.sqrt(size @ bounded / size.sum()))
 
 
-def carried_noise(task: Task, trial: Trial) -> FloatArray:
-    """What the noise of the inputs leaves in every signal [ny], by the model of `trial`.
+def carried_noise(task: Task, fit: Fit) -> FloatArray:
+    """What the noise of the inputs leaves in every signal [ny], by the model of `fit`.
 
     The median of the samples counts, so that a replay which sticks elsewhere does not.
     """
-    p, runs = task.model.parameter_vector(trial.values), trial.fit.runs
-    every = propagated_noise(task.model, runs, trial.fit.z, p, task.input_noise)
+    p, runs = task.model.parameter_vector(dict(fit.values)), fit.runs
+    every = propagated_noise(task.model, runs, fit.z, p, task.input_noise)
     size = np.array([len(run.time) for run in runs], dtype=np.float64)
     return weighted_median(np.nan_to_num(every), size)
 
@@ -77,11 +88,9 @@ def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
             ]
             noise = coloured_noise(series, 1.0)
             rms[column], most[column] = noise.rms, noise.most
-    floor = Floor(np.hypot(rms, carried), np.hypot(most, carried))
-    if leaves_noise_alone(trial, floor):
-        return floor
-    white = np.hypot(1.0, carried)
-    return Floor(white, white)
+    floor = Floor(rms, most, carried)
+    white = np.ones(len(rms))
+    return floor if leaves_noise_alone(trial, floor) else Floor(white, white, carried)
 
 
 def leaves_white_noise(trial: Trial, carried: FloatArray) -> bool:

@@ -12,10 +12,12 @@ from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise
 from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
 from ptp_symbolic.diagnose.proposals import Proposals, declared_start
 from ptp_symbolic.diagnose.trial import (
+    GAIN,
     ROUGH,
     SHARP,
     Task,
     Trial,
+    accuracy,
     continued,
     fitted,
     halving,
@@ -23,6 +25,7 @@ from ptp_symbolic.diagnose.trial import (
     mean_squares,
     ranked,
 )
+from ptp_symbolic.identify.fit import Effort, fit_parameters
 from ptp_symbolic.identify.secants import STEP, WIDE_STEP
 from ptp_symbolic.identify.windows import without_chaos
 
@@ -44,7 +47,7 @@ def fit_declared(task: Task, proposals: Proposals) -> Trial:
     begun = over_windows(task, (), starts, task.executor)
     begun += [fitted(task, (), values, None) for values in starts]
     best = halving(task, begun, LAST_RUNG) or begun[-1:]
-    return polished(task, best[0], carried_noise(task, best[0]))
+    return polished(task, best[0], carried_noise(task, best[0].fit))
 
 
 def refitted_without_chaos(task: Task, declared: Trial) -> tuple[Task, Trial]:
@@ -63,7 +66,7 @@ def refitted_without_chaos(task: Task, declared: Trial) -> tuple[Task, Trial]:
     validate = without_chaos(model, task.validate, starts, any_left, p, noise)
     task = replace(task, train=train, validate=validate)
     begun = fitted(task, (), declared.values, None)
-    return task, polished(task, begun, carried_noise(task, begun))
+    return task, polished(task, begun, carried_noise(task, begun.fit))
 
 
 def unbiased(trial: Trial) -> Trial:
@@ -106,11 +109,27 @@ def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
         smooth = trial
         trial = continued(task, unbiased(trial), POLISH, ROUGH, WIDE_STEP, task.executor)
         if is_alike(trial, smooth):
-            break
+            stuck, trial = trial, started_anew(task, trial)
+            if is_alike(trial, stuck):
+                break
     if leaves_white_noise(trial, carried):
         trial = continued(task, trial, POLISH, SHARP, executor=task.executor)
         trial = continued(task, unbiased(trial), POLISH, SHARP, STEP, task.executor)
     return trial
+
+
+def started_anew(task: Task, trial: Trial) -> Trial:
+    """A stuck trial fitted on from starts of its runs that are looked for anew: a place in a gap
+    that is a little off holds the parameters where they are.
+    """
+    if not any(u.places for run in task.train for u in run.unknowns):
+        return trial
+    effort = Effort(POLISH, GAIN * ROUGH, accuracy(task, ROUGH))
+    starts = fit_parameters(task.model, task.train, (), trial.values, None, effort, task.executor)
+    again = fitted(
+        task, trial.candidates, trial.values, starts.z, POLISH, trial.fit, executor=task.executor
+    )
+    return ranked([trial, again])[0]
 
 
 def expected_gain(trial: Trial, vanishing: Mapping[str, float]) -> float:

@@ -61,7 +61,7 @@ def search(task: Task) -> Search:
     task.progress("fitting the declared model")
     declared = fit_declared(task, proposals)
     task, declared = refitted_without_chaos(task, declared)
-    seeker = Seeker(task, declared, proposals, carried_noise(task, declared))
+    seeker = Seeker(task, declared, proposals, carried_noise(task, declared.fit))
     return seeker.search()
 
 

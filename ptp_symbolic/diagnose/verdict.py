@@ -1,7 +1,7 @@
 """The verdict: which effects are confirmed, which cannot be told apart, and what is left."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -86,9 +86,9 @@ def decide(found: Search) -> Verdict:
         for key in trial.keys:
             refused[key] = "the validation runs are predicted no better with it"
         closest, trial, steps, after, held_out, alike = trial, found.declared, [], before, None, []
-    floor = floor_of(task, trial, carried_noise(task, trial))
+    floor = floor_of(task, trial, carried_noise(task, trial.fit))
     named = confusable(trial, alike)
-    word = _word(trial, named, floor, after)
+    word = _word(trial, named, floor, replace(floor, carried=carried_noise(task, after)), after)
     if word == NOTHING_MISSING:
         closest = None
     return Verdict(
@@ -138,9 +138,11 @@ def _closest(found: Search) -> Trial | None:
     return next((t for t in best if t.candidates and np.isfinite(t.fit.cost)), None)
 
 
-def _word(trial: Trial, named: Mapping[str, tuple[str, ...]], floor: Floor, after: Fit) -> str:
-    """The word for a confirmed set."""
-    quiet = _is_quiet(trial, floor, after)
+def _word(
+    trial: Trial, named: Mapping[str, tuple[str, ...]], floor: Floor, held_out: Floor, after: Fit
+) -> str:
+    """The word for a confirmed set; `held_out` is the floor of the validation runs."""
+    quiet = leaves_noise_alone(trial, floor) and _is_quiet(after, held_out)
     if not trial.candidates:
         return NOTHING_MISSING if quiet else UNEXPLAINED
     if not quiet:
@@ -148,16 +150,14 @@ def _word(trial: Trial, named: Mapping[str, tuple[str, ...]], floor: Floor, afte
     return UP_TO_GROUP if any(named.values()) else EXPLAINED
 
 
-def _is_quiet(trial: Trial, floor: Floor, after: Fit) -> bool:
-    """Whether neither training nor validation runs show more than noise; of the latter the median
-    of the samples counts, for a run that sticks at another sample than it did is off by counts.
+def _is_quiet(after: Fit, floor: Floor) -> bool:
+    """Whether validation runs show no more than noise; the median of the samples counts, for a run
+    that sticks at another sample than it did is off by counts.
     """
     squares = mean_squares(after.evaluations, after.runs)
     size = np.array([len(run.time) for run in after.runs], dtype=np.float64)
     held_out = np.sqrt(weighted_median(squares, size))
-    return leaves_noise_alone(trial, floor) and bool(
-        np.all(held_out <= HELD_OUT_ABOVE * floor.most)
-    )
+    return bool(np.all(held_out <= HELD_OUT_ABOVE * floor.most))
 
 
 def held_out_fit(task: Task, trial: Trial) -> Fit:
