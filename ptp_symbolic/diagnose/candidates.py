@@ -53,7 +53,7 @@ class Candidate:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the parameters that it frees and of those tied to them."""
-        return tuple(name for f in self.free for name in (f.name, *f.tied))
+        return tuple(name for f in self.free for name in f.names)
 
     @property
     def defining(self) -> tuple[FreeParameter, ...]:

@@ -148,7 +148,7 @@ def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[S
     size = float(np.linalg.norm(target))
     if size == 0.0:
         return []
-    off = {name: member.vanishing[f.name] for f in member.defining for name in (f.name, *f.tied)}
+    off = {name: member.vanishing[f.name] for f in member.defining for name in f.names}
     base = trial.values | off
     full = {c.key: c for c in sorted(task.candidates, key=lambda c: len(c.free))}
     wanted = [(c, shape) for c in full.values() if c.key not in trial.keys for shape in c.shapes]
@@ -191,6 +191,6 @@ def _instead(
     values = dict(base)
     for k in others:
         f = fit.free[k]
-        values.update(dict.fromkeys((f.name, *f.tied), moved[f.name]))
+        values.update(dict.fromkeys(f.names, moved[f.name]))
     values.update(found.values(amounts[len(others) :]))
     return values

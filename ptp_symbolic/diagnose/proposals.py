@@ -146,12 +146,12 @@ def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | No
             amount = f.start
             if candidate.is_declared_value:
                 amount = min(1.05 * f.start, f.upper)
-            varied.update(dict.fromkeys((f.name, *f.tied), amount))
+            varied.update(dict.fromkeys(f.names, amount))
     others = []
     for f in task.free:
         for factor in (FAR_OFF, 1.0 / FAR_OFF):
             value = float(np.clip(f.start * factor, f.lower, f.upper))
-            others.append(vector({**start, **dict.fromkeys((f.name, *f.tied), value)}))
+            others.append(vector({**start, **dict.fromkeys(f.names, value)}))
     try:
         space = prepare_equation_space(
             task.model, task.whole, vector(dict(start)), others, vector(varied)
@@ -255,12 +255,12 @@ def start_of(
             result = dict(values)
             for f, amount in zip(declared, amounts, strict=False):
                 value = float(np.clip(values[f.name] + amount, f.lower, f.upper))
-                result.update(dict.fromkeys((f.name, *f.tied), value))
+                result.update(dict.fromkeys(f.names, value))
             for (f, zero), amount in zip(free, amounts[len(declared) :], strict=True):
                 value = float(np.clip(zero + amount, f.lower, f.upper))
                 if any(f.name in s.finite for s in found) and amount != 0.0:
                     value = f.start
-                result.update(dict.fromkeys((f.name, *f.tied), value))
+                result.update(dict.fromkeys(f.names, value))
             for signature, shape in zip(found, shapes, strict=True):
                 result.update(signature.candidate.shapes[shape])
     return possible(task, result)

@@ -44,7 +44,7 @@ class Columns:
         found = dict(self.base)
         for f, amount in zip(self.free, amounts, strict=True):
             value = float(np.clip(self.candidate.vanishing[f.name] + amount, f.lower, f.upper))
-            found.update(dict.fromkeys((f.name, *f.tied), value))
+            found.update(dict.fromkeys(f.names, value))
         return found
 
 
@@ -137,7 +137,7 @@ def _column(
     if candidate.is_declared_value:
         amount = min(DECLARED_AMOUNT * abs(f.start), 0.5 * (f.upper - f.start))
     for _ in range(SHRINKS):
-        values = {**base, **dict.fromkeys((f.name, *f.tied), zero + amount)}
+        values = {**base, **dict.fromkeys(f.names, zero + amount)}
         changed = simulated(task, trial.fit, values, None)
         if not any(e.failed for e in changed):
             differences = [(e.residual - r)[:, None] for e, r in zip(changed, without, strict=True)]

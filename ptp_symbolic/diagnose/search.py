@@ -33,6 +33,7 @@ from ptp_symbolic.diagnose.refits import (
     refitted_without_chaos,
 )
 from ptp_symbolic.diagnose.responses import Response, responses
+from ptp_symbolic.diagnose.screening import screened
 from ptp_symbolic.diagnose.trial import (
     Task,
     Trial,
@@ -50,6 +51,7 @@ FloatArray = NDArray[np.float64]
 PARTS_OF_THE_WAY = (1.0, 0.5)  # of a response: finite amounts may be far from linear
 PROPOSED = 3  # sets that are refitted to whole runs, of those that the rows propose
 ADDED = 4  # candidates that are refitted when one is added
+SCREENED = 2  # of those that short windows favour
 ROUNDS = 3  # of growing: as many effects as a set may gain after the first choice
 
 
@@ -96,16 +98,9 @@ class Seeker:
             best, steps = pruned, fewer
         best = self.simplified(best)
         without = {s.candidate.key: s.without for s in steps}
-        members = [step_of(best, c, without[c.key]) for c in best.candidates]
-        return Search(
-            self.task,
-            self.declared,
-            best,
-            tuple(members),
-            tuple(self.others),
-            self.proposals,
-            self.carried,
-        )
+        members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
+        others = tuple(self.others)
+        return Search(task, self.declared, best, members, others, self.proposals, self.carried)
 
     def proposed(self) -> list[Trial]:
         """The proposed sets that do best over short windows, each at the better of two starts:
@@ -256,11 +251,13 @@ class Seeker:
         names = " + ".join(trial.keys) or "the declared model"
         task.progress(f"adding one of {len(found)} candidates to {names}")
         begun = [t for r in found[:ADDED] for t in self.begun(r, trial)]
+        close = screened(task, self.proposals, trial.candidates, wanted, trial.values)
+        begun += [fitted(task, t.candidates, t.values, None) for t in close[:SCREENED]]
         self.others += begun
-        left = halving(task, begun, RUNGS)
+        left = halving(task, begun, RUNGS[:1])
         if not left:
             return None
-        best = self.restarted(self.polished(left[0]))
+        best = ranked([self.restarted(self.polished(t)) for t in left])[0]
         have = {f.name for c in trial.candidates for f in c.free}
         added = {n: v for c in best.candidates for n, v in c.vanishing.items() if n not in have}
         return best if self.is_earned(gain(best, trial), p_value(best, added)) else None

@@ -82,12 +82,7 @@ def brought(candidate: Candidate, by_key: Mapping[str, Candidate]) -> dict[str, 
     """Start values of the candidates that `candidate` brings along, so that it has what to act
     on.
     """
-    return {
-        name: f.start
-        for key in candidate.brings
-        for f in by_key[key].free
-        for name in (f.name, *f.tied)
-    }
+    return {name: f.start for key in candidate.brings for f in by_key[key].free for name in f.names}
 
 
 def _signature(
@@ -107,7 +102,7 @@ def _signature(
                 whole = min(f.start * (1.0 + DECLARED_AMOUNT), 0.5 * (f.start + f.upper))
             column = np.zeros(len(weight))
             for amount in (zero + SMALL_AMOUNT * (whole - zero), whole):
-                changed = dict.fromkeys((f.name, *f.tied), amount)
+                changed = dict.fromkeys(f.names, amount)
                 column = (rows({**base, **shape, **changed}) - without) / (amount - zero)
                 if np.any(column):
                     break

@@ -104,7 +104,7 @@ def fitted(
     misled the parent are known to mislead.
     """
     free = freed(task, candidates, values)
-    names = {name for f in free for name in (f.name, *f.tied)}
+    names = {name for f in free for name in f.names}
     fixed = {name: value for name, value in task.fixed.items() if name not in names}
     effort = Effort(iterations, GAIN * share, accuracy(task, share), secants=secants)
     known = None if secants is None else _inherited(parent, free)

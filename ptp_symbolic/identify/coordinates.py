@@ -29,6 +29,11 @@ class FreeParameter:
     scale: float = 1.0
     table: float | None = None
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Its name and those of the parameters tied to it."""
+        return (self.name, *self.tied)
+
 
 def free_parameter(
     name: str,

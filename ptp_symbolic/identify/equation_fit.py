@@ -106,7 +106,7 @@ def linearised(
     model = space.model
     names = list(model.parameter_names)
     base = model.parameter_vector(dict(values))
-    owned = [[names.index(n) for n in (f.name, *f.tied)] for f in free]
+    owned = [[names.index(n) for n in f.names] for f in free]
     for f, columns in zip(free, owned, strict=True):
         base[columns] = here[f.name]
     rows = space.rows(base)
@@ -132,4 +132,4 @@ def linearised(
 
 def all_values_of(free: Sequence[FreeParameter], here: Mapping[str, float]) -> dict[str, float]:
     """Values of the free parameters and of those tied to them."""
-    return {name: here[f.name] for f in free for name in (f.name, *f.tied)}
+    return {name: here[f.name] for f in free for name in f.names}

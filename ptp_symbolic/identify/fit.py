@@ -141,7 +141,7 @@ def all_values(free: Sequence[FreeParameter], phi: FloatArray) -> dict[str, floa
 
 def all_values_at_start(free: Sequence[FreeParameter]) -> dict[str, float]:
     """Start values of the free parameters and of those tied to them."""
-    return {name: f.start for f in free for name in (f.name, *f.tied)}
+    return {name: f.start for f in free for name in f.names}
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,7 +200,7 @@ def _problem(
     executor: Executor | None,
 ) -> Problem:
     names = list(model.parameter_names)
-    owned = [(i, names.index(name)) for i, f in enumerate(free) for name in (f.name, *f.tied)]
+    owned = [(i, names.index(name)) for i, f in enumerate(free) for name in f.names]
     owner, columns = np.array(owned, dtype=np.int64).reshape(-1, 2).T
     simulations = _Simulations(
         model, runs, free, model.parameter_vector(dict(fixed)), columns.copy(), owner.copy(),

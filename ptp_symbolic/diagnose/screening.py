@@ -1,0 +1,44 @@
+"""Every candidate by itself over a few short windows: what the motion alone does not show.
+
+Windows forget: neither a rest nor a bounce in a gap that ends a sample late leads a fit astray
+there, so that a few iterations tell how much a candidate is worth, and at which values.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.diagnose.proposals import Proposals, start_for
+from ptp_symbolic.diagnose.refits import ITERATIONS
+from ptp_symbolic.diagnose.trial import Task, Trial, fitted, ranked
+
+WINDOWS = 40  # evenly spread over all: a search needs no more to rank candidates by
+
+
+def screened(
+    task: Task,
+    found: Proposals,
+    kept: Sequence[Candidate],
+    wanted: Sequence[Candidate],
+    values: Mapping[str, float],
+) -> list[Trial]:
+    """The set `kept` with each of the candidates `wanted`, and with what that brings along, fitted
+    to some windows of the task, the best fit first. A fit begins where the rows start the set, and
+    at `values` and the candidate's own start.
+    """
+    windows = task.windows[0] if task.windows else task.train
+    part = replace(task, train=windows[:: max(1, -(-len(windows) // WINDOWS))])
+    have = {c.key for c in kept}
+    by_key = {c.key: c for c in reversed(task.candidates)}
+
+    def begun(candidate: Candidate) -> list[Trial]:
+        added = [by_key[key] for key in candidate.brings if key not in have]
+        own = {name: f.start for c in (*added, candidate) for f in c.free for name in f.names}
+        whole = {**values, **own, **candidate.shapes[0]}
+        candidates = (*kept, *added, candidate)
+        starts = [whole, start_for(task, found, candidates, whole)]
+        return [fitted(part, candidates, start, None, ITERATIONS) for start in starts]
+
+    fresh = [c for c in wanted if c.key not in have]
+    trials = [t for pair in task.executor.map(begun, fresh) for t in pair]
+    return [t for t in ranked(trials) if not t.fit.failed]
