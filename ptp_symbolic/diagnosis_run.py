@@ -209,11 +209,8 @@ def _write_up(
     }
     errors = error_table(parts, verdict.floor)
     extended = _extended(platform, after)
-    files: dict[str, str | bytes] = {}
-    equations = []
-    for candidate in after.candidates:
-        if not candidate.is_declared_value:
-            equations += effect_equations(extended, candidate.id, candidate.axis)
+    named = [c for c in after.candidates if not c.is_declared_value]
+    equations = [e for c in named for e in effect_equations(extended, c.id, c.axis)]
     summary = {
         "schema_version": SCHEMA_VERSION,
         "platform": {"name": platform.name, "title": platform.title},
@@ -235,7 +232,7 @@ def _write_up(
         "equations": equations,
     }
     curves = curves_of(parts)
-    files["diagnosis.json"] = _json(summary)
+    files: dict[str, str | bytes] = {"diagnosis.json": _json(summary)}
     files["platform.toml"] = platform_text(extended)
     files["equations.tex"] = _equations_tex(equations)
     files[f"{extended.name}.py"] = module_text(assemble(extended))
@@ -278,9 +275,8 @@ def _added(
 
 
 def _value(estimate: Estimate, unit: str) -> dict[str, Any]:
-    return {
-        "value": estimate.value, "ci95": [estimate.lower, estimate.upper], "unit": unit,
-    }  # fmt: skip
+    interval = [estimate.lower, estimate.upper]
+    return {"value": estimate.value, "ci95": interval, "unit": unit}
 
 
 def _extended(platform: Platform, after: Trial) -> Platform:
@@ -291,10 +287,14 @@ def _extended(platform: Platform, after: Trial) -> Platform:
     ]
     fitted = [
         ParameterDeclaration(
-            name, bounds[name].unit, after.values[name], True, bounds[name].lower,
+            name,
+            bounds[name].unit,
+            after.values[name],
+            True,
+            bounds[name].lower,
             bounds[name].upper,
         )
         for c in after.candidates
         for name in c.parameters
-    ]  # fmt: skip
+    ]
     return loop.extended(platform, added, after.values, fitted)

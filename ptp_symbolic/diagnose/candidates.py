@@ -92,13 +92,19 @@ def _members(
         locked = next(((p.name, p.locked_to) for p in own if p.locked_to is not None), None)
         found.append(
             Candidate(
-                effect.id, effect.axis, effect.title, effect.separating_experiment,
+                effect.id,
+                effect.axis,
+                effect.title,
+                effect.separating_experiment,
                 tuple(_freed(p, followers.get(p.name, ())) for p in own),
                 {p.name: p.vanishes for p in own if p.vanishes is not None},
                 tuple(dict(zip([p.name for p in shaping], point, strict=True)) for point in grid),
-                locked, brings, number, title,
+                locked,
+                brings,
+                number,
+                title,
             )
-        )  # fmt: skip
+        )
     return found
 
 
@@ -129,12 +135,14 @@ def _declared_value(
     freed = free_parameter(parameter.name, value, lower, upper, parameter.period)
     return [
         Candidate(
-            f"{DECLARED_VALUE}:{parameter.name}", None,
+            f"{DECLARED_VALUE}:{parameter.name}",
+            None,
             f"declared value of {parameter.name} is wrong ({parameter.meaning})",
             f"Measure {parameter.name} on its own, apart from the machine.",
-            (freed,), {parameter.name: value},
+            (freed,),
+            {parameter.name: value},
         )
-    ]  # fmt: skip
+    ]
 
 
 def vanished(model: Model, declared: Sequence[str]) -> dict[str, float]:

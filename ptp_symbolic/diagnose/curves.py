@@ -53,9 +53,13 @@ def _curve(
             angle[axis] = data["after"]
             rate[axis] = np.gradient(data["after"], time)
     return {
-        "set": kind, "time": time, "signals": signals, "angle": angle, "rate": rate,
+        "set": kind,
+        "time": time,
+        "signals": signals,
+        "angle": angle,
+        "rate": rate,
         "borders": [float(r.time[0]) for r, _ in before[1:]],
-    }  # fmt: skip
+    }
 
 
 def _joined(windows: list[FloatArray]) -> FloatArray:

@@ -39,12 +39,20 @@ def task_of(
     length = window_length(model, train, start, noise)
     whole = () if length is not None else tuple(cut(model, train, w) for w in WINDOWS)
     return Task(
-        model, train, cut(model, train, length), whole, cut(model, validate, length), free, fixed,
+        model,
+        train,
+        cut(model, train, length),
+        whole,
+        cut(model, validate, length),
+        free,
+        fixed,
         find_candidates(model, declared, known) if declared else (),
-        executor, progress, noise,
+        executor,
+        progress,
+        noise,
         frozenset(name for name, size in noises.items() if size is not None),
         _finest_angle(train),
-    )  # fmt: skip
+    )
 
 
 def _finest_angle(runs: Sequence[Run]) -> float:

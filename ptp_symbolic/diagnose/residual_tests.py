@@ -60,6 +60,10 @@ def _row(name: str, signal: str, values: FloatArray, size: int, meaning: str) ->
     largest = float(np.max(np.abs(values)))
     threshold = float(stats.norm.ppf(1.0 - 0.5 * FALSE_ALARM / values.size) / np.sqrt(size))
     return {
-        "name": name, "signal": signal, "statistic": largest, "threshold": threshold,
-        "passed": largest <= threshold, "meaning": meaning,
-    }  # fmt: skip
+        "name": name,
+        "signal": signal,
+        "statistic": largest,
+        "threshold": threshold,
+        "passed": largest <= threshold,
+        "meaning": meaning,
+    }

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.signatures import Signature
+from ptp_symbolic.identify.blocks import SEED
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.equation_fit import HUBER, robust_scale
 
@@ -25,7 +26,6 @@ CAP = 4.0  # standard deviations: a row further off is a contact or a rest that 
 RIDGE = 1e-9  # of the mean square column: keeps systems of nearly equal columns solvable
 REWEIGHTINGS = 6
 WIDTH = 12  # entries that take part in subsets of three and more
-PERMUTATION_SEED = 20130801
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +58,15 @@ def regression(
 ) -> Regression:
     """The regression with weights from the residual of the declared model."""
     start = Regression(
-        rows, tuple(declared), base, tuple(found), equation, block, weight,
+        rows,
+        tuple(declared),
+        base,
+        tuple(found),
+        equation,
+        block,
+        weight,
         robust_scale(rows, equation),
-    )  # fmt: skip
+    )
     return reweighted(start, ())
 
 
@@ -137,7 +143,7 @@ class _Folds:
         ends = np.cumsum(sizes)
         self.own = [np.arange(b - n, b) for b, n in zip(ends, sizes, strict=True)]
         blocks, self.label = np.unique(found.block, return_inverse=True)
-        order = np.random.default_rng(PERMUTATION_SEED).permutation(len(blocks))
+        order = np.random.default_rng(SEED).permutation(len(blocks))
         fold = order[self.label] % FOLDS
         self.members = [np.flatnonzero(fold == k) for k in range(FOLDS)]
         root = np.sqrt(found.weight)

@@ -171,10 +171,14 @@ def _row(search: Search, found: Verdict, trial: Trial) -> dict[str, Any]:
 
 def _unfitted(candidate: Candidate) -> dict[str, Any]:
     return {
-        "effect": candidate.id, "axis": candidate.axis, "gain": None, "train_error_after": None,
-        "parameters": {}, "accepted": False,
+        "effect": candidate.id,
+        "axis": candidate.axis,
+        "gain": None,
+        "train_error_after": None,
+        "parameters": {},
+        "accepted": False,
         "why": "compared along the measured motion, where other sets did better",
-    }  # fmt: skip
+    }
 
 
 def _why(search: Search, found: Verdict, trial: Trial) -> str:

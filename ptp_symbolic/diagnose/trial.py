@@ -142,9 +142,16 @@ def continued(
 ) -> Trial:
     """Fit a trial on from where it ended; a worse end is not taken."""
     new = fitted(
-        task, trial.candidates, trial.values, trial.fit.z, iterations, trial.fit, share, secants,
+        task,
+        trial.candidates,
+        trial.values,
+        trial.fit.z,
+        iterations,
+        trial.fit,
+        share,
+        secants,
         executor,
-    )  # fmt: skip
+    )
     if new.fit.misleading is None and trial.fit.misleading is not None:
         new = replace(new, fit=replace(new.fit, misleading=trial.fit.misleading))
     before, after = misfits([trial, new])

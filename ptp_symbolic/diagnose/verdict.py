@@ -92,9 +92,18 @@ def decide(found: Search) -> Verdict:
     if word == NOTHING_MISSING:
         closest = None
     return Verdict(
-        word, trial, tuple(steps), named, tuple(alike), closest, refused, floor, before, after,
+        word,
+        trial,
+        tuple(steps),
+        named,
+        tuple(alike),
+        closest,
+        refused,
+        floor,
+        before,
+        after,
         held_out,
-    )  # fmt: skip
+    )
 
 
 def _simplest(

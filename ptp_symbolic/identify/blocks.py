@@ -17,7 +17,7 @@ IntArray = NDArray[np.int64]
 FEWEST_BLOCKS = 12  # fewer leave next to no degrees of freedom; runs are cut finer then
 MOST_BLOCKS = 200  # more say nothing more of a mean, and cost a small system each
 RESAMPLES = 2000  # of the bootstrap: the 2.5 % quantile is then good to a third of a percent
-RESAMPLE_SEED = 20130801
+SEED = 20130801  # of every draw: equal logs have equal answers
 
 
 def block_length(series: Sequence[FloatArray]) -> float:
@@ -123,19 +123,13 @@ def jackknife_covariance(shifts: FloatArray) -> FloatArray:
     return (b - 1.0) / max(b, 1) * centred.T @ centred
 
 
-def block_sums(values: FloatArray, label: IntArray) -> FloatArray:
-    """Sum [b] of `values` [n] over every block."""
-    sums: FloatArray = np.bincount(label, weights=values).astype(np.float64)
-    return sums
-
-
 def bootstrap_share(
     gain: FloatArray, whole: FloatArray, confidence: float
 ) -> tuple[float, float, float]:
     """The share sum(gain) / sum(whole) over blocks, and its interval of that `confidence` from
     blocks drawn with replacement (percentiles: Efron, 1979).
     """
-    rng = np.random.default_rng(RESAMPLE_SEED)
+    rng = np.random.default_rng(SEED)
     b = len(gain)
     drawn = rng.multinomial(b, np.full(b, 1.0 / b), size=RESAMPLES)
     below = np.maximum(drawn @ whole, 1e-300)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.identify.blocks import SEED
 from ptp_symbolic.identify.layout import Layout
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.runtime.model import Model
@@ -13,7 +14,7 @@ from ptp_symbolic.runtime.model import Model
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-DRAWS, DRAW_SEED = 3, 20130801
+DRAWS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,12 +32,13 @@ def dependence_of(
     model: Model, layout: Layout, runs: Sequence[Run], p: FloatArray, varied: FloatArray
 ) -> Dependence:
     """What depends on what, seen at states drawn at random, with parameters p and with others."""
-    rng = np.random.default_rng(DRAW_SEED)
+    rng = np.random.default_rng(SEED)
     count = len(layout.further)
     found = Dependence(
-        np.zeros(len(p), dtype=np.bool_), np.zeros(len(p), dtype=np.bool_),
+        np.zeros(len(p), dtype=np.bool_),
+        np.zeros(len(p), dtype=np.bool_),
         np.zeros(count, dtype=np.bool_),
-    )  # fmt: skip
+    )
     shown = [model.output_names.index(f"theta_{a}") for a in model.module.AXES]
     largest = np.max([np.max(np.abs(run.held_inputs), axis=0) for run in runs], axis=0)
     steps = np.where(varied != p, varied - p, 0.01 * p + 1e-3)

@@ -80,10 +80,14 @@ def fit_equations(
         size = np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
         triangle = np.linalg.qr(matrix / size, mode="reduced")
         slack = 1e-12 * np.maximum(np.abs(at), sigma)
-        step = lsq_linear(
-            triangle[1], triangle[0].T @ right,
-            ((lower - at - slack) * size, (upper - at + slack) * size),
-        ).x / size  # fmt: skip
+        step = (
+            lsq_linear(
+                triangle[1],
+                triangle[0].T @ right,
+                ((lower - at - slack) * size, (upper - at + slack) * size),
+            ).x
+            / size
+        )
         new = np.clip(at + step, lower, upper)
         here = {f.name: float(v) for f, v in zip(free, new, strict=True)}
         moved = np.max(np.abs(new - at) / np.maximum(np.abs(new), 1e-3 * sigma), initial=0.0)

@@ -46,11 +46,14 @@ def half_width_of(
         gain = noise_gain(period, half_width, 2)
         curved = [
             weak_average(
-                run.time, np.ascontiguousarray(run.measured[:, columns]), half_width, 2,
+                run.time,
+                np.ascontiguousarray(run.measured[:, columns]),
+                half_width,
+                2,
                 np.arange(0, len(run.time), max(1, int(half_width / period))),
             )
             for run in runs
-        ]  # fmt: skip
+        ]
         size = np.sqrt(np.nanmean(np.concatenate(curved) ** 2, axis=0))
         if np.all(noise * gain <= CALM * size):
             return half_width

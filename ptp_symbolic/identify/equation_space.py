@@ -181,10 +181,10 @@ class EquationSpace:
                 late = late + np.column_stack(more)[:, None, :]
             shown = np.zeros(count, dtype=np.bool_)
             shown[[place for _, place in self.measured]] = True
+            addresses, resting = equation_addresses(self.model), self.resting
             found, mean, by_rate = further_states(
-                equation_addresses(self.model), self.layout, fine, p, self.resting, self.acting,
-                shown, late,
-            )  # fmt: skip
+                addresses, self.layout, fine, p, resting, self.acting, shown, late
+            )
             left = fine.measured - found
             acts = grid_averages(np.where(np.isnan(left), mean, mean + left), grid)
             self._states[key] = FurtherStates(acts, np.nan_to_num(left), by_rate)
@@ -288,13 +288,10 @@ def prepare_equation_space(
     noise = 1.0 / runs[0].weight[columns]
     period = float(np.median(np.concatenate([np.diff(run.time) for run in runs])))
     half_width = half_width_of(runs, columns, noise, period)
-    rate_width = 0.5 * half_width
-    resting = resting_rates(runs[0].counts[columns], noise, period, rate_width)
+    resting = resting_rates(runs[0].counts[columns], noise, period, 0.5 * half_width)
     frictions = set(layout.friction_axis.tolist())
     resting = np.where([a in frictions for a in range(len(axes))], resting, 0.0)
-    space = EquationSpace(
-        model, tuple(runs), layout, half_width, rate_width, resting, measured, depends.sensing,
-        depends.moving, depends.acting,
-    )  # fmt: skip
+    widths, acts = (half_width, 0.5 * half_width), (depends.sensing, depends.moving, depends.acting)
+    space = EquationSpace(model, tuple(runs), layout, *widths, resting, measured, *acts)
     space.decide_rows(p, others)
     return space

@@ -165,18 +165,37 @@ def evaluate(
     late = delays_of(model, p)
     table = delayed(run.inputs, late)
     found = pass_through(
-        model, default_method(model), p, x, table, True,
-        table.with_stops(run.time) if np.any(late) else run.time, run.time,
+        model,
+        default_method(model),
+        p,
+        x,
+        table,
+        True,
+        table.with_stops(run.time) if np.any(late) else run.time,
+        run.time,
         Accuracy(tolerance.relative, tolerance.absolute(model), 1.0),
-        s if tangents else None, columns, delay_columns(model, columns),
-    )  # fmt: skip
+        s if tangents else None,
+        columns,
+        delay_columns(model, columns),
+    )
     r, j = np.zeros(run.size), np.zeros((run.size, found.s.shape[2]))
     failed = None if found.status == DONE else f"{run.name}: stopped at {found.reached:.4f} s"
     if failed is None:
         _compare(
-            output_addresses(model.module), len(model.output_names), run.time, found.x, found.s,
-            run.held_inputs, p, run.measured, columns, run.outputs, run.weight, r, j,
-        )  # fmt: skip
+            output_addresses(model.module),
+            len(model.output_names),
+            run.time,
+            found.x,
+            found.s,
+            run.held_inputs,
+            p,
+            run.measured,
+            columns,
+            run.outputs,
+            run.weight,
+            r,
+            j,
+        )
         if not np.all(np.isfinite(r)):
             failed = f"{run.name}: not finite"
     split = len(columns)

@@ -106,11 +106,19 @@ def fit_parameters(
     best = minimise(problem, phi, start_z, effort.iterations, effort.gain, effort.rejections)
     values = {**fixed, **all_values(free, best.phi)}
     return Fit(
-        model, tuple(runs), tuple(free), values, tuple(best.z), best.cost,
-        tuple(best.evaluations), best.failed, effort.tolerance,
-        None if problem.refine is None or problem.refine.chosen is None
+        model,
+        tuple(runs),
+        tuple(free),
+        values,
+        tuple(best.z),
+        best.cost,
+        tuple(best.evaluations),
+        best.failed,
+        effort.tolerance,
+        None
+        if problem.refine is None or problem.refine.chosen is None
         else tuple(problem.refine.chosen),
-    )  # fmt: skip
+    )
 
 
 def unblinded(fit: Fit, executor: Executor | None = None) -> Fit:
@@ -203,9 +211,15 @@ def _problem(
     owned = [(i, names.index(name)) for i, f in enumerate(free) for name in f.names]
     owner, columns = np.array(owned, dtype=np.int64).reshape(-1, 2).T
     simulations = _Simulations(
-        model, runs, free, model.parameter_vector(dict(fixed)), columns.copy(), owner.copy(),
-        effort.tolerance, executor,
-    )  # fmt: skip
+        model,
+        runs,
+        free,
+        model.parameter_vector(dict(fixed)),
+        columns.copy(),
+        owner.copy(),
+        effort.tolerance,
+        executor,
+    )
     lower, upper = limits(free)
     return Problem(
         simulations.evaluate,
@@ -251,10 +265,16 @@ def _fit_starts(
     pairs = list(zip(runs, z, strict=True))
     best = list(executor.map(one, pairs)) if executor else [one(pair) for pair in pairs]
     return Fit(
-        model, tuple(runs), (), dict(fixed), tuple(b.z[0] for b in best),
-        float(sum(b.cost for b in best)), tuple(b.evaluations[0] for b in best),
-        next((b.failed for b in best if b.failed), None), effort.tolerance,
-    )  # fmt: skip
+        model,
+        tuple(runs),
+        (),
+        dict(fixed),
+        tuple(b.z[0] for b in best),
+        float(sum(b.cost for b in best)),
+        tuple(b.evaluations[0] for b in best),
+        next((b.failed for b in best if b.failed), None),
+        effort.tolerance,
+    )
 
 
 def _places(problem: Problem, run: Run, start: FloatArray) -> list[FloatArray]:

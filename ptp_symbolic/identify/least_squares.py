@@ -221,9 +221,13 @@ def _step(
     diagonal = weight.copy()
     blocks = []
     for e, a, sigma, low, high in zip(
-        at.evaluations, at.z, problem.start_sigma, problem.start_lower, problem.start_upper,
+        at.evaluations,
+        at.z,
+        problem.start_sigma,
+        problem.start_lower,
+        problem.start_upper,
         strict=True,
-    ):  # fmt: skip
+    ):
         share = np.sqrt(_share(e, weights.bend))
         j, k, r = share * e.by_parameter, share * e.by_start, share * e.residual
         jj, jk, kk = j.T @ j, j.T @ k, k.T @ k

@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.identify.along_motion import Motion, angles_behind_sensors
 from ptp_symbolic.identify.equation_rows import RunRows
+from ptp_symbolic.identify.evaluate import SENSOR_ITERATIONS
 from ptp_symbolic.identify.layout import Layout, equation_addresses
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.identify.weak_form import local_motion, weak_average
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
-
-SENSOR_ITERATIONS = 4  # an error of 2 % of the angle is left to 2e-7 of it
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,10 +49,16 @@ def angles_of(model: Model, layout: Layout, run: Run, p: FloatArray, errors: boo
     columns = [run.signals.index(f"theta_{a}") for a in axes]
     shown = [model.output_names.index(f"theta_{a}") for a in axes]
     found: FloatArray = angles_behind_sensors(
-        equation_addresses(model), layout, np.array(shown), run.time,
-        np.ascontiguousarray(run.measured[:, columns]), run.held_inputs, p,
-        len(model.output_names), SENSOR_ITERATIONS if errors else 0,
-    )  # fmt: skip
+        equation_addresses(model),
+        layout,
+        np.array(shown),
+        run.time,
+        np.ascontiguousarray(run.measured[:, columns]),
+        run.held_inputs,
+        p,
+        len(model.output_names),
+        SENSOR_ITERATIONS if errors else 0,
+    )
     return found
 
 

@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.identify.blocks import SEED
 from ptp_symbolic.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.identify.intervals import project_out
 from ptp_symbolic.identify.least_squares import BEND
@@ -27,7 +28,6 @@ ALLOWED_GROWTH = 10.0
 MOST_CARRIED = 1.0  # of the noise of a signal: more noise than that is not its own
 GROWING_LENGTH = 1.0
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)
-REPLAY_SEED = 20130801
 
 
 def input_noise(run: Run, declared: Sequence[float | None]) -> FloatArray:
@@ -47,7 +47,7 @@ def window_length(
         lengths: tuple[float, ...] = tuple(x for x in LENGTHS if x <= GROWING_LENGTH)
     else:
         lengths = (np.inf, *LENGTHS)
-    rng = np.random.default_rng(REPLAY_SEED)
+    rng = np.random.default_rng(SEED)
     grown = [_drift(model, run, p, input_noise(run, declared_noise), rng) for run in runs]
     durations = [float(run.time[-1] - run.time[0]) for run in runs]
     allowed = max(ALLOWED_COUNTS, ALLOWED_RISE * _typical(grown, LENGTHS[-1]))
@@ -127,7 +127,7 @@ def propagated_noise(
 
     Every run is replayed with noisy inputs; what its unknown start can take up is projected out.
     """
-    rng = np.random.default_rng(REPLAY_SEED)
+    rng = np.random.default_rng(SEED)
     squares = np.full((len(runs), runs[0].measured.shape[1]), np.nan)
     for row, (run, start) in enumerate(zip(runs, z, strict=True)):
         found = _replay(model, run, p, start, input_noise(run, declared_noise), rng)

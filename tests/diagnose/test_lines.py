@@ -17,9 +17,11 @@ def space_of(time: Floats, angle: Floats) -> Any:
     rows = np.zeros(len(time), dtype=np.int64)
     run = SimpleNamespace(time=time, signals=("theta_pan",), measured=angle[:, None])
     return SimpleNamespace(
-        labels=lambda: (rows, rows, time), runs=(run,), half_width=0.05,
+        labels=lambda: (rows, rows, time),
+        runs=(run,),
+        half_width=0.05,
         model=SimpleNamespace(module=SimpleNamespace(AXES=("pan",))),
-    )  # fmt: skip
+    )
 
 
 def locked_to(place: str) -> Candidate:

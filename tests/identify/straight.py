@@ -19,10 +19,18 @@ def run_of(samples: int, signals: int = 1, inputs: Floats | None = None, name: s
     """A run of analog signals and `inputs` [k, nu] (default: one zero); all measured is zero."""
     held = np.zeros((samples, 1)) if inputs is None else inputs
     return Run(
-        name, np.arange(samples) / 50.0, stack([constant(0.0)] * held.shape[1]), held,
-        np.zeros((samples, signals)), np.arange(signals), np.ones(signals),
-        np.full(signals, np.nan), tuple(f"y{k}" for k in range(signals)), np.zeros(0), (),
-    )  # fmt: skip
+        name,
+        np.arange(samples) / 50.0,
+        stack([constant(0.0)] * held.shape[1]),
+        held,
+        np.zeros((samples, signals)),
+        np.arange(signals),
+        np.ones(signals),
+        np.full(signals, np.nan),
+        tuple(f"y{k}" for k in range(signals)),
+        np.zeros(0),
+        (),
+    )
 
 
 def finished(

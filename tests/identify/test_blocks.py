@@ -11,7 +11,6 @@ from ptp_symbolic.identify.blocks import (
     MOST_BLOCKS,
     block_labels,
     block_length,
-    block_sums,
     bootstrap_share,
     jackknife_covariance,
     leave_blocks_out,
@@ -129,11 +128,6 @@ def test_the_jackknife_of_a_mean_is_the_textbook_variance_of_a_mean() -> None:
     label = np.repeat(np.arange(15), 40)
     shifts = leave_blocks_out(residual, -np.tile(np.eye(2), (300, 1)), label).shifts
     assert jackknife_covariance(shifts) == pytest.approx(np.cov(means.T) / 15, rel=1e-7)
-
-
-def test_block_sums_by_hand() -> None:
-    sums = block_sums(np.array([1.0, 2.0, 4.0, 8.0]), np.array([0, 0, 1, 2]))
-    assert list(sums) == [3.0, 4.0, 8.0]
 
 
 def test_a_share_is_that_of_the_sums_and_its_interval_that_of_a_ratio_of_means() -> None:

@@ -92,8 +92,12 @@ def test_one_parameter_that_wants_far_does_not_stop_the_others(coupling: float) 
     far = np.full(3, 1e6)
     problem = Problem(
         lambda phi, z, tangents: [evaluation(target - matrix @ phi, -matrix, np.zeros((3, 0)))],
-        -far, far, *[[np.zeros(0)]] * 3, np.zeros(3), np.zeros(3),
-    )  # fmt: skip
+        -far,
+        far,
+        *[[np.zeros(0)]] * 3,
+        np.zeros(3),
+        np.zeros(3),
+    )
     found = minimise(problem, np.zeros(3), [np.zeros(0)], iterations=1)
     exact = lsq_linear(matrix, target, (-LARGEST_STEP, LARGEST_STEP)).x
     assert found.phi == pytest.approx(exact, abs=2e-3)
@@ -105,8 +109,14 @@ def straight(matrix: Floats, target: Floats) -> Problem:
     zero, none = np.zeros(len(target)), [np.zeros(0)]
     return Problem(
         lambda phi, z, tangents: [evaluation(target - matrix @ phi, -matrix, zero[:, None][:, :0])],
-        zero, zero + 1e6, none, none, none, zero, zero,
-    )  # fmt: skip
+        zero,
+        zero + 1e6,
+        none,
+        none,
+        none,
+        zero,
+        zero,
+    )
 
 
 def test_a_bound_is_neared_by_one_share_per_step_and_then_reached() -> None:

@@ -26,10 +26,13 @@ def straight_line(columns: dict[str, np.ndarray], noise: float) -> Fit:
     return cast(
         Fit,
         SimpleNamespace(
-            free=free, values=dict.fromkeys(columns, 2.0), runs=(run,), evaluations=(evaluation,),
+            free=free,
+            values=dict.fromkeys(columns, 2.0),
+            runs=(run,),
+            evaluations=(evaluation,),
             cost=float(residual @ residual),
         ),
-    )  # fmt: skip
+    )
 
 
 def test_two_frictions_in_one_joint_are_known_as_a_sum_only() -> None:

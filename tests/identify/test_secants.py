@@ -114,8 +114,11 @@ def test_a_search_climbs_down_the_staircase_only_with_differences() -> None:
     bounds = np.array([-9.0, -9.0]), FAR
     problem = Problem(
         lambda phi, z, tangents: evaluate(phi),
-        *bounds, *[NO_STARTS] * 3, np.zeros(2), np.zeros(2),
-    )  # fmt: skip
+        *bounds,
+        *[NO_STARTS] * 3,
+        np.zeros(2),
+        np.zeros(2),
+    )
     mended = Problem(**{**vars(problem), "refine": Secants(residual, FAR)})
     begin = np.array([0.3, 0.9])
     without = minimise(problem, begin, NO_STARTS)

@@ -37,9 +37,17 @@ PLATFORM = Platform("both", "Both axes", ("pan", "tilt"), 9.81, (), (), SIGNALS)
 MODEL = ptp_symbolic.load("payload")
 INERTIA = 0.02  # of the pan axis, N m s^2/rad
 FREE = {
-    "J_pan": INERTIA, "J_x_tilt": 1e-9, "J_z_tilt": 1e-9, "J_y_tilt": 0.01, "b_pan": 0.0,
-    "b_tilt": 0.0, "m_payload": 0.0, "J_x_payload": 0.0, "J_y_payload": 0.0, "J_z_payload": 0.0,
-}  # fmt: skip
+    "J_pan": INERTIA,
+    "J_x_tilt": 1e-9,
+    "J_z_tilt": 1e-9,
+    "J_y_tilt": 0.01,
+    "b_pan": 0.0,
+    "b_tilt": 0.0,
+    "m_payload": 0.0,
+    "J_x_payload": 0.0,
+    "J_y_payload": 0.0,
+    "J_z_payload": 0.0,
+}
 NONE = np.zeros(0, dtype=np.int64)
 
 
@@ -175,9 +183,16 @@ def test_a_window_is_driven_as_the_whole_run_is() -> None:
     run, p, tight = wavy(), MODEL.parameter_vector(FREE), Tolerance(1e-9, 1e-11)
     none = np.zeros(0)
     whole = pass_through(
-        MODEL, default_method(MODEL), p, run.start, run.inputs, True, run.time, run.time,
+        MODEL,
+        default_method(MODEL),
+        p,
+        run.start,
+        run.inputs,
+        True,
+        run.time,
+        run.time,
         Accuracy(tight.relative, tight.absolute(MODEL), 1.0),
-    ).x  # fmt: skip
+    ).x
     along = whole[:, [MODEL.state_names.index(signal) for signal in run.signals]]
     for window in split_run(MODEL, run, 2.0):
         at = int(np.searchsorted(run.time, window.time[0]))
@@ -196,8 +211,11 @@ def test_edges_lie_where_every_axis_moves_and_starts_carry_its_speed() -> None:
         begin = window.time[0]
         assert abs(math.cos(2.1 * begin)) > 0.6
         assert [u.name for u in window.unknowns] == [
-            "theta_pan", "omega_pan", "theta_tilt", "omega_tilt",
-        ]  # fmt: skip
+            "theta_pan",
+            "omega_pan",
+            "theta_tilt",
+            "omega_tilt",
+        ]
         start = dict(zip(states, window.start, strict=True))
         assert start["theta_pan"] == window.measured[0, 0]
         assert start["omega_pan"] == pytest.approx(1.89 * math.cos(2.1 * begin), abs=0.1)
