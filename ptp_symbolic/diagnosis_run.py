@@ -228,7 +228,6 @@ def _write_up(
         "refused": dict(verdict.refused),
         "windows": _windows(task),
         "remarks": list(noted),
-        "not_visible": [],
         "equations": equations,
     }
     curves = curves_of(parts)

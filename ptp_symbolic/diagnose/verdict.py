@@ -126,7 +126,7 @@ def _weakness(
     """The candidate of a trial that is confirmed least, and why not; None where all are."""
     weakest = min(steps, key=lambda s: s.gain.share)
     if not seeker.is_needed(weakest):
-        return weakest, f"takes away only {100.0 * weakest.gain.share:.0f} % of the error"
+        return weakest, _too_little(weakest.gain)
     for step in steps:
         reason = why_unconfirmed(task, trial, fit, step.candidate)
         if reason is not None:
@@ -138,6 +138,16 @@ def _weakness(
         share = f"{100.0 * weakest.gain.share:.0f} %"
         return weakest, f"takes away {share} of the error, too little where more than noise is left"
     return None
+
+
+def _too_little(earned: Gain) -> str:
+    """Why a gain earns no name."""
+    if earned.share <= 0.0:
+        return "predicts blocks that were left out no better"
+    share = f"{100.0 * earned.share:.0f} %"
+    if earned.share < MATERIAL:
+        return f"takes away only {share} of the error"
+    return f"takes away {share} of the error, which may be chance"
 
 
 def _closest(found: Search) -> Trial | None:

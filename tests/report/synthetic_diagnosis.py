@@ -174,7 +174,6 @@ def synthetic_diagnosis(verdict: str) -> dict[str, Any]:
         "refused": {} if verdict == "nothing_missing" else REFUSED,
         "windows": None,
         "remarks": [],
-        "not_visible": [{"effect": "backlash", "axis": "pan", "why": "the gap is never crossed"}],
         "hints": ["The residual repeats once per turn."] if verdict == "unexplained" else [],
         "equations": [EQUATION] if added else [],
         "runtime_seconds": 41.7,
