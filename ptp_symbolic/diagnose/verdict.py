@@ -16,9 +16,9 @@ from ptp_symbolic.diagnose.floor import (
 from ptp_symbolic.diagnose.gain import Gain, compared, gain
 from ptp_symbolic.diagnose.groups import Rival, confusable, rivals
 from ptp_symbolic.diagnose.search import Seeker
-from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy, mean_squares, ranked
+from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy, huber, mean_squares, ranked
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, unblinded
-from ptp_symbolic.identify.least_squares import weighted_median
+from ptp_symbolic.identify.least_squares import BEND, weighted_median
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"
@@ -31,6 +31,7 @@ MAJOR = (
 )
 # that is slightly wrong everywhere lets many candidates gain a little
 HELD_OUT_ABOVE = 1.25  # times the floor: validation runs are few, and bear the errors of the fit
+BIGGEST = 1e12  # mean square of a run that could not be simulated
 HELD_OUT_ITERATIONS = 10  # for the starts of the validation runs
 
 
@@ -82,7 +83,7 @@ def decide(found: Search) -> Verdict:
     after = held_out_fit(task, trial) if trial.candidates else before
     held_out = held_out_gain(after, before) if trial.candidates else None
     closest = None if trial.candidates else _closest(found)
-    if held_out is not None and held_out.upper < MATERIAL:
+    if held_out is not None and held_out.share < MATERIAL:
         for key in trial.keys:
             refused[key] = "the validation runs are predicted no better with it"
         closest, trial, steps, after, held_out, alike = trial, found.declared, [], before, None, []
@@ -186,10 +187,12 @@ def held_out_fit(task: Task, trial: Trial) -> Fit:
 
 
 def held_out_gain(after: Fit, before: Fit) -> Gain:
-    """The share of the mean square error of validation runs or windows that is taken away."""
-    losses = []
-    for fit in (after, before):
-        squares = mean_squares(fit.evaluations, fit.runs)
-        size = np.array([len(run.time) for run in fit.runs], dtype=np.float64)
-        losses.append(size * np.minimum(squares, 1e12).sum(axis=1))
+    """The share of the mean square error of validation runs or windows that is taken away; those
+    far worse than usual count linearly.
+    """
+    size = np.array([len(run.time) for run in after.runs], dtype=np.float64)
+    squares = [mean_squares(fit.evaluations, fit.runs) for fit in (after, before)]
+    usual = np.min([weighted_median(s, size) for s in squares], axis=0)
+    bend = BEND**2 * np.maximum(usual, 1.0)
+    losses = [size * huber(np.minimum(s, BIGGEST), bend).sum(axis=1) for s in squares]
     return compared(losses[0], losses[1])

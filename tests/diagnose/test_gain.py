@@ -8,6 +8,7 @@ from scipy import special, stats
 
 from ptp_symbolic.diagnose.gain import Gain, compared, gain
 from ptp_symbolic.diagnose.trial import BEND, Trial
+from ptp_symbolic.diagnose.verdict import held_out_gain
 from ptp_symbolic.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
@@ -135,3 +136,13 @@ def test_a_signal_of_a_large_unit_does_not_outweigh_another() -> None:
         better = [np.column_stack([size * sign, sign])] * 20
         worse = [np.column_stack([np.sqrt(2.0) * size * sign, sign])] * 20
         assert gain(trial(better), trial(worse)).share == pytest.approx(1.0 / 3.0, rel=1e-9)
+
+
+def test_a_validation_run_that_sticks_does_not_hide_what_the_others_gain() -> None:
+    """Four runs of 50 samples fall from rms 10 to 1, the fourth stays at 100. Beyond 2.5 they count
+    linearly: 43.75 and 493.75 by hand, so that 128.25 of 625 are taken away; of squares, 3 %.
+    """
+    wave = np.tile([1.0, -1.0], 25)
+    before = finished([10.0 * wave] * 3 + [100.0 * wave])
+    after = finished([wave] * 3 + [100.0 * wave])
+    assert held_out_gain(after, before).share == pytest.approx(128.25 / 625.0, rel=1e-12)
