@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise
+from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise, left_over
 from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
 from ptp_symbolic.diagnose.proposals import Proposals, declared_start
 from ptp_symbolic.diagnose.trial import (
@@ -26,6 +26,7 @@ from ptp_symbolic.diagnose.trial import (
     ranked,
 )
 from ptp_symbolic.identify.fit import Effort, fit_parameters
+from ptp_symbolic.identify.least_squares import NEARBY
 from ptp_symbolic.identify.secants import STEP, WIDE_STEP
 from ptp_symbolic.identify.windows import without_chaos
 
@@ -119,10 +120,11 @@ def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
 
 
 def started_anew(task: Task, trial: Trial) -> Trial:
-    """A stuck trial fitted on from starts of its runs that are looked for anew: a place in a gap
-    that is a little off holds the parameters where they are.
+    """A stuck trial fitted on from starts of its runs that are looked for anew: near the floor, a
+    place in a gap that is a little off holds the parameters where they are.
     """
-    if not any(u.places for run in task.train for u in run.unknowns):
+    unsure = any(u.places for run in task.train for u in run.unknowns)
+    if not unsure or np.any(left_over(trial.fit) > NEARBY):
         return trial
     effort = Effort(POLISH, GAIN * ROUGH, accuracy(task, ROUGH))
     starts = fit_parameters(task.model, task.train, (), trial.values, None, effort, task.executor)
