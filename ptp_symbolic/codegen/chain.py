@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic.codegen.sharing import Line
+from ptp_symbolic.derivation.differentiation import derivative
 from ptp_symbolic.derivation.equations import Equations
 from ptp_symbolic.derivation.parts import slope_symbol
 
@@ -24,11 +25,11 @@ class ChainRule:
 
     def derivative(self, expression: sp.Expr, variable: sp.Symbol) -> sp.Expr:
         """Derivative of `expression` by `variable`, also by way of the named functions in it."""
-        result = sp.diff(expression, variable)
+        result = derivative(expression, variable)
         for symbol in sorted(expression.free_symbols, key=str):
             slope = self.slopes.get((symbol, variable))
             if slope is not None:
-                result += sp.diff(expression, symbol) * slope
+                result += derivative(expression, symbol) * slope
         return result
 
 

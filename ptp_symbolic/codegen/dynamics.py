@@ -13,6 +13,7 @@ import sympy as sp
 from ptp_symbolic import kinematics
 from ptp_symbolic.codegen.chain import ChainRule, chain_rule
 from ptp_symbolic.codegen.sharing import Line
+from ptp_symbolic.derivation.differentiation import derivative
 from ptp_symbolic.derivation.equations import Contact, Equations
 
 ZERO = sp.Integer(0)
@@ -197,11 +198,11 @@ def derivative_of(
     values = dict(solve.definitions)
     result = solve.chain.derivative(expression, variable)
     for acceleration, by in zip(solve.accelerations, acceleration_by, strict=True):
-        result += sp.diff(expression, acceleration) * by
+        result += derivative(expression, acceleration) * by
     for symbol in sorted(expression.free_symbols, key=str):
         if str(symbol).startswith("mass_"):
             slope = solve.chain.derivative(values[str(symbol)], variable)
-            result += sp.diff(expression, symbol) * slope
+            result += derivative(expression, symbol) * slope
     return result
 
 

@@ -13,6 +13,7 @@ from ptp_symbolic.codegen.metadata import metadata_text
 from ptp_symbolic.codegen.sharing import Line, share
 from ptp_symbolic.codegen.templates import state_derivative_text
 from ptp_symbolic.codegen.words import words_of
+from ptp_symbolic.derivation.differentiation import derivative
 from ptp_symbolic.derivation.equations import Equations
 from ptp_symbolic.simplify.base_parameters import base_form
 
@@ -72,7 +73,7 @@ def _operations(equations: Equations, solve: dynamics.Solve) -> tuple[int, int]:
 def _shared(
     equations: Equations, definitions: Sequence[Line], outputs: Sequence[Line]
 ) -> list[Line]:
-    present = [(t, sp.sympify(e, strict=True)) for t, e in outputs if e != 0]
+    present = [(t, e) for t, e in outputs if e != 0]
     return share(definitions, present, words_of(equations))
 
 
@@ -91,7 +92,7 @@ def _state_lines(equations: Equations) -> list[Line]:
         replace(equations, mass_matrix=form.mass_matrix + varying, forcing=form.forcing)
     )
     rates = dynamics.state_rates(equations, regrouped)
-    outputs = [(f"dx[{i}]", sp.sympify(rate, strict=True)) for i, rate in enumerate(rates)]
+    outputs = [(f"dx[{i}]", rate) for i, rate in enumerate(rates)]
     named = [(str(s), e) for s, e in (*form.base_parameters, *form.shared_terms) if s != e]
     return share((*named, *regrouped.definitions), outputs, words_of(equations))
 
@@ -122,10 +123,7 @@ def _jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> 
 
 
 def _guards(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
-    outputs = [
-        (f"g[{i}]", sp.sympify(e, strict=True))
-        for i, e in enumerate(dynamics.guard_expressions(equations, solve))
-    ]
+    outputs = [(f"g[{i}]", e) for i, e in enumerate(dynamics.guard_expressions(equations, solve))]
     doc = "Write holding and breakaway torques, gap separations and contact torques into g."
     lines = share(solve.definitions, outputs, words_of(equations)) if outputs else []
     return kernel_text("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
@@ -181,7 +179,7 @@ def _outputs(equations: Equations, vectors: Vectors) -> str:
 
 def _output_jacobian(equations: Equations, vectors: Vectors) -> str:
     outputs = [
-        (f"y{letter}[{i}, {j}]", sp.diff(expression, variable))
+        (f"y{letter}[{i}, {j}]", derivative(expression, variable))
         for letter, symbols in _columns(equations)
         if letter != "u"
         for j, variable in enumerate(symbols)
@@ -211,7 +209,7 @@ def _equation_error(equations: Equations, solve: dynamics.Solve, vectors: Vector
     torques = solve.mass * sp.Matrix(solve.accelerations) - solve.force
     moving = {sp.Symbol(s.name, real=True): s.derivative for s in equations.extra_states}
     others = [moving[s] for s in equations.state_symbols if s in moving]
-    outputs = [(f"r[{i}]", sp.sympify(e, strict=True)) for i, e in enumerate([*torques, *others])]
+    outputs = [(f"r[{i}]", e) for i, e in enumerate([*torques, *others])]
     lines = share(definitions, outputs, words_of(equations))
     extended = replace(vectors, x=(*vectors.x, *given))
     doc = (
@@ -237,14 +235,14 @@ def _samplers(equations: Equations, vectors: Vectors) -> list[str]:
     values = [e for s in equations.samplers for e in (s.period, s.offset, s.phase)]
     values += [value for _, _, value in equations.updates]
     terms = {symbol: term for s in equations.samplers for symbol, term in s.terms.items()}
-    outputs = [(f"z[{i}]", sp.sympify(e, strict=True)) for i, e in enumerate(values)]
+    outputs = [(f"z[{i}]", e) for i, e in enumerate(values)]
     doc = "Write period, offset and phase of every sampler, then what SAMPLED states become into z."
     named = [(str(symbol), term) for symbol, term in (*equations.terms, *terms.items())]
     lines = share(named, outputs, words_of(equations))
     for symbol, term in reversed(terms.items()):
         values = [value.xreplace({symbol: term}) for value in values]
     slopes = [
-        (f"z{letter}[{i}, {j}]", sp.diff(equations.written_out(value), variable))
+        (f"z{letter}[{i}, {j}]", derivative(equations.written_out(value), variable))
         for letter, symbols in _columns(equations)
         for j, variable in enumerate(symbols)
         for i, value in enumerate(values)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic import kinematics
+from ptp_symbolic.derivation.differentiation import derivative
 from ptp_symbolic.effects.effect import (
     Contribution,
     Drive,
@@ -98,10 +99,10 @@ def _slopes(term: sp.Symbol, found: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symb
     """Derivatives of `term` by the angles, also by way of the functions in it."""
     slopes: dict[sp.Symbol, sp.Expr] = {}
     for angle in (q(a) for q in (kinematics.angle, kinematics.gear_angle) for a in kinematics.AXES):
-        slope = sp.diff(found[term], angle)
+        slope = derivative(found[term], angle)
         for inner in sorted(found[term].free_symbols & found.keys(), key=str):
             if slope_symbol(inner, angle) in found:
-                slope += sp.diff(found[term], inner) * slope_symbol(inner, angle)
+                slope += derivative(found[term], inner) * slope_symbol(inner, angle)
         if slope != 0:
             slopes[slope_symbol(term, angle)] = slope
     return slopes

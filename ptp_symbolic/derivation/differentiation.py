@@ -1,0 +1,21 @@
+"""Derivatives of expressions whose value is real, whatever SymPy can prove of their parts."""
+
+import sympy as sp
+
+
+class _Magnitude(sp.Function):
+    """The size of a real number; SymPy's `Abs` differentiates as for a complex one unless it can
+    prove its argument real, which a logarithm or a quotient of parameters prevents.
+    """
+
+    nargs = 1
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        return sp.sign(self.args[0])
+
+
+def derivative(expression: sp.Expr, variable: sp.Symbol) -> sp.Expr:
+    """Partial derivative of a real `expression` by `variable`."""
+    if not expression.has(sp.Abs):
+        return sp.diff(expression, variable)
+    return sp.diff(expression.replace(sp.Abs, _Magnitude), variable).replace(_Magnitude, sp.Abs)

@@ -1,0 +1,54 @@
+"""Derivatives of real expressions, against differences of their values."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import sympy as sp
+
+from ptp_symbolic import loop
+from ptp_symbolic.derivation.differentiation import derivative
+from ptp_symbolic.platform import read_platform
+
+X, C = sp.symbols("x c", real=True)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        sp.Abs(X**3 - C),
+        X * sp.Abs(C - sp.log(1 + X / C)),
+        sp.Abs(sp.Max(0, X / C - 3) - sp.Abs(sp.log(X / C))),
+        X**2 * C,
+    ],
+)
+@pytest.mark.parametrize("at", [(0.4, 0.7), (2.0, 0.3), (-0.5, -1.1)])
+def test_the_size_of_what_sympy_cannot_prove_real_has_a_sign_for_a_slope(
+    expression: sp.Expr, at: tuple[float, float]
+) -> None:
+    value = sp.lambdify((X, C), expression, "math")
+    x, c = at
+    slope = derivative(expression, X)
+    assert not slope.has(sp.arg, sp.re, sp.im)
+    step = 1e-6
+    difference = (value(x + step, c) - value(x - step, c)) / (2 * step)
+    assert sp.lambdify((X, C), slope, "math")(x, c) == pytest.approx(difference, abs=1e-7)
+
+
+PRESETS = ("thesis-pan-drive", "thesis-pan-servo", "thesis-payload", "thesis-full")
+
+
+@pytest.mark.parametrize(
+    "preset",
+    [
+        "thesis-tilt-drive",
+        *(pytest.param(name, marks=pytest.mark.long) for name in PRESETS),
+    ],
+)
+def test_every_machine_is_emitted_with_all_candidates(preset: str, checkout: Path) -> None:
+    """A diagnosis begins with this; the guards of breakaway hold the size of a load."""
+    platform = read_platform(checkout / f"ptp_symbolic/platform/presets/{preset}.toml")
+    wide = loop.with_candidates(replace(platform, title="with all candidates"))
+    names = {p.name for p in loop.emit(wide).parameters}
+    axis = "tilt" if "tilt" in preset else "pan"
+    assert {f"a_rest_{axis}", f"F_cos3_{axis}", f"mu_load_{axis}"} <= names
