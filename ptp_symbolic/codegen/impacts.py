@@ -42,7 +42,7 @@ def _strike(equations: Equations, solve: Solve, contact: Contact) -> tuple[list[
     )
     speed = equations.rates[gear] - equations.rates[joint]
     impulse = speed / (response[joint] - response[gear])
-    return [sp.sympify(each * impulse, strict=True) for each in response], impulse * speed / 2
+    return [each * impulse for each in response], impulse * speed / 2
 
 
 def _without_friction(equations: Equations, solve: Solve, own: Contact) -> Solve:

@@ -138,7 +138,7 @@ class Equations:
         found += [e for c in self.contacts for e in (c.separation, c.half_gap, c.torque)]
         found += [s.derivative for s in self.extra_states]
         found += [ledger.stored, ledger.power_in, ledger.dissipated]
-        return set().union(*(sp.sympify(e, strict=True).free_symbols for e in found))
+        return set().union(*(e.free_symbols for e in found))
 
     @property
     def mode_symbols(self) -> tuple[sp.Symbol, ...]:

@@ -192,7 +192,7 @@ def _emitted(equations: Equations, form: BaseForm) -> str:
     rows = [(symbol_latex(name), by_name(e, equations)) for name, e in lines]
     rates = zip(equations.state_symbols, state_rates(equations, solve), strict=True)
     # what samplers set is held in between
-    rows += [(rate_latex(str(s)), sp.sympify(e, strict=True)) for s, e in rates if e != 0]
+    rows += [(rate_latex(str(s)), e) for s, e in rates if e != 0]
     return (
         r"\section{Final equations}The rate of change of every state as the emitted module"
         r" computes it: simplified, in base parameters and under its names. What the lines have in"
