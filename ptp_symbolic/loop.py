@@ -1,14 +1,8 @@
 """The loop above both wings: emit a declared machine and its candidates, extend it."""
 
-import hashlib
-import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 
-from ptp_symbolic.atomic import write_text_if_changed
-from ptp_symbolic.codegen.module import module_text
 from ptp_symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.derivation.placement import (
@@ -19,21 +13,10 @@ from ptp_symbolic.derivation.placement import (
 from ptp_symbolic.effects import EFFECTS
 from ptp_symbolic.errors import unknown
 from ptp_symbolic.identify.coordinates import FreeParameter, free_parameter
+from ptp_symbolic.module_cache import emitted
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, naming_file
 from ptp_symbolic.runtime.loader import load_module
 from ptp_symbolic.runtime.model import Model
-
-
-def cache_folder() -> Path:
-    """Folder of modules emitted for platforms of the user (PTP_SYMBOLIC_CACHE, else the usual)."""
-    named = os.environ.get("PTP_SYMBOLIC_CACHE")
-    if named:
-        return Path(named)
-    base = os.environ.get("XDG_CACHE_HOME")
-    root = Path(base) if base else Path.home() / ".cache"
-    if not os.access(root if root.exists() else root.parent, os.W_OK):
-        root = Path(tempfile.gettempdir())
-    return root / "ptp_symbolic"
 
 
 def emit(platform: Platform) -> Model:
@@ -44,22 +27,9 @@ def emit(platform: Platform) -> Model:
     """
     equations = assemble(platform)
     refuse_impossible(equations, platform)
-    usual = declared_parameters(place_effects(platform))
-    shared = replace(
-        equations,
-        name="machine",
-        title="Machine of a user",
-        parameters=tuple(usual[p.name] for p in equations.parameters),
-    )
-    text = module_text(shared)
-    digest = hashlib.sha256(text.encode()).hexdigest()[:16]
-    name = f"ptp_model_{digest}"
-    folder = cache_folder()
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    path = folder / f"{name}.py"
-    write_text_if_changed(path, text)
+    path = emitted(equations, declared_parameters(place_effects(platform)))
     own = {p.name: (p.default, p.lower, p.upper) for p in equations.parameters}
-    return replace(load_module(path, name), declared=(platform.name, platform.title, own))
+    return replace(load_module(path, path.stem), declared=(platform.name, platform.title, own))
 
 
 def candidate_effects(platform: Platform) -> tuple[EffectDeclaration, ...]:

@@ -1,0 +1,104 @@
+"""Modules that were once written are found again, by their mathematics and nothing else."""
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import sympy as sp
+
+from ptp_symbolic import module_cache
+from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic.derivation.equations import Equations
+from ptp_symbolic.derivation.placement import declared_parameters, place_effects
+from ptp_symbolic.parameters import Parameter
+from ptp_symbolic.platform import read_platform
+
+Machine = tuple[Equations, dict[str, Parameter]]
+
+
+@pytest.fixture
+def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Titles of the modules that were written; the folder of modules is new."""
+    titles: list[str] = []
+    usual = module_cache.module_text
+
+    def module_text(equations: Equations) -> str:
+        titles.append(equations.title)
+        return usual(equations)
+
+    monkeypatch.setattr(module_cache, "module_text", module_text)
+    monkeypatch.setenv("PTP_SYMBOLIC_CACHE", str(tmp_path / "modules"))
+    return titles
+
+
+@pytest.fixture
+def machine(checkout: Path) -> Machine:
+    platform = read_platform(checkout / "ptp_symbolic/platform/presets/thesis-ideal.toml")
+    return assemble(platform), declared_parameters(place_effects(platform))
+
+
+def test_a_module_is_written_once(machine: Machine, written: list[str]) -> None:
+    equations, usual = machine
+    first = module_cache.emitted(equations, usual)
+    heavier = tuple(replace(p, default=2.0 * p.default) for p in equations.parameters)
+    other = replace(equations, title="Another of the kind", parameters=heavier)
+    assert module_cache.emitted(other, usual) == first
+    assert written == ["Machine of a user"]
+
+
+def test_other_equations_are_another_module(machine: Machine, written: list[str]) -> None:
+    equations, usual = machine
+    forcing = equations.forcing + sp.ones(*equations.forcing.shape)
+    paths = {
+        module_cache.emitted(e, usual) for e in (equations, replace(equations, forcing=forcing))
+    }
+    assert len(paths) == len(written) == 2
+
+
+@pytest.mark.parametrize("damage", [b"cut", None])
+def test_a_damaged_module_is_written_again(
+    damage: bytes | None, machine: Machine, written: list[str]
+) -> None:
+    path = module_cache.emitted(*machine)
+    whole = path.read_bytes()
+    path.unlink()
+    if damage is not None:
+        path.write_bytes(whole[: len(whole) // 2] + damage)
+    assert module_cache.emitted(*machine) == path
+    assert path.read_bytes() == whole
+    assert len(written) == 2
+
+
+def test_another_program_writes_anew(
+    machine: Machine, written: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    module_cache.emitted(*machine)
+    monkeypatch.setattr(module_cache, "_program", lambda: "of tomorrow")
+    module_cache.emitted(*machine)
+    assert len(written) == 2
+
+
+def test_the_description_is_the_same_in_every_process(checkout: Path) -> None:
+    script = (
+        "import hashlib, sys\n"
+        "from ptp_symbolic.derivation.assembly import assemble\n"
+        "from ptp_symbolic.module_cache import described\n"
+        "from ptp_symbolic.platform import read_platform\n"
+        "text = described(assemble(read_platform(sys.argv[1])))\n"
+        "print(hashlib.sha256(text.encode()).hexdigest())\n"
+    )
+    preset = checkout / "ptp_symbolic/platform/presets/thesis-tilt-drive.toml"
+    found = {
+        subprocess.run(
+            [sys.executable, "-c", script, str(preset)],
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+        for seed in ("1", "2")
+    }
+    assert len(found) == 1
