@@ -19,7 +19,7 @@ def share(
     those that nothing uses are dropped. Targets of outputs keep their text, e.g. ``dx[0]``; `words`
     say what they are, for the names of shared terms.
     """
-    expressions = [expression for _, expression in (*definitions, *outputs)]
+    expressions = _in_single_angles([e for _, e in (*definitions, *outputs)])
     replacements, reduced = sp.cse(expressions, symbols=_numbered(), order="canonical")
     named = [(str(symbol), expression) for symbol, expression in replacements]
     count = len(definitions)
@@ -27,6 +27,26 @@ def share(
     final = [(name, e) for (name, _), e in zip(outputs, reduced[count:], strict=True)]
     ordered = _ordered([*named, *defined], final)
     return _renamed(ordered, {name for name, _ in definitions}, words)
+
+
+def _in_single_angles(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
+    """Sines and cosines of twice and three times an angle by those of the angle itself, where those
+    are computed too: products take a tenth of the time of a function.
+    """
+    found = {f for e in expressions for f in e.atoms(sp.sin, sp.cos)}
+    angles = {f.args[0] for f in found}
+    single: dict[sp.Basic, sp.Expr] = {}
+    for function in found:
+        multiple, angle = function.args[0].as_coeff_Mul()
+        if multiple in (2, 3) and angle in angles:
+            sine, cosine = sp.sin(angle), sp.cos(angle)
+            single[function] = {
+                (sp.sin, 2): 2 * sine * cosine,
+                (sp.cos, 2): 2 * cosine**2 - 1,
+                (sp.sin, 3): sine * (4 * cosine**2 - 1),
+                (sp.cos, 3): cosine * (4 * cosine**2 - 3),
+            }[function.func, int(multiple)]
+    return [e.xreplace(single) for e in expressions] if single else list(expressions)
 
 
 def _numbered() -> Iterator[sp.Symbol]:
