@@ -35,7 +35,7 @@ def _windows(time, half_width):
         )
         if not whole or high - low < LEAST_SAMPLES:
             continue
-        longest = 0.0
+        longest = max(time[low] - time[k], time[k] - time[high - 1]) + half_width
         for j in range(low, high - 1):
             longest = max(longest, time[j + 1] - time[j])
         if longest <= LARGEST_GAP * half_width:

@@ -1,0 +1,47 @@
+"""Averages under a smooth test function: exact on parabolas, nothing where samples are missing."""
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.identify.weak_form import weak_average
+
+HALF_WIDTH = 0.08
+
+
+def stalled(period: float, first: float, length: float) -> np.ndarray:
+    """Times in s of a log that stalls from `first` on for `length` s."""
+    time = np.arange(0.0, 1.0, period)
+    return time[(time <= first + 1e-9) | (time >= first + length - 1e-9)]
+
+
+@pytest.mark.parametrize("derivative", [0, 1, 2])
+def test_a_parabola_has_its_exact_averages(derivative: int) -> None:
+    time = stalled(1e-3, 0.5, 0.006)
+    values = (3.0 - 2.0 * time + 5.0 * (time - time[400]) ** 2)[:, None]
+    found = weak_average(time, values, HALF_WIDTH, derivative, np.array([400]))[0, 0]
+    # the test function (1 - s^2)^4 has the second moment 1 / 11
+    expected = (3.0 - 2.0 * time[400] + 5.0 * HALF_WIDTH**2 / 11.0, -2.0, 10.0)[derivative]
+    assert found == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize("offset", [-0.08, -0.06, 0.01, 0.05])
+def test_a_stall_anywhere_in_the_window_leaves_no_average(offset: float) -> None:
+    """Also one that begins or ends at the very edge, where a single sample is left beyond."""
+    middle = 0.5
+    time = stalled(1e-3, middle + offset, 0.055)
+    chosen = np.array([int(np.argmin(np.abs(time - middle)))])
+    found = weak_average(time, np.ones((len(time), 1)), HALF_WIDTH, 0, chosen)
+    assert time[chosen[0]] == pytest.approx(middle)
+    assert np.isnan(found[0, 0])
+
+
+def test_what_a_coarse_grid_shows_the_samples_show_too() -> None:
+    """Rows average torques on a grid and angles on all samples; a row needs both."""
+    time = stalled(1e-3, 0.42, 0.055)
+    grid = np.arange(0, len(time), 4)
+    coarse = weak_average(time[grid], np.ones((len(grid), 1)), HALF_WIDTH, 0, np.arange(len(grid)))[
+        :, 0
+    ]
+    fine = weak_average(time, np.ones((len(time), 1)), HALF_WIDTH, 0, grid)[:, 0]
+    assert np.isfinite(coarse).any()
+    assert np.all(np.isfinite(fine[np.isfinite(coarse)]))
