@@ -73,10 +73,12 @@ class Output:
 
 @contextmanager
 def _workers() -> Iterator[Executor]:
-    """One thread per core for runs side by side; threads of the linear algebra would be in their
-    way.
+    """One thread per core that the process may use, for runs side by side; threads of the linear
+    algebra would be in their way.
     """
-    with threadpool_limits(limits=1), ThreadPoolExecutor(os.cpu_count()) as executor:
+    affinity = getattr(os, "sched_getaffinity", None)  # Linux alone has one
+    cores = len(affinity(0)) if affinity else os.cpu_count()
+    with threadpool_limits(limits=1), ThreadPoolExecutor(cores) as executor:
         yield executor
 
 

@@ -36,7 +36,7 @@ ITERATIONS = 4  # in which a fit shows whether its start is worth more
 RUNGS = ((ITERATIONS, 2), (ITERATIONS, 1))  # of successive halving: iterations, and how many go on
 LAST_RUNG = RUNGS[1:]
 CYCLES = 3  # of a polished fit
-CERTAIN = 0.9  # share of the loss from which on a gain is no matter of where a fit ended
+CERTAIN = 0.5  # share of the loss from which on a gain is no matter of where a fit ended
 POLISH = 12  # iterations of each half of a cycle
 
 
@@ -89,11 +89,11 @@ def over_windows(
     for windows in task.windows:
         part = replace(task, train=windows)
         trials = [
-            fitted(part, candidates, values, None, POLISH, executor=executor)
+            fitted(part, candidates, values, None, ITERATIONS, executor=executor)
             for values in ([t.values for t in trials] or starts)
         ]
-        trials = [t for t in ranked(trials)[:1] if not t.fit.failed]
-        if not trials:
+        trials = [continued(part, t, POLISH, executor=executor) for t in ranked(trials)[:1]]
+        if trials[0].fit.failed:
             return []
     return [fitted(task, candidates, t.values, None) for t in trials]
 

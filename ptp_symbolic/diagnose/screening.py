@@ -8,11 +8,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.proposals import Proposals, start_for
+from ptp_symbolic.diagnose.proposals import Proposals, roughly
 from ptp_symbolic.diagnose.refits import ITERATIONS
-from ptp_symbolic.diagnose.trial import Task, Trial, fitted, ranked
-
-WINDOWS = 40  # evenly spread over all: a search needs no more to rank candidates by
+from ptp_symbolic.diagnose.trial import Task, Trial, continued, fitted, ranked
+from ptp_symbolic.identify.least_squares import MANY_RUNS
 
 
 def screened(
@@ -23,22 +22,22 @@ def screened(
     values: Mapping[str, float],
 ) -> list[Trial]:
     """The set `kept` with each of the candidates `wanted`, and with what that brings along, fitted
-    to some windows of the task, the best fit first. A fit begins where the rows start the set, and
-    at `values` and the candidate's own start.
+    to some windows of the task, the best fit first. A fit begins where the rows start the set, or
+    at `values` and the candidate's own start, whichever is better.
     """
     windows = task.windows[0] if task.windows else task.train
-    part = replace(task, train=windows[:: max(1, -(-len(windows) // WINDOWS))])
+    part = replace(task, train=windows[:: max(1, len(windows) // MANY_RUNS)])
     have = {c.key for c in kept}
     by_key = {c.key: c for c in reversed(task.candidates)}
 
-    def begun(candidate: Candidate) -> list[Trial]:
+    def begun(candidate: Candidate) -> Trial:
         added = [by_key[key] for key in candidate.brings if key not in have]
         own = {name: f.start for c in (*added, candidate) for f in c.free for name in f.names}
         whole = {**values, **own, **candidate.shapes[0]}
         candidates = (*kept, *added, candidate)
-        starts = [whole, start_for(task, found, candidates, whole)]
-        return [fitted(part, candidates, start, None, ITERATIONS) for start in starts]
+        starts = [whole, roughly(task, found, candidates, whole)]
+        first = ranked([fitted(part, candidates, start, None) for start in starts])[0]
+        return continued(part, first, ITERATIONS)
 
     fresh = [c for c in wanted if c.key not in have]
-    trials = [t for pair in task.executor.map(begun, fresh) for t in pair]
-    return [t for t in ranked(trials) if not t.fit.failed]
+    return [t for t in ranked(list(task.executor.map(begun, fresh))) if not t.fit.failed]

@@ -85,14 +85,14 @@ class Seeker:
             found = halving(task, sets, RUNGS) + halving(task, unseen, LAST_RUNG)
             self.others += sets
             found = [t for t in ranked(found) if is_near(t, found)]
-            best = ranked([best, *(self.completed(t) for t in found)])[0]
+            best = self.restarted(ranked([best, *(self.completed(t) for t in found)])[0])
         best, steps = self.pruned(best)
         for _ in range(ROUNDS):
             grown = self.grown(best)
             if grown is None:
                 break
             self.others.append(best)
-            pruned, fewer = self.pruned(self.completed(grown))
+            pruned, fewer = self.pruned(self.restarted(self.completed(grown)))
             if pruned.keys == best.keys:
                 break
             best, steps = pruned, fewer
@@ -157,7 +157,7 @@ class Seeker:
         """A polished trial, or a better end from where the rows start its set, and from there over
         short windows: friction makes the misfit of whole runs a staircase.
         """
-        if self.is_at_noise(trial):
+        if not trial.candidates or self.is_at_noise(trial):
             return trial
         begun = self.led(trial.candidates, trial.values)
         left = halving(self.task, begun, LAST_RUNG)
@@ -188,9 +188,8 @@ class Seeker:
         """
         full = tuple(fullest(self.task, c) for c in trial.candidates)
         if all(a is b for a, b in zip(full, trial.candidates, strict=True)):
-            return self.restarted(self.polished(trial))
-        begun = fitted(self.task, full, trial.values, trial.fit.z, 0, trial.fit)
-        return self.restarted(self.polished(begun))
+            return self.polished(trial)
+        return self.polished(fitted(self.task, full, trial.values, trial.fit.z, 0, trial.fit))
 
     def without(self, trial: Trial, candidate: Candidate) -> Trial:
         """The trial refitted without one of its candidates, and without what needs it."""
@@ -205,9 +204,9 @@ class Seeker:
         begun = fitted(
             task, kept, values, trial.fit.z, ITERATIONS, trial.fit, executor=task.executor
         )
-        smaller = self.polished(begun)
-        if gain(trial, smaller).share < CERTAIN:
-            smaller = self.restarted(smaller)
+        smaller = begun
+        if gain(trial, begun).share < CERTAIN:
+            smaller = self.restarted(self.polished(begun))
         self.others.append(smaller)
         return smaller
 
@@ -224,8 +223,12 @@ class Seeker:
         return is_earned(earned, p, len(self.task.candidates))
 
     def pruned(self, trial: Trial) -> tuple[Trial, list[Step]]:
-        """Take out what seems to gain least until all that is left is needed, with its gains."""
+        """Take out what seems to gain least until all that is left is needed, with its gains. A set
+        that gains little over the declared model holds no candidate that gains more.
+        """
         while trial.candidates:
+            if gain(trial, self.declared).share < MATERIAL:
+                return self.declared, []
             steps = []
             expected = {c.key: expected_gain(trial, c.vanishing) for c in trial.candidates}
             for candidate in sorted(trial.candidates, key=lambda c: expected[c.key]):
@@ -257,7 +260,9 @@ class Seeker:
         left = halving(task, begun, RUNGS[:1])
         if not left:
             return None
-        best = ranked([self.restarted(self.polished(t)) for t in left])[0]
+        best = ranked([self.polished(t) for t in left if is_near(t, left)])[0]
+        if gain(best, trial).share < CERTAIN:
+            best = self.restarted(best)
         have = {f.name for c in trial.candidates for f in c.free}
         added = {n: v for c in best.candidates for n, v in c.vanishing.items() if n not in have}
         return best if self.is_earned(gain(best, trial), p_value(best, added)) else None
