@@ -30,10 +30,11 @@ from ptp_symbolic.diagnose.floor import carried_noise, floor_of
 from ptp_symbolic.diagnose.preparation import task_of
 from ptp_symbolic.diagnose.proposals import propose
 from ptp_symbolic.diagnose.refits import fit_declared, refitted_without_chaos
+from ptp_symbolic.diagnose.remainder import hints, remainder
 from ptp_symbolic.diagnose.residual_tests import residual_tests
 from ptp_symbolic.diagnose.search import search
 from ptp_symbolic.diagnose.summary import (
-    cause,
+    added_effects,
     error_table,
     fit_table,
     gain_table,
@@ -43,7 +44,7 @@ from ptp_symbolic.diagnose.summary import (
 from ptp_symbolic.diagnose.trial import Task, Trial, accuracy
 from ptp_symbolic.diagnose.verdict import Verdict, decide
 from ptp_symbolic.identify.fit import Effort, all_values_at_start, fit_parameters, unblinded
-from ptp_symbolic.identify.intervals import Estimate, estimates
+from ptp_symbolic.identify.intervals import estimates
 from ptp_symbolic.identify.run import prepare_runs
 from ptp_symbolic.platform import (
     EffectDeclaration,
@@ -213,12 +214,13 @@ def _write_up(
     extended = _extended(platform, after)
     named = [c for c in after.candidates if not c.is_declared_value]
     equations = [e for c in named for e in effect_equations(extended, c.id, c.axis)]
+    left = remainder(found.proposals.space, after.values) if verdict.leaves_more else None
     summary = {
         "schema_version": SCHEMA_VERSION,
         "platform": {"name": platform.name, "title": platform.title},
         "verdict": verdict.word,
         "summary": headline(verdict, errors),
-        "added": _added(verdict, after, intervals),
+        "added": added_effects(verdict, after, intervals),
         "ranking": ranking(found, verdict, task.candidates),
         "error": errors,
         "residual_tests": residual_tests(verdict.after, task.model.input_names),
@@ -228,6 +230,8 @@ def _write_up(
         },
         "held_out": None if verdict.held_out is None else gain_table(verdict.held_out),
         "refused": dict(verdict.refused),
+        "remainder": left,
+        "hints": hints(left),
         "windows": _windows(task),
         "remarks": list(noted),
         "equations": equations,
@@ -254,30 +258,6 @@ def _equations_tex(equations: list[dict[str, Any]]) -> str:
     titles = [escaped(f"{e['title'][:1].upper()}{e['title'][1:]}") for e in equations]
     text = "\n".join(f"{title}:\n{row}" for title, row in zip(titles, rows, strict=True))
     return f"% \\usepackage{{amsmath}}\n{text}"
-
-
-def _added(
-    verdict: Verdict, after: Trial, intervals: Mapping[str, Estimate]
-) -> list[dict[str, Any]]:
-    units = after.fit.model.units
-    gains = {step.candidate.key: step.gain for step in verdict.members}
-    return [
-        {
-            "effect": c.id,
-            "title": cause(c, after),
-            "axis": c.axis,
-            "parameters": {name: _value(intervals[name], units[name]) for name in c.parameters},
-            "gain": gain_table(gains[c.key]),
-            "confusable_with": list(verdict.confusable[c.key]),
-            "separating_experiment": c.separating_experiment,
-        }
-        for c in after.candidates
-    ]
-
-
-def _value(estimate: Estimate, unit: str) -> dict[str, Any]:
-    interval = [estimate.lower, estimate.upper]
-    return {"value": estimate.value, "ci95": interval, "unit": unit}
 
 
 def _extended(platform: Platform, after: Trial) -> Platform:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.identify.equation_space import EquationSpace
+from ptp_symbolic.identify.row_motion import row_motion
 
 FloatArray = NDArray[np.float64]
 
@@ -174,7 +175,7 @@ def _strongest(
     """The frequency in Hz, or in cycles per turn, of the strongest line of the residual torques,
     and the lowest that is a line.
     """
-    equation, run, time = space.labels()
+    equation, _, time = space.labels()
     assert candidate.locked is not None
     by_angle = candidate.locked[1] == "angle"
     axes = space.model.module.AXES
@@ -182,7 +183,7 @@ def _strongest(
     rows = np.isin(equation, own)
     place, speed = time[rows], np.ones(int(rows.sum()))
     if by_angle:
-        place, speed = _angles(space, own[0], run[rows], time[rows])
+        place, speed, _ = row_motion(space, own[0])
     turn = 2.0 * np.pi if by_angle else 1.0
     place = (place - place.min()) / turn
     span = max(float(place.max()), 1e-12)
@@ -204,20 +205,3 @@ def _strongest(
         power += np.abs(np.fft.rfft(summed, count)) ** 2 / np.sum(weight[rows][here])
     power[(frequency < lowest) | (frequency > highest)] = 0.0
     return float(frequency[int(np.argmax(power))]), 0.9 * lowest
-
-
-def _angles(
-    space: EquationSpace, axis: int, run: NDArray[np.int64], time: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Measured angle and its slope at the rows of an axis."""
-    angle, speed = np.zeros(len(time)), np.zeros(len(time))
-    for number in np.unique(run):
-        own = run == number
-        source = space.runs[number]
-        column = source.signals.index(f"theta_{space.model.module.AXES[axis]}")
-        measured = source.measured[:, column]
-        angle[own] = np.interp(time[own], source.time, measured)
-        h = space.half_width
-        ahead, behind = (np.interp(time[own] + d, source.time, measured) for d in (h, -h))
-        speed[own] = (ahead - behind) / (2.0 * h)
-    return angle, speed

@@ -1,6 +1,6 @@
 """A diagnosis as plain data: headline, errors, ranking, parameters."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -119,6 +119,31 @@ def fit_table(trial: Trial, found: Sequence[Estimate]) -> dict[str, Any]:
 
 def _finite(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
+
+
+def added_effects(
+    verdict: Verdict, after: Trial, intervals: Mapping[str, Estimate]
+) -> list[dict[str, Any]]:
+    """The named effects of the trial `after`, with the `intervals` of their parameters."""
+    units = after.fit.model.units
+    gains = {step.candidate.key: step.gain for step in verdict.members}
+    return [
+        {
+            "effect": c.id,
+            "title": cause(c, after),
+            "axis": c.axis,
+            "parameters": {name: _value(intervals[name], units[name]) for name in c.parameters},
+            "gain": gain_table(gains[c.key]),
+            "confusable_with": list(verdict.confusable[c.key]),
+            "separating_experiment": c.separating_experiment,
+        }
+        for c in after.candidates
+    ]
+
+
+def _value(estimate: Estimate, unit: str) -> dict[str, Any]:
+    interval = [estimate.lower, estimate.upper]
+    return {"value": estimate.value, "ci95": interval, "unit": unit}
 
 
 def gain_table(earned: Gain) -> dict[str, Any]:

@@ -57,6 +57,11 @@ class Verdict:
     after: Fit
     held_out: Gain | None
 
+    @property
+    def leaves_more(self) -> bool:
+        """Whether more than noise is left."""
+        return self.word in (PARTLY, UNEXPLAINED)
+
 
 def decide(found: Search) -> Verdict:
     """Confirm the chosen set, find what it cannot be told from, and judge the validation runs."""

@@ -99,6 +99,7 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
         shown=shown,
         folded=folded,
         residual_maps=_residual_maps(diagnosis, curves),
+        torque_maps=_torque_maps(diagnosis.get("remainder")),
         equations=_equations(diagnosis),
         window=_window(curves),
     )
@@ -206,6 +207,21 @@ def _residual_maps(diagnosis: Mapping[str, Any], curves: Curves) -> list[dict[st
             {"signal": signal, "svg": Markup(svg), "runs": len(runs), "set": runs[0]["set"]}
         )
     return found
+
+
+def _torque_maps(left: Mapping[str, Any] | None) -> list[dict[str, Any]]:
+    """One figure per axis of the torque that is left along the measured motion."""
+    maps = left["maps"] if left else []
+    return [
+        {
+            "axis": axis,
+            "svg": Markup(
+                figures.torque_map_figure([m for m in maps if m["axis"] == axis], left["unit"])
+            ),
+        }
+        for axis in dict.fromkeys(m["axis"] for m in maps)
+        if left
+    ]
 
 
 def _equations(diagnosis: Mapping[str, Any]) -> list[dict[str, Any]]:

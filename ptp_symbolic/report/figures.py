@@ -2,7 +2,7 @@
 
 import io
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import matplotlib
@@ -203,6 +203,26 @@ def residual_map_figure(
             row[0].set_ylabel(f"{stage} [{unit}]")
         for axes, (label, _, _) in zip(grid[-1], against, strict=True):
             axes.set_xlabel(label)
+        return _svg(figure)
+
+
+def torque_map_figure(maps: Sequence[Mapping[str, Any]], unit: str) -> str:
+    """Means of the torque that is left on one axis in bins of every side of `maps`, with bars of
+    twice their standard error, as SVG; the share of its variance stands above.
+    """
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(10.4, 2.4))
+        grid = figure.subplots(1, len(maps), sharey="row", squeeze=False)[0]
+        _set_margins(figure, 1, len(maps))
+        for axes, found in zip(grid, maps, strict=True):
+            scale, shown = _plot_unit(str(found["unit"]))
+            axes.axhline(0.0, color="#c9cfd6", linewidth=0.8)
+            bars = 2.0 * np.asarray(found["error"])
+            x = scale * np.asarray(found["at"])
+            axes.errorbar(x, found["mean"], bars, color=AFTER, marker=".", elinewidth=0.9)
+            axes.set_xlabel(f"{found['against']} [{shown}]")
+            axes.set_title(f"{100.0 * found['share']:.0f} % of the variance")
+        grid[0].set_ylabel(f"torque left [{unit}]")
         return _svg(figure)
 
 

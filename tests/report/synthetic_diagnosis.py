@@ -175,9 +175,30 @@ def synthetic_diagnosis(verdict: str) -> dict[str, Any]:
         "windows": None,
         "remarks": [],
         "hints": ["The residual repeats once per turn."] if verdict == "unexplained" else [],
+        "remainder": REMAINDER if verdict in ("unexplained", "partly_explained") else None,
         "equations": [EQUATION] if added else [],
         "runtime_seconds": 41.7,
     }  # fmt: skip
+
+
+REMAINDER = {
+    "unit": "N m",
+    "maps": [
+        {
+            "axis": "pan",
+            "against": side,
+            "unit": unit,
+            "at": [-1.0, 0.0, 1.0],
+            "mean": [-0.4, 0.1, 0.3],
+            "error": [0.05, 0.04, 0.05],
+            "share": share,
+        }
+        for side, unit, share in (("angle", "rad", 0.62), ("rate", "rad/s", 0.03))
+    ],
+    "lines": [
+        {"axis": "pan", "against": "angle", "unit": "1/turn", "frequency": 3.0, "share": 0.5}
+    ],
+}
 
 
 @cache

@@ -30,7 +30,10 @@ def test_every_verdict_has_its_headline_errors_and_figures(verdict: str) -> None
     assert f'data-verdict="{verdict}"' in html
     for part in ("errors", "motion", "residuals", "ranking", "limits", "parameters", "tests"):
         assert f'<section id="{part}">' in html
-    assert html.count("<svg") == len(RUNS) + 2  # one per run and one map per signal
+    leaves_more = verdict in ("unexplained", "partly_explained")
+    # one per run, one map per signal, and one of torques where more than noise is left
+    assert html.count("<svg") == len(RUNS) + 2 + leaves_more
+    assert ('id="torques"' in html) == leaves_more
     headline = re.search(r"<h1>(.*?)</h1>", html)
     assert headline is not None
     assert ("base that is not level" in headline[1]) == bool(diagnosis["added"])
@@ -49,6 +52,13 @@ def test_the_numbers_of_the_diagnosis_are_on_the_page() -> None:
     assert "not identified" in html
     assert "<math" in html
     assert r"\sin\beta" in html
+
+
+def test_torque_maps_say_their_share() -> None:
+    html = page("unexplained")
+    torques = html[html.index('<section id="torques">') : html.index('<section id="ranking">')]
+    for text in ("62 % of the variance", "angle [deg]", "rate [deg/s]", "torque left [N m]"):
+        assert text in torques
 
 
 def test_look_alikes_come_with_the_experiment_that_separates_them() -> None:
