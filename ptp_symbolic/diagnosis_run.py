@@ -40,6 +40,7 @@ from ptp_symbolic.diagnose.summary import (
     gain_table,
     headline,
     ranking,
+    repeatability_table,
 )
 from ptp_symbolic.diagnose.trial import Task, Trial, accuracy
 from ptp_symbolic.diagnose.verdict import Verdict, decide
@@ -223,6 +224,7 @@ def _write_up(
         "added": added_effects(verdict, after, intervals),
         "ranking": ranking(found, verdict, task.candidates),
         "error": errors,
+        "repeatability": repeatability_table(task.whole, task.model.units),
         "residual_tests": residual_tests(verdict.after, task.model.input_names),
         "fit": {
             "before": {"parameters": fit_table(found.declared, estimates(found.declared.fit))},

@@ -20,6 +20,8 @@ from ptp_symbolic.diagnose.verdict import (
 )
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.intervals import Estimate
+from ptp_symbolic.identify.repeatability import repeatability
+from ptp_symbolic.identify.run import Run
 
 SMALL_PERCENT = 1.0  # change of a declared value below which the headline calls it small
 SMALL = "The deviation is statistically clear but small."
@@ -80,6 +82,25 @@ def deviation(candidate: Candidate, trial: Trial) -> float:
 
 def _is_small(candidate: Candidate, trial: Trial) -> bool:
     return candidate.is_declared_value and abs(deviation(candidate, trial)) < SMALL_PERCENT
+
+
+def repeatability_table(runs: Sequence[Run], units: Mapping[str, str]) -> dict[str, Any] | None:
+    """What differs between `runs` with equal inputs, by signal; None where there are none."""
+    found = repeatability(runs)
+    if found is None:
+        return None
+    counts = found.rms / runs[0].counts
+    return {
+        "runs": [list(pair) for pair in found.names],
+        "by_signal": {
+            signal: {
+                "rmse": float(found.rms[k]),
+                "unit": units[signal],
+                "rmse_counts": _finite(counts[k]),
+            }
+            for k, signal in enumerate(runs[0].signals)
+        },
+    }
 
 
 def error_table(parts: dict[str, tuple[Fit, Fit]], floor: Floor) -> dict[str, Any]:

@@ -94,7 +94,7 @@ def decide(found: Search) -> Verdict:
         closest, trial, steps, after, held_out, alike = trial, found.declared, [], before, None, []
     floor = floor_of(task, trial, carried_noise(task, trial.fit))
     named = confusable(trial, alike)
-    word = _word(trial, named, floor, replace(floor, carried=carried_noise(task, after)), after)
+    word = word_of(trial, named, floor, replace(floor, carried=carried_noise(task, after)), after)
     if word == NOTHING_MISSING:
         closest = None
     return Verdict(
@@ -163,7 +163,7 @@ def _closest(found: Search) -> Trial | None:
     return next((t for t in best if t.candidates and np.isfinite(t.fit.cost)), None)
 
 
-def _word(
+def word_of(
     trial: Trial, named: Mapping[str, tuple[str, ...]], floor: Floor, held_out: Floor, after: Fit
 ) -> str:
     """The word for a confirmed set; `held_out` is the floor of the validation runs."""

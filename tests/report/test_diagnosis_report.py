@@ -54,6 +54,15 @@ def test_the_numbers_of_the_diagnosis_are_on_the_page() -> None:
     assert r"\sin\beta" in html
 
 
+def test_repeatability_is_told_where_runs_repeat() -> None:
+    diagnosis = synthetic_diagnosis("partly_explained")
+    signal = {"rmse": 0.00123, "unit": "rad", "rmse_counts": 1.41}
+    diagnosis["repeatability"] = {"runs": [["a", "b"]], "by_signal": {"theta_pan": signal}}
+    html = render_diagnosis(diagnosis, synthetic_curves(600))
+    assert "(1 pair) spread about their mean by 1.41 counts rms of <code>theta_pan" in html
+    assert "spread about their mean" not in page("partly_explained")
+
+
 def test_torque_maps_say_their_share() -> None:
     html = page("unexplained")
     torques = html[html.index('<section id="torques">') : html.index('<section id="ranking">')]

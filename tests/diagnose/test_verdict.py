@@ -1,0 +1,70 @@
+"""Words for what is left: training and validation runs are each held to the noise of their own."""
+
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.diagnose.floor import Floor
+from ptp_symbolic.diagnose.trial import Trial
+from ptp_symbolic.diagnose.verdict import (
+    EXPLAINED,
+    NOTHING_MISSING,
+    PARTLY,
+    UNEXPLAINED,
+    UP_TO_GROUP,
+    word_of,
+)
+from tests.identify.straight import finished
+
+WAVE = np.where(np.arange(400) % 2, 1.0, -1.0)
+EFFECT = cast(Any, object())
+
+
+def floor(carried: float = 0.0) -> Floor:
+    one = np.ones(1)
+    return Floor(one, one, carried * one)
+
+
+def word(
+    left: float, held_out: float, named: bool, carried: float = 0.0, group: tuple[str, ...] = ()
+) -> str:
+    """The word where training runs leave `left` times their noise and validation runs `held_out`,
+    whose inputs carry `carried` there.
+    """
+    trial = Trial((EFFECT,) if named else (), finished([left * WAVE] * 3))
+    after = finished([held_out * WAVE] * 2)
+    return word_of(trial, {"effect": group} if named else {}, floor(), floor(carried), after)
+
+
+@pytest.mark.parametrize(
+    ("left", "held_out", "declared", "extended"),
+    [
+        (1.0, 1.0, NOTHING_MISSING, EXPLAINED),
+        (1.05, 1.2, NOTHING_MISSING, EXPLAINED),
+        (1.5, 1.0, UNEXPLAINED, PARTLY),
+        (1.0, 1.5, UNEXPLAINED, PARTLY),
+    ],
+)
+def test_all_runs_must_be_at_their_floor(
+    left: float, held_out: float, declared: str, extended: str
+) -> None:
+    assert word(left, held_out, named=False) == declared
+    assert word(left, held_out, named=True) == extended
+
+
+def test_validation_runs_may_leave_what_their_own_inputs_carry_there() -> None:
+    assert word(1.0, 2.0, named=False) == UNEXPLAINED
+    assert word(1.0, 2.0, named=False, carried=np.sqrt(3.0)) == NOTHING_MISSING
+    assert word(2.0, 1.0, named=False, carried=np.sqrt(3.0)) == UNEXPLAINED
+
+
+def test_look_alikes_make_a_group_of_an_explanation_alone() -> None:
+    assert word(1.0, 1.0, named=True, group=("other",)) == UP_TO_GROUP
+    assert word(2.0, 1.0, named=True, group=("other",)) == PARTLY
+
+
+def test_a_run_that_sticks_elsewhere_does_not_decide() -> None:
+    trial = Trial((), finished([WAVE] * 3))
+    after = finished([WAVE, WAVE, 40.0 * WAVE])
+    assert word_of(trial, {}, floor(), floor(), after) == NOTHING_MISSING
