@@ -10,10 +10,12 @@ from ptp_symbolic.diagnose.trial import Progress, Task
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.fit import all_values_at_start
 from ptp_symbolic.identify.run import Run
+from ptp_symbolic.identify.sample_averages import thinned
 from ptp_symbolic.identify.windows import cut, window_length
 from ptp_symbolic.runtime.model import Model
 
 WINDOWS = (1.0, 3.0)  # s: long beside the time constants of a drive, short beside its runs
+PERIOD = 5e-3  # s between samples in windows: they give starts, from which whole runs are fitted
 
 
 def task_of(
@@ -37,7 +39,8 @@ def task_of(
     start = model.parameter_vector({**fixed, **all_values_at_start(free)})
     noise = tuple(noises[name] for name in model.input_names)
     length = window_length(model, train, start, noise)
-    whole = () if length is not None else tuple(cut(model, train, w) for w in WINDOWS)
+    few = [thinned(run, PERIOD) for run in train]
+    whole = () if length is not None else tuple(cut(model, few, w) for w in WINDOWS)
     return Task(
         model,
         train,

@@ -1,9 +1,12 @@
 """Averages over parts of samples: of held inputs, and of values at the samples around a grid."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.identify.run import Run
+from ptp_symbolic.simulation.inputs import stack, table
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -25,6 +28,26 @@ def part_averages(run: Run, column: int, delay: float, parts: int) -> FloatArray
     edges = run.time[:-1, None] + np.diff(run.time)[:, None] * shares
     flat = np.append(edges.ravel(), run.time[-1])
     return _averages(run, column, flat - delay).reshape(-1, parts)
+
+
+def thinned(run: Run, period: float) -> Run:
+    """`run` with every so many samples alone that they come about every `period` s, the inputs
+    averaged in between; the run itself where it is sampled more slowly than that.
+    """
+    every = int(period / float(np.median(np.diff(run.time))) + 1e-6)
+    if every < 2:
+        return run
+    kept = np.arange(0, len(run.time), every)
+    time, last = run.time[kept], run.held_inputs[kept[-1:]]
+    means = [_averages(run, column, time) for column in range(run.held_inputs.shape[1])]
+    held = np.ascontiguousarray(np.vstack([np.column_stack(means), last]))
+    return replace(
+        run,
+        time=np.ascontiguousarray(time),
+        inputs=stack([table(time, column, "hold") for column in held.T]),
+        held_inputs=held,
+        measured=np.ascontiguousarray(run.measured[kept]),
+    )
 
 
 def _averages(run: Run, column: int, edges: FloatArray) -> FloatArray:
