@@ -4,12 +4,11 @@ import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from ptp_symbolic.identify.constants import PLAUSIBLE_FACTOR, WIDE_STEP
 from ptp_symbolic.identify.coordinates import FreeParameter, free_parameter
 from ptp_symbolic.runtime.model import EffectInstance, Model, ModelParameter
 
 DECLARED_VALUE = "declared_value"
-PLAUSIBLE_FACTOR = 2.0  # by which a declared value may be off where the platform does not say
-SHARE_OF_SCALE = 0.1  # finite amount of a parameter whose effect names no start of its own
 
 
 @dataclass(frozen=True)
@@ -113,7 +112,7 @@ def _freed(parameter: ModelParameter, tied: tuple[str, ...]) -> FreeParameter:
     usual = parameter.starts or (parameter.default,)
     amount = next((s for s in usual if s != parameter.vanishes), None)
     if amount is None:
-        amount = SHARE_OF_SCALE * min(1.0, parameter.upper - parameter.lower)
+        amount = WIDE_STEP * min(1.0, parameter.upper - parameter.lower)
     return free_parameter(
         parameter.name, amount, parameter.lower, parameter.upper, parameter.period, tied
     )

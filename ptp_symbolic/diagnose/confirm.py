@@ -7,17 +7,14 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
-from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy
+from ptp_symbolic.diagnose.trial import Task, Trial, accuracy
 from ptp_symbolic.identify.blocks import leave_blocks_out
+from ptp_symbolic.identify.constants import MATERIAL, MOST, NEAR_BOUND, SHARP
 from ptp_symbolic.identify.evaluate import evaluate
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.simulation.inputs import stack, table
 
 FloatArray = NDArray[np.float64]
-
-STABLE = 0.5  # share of an effect that is left, at least, when a run is left out
-ELSEWHERE = 0.05  # share of an effect that runs other than the one left out must show
-NEAR_BOUND = 1e-4  # of a parameter's size: closer to its bound it is at the bound
 
 
 def why_unconfirmed(task: Task, trial: Trial, fit: Fit, candidate: Candidate) -> str | None:
@@ -70,10 +67,10 @@ def unstable_without(fit: Fit, candidate: Candidate) -> str | None:
         return None
     for number, name in enumerate(names):
         here = label == number
-        if float(effect[here] @ effect[here]) > (1.0 - ELSEWHERE) * square:
+        if float(effect[here] @ effect[here]) > (1.0 - MATERIAL) * square:
             continue
         shifted = effect + mine @ left.shifts[number, own]
-        if float(shifted @ effect) < STABLE * square:
+        if float(shifted @ effect) < MOST * square:
             return name
     return None
 

@@ -9,11 +9,9 @@ from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.gain import Gain, gain, p_value
 from ptp_symbolic.diagnose.proposals import Proposals
 from ptp_symbolic.diagnose.trial import Task, Trial
+from ptp_symbolic.identify.constants import FALSE_ALARM, MATERIAL
 
 FloatArray = NDArray[np.float64]
-
-MATERIAL = 0.1  # share of the predictive loss below which a candidate is not worth a name
-FALSE_ALARM = 0.05  # over all candidates that a search looks at
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,14 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.trial import Task, Trial, huber, mean_squares
+from ptp_symbolic.identify.constants import ABOVE_NOISE, BEND, MANY_RUNS
 from ptp_symbolic.identify.fit import Fit
-from ptp_symbolic.identify.least_squares import BEND, MANY_RUNS, weighted_median
+from ptp_symbolic.identify.least_squares import weighted_median
 from ptp_symbolic.identify.noise import coloured_noise
 from ptp_symbolic.identify.windows import propagated_noise
 
 FloatArray = NDArray[np.float64]
-
-ABOVE_NOISE = 1.1  # times the floor: what a model leaves below cannot be told from noise
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,17 +19,14 @@ from ptp_symbolic.identify.blocks import (
     jackknife_covariance,
     leave_blocks_out,
 )
+from ptp_symbolic.identify.constants import BEND, FALSE_ALARM, NOTHING
 from ptp_symbolic.identify.coordinates import to_search
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.intervals import project_out
-from ptp_symbolic.identify.least_squares import BEND
 from ptp_symbolic.identify.run import by_source
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-CONFIDENCE = 0.95
-LEAST_SPREAD = 1e-12  # of a share: equal blocks have none
 
 
 @dataclass(frozen=True)
@@ -72,11 +69,11 @@ def gain(larger: Trial, smaller: Trial) -> Gain:
 def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
     """The gain from the losses [b] of the same blocks by two models."""
     taken = smaller - larger
-    share, lower, upper = bootstrap_share(taken, smaller, CONFIDENCE)
+    share, lower, upper = bootstrap_share(taken, smaller, 1.0 - FALSE_ALARM)
     influence = (taken - taken.mean()) / max(float(smaller.sum()), 1e-300)
     b = len(taken)
     error = float(np.sqrt(b / max(b - 1, 1) * np.sum(influence**2)))
-    return Gain(share, lower, upper, share / max(error, LEAST_SPREAD), b - 1)
+    return Gain(share, lower, upper, share / max(error, NOTHING), b - 1)
 
 
 def p_value(trial: Trial, zero: Mapping[str, float]) -> float:

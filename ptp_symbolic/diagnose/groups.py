@@ -13,23 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.findings import MATERIAL
 from ptp_symbolic.diagnose.gain import Gain, gain
 from ptp_symbolic.diagnose.linear import canonical_correlation, effect_of, outside, stacked
 from ptp_symbolic.diagnose.proposals import Proposals
-from ptp_symbolic.diagnose.refits import CERTAIN, ITERATIONS
-from ptp_symbolic.diagnose.responses import REACH, Columns, least, response_columns
+from ptp_symbolic.diagnose.responses import Columns, least, response_columns
 from ptp_symbolic.diagnose.search import Seeker
 from ptp_symbolic.diagnose.signatures import Signature
 from ptp_symbolic.diagnose.trial import Task, Trial, fitted, halving, ranked
+from ptp_symbolic.identify.constants import ITERATIONS, MATERIAL, MOST, REACH, SIMILAR, TRIED
 from ptp_symbolic.identify.coordinates import to_search, to_values
 from ptp_symbolic.identify.fit import Fit
 
 FloatArray = NDArray[np.float64]
-
-SIMILAR = 0.9  # canonical correlation from which on a candidate is refitted in the place of another
-MOST_REFITTED = 3  # look-alikes of one effect that are refitted, the most similar first
-NEAR = 0.5  # share of its loss that a set may lose to the chosen one and still be polished
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +52,10 @@ def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> 
     begun: list[Trial] = []
     for member in chosen.candidates:
         kept = tuple(c for c in chosen.candidates if c is not member)
-        alike = look_alikes(task, chosen, fit, member)[:MOST_REFITTED]
+        alike = look_alikes(task, chosen, fit, member)[:TRIED]
         begun += [fitted(task, (*kept, s.candidate), s.values, chosen.fit.z, 0, fit) for s in alike]
         refitted_already = {s.candidate.key for s in alike}
-        for candidate in alike_along_motion(seeker.proposals, chosen, member)[:MOST_REFITTED]:
+        for candidate in alike_along_motion(seeker.proposals, chosen, member)[:TRIED]:
             if candidate.key in refitted_already:
                 continue
             begun += seeker.in_place((*kept, candidate), chosen)
@@ -71,11 +66,11 @@ def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> 
     for other in ranked(others):
         same_size = len(other.candidates) == len(chosen.candidates)
         fresh = same_size and other.keys not in tried and np.isfinite(other.fit.cost)
-        if fresh and gain(chosen, other).share < NEAR:
+        if fresh and gain(chosen, other).share < MOST:
             trials.append(other)
     result: dict[tuple[str, ...], Rival] = {}
-    near = [t for t in ranked(trials) if gain(chosen, t).share < CERTAIN]
-    for trial in near[:MOST_REFITTED]:
+    near = [t for t in ranked(trials) if gain(chosen, t).share < MOST]
+    for trial in near[:TRIED]:
         refitted = seeker.polished(trial)
         rival = Rival(refitted, gain(chosen, refitted))
         if not (rival.gain.share >= MATERIAL and rival.gain.is_clear(len(near))):

@@ -7,13 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.identify.constants import SINGULAR
 from ptp_symbolic.identify.coordinates import slopes, to_search
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.intervals import project_out
 
 FloatArray = NDArray[np.float64]
-
-SINGULAR = 1e-8  # relative singular value below which directions are the same
 
 
 def stacked(fit: Fit, columns: Sequence[FloatArray]) -> FloatArray:

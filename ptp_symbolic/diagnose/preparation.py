@@ -7,15 +7,13 @@ import numpy as np
 
 from ptp_symbolic.diagnose.candidates import find_candidates, vanished
 from ptp_symbolic.diagnose.trial import Progress, Task
+from ptp_symbolic.identify.constants import LONG, SHORT, WINDOW_PERIOD
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.fit import all_values_at_start
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.identify.sample_averages import thinned
 from ptp_symbolic.identify.windows import cut, window_length
 from ptp_symbolic.runtime.model import Model
-
-WINDOWS = (1.0, 3.0)  # s: long beside the time constants of a drive, short beside its runs
-PERIOD = 5e-3  # s between samples in windows: they give starts, from which whole runs are fitted
 
 
 def task_of(
@@ -39,8 +37,8 @@ def task_of(
     start = model.parameter_vector({**fixed, **all_values_at_start(free)})
     noise = tuple(noises[name] for name in model.input_names)
     length = window_length(model, train, start, noise)
-    few = [thinned(run, PERIOD) for run in train]
-    whole = () if length is not None else tuple(cut(model, few, w) for w in WINDOWS)
+    few = [thinned(run, WINDOW_PERIOD) for run in train]
+    whole = () if length is not None else tuple(cut(model, few, w) for w in (SHORT, LONG))
     return Task(
         model,
         train,

@@ -22,20 +22,22 @@ from ptp_symbolic.diagnose.subsets import (
 )
 from ptp_symbolic.diagnose.trial import Task, restarted
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.identify.constants import (
+    CYCLES,
+    DEVIATIONS,
+    FAR_OFF,
+    LARGEST,
+    LITTLE,
+    PROPOSED,
+    REFINEMENTS,
+    SHORT,
+)
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.equation_fit import fit_equations, linearised
 from ptp_symbolic.identify.equation_space import EquationSpace, prepare_equation_space
 from ptp_symbolic.identify.fit import all_values_at_start
 
 FloatArray = NDArray[np.float64]
-
-FAR_OFF = 4.0  # factor by which a declared start may be off when rows are chosen that count
-BLOCK = 1.0  # s left out at once: longer than the windows, whose rows overlap
-LARGEST = 3
-DEVIATIONS, SHARE = 2.0, 0.02
-PROPOSED = 6
-REGRESSIONS = 3
-REFINEMENTS = 2  # Gauss-Newton steps of a proposed set along the measured motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +78,7 @@ def propose(task: Task) -> Proposals:
     here = {f.name: values[f.name] for f in task.free}
     found = linearised(space, task.free, values, here, task.executor, own_torque=True)
     equation, run, time = space.labels()
-    block = run * 100_000 + (time // BLOCK).astype(np.int64)
+    block = run * 100_000 + (time // SHORT).astype(np.int64)
     seen, unseen = signatures(space, task.candidates, values, found.weight, task.executor)
     declared, base = task.free, found.jacobian
     rows = regression(found.rows, declared, base, seen, equation, block, found.weight)
@@ -202,9 +204,9 @@ def _best_sets(rows: Regression) -> tuple[list[Subset], Regression]:
     first, then the best of every size. Scales follow the residual of the set that is chosen.
     """
     chosen: Subset | None = None
-    for _ in range(REGRESSIONS):
+    for _ in range(CYCLES):
         every = ranked_subsets(rows, LARGEST)
-        close = [s for s in every if is_no_worse(s, every[0], DEVIATIONS, SHARE)]
+        close = [s for s in every if is_no_worse(s, every[0], DEVIATIONS, LITTLE)]
         close.sort(key=lambda s: (len(s.candidates), s.columns, s.loss))
         again = chosen is not None and _keys(chosen) == _keys(close[0])
         chosen = close[0]

@@ -12,9 +12,6 @@ from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise, left_
 from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
 from ptp_symbolic.diagnose.proposals import Proposals, declared_start
 from ptp_symbolic.diagnose.trial import (
-    GAIN,
-    ROUGH,
-    SHARP,
     Task,
     Trial,
     accuracy,
@@ -25,19 +22,22 @@ from ptp_symbolic.diagnose.trial import (
     mean_squares,
     ranked,
 )
+from ptp_symbolic.identify.constants import (
+    CYCLES,
+    GAIN,
+    ITERATIONS,
+    LAST_RUNG,
+    NEARBY,
+    POLISH,
+    ROUGH,
+    SHARP,
+    STEP,
+    WIDE_STEP,
+)
 from ptp_symbolic.identify.fit import Effort, fit_parameters
-from ptp_symbolic.identify.least_squares import NEARBY
-from ptp_symbolic.identify.secants import STEP, WIDE_STEP
 from ptp_symbolic.identify.windows import without_chaos
 
 FloatArray = NDArray[np.float64]
-
-ITERATIONS = 4  # in which a fit shows whether its start is worth more
-RUNGS = ((ITERATIONS, 2), (ITERATIONS, 1))  # of successive halving: iterations, and how many go on
-LAST_RUNG = RUNGS[1:]
-CYCLES = 3  # of a polished fit
-CERTAIN = 0.5  # share of the loss from which on a gain is no matter of where a fit ended
-POLISH = 12  # iterations of each half of a cycle
 
 
 def fit_declared(task: Task, proposals: Proposals) -> Trial:

@@ -12,16 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lombscargle
 
-from ptp_symbolic.identify.equation_rows import ROWS_PER_WINDOW
+from ptp_symbolic.identify.constants import BINS, LEAST_CYCLES, MATERIAL, ROWS_PER_WINDOW
 from ptp_symbolic.identify.equation_space import EquationSpace
 from ptp_symbolic.identify.row_motion import RowMotion, row_motion
 
 FloatArray = NDArray[np.float64]
 Side = tuple[str, str, FloatArray]
-
-BINS = 16  # of a map, equally full
-LEAST_SHARE = 0.1  # of the variance, from which on a hint is given
-LEAST_CYCLES = 3.0  # over the whole range: slower waves fit any slow change
 
 
 def remainder(space: EquationSpace | None, values: Mapping[str, float]) -> dict[str, Any] | None:
@@ -68,7 +64,7 @@ def hints(found: Mapping[str, Any] | None) -> list[str]:
         )
         for line in found["lines"]
     ]
-    return [text for share, text in sorted(sides, reverse=True) if share >= LEAST_SHARE]
+    return [text for share, text in sorted(sides, reverse=True) if share >= MATERIAL]
 
 
 def _said(m: Mapping[str, Any]) -> str:

@@ -7,12 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from ptp_symbolic.identify.constants import LAGS, TEST_ALARM
 from ptp_symbolic.identify.fit import Fit
 
 FloatArray = NDArray[np.float64]
 
-LAGS = 25  # samples over which correlations are looked at
-FALSE_ALARM = 0.01  # of a test, over all its lags
 WHITE = (
     "neighbouring residuals should not resemble each other; rounding and noise of the inputs make"
     " them do so a little where nothing is missing, so that this test alone proves nothing"
@@ -58,7 +57,7 @@ def correlations(
 
 def _row(name: str, signal: str, values: FloatArray, size: int, meaning: str) -> dict[str, Any]:
     largest = float(np.max(np.abs(values)))
-    threshold = float(stats.norm.ppf(1.0 - 0.5 * FALSE_ALARM / values.size) / np.sqrt(size))
+    threshold = float(stats.norm.ppf(1.0 - 0.5 * TEST_ALARM / values.size) / np.sqrt(size))
     return {
         "name": name,
         "signal": signal,

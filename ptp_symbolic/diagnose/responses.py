@@ -15,17 +15,13 @@ from scipy.optimize import lsq_linear
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.linear import stacked
 from ptp_symbolic.diagnose.proposals import Proposal
-from ptp_symbolic.diagnose.signatures import DECLARED_AMOUNT, brought
+from ptp_symbolic.diagnose.signatures import brought
 from ptp_symbolic.diagnose.trial import Task, Trial, simulated
+from ptp_symbolic.identify.constants import DECLARED_AMOUNT, FARTHEST, REACH, RIDGE, SHRINK, SHRINKS
 from ptp_symbolic.identify.coordinates import FreeParameter, to_search
 from ptp_symbolic.identify.fit import all_values
 
 FloatArray = NDArray[np.float64]
-
-REACH = 3.0  # times the residual: a response beyond is shrunk, for it is no longer linear
-SHRINKS, SHRINK = 4, 0.25
-FARTHEST = 0.5  # search coordinates (half a decade or half a scale) that free parameters may follow
-RIDGE = 1e-6  # of the residual per unit column: keeps columns apart that are nearly the same
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,8 @@ from dataclasses import replace
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.proposals import Proposals, roughly
-from ptp_symbolic.diagnose.refits import ITERATIONS
 from ptp_symbolic.diagnose.trial import Task, Trial, continued, fitted, ranked
-from ptp_symbolic.identify.least_squares import MANY_RUNS
+from ptp_symbolic.identify.constants import ITERATIONS, MANY_RUNS
 
 
 def screened(

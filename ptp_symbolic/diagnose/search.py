@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.findings import MATERIAL, Search, Step, is_earned, step_of
+from ptp_symbolic.diagnose.findings import Search, Step, is_earned, step_of
 from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise
 from ptp_symbolic.diagnose.gain import Gain, gain, p_value
 from ptp_symbolic.diagnose.proposals import (
@@ -20,10 +20,6 @@ from ptp_symbolic.diagnose.proposals import (
     with_lines,
 )
 from ptp_symbolic.diagnose.refits import (
-    CERTAIN,
-    ITERATIONS,
-    LAST_RUNG,
-    RUNGS,
     expected_gain,
     fit_declared,
     forms,
@@ -44,15 +40,21 @@ from ptp_symbolic.diagnose.trial import (
     is_near,
     ranked,
 )
-from ptp_symbolic.identify.secants import WIDE_STEP
+from ptp_symbolic.identify.constants import (
+    ADDED,
+    FIRST_RUNG,
+    ITERATIONS,
+    LARGEST,
+    LAST_RUNG,
+    MATERIAL,
+    MOST,
+    PARTS_OF_THE_WAY,
+    SCREENED,
+    TRIED,
+    WIDE_STEP,
+)
 
 FloatArray = NDArray[np.float64]
-
-PARTS_OF_THE_WAY = (1.0, 0.5)  # of a response: finite amounts may be far from linear
-PROPOSED = 3  # sets that are refitted to whole runs, of those that the rows propose
-ADDED = 4  # candidates that are refitted when one is added
-SCREENED = 2  # of those that short windows favour
-ROUNDS = 3  # of growing: as many effects as a set may gain after the first choice
 
 
 def search(task: Task) -> Search:
@@ -82,12 +84,12 @@ class Seeker:
         if not self.is_at_noise(best):
             sets, unseen = self.proposed(), self.unseen(best)
             task.progress(f"refitting {len(sets) + len(unseen)} proposed sets")
-            found = halving(task, sets, RUNGS) + halving(task, unseen, LAST_RUNG)
+            found = halving(task, sets, FIRST_RUNG + LAST_RUNG) + halving(task, unseen, LAST_RUNG)
             self.others += sets
             found = [t for t in ranked(found) if is_near(t, found)]
             best = self.restarted(ranked([best, *(self.completed(t) for t in found)])[0])
         best, steps = self.pruned(best)
-        for _ in range(ROUNDS):
+        for _ in range(LARGEST):
             grown = self.grown(best)
             if grown is None:
                 break
@@ -113,7 +115,7 @@ class Seeker:
             for s in sets
         ]
         begun = []
-        for led in ranked([job.result() for job in jobs])[:PROPOSED]:
+        for led in ranked([job.result() for job in jobs])[:TRIED]:
             own = {name for c in led.candidates for name in c.names}
             beside = declared.values | {name: led.values[name] for name in own}
             starts = [
@@ -200,13 +202,10 @@ class Seeker:
             return self.declared
         names = {name for c in trial.candidates if c not in kept for name in c.names}
         values = trial.values | {name: self.task.fixed[name] for name in names}
-        task = self.task
-        begun = fitted(
-            task, kept, values, trial.fit.z, ITERATIONS, trial.fit, executor=task.executor
-        )
-        smaller = begun
-        if gain(trial, begun).share < CERTAIN:
-            smaller = self.restarted(self.polished(begun))
+        run = self.task.executor
+        smaller = fitted(self.task, kept, values, trial.fit.z, ITERATIONS, trial.fit, executor=run)
+        if gain(trial, smaller).share < MOST:
+            smaller = self.restarted(self.polished(smaller))
         self.others.append(smaller)
         return smaller
 
@@ -215,7 +214,7 @@ class Seeker:
         return step_of(trial, candidate, self.without(trial, candidate))
 
     def is_needed(self, step: Step) -> bool:
-        """Whether a candidate gains materially, and clearly over all that were looked at."""
+        """Whether what a candidate gains is earned."""
         return self.is_earned(step.gain, step.p_value)
 
     def is_earned(self, earned: Gain, p: float) -> bool:
@@ -257,11 +256,11 @@ class Seeker:
         close = screened(task, self.proposals, trial.candidates, wanted, trial.values)
         begun += [fitted(task, t.candidates, t.values, None) for t in close[:SCREENED]]
         self.others += begun
-        left = halving(task, begun, RUNGS[:1])
+        left = halving(task, begun, FIRST_RUNG)
         if not left:
             return None
         best = ranked([self.polished(t) for t in left if is_near(t, left)])[0]
-        if gain(best, trial).share < CERTAIN:
+        if gain(best, trial).share < MOST:
             best = self.restarted(best)
         have = {f.name for c in trial.candidates for f in c.free}
         added = {n: v for c in best.candidates for n, v in c.vanishing.items() if n not in have}
@@ -278,7 +277,7 @@ class Seeker:
             for form in simpler:
                 names = {f.name for f in form.free}
                 lost = {n: v for n, v in candidate.vanishing.items() if n not in names}
-                if expected_gain(trial, lost) > CERTAIN:
+                if expected_gain(trial, lost) > MOST:
                     continue
                 smaller = self.in_form(trial, candidate, form)
                 if not self.is_earned(gain(trial, smaller), p_value(trial, lost)):

@@ -13,20 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.identify.constants import (
+    ATTENUATED,
+    BINS_PER_CYCLE,
+    CYCLES_APART,
+    DECLARED_AMOUNT,
+    LEAST_CYCLES,
+    SAME,
+    SMALL_AMOUNT,
+)
 from ptp_symbolic.identify.equation_space import EquationSpace
 from ptp_symbolic.identify.row_motion import row_motion
 
 FloatArray = NDArray[np.float64]
-
-SAME_DIRECTION = 1e-3  # singular value, relative: columns closer than this count once
-CYCLES_APART = 0.2  # of a period over the whole range: finer frequencies cannot be told apart
-LEAST_CYCLES = (
-    3.0  # over the whole range; with harmonics a slower wave fits any function of the place
-)
-BINS_PER_CYCLE = 4.0  # of the highest frequency of a scan: a bin dims it by a tenth
-ATTENUATED = 2.0  # cycles within a window: faster ones are averaged away
-SMALL_AMOUNT = 0.01  # of the amount at which a search begins: the rows are linear there
-DECLARED_AMOUNT = 0.05  # share of a declared value by which it is changed
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +122,7 @@ def _orthonormal(columns: FloatArray, weight: FloatArray) -> FloatArray:
     if not weighted.shape[1]:
         return np.zeros((len(weight), 0))
     left, values, _ = np.linalg.svd(weighted, full_matrices=False)
-    return left[:, values > SAME_DIRECTION * values[0]] / root
+    return left[:, values > SAME * values[0]] / root
 
 
 def locked_signatures(

@@ -14,18 +14,12 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.signatures import Signature
-from ptp_symbolic.identify.blocks import SEED
+from ptp_symbolic.identify.constants import FAR, FOLDS, HUBER, NOTHING, REWEIGHTINGS, SEED, WIDTH
 from ptp_symbolic.identify.coordinates import FreeParameter
-from ptp_symbolic.identify.equation_fit import HUBER, robust_scale
+from ptp_symbolic.identify.equation_fit import robust_scale
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-FOLDS = 8
-CAP = 4.0  # standard deviations: a row further off is a contact or a rest that was not masked
-RIDGE = 1e-9  # of the mean square column: keeps systems of nearly equal columns solvable
-REWEIGHTINGS = 6
-WIDTH = 12  # entries that take part in subsets of three and more
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,10 +159,10 @@ class _Folds:
         loss = np.empty(len(self.found.rows))
         for members, matrix, side in zip(self.members, self.matrices, self.sides, strict=True):
             part = matrix[np.ix_(index, index)]
-            ridge = RIDGE * np.trace(part) / len(index) * np.eye(len(index))
+            ridge = NOTHING * np.trace(part) / len(index) * np.eye(len(index))
             amounts = np.linalg.solve(part + ridge, side[index])
             left = self.found.rows[members] - self.columns[np.ix_(members, index)] @ amounts
-            loss[members] = np.minimum((left / self.found.scale[members]) ** 2, CAP**2)
+            loss[members] = np.minimum((left / self.found.scale[members]) ** 2, FAR**2)
         losses = np.asarray(np.bincount(self.label, loss), dtype=np.float64)
         candidates = tuple(self.found.signatures[i].candidate for i in chosen)
         return Subset(candidates, losses, len(index))

@@ -11,19 +11,13 @@ from ptp_symbolic.diagnose.findings import Search
 from ptp_symbolic.diagnose.floor import Floor
 from ptp_symbolic.diagnose.gain import Gain, gain
 from ptp_symbolic.diagnose.trial import Trial, ranked
-from ptp_symbolic.diagnose.verdict import (
-    EXPLAINED,
-    NOTHING_MISSING,
-    PARTLY,
-    UP_TO_GROUP,
-    Verdict,
-)
+from ptp_symbolic.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UP_TO_GROUP, Verdict
+from ptp_symbolic.identify.constants import SMALL_PERCENT
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.intervals import Estimate
 from ptp_symbolic.identify.repeatability import repeatability
 from ptp_symbolic.identify.run import Run
 
-SMALL_PERCENT = 1.0  # change of a declared value below which the headline calls it small
 SMALL = "The deviation is statistically clear but small."
 
 

@@ -10,20 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
+from ptp_symbolic.identify.constants import BEND, GAIN, LITTLE, ROUGH, WIDE_STEP
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters
-from ptp_symbolic.identify.least_squares import BEND, weighted_median
+from ptp_symbolic.identify.least_squares import weighted_median
 from ptp_symbolic.identify.run import Run
-from ptp_symbolic.identify.secants import WIDE_STEP
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 Progress = Callable[[str], None]
-
-ROUGH, SHARP = 1e-2, 1e-3  # error of simulations over the noise, while searching and at last
-LITTLE = 0.02  # of the logarithm of the mean square: less is no other place
-GAIN = 0.1  # of that share: two iterations in a row that gain less of the misfit end a fit
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,33 +6,29 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ptp_symbolic.diagnose.confirm import answers_to_inputs, why_unconfirmed
-from ptp_symbolic.diagnose.findings import MATERIAL, Search, Step, step_of
-from ptp_symbolic.diagnose.floor import (
-    Floor,
-    carried_noise,
-    floor_of,
-    leaves_noise_alone,
-)
+from ptp_symbolic.diagnose.findings import Search, Step, step_of
+from ptp_symbolic.diagnose.floor import Floor, carried_noise, floor_of, leaves_noise_alone
 from ptp_symbolic.diagnose.gain import Gain, compared, gain
 from ptp_symbolic.diagnose.groups import Rival, confusable, rivals
 from ptp_symbolic.diagnose.search import Seeker
-from ptp_symbolic.diagnose.trial import SHARP, Task, Trial, accuracy, huber, mean_squares, ranked
+from ptp_symbolic.diagnose.trial import Task, Trial, accuracy, huber, mean_squares, ranked
+from ptp_symbolic.identify.constants import (
+    BEND,
+    BIGGEST,
+    HELD_OUT_ABOVE,
+    MATERIAL,
+    MOST,
+    POLISH,
+    SHARP,
+)
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, unblinded
-from ptp_symbolic.identify.least_squares import BEND, weighted_median
+from ptp_symbolic.identify.least_squares import weighted_median
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"
 UP_TO_GROUP = "explained_up_to_group"
 PARTLY = "partly_explained"
 UNEXPLAINED = "unexplained"
-
-MAJOR = (
-    0.5  # share of the loss that an effect must take away where more than noise is left: a model
-)
-# that is slightly wrong everywhere lets many candidates gain a little
-HELD_OUT_ABOVE = 1.25  # times the floor: validation runs are few, and bear the errors of the fit
-BIGGEST = 1e12  # mean square of a run that could not be simulated
-HELD_OUT_ITERATIONS = 10  # for the starts of the validation runs
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +136,7 @@ def _weakness(
     if not answers_to_inputs(task, trial):
         return weakest, "with it the model no longer answers to its inputs"
     quiet = leaves_noise_alone(trial, floor_of(task, trial, seeker.carried))
-    if weakest.gain.share < MAJOR and not quiet:
+    if weakest.gain.share < MOST and not quiet:
         share = f"{100.0 * weakest.gain.share:.0f} %"
         return weakest, f"takes away {share} of the error, too little where more than noise is left"
     return None
@@ -187,7 +183,7 @@ def _is_quiet(after: Fit, floor: Floor) -> bool:
 
 def held_out_fit(task: Task, trial: Trial) -> Fit:
     """The validation runs by the model of a trial, nothing but their starts fitted."""
-    effort = Effort(HELD_OUT_ITERATIONS, 1e-3, accuracy(task, SHARP))
+    effort = Effort(POLISH, 1e-3, accuracy(task, SHARP))
     return fit_parameters(task.model, task.validate, (), trial.values, None, effort, task.executor)
 
 

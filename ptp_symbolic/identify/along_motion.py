@@ -10,11 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
+from ptp_symbolic.identify.constants import QUOTIENT
 from ptp_symbolic.simulation.emitted import call
-
-PARTS, LATE_PARTS = 2, 4  # of a sample in which states are integrated; more where inputs are late
-TWIST = 1e-6  # rad, difference quotient of the shaft's law
-QUOTIENT = 1e-6  # rad and rad/s, difference quotients of the lacking torque
 
 
 class Motion(NamedTuple):
@@ -84,9 +81,9 @@ def gear_ahead(addresses, layout, motion, p, resting, given):
                 ahead[k, a] = side * g[at + 1] - g[at]
                 continue
             first = g[torque]
-            x[layout.gear_angle[a]] += TWIST
+            x[layout.gear_angle[a]] += QUOTIENT
             call(addresses[1], motion.time[k], x, motion.inputs[k], p, m, g)
-            ahead[k, a] = (r[a] - first) * TWIST / (g[torque] - first)
+            ahead[k, a] = (r[a] - first) * QUOTIENT / (g[torque] - first)
             x[layout.gear_angle[a]] = motion.angle[k, a]
     return ahead, face
 

@@ -11,13 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.identify.constants import FEWEST_BLOCKS, MOST_BLOCKS, RESAMPLES, SEED
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-FEWEST_BLOCKS = 12  # fewer leave next to no degrees of freedom; runs are cut finer then
-MOST_BLOCKS = 200  # more say nothing more of a mean, and cost a small system each
-RESAMPLES = 2000  # of the bootstrap: the 2.5 % quantile is then good to a third of a percent
-SEED = 20130801  # of every draw: equal logs have equal answers
 
 
 def block_length(series: Sequence[FloatArray]) -> float:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ptp_symbolic.identify.constants import SMALLEST_SHARE
 
-SMALLEST_SHARE = 1e-6
+FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,15 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.identify.blocks import SEED
+from ptp_symbolic.identify.constants import DRAWS, SEED
 from ptp_symbolic.identify.layout import Layout
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
-
-DRAWS = 3
 
 
 @dataclass(frozen=True, eq=False)

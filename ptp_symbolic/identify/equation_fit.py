@@ -12,17 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
+from ptp_symbolic.identify.constants import FINITE, HUBER, MAD_TO_SIGMA, SAME, SHORT
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.equation_space import EquationSpace
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-HUBER = 2.0  # standard deviations beyond which a row counts only linearly
-MAD_TO_SIGMA = 1.4826  # of a normal distribution
-PRIOR_BLOCK = 1.0  # s: rows so close count as one beside the prior
-STEP = 1e-3  # of a parameter, for difference quotients of nearly linear rows
-SETTLED = 1e-3  # relative change of every parameter at which the iteration ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +60,7 @@ def fit_equations(
     place that the rows do not see; thousands of rows, which overlap, outweigh it where they do.
     """
     equation, run, time = space.labels()
-    blocks = len(np.unique(np.column_stack([equation, run, time // PRIOR_BLOCK]), axis=0))
+    blocks = len(np.unique(np.column_stack([equation, run, time // SHORT]), axis=0))
     overlap = len(equation) / max(blocks, 1)
     here = {f.name: float(np.clip(values[f.name], f.lower, f.upper)) for f in free}
     centre = np.array([f.start for f in free])
@@ -91,7 +86,7 @@ def fit_equations(
         new = np.clip(at + step, lower, upper)
         here = {f.name: float(v) for f, v in zip(free, new, strict=True)}
         moved = np.max(np.abs(new - at) / np.maximum(np.abs(new), 1e-3 * sigma), initial=0.0)
-        if moved < SETTLED or iteration == iterations - 1:
+        if moved < SAME or iteration == iterations - 1:
             break
     return linearised(space, free, values, here, executor)
 
@@ -119,7 +114,7 @@ def linearised(
 
     def quotient(index: int) -> FloatArray:
         f = free[index]
-        step = STEP * max(abs(here[f.name]), STEP * f.scale)
+        step = FINITE * max(abs(here[f.name]), FINITE * f.scale)
         if here[f.name] + step > f.upper:
             step = -step
         moved = base.copy()

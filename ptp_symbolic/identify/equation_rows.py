@@ -7,20 +7,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.identify.along_motion import Motion
+from ptp_symbolic.identify.constants import (
+    CALM,
+    HALF_WIDTHS,
+    MOST_COARSE,
+    NOTHING,
+    RESTING,
+    ROWS_PER_WINDOW,
+    SAMPLES_PER_WINDOW,
+)
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.identify.weak_form import noise_gain, weak_average
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
-
-ROWS_PER_WINDOW = 8  # rows overlap: more are copies of each other
-SAMPLES_PER_WINDOW = 32  # on the grid: enough for the bends of the test function
-RESTING = 5.0  # standard deviations of the estimated rate: slower may be at rest
-CALM = 5e-3  # noise of the averaged acceleration over that of what accelerates
-MOST_COARSE = 16.0  # samples in a window: fewer do not resolve the test function
-CLEAN = 1e-9  # share of a window at rest
-HALF_WIDTHS = (0.08, 0.11, 0.16, 0.22)  # s
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +101,7 @@ def rows_that_count(
     both = np.column_stack([rests, changed])
     both = weak_average(motion.time, both, half_width, 0, rows.chosen)
     axes = rests.shape[1]
-    slides = (both[:, :axes] < CLEAN) & (both[:, axes:] < CLEAN)
-    electric = np.all(both[:, axes:] < CLEAN, axis=1)
+    slides = (both[:, :axes] < NOTHING) & (both[:, axes:] < NOTHING)
+    electric = np.all(both[:, axes:] < NOTHING, axis=1)
     kept = np.column_stack([slides, *[electric] * measured])
     return replace(rows, kept=kept, face=faces[0])

@@ -15,12 +15,11 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.identify.along_motion import (
-    LATE_PARTS,
-    PARTS,
     further_states,
     gear_ahead,
     torques_along,
 )
+from ptp_symbolic.identify.constants import FINITE, LATE_PARTS, PARTS
 from ptp_symbolic.identify.dependence import dependence_of
 from ptp_symbolic.identify.equation_rows import (
     RunRows,
@@ -46,8 +45,6 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 Torques = tuple[FloatArray, FloatArray, FloatArray]  # see `torques_along`
-
-SHIFT = 1e-3  # of an input or state, in its own unit, for a difference quotient
 
 
 @dataclass(eq=False)
@@ -252,8 +249,8 @@ class EquationSpace:
         for j in range(inputs + further):
             if j < inputs or j in shown:
                 moved = none.copy()
-                moved[:, j] = SHIFT
-                result[:, j] = (self._torques(0, p, moved)[2][0][middle] - here) / SHIFT
+                moved[:, j] = FINITE
+                result[:, j] = (self._torques(0, p, moved)[2][0][middle] - here) / FINITE
                 self._states.clear()
         return result
 

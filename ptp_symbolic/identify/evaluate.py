@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ptp_symbolic.identify.constants import COARSEST, FINEST, ROUNDING_OF_7200, SENSOR_ITERATIONS
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.delays import delay_columns, delayed, delays_of
@@ -14,10 +15,6 @@ from ptp_symbolic.simulation.kernels import DONE
 from ptp_symbolic.simulation.passage import Accuracy, default_method, pass_through
 
 FloatArray = NDArray[np.float64]
-
-ROUNDING_OF_7200 = 2.0 * np.pi / 7200.0 / np.sqrt(12.0)  # rad, standard deviation
-SENSOR_ITERATIONS = 4  # an error of 2 % of the angle is left to 2e-7 of it
-FINEST, COARSEST = 1e-4, 10.0  # of the default: beyond rounding dominates, or events are lost
 
 
 @dataclass(frozen=True)

@@ -7,27 +7,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.identify.coordinates import (
-    FreeParameter,
-    limits,
-    slopes,
-    to_search,
-    to_values,
-)
+from ptp_symbolic.identify.constants import ABOVE_NOISE, BLIND, STEP, TRIED
+from ptp_symbolic.identify.coordinates import FreeParameter, limits, slopes, to_search, to_values
 from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.least_squares import Optimum, Problem, cost_of, minimise
 from ptp_symbolic.identify.requirements import keep_possible
 from ptp_symbolic.identify.run import Run
-from ptp_symbolic.identify.secants import STEP, Secants, Shift
+from ptp_symbolic.identify.secants import Secants, Shift
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 
 
 DEFAULT_TOLERANCE = Tolerance()
-BLIND = 0.2
-TRIED_PLACES = 3
-ROUNDED = 1.1  # mean square residual over that of rounding alone: no other place fits better
 
 
 @dataclass(frozen=True)
@@ -258,7 +250,7 @@ def _fit_starts(
         found: list[Optimum] = []
         for begin in _places(problem, run, start):
             found.append(minimise(problem, nothing, [begin], effort.iterations, effort.gain))
-            if found[-1].cost <= ROUNDED * run.size:
+            if found[-1].cost <= ABOVE_NOISE * run.size:
                 break
         return min(found, key=lambda optimum: optimum.cost)
 
@@ -286,7 +278,7 @@ def _places(problem: Problem, run: Run, start: FloatArray) -> list[FloatArray]:
         if unknown.places:
             places = [_moved(best[0], index, v) for v in (best[0][index], *unknown.places)]
             costs = [cost_of(problem, problem.evaluate(nothing, [p], False), [p]) for p in places]
-            best = [places[i] for i in np.argsort(costs, kind="stable")[:TRIED_PLACES]]
+            best = [places[i] for i in np.argsort(costs, kind="stable")[:TRIED]]
     return best
 
 

@@ -17,16 +17,12 @@ from ptp_symbolic.identify.blocks import (
     jackknife_covariance,
     leave_blocks_out,
 )
+from ptp_symbolic.identify.constants import NOTHING, SAME, UNIDENTIFIED, WIDEST
 from ptp_symbolic.identify.coordinates import FreeParameter, slopes, to_search, wrapped
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.run import by_source
 
 FloatArray = NDArray[np.float64]
-
-UNIDENTIFIED = 1.0  # half width of an interval, as a share of the value, from which it says nothing
-LOST_SHARE = 1e-10  # of the largest eigenvalue of the information: directions below are not seen
-INVOLVED = 1e-3  # squared share of a parameter in such a direction from which on it takes part
-WIDEST = 30.0  # half width of the interval of a logarithm beyond which it has no end
 
 
 @dataclass(frozen=True)
@@ -54,7 +50,7 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
     reach = stats.t.ppf(0.975, degrees)
     spreads = reach * np.sqrt(np.maximum(np.diag(covariance), 0.0))
     units = np.abs(slopes(fit.free, to_search(fit.free, fit.values)))
-    involved = np.any(lost**2 > INVOLVED, axis=0)
+    involved = np.any(lost**2 > SAME, axis=0)
     result = []
     for index, free in enumerate(fit.free):
         value = wrapped(free, fit.values[free.name])
@@ -129,7 +125,7 @@ def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
     size = np.sqrt(np.diag(information))
     unit = np.where(size > 0.0, size, 1.0)
     shares, directions = np.linalg.eigh(information / np.outer(unit, unit))
-    kept = shares > LOST_SHARE * max(shares[-1], 1e-300)
+    kept = shares > NOTHING * max(shares[-1], 1e-300)
     seen = directions[:, kept] / unit[:, None]
     lost = directions[:, ~kept] / unit[:, None]
     lost /= np.maximum(np.linalg.norm(lost, axis=0), 1e-300)

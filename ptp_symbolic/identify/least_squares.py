@@ -11,6 +11,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.identify.constants import (
+    AT_BOUND,
+    BEND,
+    BIGGEST,
+    FIRST_DAMPING,
+    LARGEST_STEP,
+    MANY_RUNS,
+    NEARBY,
+)
 from ptp_symbolic.identify.evaluate import Evaluation
 from ptp_symbolic.identify.requirements import Allow
 from ptp_symbolic.identify.secants import Secants
@@ -18,14 +27,7 @@ from ptp_symbolic.identify.secants import Secants
 FloatArray = NDArray[np.float64]
 Evaluate = Callable[[FloatArray, Sequence[FloatArray], bool], list[Evaluation]]
 
-LARGEST_STEP = 1.0
-SHARE_TO_BOUND = 1.0 - np.exp(-1.0)  # of the way there in one step: LARGEST_STEP of its logarithm
-AT_BOUND = 0.1  # of a search coordinate: from nearer than that one step may reach the bound
-FIRST_DAMPING = 1e-3
-TOO_STEEP = 1e15
-MANY_RUNS = 20  # windows: from so many on the median stands for all
-BEND = 2.5  # times the usual root mean square: a block so far off counts half, or linearly
-NEARBY = 8.0  # standard deviations: while the usual window is further off, all count alike
+SHARE_TO_BOUND = -np.expm1(-LARGEST_STEP)  # of the way there in one step
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,7 @@ def cost_of(
         (np.max(np.abs(j), initial=0.0) for e in evaluations for j in (e.by_parameter, e.by_start)),
         default=0.0,
     )
-    if not np.isfinite(fit) or not steepest < TOO_STEEP:
+    if not np.isfinite(fit) or not steepest < BIGGEST:
         return np.inf
     return fit + sum(
         scale * float(np.sum((a / s) ** 2)) for a, s in zip(z, problem.start_sigma, strict=True)

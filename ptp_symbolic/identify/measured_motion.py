@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.identify.along_motion import Motion, angles_behind_sensors
+from ptp_symbolic.identify.constants import SENSOR_ITERATIONS
 from ptp_symbolic.identify.equation_rows import RunRows
-from ptp_symbolic.identify.evaluate import SENSOR_ITERATIONS
 from ptp_symbolic.identify.layout import Layout, equation_addresses
 from ptp_symbolic.identify.run import Run
 from ptp_symbolic.identify.weak_form import local_motion, weak_average

@@ -15,15 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-FloatArray = NDArray[np.float64]
+from ptp_symbolic.identify.constants import (
+    FAR,
+    LOWEST,
+    ORDER,
+    OVERLAP_CORRELATION,
+    PIECE,
+    POLES,
+    SCORINGS,
+    SEGMENT,
+)
 
-ORDER = 5  # of the differences: a motion at a tenth of the sampling rate leaves 1 % of itself
-CLIPPED = 4.0  # standard deviations: larger differences are jumps of the motion
-PIECE = 256  # samples; the median over pieces is that of the quiet ones where motion is rough
-SEGMENT = 64  # samples of a periodogram: its lowest frequency resolves poles up to 0.95
-LOWEST = 3  # first bin used of a segment: those below belong to the window and to the motion
-SCORINGS = 20  # reweighted steps: the variances of a gamma model settle to a part in a thousand
-POLES = np.concatenate([[0.0], np.linspace(0.3, 0.97, 40)])
+FloatArray = NDArray[np.float64]
 
 
 def white_noise(signal: FloatArray) -> float:
@@ -43,7 +46,7 @@ def _clipped_mean(square: FloatArray) -> float:
     """Mean of the squares of normal numbers, begun at their median, until no more are clipped."""
     mean = float(np.median(square)) / float(stats.chi2.median(1))
     for _ in range(len(square)):
-        kept = square[square <= CLIPPED**2 * mean]
+        kept = square[square <= FAR**2 * mean]
         if not kept.size or float(kept.mean()) == mean:
             break
         mean = float(kept.mean())
@@ -77,9 +80,6 @@ def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
     allowed = likelihood >= likelihood[best] - 0.5 * float(stats.chi2.ppf(0.95, 1))
     most = max(f[1] for f, ok in zip(fits, allowed, strict=True) if ok)
     return Noise(float(np.sqrt(fits[best][1])), float(POLES[best]), float(np.sqrt(most)))
-
-
-OVERLAP_CORRELATION = 1.2  # periodograms of Hann windows that overlap by half share that much
 
 
 def _spectrum(series: Sequence[FloatArray]) -> tuple[FloatArray, int]:

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.identify.constants import FAR
 from ptp_symbolic.identify.noise import white_noise
-from ptp_symbolic.identify.run import AT_REST, Run
+from ptp_symbolic.identify.run import Run
 
 FloatArray = NDArray[np.float64]
 
@@ -31,7 +32,7 @@ def repeatability(runs: Sequence[Run]) -> Repeatability | None:
     """The repeatability that whole `runs` show; None where no two have equal inputs and starts.
 
     Inputs are equal where they differ by no more than their noise, starts where they differ by
-    less than AT_REST standard deviations of the signal.
+    less than FAR standard deviations of the signal.
     """
     pairs = [(a, b) for a, b in itertools.combinations(runs, 2) if _alike(a, b)]
     if not pairs:
@@ -53,5 +54,5 @@ def _alike(a: Run, b: Run) -> bool:
         noise = np.hypot(white_noise(one), white_noise(other))
         if np.sqrt(np.mean((one - other) ** 2)) > 1.5 * noise + 1e-9 * np.max(np.abs(one)):
             return False
-    far = AT_REST * np.sqrt(2.0) / a.weight
+    far = FAR * np.sqrt(2.0) / a.weight
     return bool(np.all(np.abs(a.measured[0] - b.measured[0]) <= far))

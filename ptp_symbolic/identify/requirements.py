@@ -6,13 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.identify.constants import CORRECTIONS, HALVINGS, QUOTIENT
 from ptp_symbolic.identify.coordinates import FreeParameter, limits
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 Allow = Callable[[FloatArray, FloatArray], FloatArray]
-
-HALVINGS, CORRECTIONS, DIFFERENCE = 40, 20, 1e-6
 
 
 def keep_possible(
@@ -64,8 +63,8 @@ class _Relation:
         slope = np.zeros(len(phi))
         for i in np.flatnonzero(self.about):
             ahead = phi.copy()
-            ahead[i] += DIFFERENCE
-            slope[i] = (self.margin(ahead) - self.margin(phi)) / DIFFERENCE
+            ahead[i] += QUOTIENT
+            slope[i] = (self.margin(ahead) - self.margin(phi)) / QUOTIENT
         return slope
 
     def boundary(self, phi: FloatArray, step: FloatArray) -> FloatArray:
@@ -93,7 +92,7 @@ class _Relation:
                 return np.where(self.about, there, trial)
             by = self.margin(there)
             inward = _inward(np.where(self.at_bound(there, slope), 0.0, slope))
-            rest = there - boundary + inward * (DIFFERENCE * abs(by) - by)
+            rest = there - boundary + inward * (QUOTIENT * abs(by) - by)
         return np.where(self.about, boundary, trial)
 
 

@@ -9,19 +9,13 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.data import Log
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.identify.constants import FAR, GAP_PLACES, LEAST_START, ROUNDING, START_SPAN
 from ptp_symbolic.identify.noise import white_noise
 from ptp_symbolic.platform import Platform, SignalDeclaration
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.inputs import InputTable, stack, table
 
 FloatArray = NDArray[np.float64]
-
-START_SPAN = 0.1  # s of motion that tell the rate at the start
-LEAST_START = 5  # samples of a parabola with two degrees of freedom left
-AT_REST = 4.0  # standard deviations: a signal that stays within, either way, may be at rest
-EDGE_SPAN = 0.1  # s over which the speed at the edge of a window is taken
-GAP_PLACES = (-0.9, -0.45, 0.45, 0.9)
-ROUNDING = 1.0 / np.sqrt(12.0)  # standard deviation of rounding, in counts
 
 
 @dataclass(frozen=True)
@@ -180,7 +174,7 @@ def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
         if may_rest and _stays(run, column):
             continue
         start[[states.index(name) for name in rates]] = rate
-        places = (0.0, -rate) if may_rest and abs(rate) <= 3.0 * AT_REST * error else ()
+        places = (0.0, -rate) if may_rest and abs(rate) <= 3.0 * FAR * error else ()
         unknowns.append(_unknown(states, rates[0], rates, 1e3, error, places))
     for contact, (gear, _) in enumerate(model.module.CONTACT_ANGLES):
         tangent = np.zeros(len(states))
@@ -194,7 +188,7 @@ def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
 def _stays(run: Run, column: int) -> bool:
     """Whether a signal stays within its noise at the start of a run."""
     count = max(LEAST_START, int(np.searchsorted(run.time, run.time[0] + START_SPAN)))
-    return float(np.ptp(run.measured[:count, column])) <= 2.0 * AT_REST / run.weight[column]
+    return float(np.ptp(run.measured[:count, column])) <= 2.0 * FAR / run.weight[column]
 
 
 def _first_rate(run: Run, column: int, around: Around | None) -> tuple[float, float]:
@@ -250,7 +244,7 @@ def _moving_edges(run: Run, edges: NDArray[np.int64]) -> NDArray[np.int64]:
     encoders = np.flatnonzero(np.isfinite(run.counts))
     if encoders.size == 0:
         return edges
-    half = max(1, round(0.5 * EDGE_SPAN / float(np.median(np.diff(run.time)))))
+    half = max(1, round(0.5 * START_SPAN / float(np.median(np.diff(run.time)))))
     if len(run.time) <= 4 * half:
         return edges
     rate = np.zeros((len(run.time), encoders.size))

@@ -12,15 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.identify.constants import MISLEADING, STEP
 from ptp_symbolic.identify.evaluate import Evaluation
 
 FloatArray = NDArray[np.float64]
 Shift = tuple[int, int]
 Residual = Callable[[int, FloatArray, FloatArray], FloatArray | None]
-
-STEP = 0.02  # of a search coordinate: as far as an interval reaches, for derivatives at the end
-WIDE_STEP = 0.1  # while searching: wide enough to see over the treads of a staircase
-MISLEADING = 0.25  # of the difference: a derivative further off is replaced
 
 
 @dataclass(eq=False)

@@ -10,10 +10,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ptp_symbolic.identify.constants import LARGEST_GAP, LEAST_SAMPLES
 
-LEAST_SAMPLES = 7  # in a window: fewer do not resolve the second derivative of the test function
-LARGEST_GAP = 0.34  # of the half width: across more a trapezoid misses the test function's bend
+FloatArray = NDArray[np.float64]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -11,23 +11,24 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.identify.blocks import SEED
+from ptp_symbolic.identify.constants import (
+    ALLOWED_COUNTS,
+    ALLOWED_GROWTH,
+    ALLOWED_RISE,
+    BEND,
+    LENGTHS,
+    MOST_CARRIED,
+    SEED,
+    SHORT,
+)
 from ptp_symbolic.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.identify.intervals import project_out
-from ptp_symbolic.identify.least_squares import BEND
 from ptp_symbolic.identify.noise import white_noise
 from ptp_symbolic.identify.run import Run, split_run
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.inputs import stack, table
 
 FloatArray = NDArray[np.float64]
-
-ALLOWED_COUNTS = 0.5
-ALLOWED_RISE = 2.0  # of the drift in the shortest window: a machine that forgets adds little more
-ALLOWED_GROWTH = 10.0
-MOST_CARRIED = 1.0  # of the noise of a signal: more noise than that is not its own
-GROWING_LENGTH = 1.0
-LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)
 
 
 def input_noise(run: Run, declared: Sequence[float | None]) -> FloatArray:
@@ -44,7 +45,7 @@ def window_length(
     None where whole runs do. Where an error of the start grows tenfold, windows of 1 s at most.
     """
     if any(_grows(model, run, p) for run in runs):
-        lengths: tuple[float, ...] = tuple(x for x in LENGTHS if x <= GROWING_LENGTH)
+        lengths: tuple[float, ...] = tuple(x for x in LENGTHS if x <= SHORT)
     else:
         lengths = (np.inf, *LENGTHS)
     rng = np.random.default_rng(SEED)
@@ -153,7 +154,7 @@ def without_chaos(
     grows = np.any((carried > MOST_CARRIED) & (left < BEND * carried), axis=1)
     found: list[Run] = []
     for run, chaotic in zip(runs, grows, strict=True):
-        found += split_run(model, run, GROWING_LENGTH) if chaotic else (run,)
+        found += split_run(model, run, SHORT) if chaotic else (run,)
     return tuple(found)
 
 

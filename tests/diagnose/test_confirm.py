@@ -5,9 +5,10 @@ import pytest
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.confirm import at_bound, unstable_without
-from ptp_symbolic.diagnose.findings import FALSE_ALARM, MATERIAL, is_earned
+from ptp_symbolic.diagnose.findings import is_earned
 from ptp_symbolic.diagnose.gain import Gain, p_value
 from ptp_symbolic.diagnose.trial import Trial
+from ptp_symbolic.identify.constants import FALSE_ALARM, MATERIAL
 from ptp_symbolic.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 from tests.identify.straight import finished

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.signatures import CYCLES_APART, LEAST_CYCLES, _strongest
+from ptp_symbolic.diagnose.signatures import LEAST_CYCLES, _strongest
+from ptp_symbolic.identify.constants import CYCLES_APART
 from ptp_symbolic.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 
@@ -20,6 +21,7 @@ def space_of(time: Floats, angle: Floats) -> Any:
         labels=lambda: (rows, rows, time),
         runs=(run,),
         half_width=0.05,
+        resting=np.zeros(1),
         model=SimpleNamespace(module=SimpleNamespace(AXES=("pan",))),
     )
 

@@ -8,8 +8,6 @@ import pytest
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.signatures import Signature
 from ptp_symbolic.diagnose.subsets import (
-    CAP,
-    FOLDS,
     Regression,
     Subset,
     is_no_worse,
@@ -17,6 +15,7 @@ from ptp_symbolic.diagnose.subsets import (
     regression,
     remainder,
 )
+from ptp_symbolic.identify.constants import FAR, FOLDS
 from ptp_symbolic.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 
@@ -85,7 +84,7 @@ def test_what_a_subset_loses_is_what_refits_without_each_block_mispredict() -> N
             here = found.block == block
             weighted = [(m * root)[~here] for m in (table, found.rows[:, None])]
             left = found.rows[here] - table[here] @ np.linalg.lstsq(*weighted)[0][:, 0]
-            expected = np.sum(np.minimum((left / found.scale[here]) ** 2, CAP**2))
+            expected = np.sum(np.minimum((left / found.scale[here]) ** 2, FAR**2))
             assert subset.losses[block] == pytest.approx(expected, rel=1e-6)
         assert subset.columns == table.shape[1]
 

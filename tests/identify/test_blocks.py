@@ -7,14 +7,13 @@ from hypothesis import strategies as st
 from scipy.signal import lfilter
 
 from ptp_symbolic.identify.blocks import (
-    FEWEST_BLOCKS,
-    MOST_BLOCKS,
     block_labels,
     block_length,
     bootstrap_share,
     jackknife_covariance,
     leave_blocks_out,
 )
+from ptp_symbolic.identify.constants import FEWEST_BLOCKS, MOST_BLOCKS
 from tests.identify.curves import Floats
 
 

@@ -1,5 +1,6 @@
 """The tree carries no path of one machine, no silenced check without a reason, no giant file."""
 
+import ast
 import re
 import subprocess
 from collections.abc import Iterator
@@ -82,3 +83,41 @@ def test_the_patterns_find_what_they_are_for(
     pattern: re.Pattern[str], text: str, caught: bool
 ) -> None:
     assert bool(pattern.search(text)) is caught
+
+
+CONSTANTS = "ptp_symbolic/identify/constants.py"
+CHOSEN = 56  # constants that nothing but the benchmark speaks for: this may fall, not rise
+
+
+def numeric_constants(source: str) -> list[str]:
+    """Names in capitals that a module sets to numbers, not by way of other names."""
+    found = []
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name | ast.Tuple):
+            numbers = [
+                leaf
+                for leaf in ast.walk(node.value)
+                if isinstance(leaf, ast.Constant) and isinstance(leaf.value, int | float)
+            ]
+            name = ast.unparse(node.targets[0])
+            if name.strip("()").isupper() and numbers:
+                found.append(name)
+    return found
+
+
+def test_numbers_that_were_chosen_stand_in_one_table(checkout: Path) -> None:
+    """Each with its unit, its quantity and where it comes from."""
+    for folder in ("diagnose", "identify"):
+        for module in sorted((checkout / "ptp_symbolic" / folder).glob("*.py")):
+            if module != checkout / CONSTANTS:
+                assert numeric_constants(module.read_text(encoding="utf-8")) == [], module
+    lines = (checkout / CONSTANTS).read_text(encoding="utf-8").splitlines()
+    table = [line for line in lines if re.match(r"[A-Z_0-9]+ = ", line)]
+    sources = [line.partition("  # ")[2].split("; ") for line in table]
+    assert [line for line, parts in zip(table, sources, strict=True) if len(parts) < 3] == []
+    assert sum(parts[-1].startswith("chosen") for parts in sources) <= CHOSEN
+
+
+def test_a_number_outside_the_table_is_found() -> None:
+    source = "A, B = 1.0, 2\nC = -0.5\nD = A * B\nE = 'text'\nF = (2.0 * A,)\n"
+    assert numeric_constants(source) == ["(A, B)", "C", "F"]

@@ -1,0 +1,131 @@
+"""Every number that the fits and the search chose: value, unit, quantity, and where it comes from.
+
+One line each, in this form: value  # unit; quantity; source. A source is a derivation (from
+rounding, from a distribution, from the definition of the quantity), a requirement of the diagnosis
+that its report states, or "chosen": then nothing better than the benchmark speaks for it. Decisions
+and statistics come first, then robustness, effort, windows and rows, numerics.
+"""
+
+import numpy as np
+
+# Decisions and statistics
+FALSE_ALARM = 0.05  # 1; chance of naming anything where nothing is missing; stated level
+TEST_ALARM = 0.01  # 1; false alarms of one residual test; usual 99 % band (Ljung, 1999, 16.6)
+LAGS = 25  # samples; lags of the residual tests; usual (Ljung, 1999, 16.6)
+MATERIAL = 0.1  # 1; share of the predictive loss below which nothing earns a name; stated size
+MOST = 0.5  # 1; share that is most of a whole; definition
+SIMILAR = 0.9  # 1; canonical correlation of effects that may be one another; stated
+PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off; stated
+SMALL_PERCENT = 1.0  # %; change of a declared value that is called small; chosen
+ABOVE_NOISE = 1.1  # 1; rms over the floor that is still noise; chosen
+HELD_OUT_ABOVE = 1.25  # 1; the same on validation runs, which bear the errors of the fit; chosen
+MOST_CARRIED = 1.0  # 1; input noise over a signal's own that runs may carry; definition
+UNIDENTIFIED = 1.0  # 1; half width of an interval over a value that is not known; definition
+NEAR_BOUND = 1e-4  # 1; distance from a bound over the size of a value that is at it; chosen
+FEWEST_BLOCKS = 12  # 1; blocks: Student's interval is then 12 % wider than a normal one; derived
+MOST_BLOCKS = 200  # 1; blocks: the error of a standard deviation is then 5 %; derived
+RESAMPLES = 2000  # 1; draws: the 2.5 % quantile is good to a third of a percent; derived
+FOLDS = 8  # 1; parts of a cross-validation; chosen (5 to 10 are usual: Hastie et al., 2009, 7.10)
+DEVIATIONS = 2.0  # 1; standard errors by which a simpler set may be worse; 95 % of a normal number
+LITTLE = 0.02  # 1; change of a mean square that is none; chosen
+SEED = 20130801  # 1; of every draw, so that equal logs have equal answers; arbitrary
+DRAWS = 3  # 1; random states at which a dependence is looked for; chosen
+
+# Robustness
+BEND = 2.5  # 1; sizes of the usual block beyond which it counts less; 95 % efficiency (Cauchy: 2.4)
+HUBER = 2.0  # 1; standard deviations beyond which a row counts linearly; 99 % efficiency
+FAR = 4.0  # 1; standard deviations that no noise reaches (one in 16,000); derived
+RESTING = 5.0  # 1; the same for every rate of a log: one in 2 million; derived
+NEARBY = 2.0 * FAR  # 1; standard deviations from which on all windows count alike; chosen
+MANY_RUNS = 20  # 1; windows whose median stands for all: good to 28 % of their spread; chosen
+MISLEADING = 0.25  # 1; share of a difference by which its derivative misleads; chosen
+BLIND = 0.2  # 1; share of a difference of which a derivative sees nothing; chosen
+
+# Effort
+ITERATIONS = 4  # 1; in which a fit shows whether its start is worth more; chosen
+POLISH = 12  # 1; iterations of a fit that goes to its end; chosen
+CYCLES = 3  # 1; of two fits, or of weights and fits, in turn; chosen
+TRIED = 3  # 1; alternatives that are followed; chosen
+LARGEST = 3  # effects; that a set may have, or gain after the first choice; stated
+PROPOSED = 6  # sets; that rows propose; chosen
+ADDED = 4  # candidates; that are refitted when one is added; chosen
+SCREENED = 2  # candidates; the same, of those that short windows favour; chosen
+WIDTH = 12  # candidates; that take part in sets of three and more; chosen
+REFINEMENTS = 2  # 1; Gauss-Newton steps of a proposed set; chosen
+REWEIGHTINGS = 6  # 1; of rows: weights settle to a percent; chosen
+SCORINGS = 20  # 1; of a spectrum: variances settle to a part in a thousand; derived
+SENSOR_ITERATIONS = 4  # 1; an error of 2 % of the angle is left to 2e-7 of it; derived
+GAIN = 0.1  # 1; of the error of simulations: two gains in a row below end a fit; chosen
+ROUGH = 1e-2  # 1; error of simulations over the noise, while searching; chosen
+FIRST_RUNG = ((ITERATIONS, 2),)  # 1; of halving: iterations, and how many sets go on; chosen
+LAST_RUNG = ((ITERATIONS, 1),)  # 1; the same; definition
+SHARP = 1e-3  # 1; the same, at last: a tenth of the step by which errors are told apart; chosen
+
+# Windows and rows
+SHORT = 1.0  # s; window beside the time constants of drives (0.05 s); chosen
+LONG = 3.0  # s; window beside runs of 10 s; chosen
+WINDOW_PERIOD = 5e-3  # s; between samples where windows only give starts; chosen
+START_SPAN = 0.1  # s; motion that tells a rate; chosen
+LEAST_START = 5  # samples; of a parabola with two degrees of freedom left; derived
+ALLOWED_COUNTS = 0.5  # counts; drift by input noise in a window: that of rounding; derived
+ALLOWED_RISE = 2.0  # 1; of that drift, over the shortest window's; chosen
+ALLOWED_GROWTH = 10.0  # 1; of an error of the start in a run; chosen
+ROWS_PER_WINDOW = 8  # 1; rows overlap: more are copies of each other; derived
+SAMPLES_PER_WINDOW = 32  # 1; torques in a window: a second derivative is off by 2e-4; derived
+LEAST_SAMPLES = 7  # samples; in a window: the same is off by 6 % unless normalised; derived
+MOST_COARSE = 16.0  # samples; in a window of usual rows: the same is off by 0.3 %; derived
+LARGEST_GAP = 0.34  # half widths; without a sample: across more a trapezoid misses a bend; derived
+PARTS = 2  # 1; of a sample in which states are integrated along the motion; chosen
+LATE_PARTS = 4  # 1; the same where inputs are late; chosen
+CALM = 5e-3  # 1; noise of an averaged acceleration over what accelerates; chosen
+FAR_OFF = 4.0  # 1; factor by which a start may be off when rows are chosen; chosen
+CYCLES_APART = 0.2  # 1/range; step of a frequency scan: a line between is dimmed by 3 %; derived
+LEAST_CYCLES = 3.0  # 1/range; slower waves with harmonics fit any slow change; chosen
+BINS_PER_CYCLE = 4.0  # 1; of the highest frequency of a scan: a bin dims it by a tenth; derived
+ATTENUATED = 2.0  # 1/window; of such a wave an average leaves 11 %; derived
+SMALL_AMOUNT = 0.01  # 1; share of a start at which rows are linear; chosen
+DECLARED_AMOUNT = 0.05  # 1; share by which a declared value is changed to see its effect; chosen
+BINS = 16  # 1; of a map of what is left; chosen
+
+# Noise of a signal
+ORDER = 5  # 1; differences: a motion at a tenth of the sampling rate leaves 1 % of itself; derived
+PIECE = 256  # samples; over which the noise of a signal is taken; chosen
+SEGMENT = 64  # samples; of a periodogram: poles up to 0.95 are told from white noise; tested
+LOWEST = 3  # bins; below belong to the taper (2) and to the motion; derived
+OVERLAP_CORRELATION = 1.2  # 1; of periodograms of Hann windows that overlap by half; derived
+
+# Steps
+STEP = 0.02  # search coordinates; of differences at the end: as far as an interval reaches; chosen
+WIDE_STEP = 0.1  # search coordinates; of differences while searching, over a staircase; chosen
+LARGEST_STEP = 1.0  # search coordinates; of one iteration: a factor of e; chosen
+AT_BOUND = 0.1  # search coordinates; from nearer one step may reach a bound; chosen
+FIRST_DAMPING = 1e-3  # 1; of the diagonal; usual (Marquardt, 1963: 1e-2)
+FARTHEST = 0.5  # search coordinates; that free parameters follow a response; chosen
+REACH = 3.0  # 1; size of a response over the residual, beyond which it is not linear; chosen
+SHRINK = 0.25  # 1; of a response that reaches further; chosen
+SHRINKS = 4  # 1; of a response: down to a part in 256; chosen
+
+# Numerics
+ROUNDING = 1.0 / np.sqrt(12.0)  # counts; standard deviation of rounding; derived
+ROUNDING_OF_7200 = 2.0 * np.pi / 7200.0 * ROUNDING  # rad; of an encoder of 7200 counts; derived
+MAD_TO_SIGMA = 1.4826  # 1; standard deviation over median of a normal distribution; derived
+FINITE = 1e-3  # 1; step of difference quotients of what is nearly linear; chosen
+QUOTIENT = 1e-6  # rad, rad/s; the same of what is exact: near the cube root of rounding; derived
+SAME = 1e-3  # 1; relative difference of directions or values that count as one; chosen
+RIDGE = 1e-6  # 1; of a residual per unit column: keeps nearly equal columns apart; chosen
+SINGULAR = 1e-8  # 1; relative singular value of directions that are one: root of rounding; derived
+NOTHING = 1e-10  # 1; share that rounding leaves of a sum of squares; derived
+SMALLEST_SHARE = 1e-6  # 1; of a scale from which a logarithm begins; chosen
+WIDEST = 30.0  # 1; logarithm of a factor that has no end (1e13); derived
+BIGGEST = 1e15  # 1; mean square, or derivative, of what cannot be simulated; chosen
+HALVINGS = 40  # 1; of a step to a relation between parameters: to 1e-12 of it; derived
+CORRECTIONS = 20  # 1; of a step along such a relation; chosen
+FINEST = 1e-4  # 1; of the default tolerance: beyond rounding dominates; derived
+COARSEST = 10.0  # 1; of the default tolerance: beyond events are lost; chosen
+
+# Sequences
+LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried; halvings
+HALF_WIDTHS = (0.08, 0.11, 0.16, 0.22)  # s; windows of rows that are tried; factors of root two
+GAP_PLACES = (-0.9, -0.45, 0.45, 0.9)  # half gaps; starts in a gap that are tried; evenly spread
+PARTS_OF_THE_WAY = (1.0, 0.5)  # 1; of a response at which a refit begins; chosen
+POLES = np.concatenate([[0.0], np.linspace(0.3, 0.97, 40)])  # 1; of noise that are tried; a grid
