@@ -5,11 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ptp_symbolic.diagnose.confirm import answers_to_inputs, why_unconfirmed
+from ptp_symbolic.diagnose.confirm import answers_to_inputs, at_bound, why_unconfirmed
 from ptp_symbolic.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.diagnose.floor import Floor, carried_noise, floor_of, leaves_noise_alone
 from ptp_symbolic.diagnose.gain import Gain, compared, gain
 from ptp_symbolic.diagnose.groups import Rival, confusable, rivals
+from ptp_symbolic.diagnose.refits import forms
 from ptp_symbolic.diagnose.search import Seeker
 from ptp_symbolic.diagnose.trial import Task, Trial, accuracy, huber, mean_squares, ranked
 from ptp_symbolic.identify.constants import (
@@ -67,12 +68,14 @@ def decide(found: Search) -> Verdict:
     trial, steps = found.chosen, list(found.members)
     fit = unblinded(trial.fit, task.executor)
     while trial.candidates:
-        why = _weakness(task, seeker, trial, steps, fit)
-        if why is None:
-            break
-        step, reason = why
-        refused[step.candidate.key] = reason
-        trial = step.without
+        simpler = _off_bounds(seeker, trial, fit)
+        if simpler is None:
+            why = _weakness(task, seeker, trial, steps, fit)
+            if why is None:
+                break
+            step, reason = why
+            refused[step.candidate.key] = reason
+        trial = step.without if simpler is None else simpler
         steps = [seeker.step(trial, c) for c in trial.candidates]
         fit = unblinded(trial.fit, task.executor)
     alike: list[Rival] = []
@@ -120,6 +123,23 @@ def _simplest(
     (candidate,) = best.trial.candidates
     rest = [Rival(chosen, gain(best.trial, chosen)), *(r for r in alike if r is not best)]
     return best.trial, [step_of(best.trial, candidate, steps[0].without)], rest
+
+
+def _off_bounds(seeker: Seeker, trial: Trial, fit: Fit) -> Trial | None:
+    """The trial with a candidate in the fullest form that lacks a parameter which ends at its
+    bound; None where none does, or where no form lacks it.
+    """
+    for candidate in trial.candidates:
+        bound = at_bound(fit, candidate)
+        lacking = [
+            form
+            for form in forms(seeker.task, candidate)
+            if bound is not None and bound not in {f.name for f in form.free}
+        ]
+        if lacking:
+            fullest = max(lacking, key=lambda form: len(form.free))
+            return seeker.simplified(seeker.in_form(trial, candidate, fullest))
+    return None
 
 
 def _weakness(
