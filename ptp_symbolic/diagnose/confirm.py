@@ -31,15 +31,19 @@ def why_unconfirmed(task: Task, trial: Trial, fit: Fit, candidate: Candidate) ->
 
 
 def at_bound(fit: Fit, candidate: Candidate) -> str | None:
-    """A defining parameter that the fit pressed against a bound at which it does not vanish."""
+    """A parameter of the candidate that the fit pressed to a bound at which it does not vanish.
+
+    A shape counts too: at the end of its range an effect becomes another one, as a spring that is
+    relaxed far away becomes a constant torque.
+    """
     own = {f.name: f for f in fit.free}
-    for begun in candidate.defining:
+    for begun in candidate.free:
         f, value = own[begun.name], fit.values[begun.name]
         if f.period is not None:
             continue
         near = NEAR_BOUND * max(abs(f.start), abs(value))
         ends = [end for end in (f.lower, f.upper) if abs(value - end) <= near]
-        if ends and abs(value - candidate.vanishing[f.name]) > near:
+        if ends and abs(value - candidate.vanishing.get(f.name, np.inf)) > near:
             return f.name
     return None
 

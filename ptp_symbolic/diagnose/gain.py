@@ -43,7 +43,7 @@ class Gain:
 
     def is_clear(self, tests: int) -> bool:
         """Whether the gain is above zero at 5 % over so many `tests` (Bonferroni, one-sided)."""
-        threshold = stats.t.ppf(1.0 - 0.05 / max(tests, 1), max(self.degrees, 1))
+        threshold = stats.t.ppf(1.0 - FALSE_ALARM / max(tests, 1), max(self.degrees, 1))
         return self.statistic > float(threshold)
 
 

@@ -12,7 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lombscargle
 
-from ptp_symbolic.identify.constants import BINS, LEAST_CYCLES, MATERIAL, ROWS_PER_WINDOW
+from ptp_symbolic.identify.constants import (
+    BINS,
+    CYCLES_APART,
+    LEAST_CYCLES,
+    MATERIAL,
+    ROWS_PER_WINDOW,
+)
 from ptp_symbolic.identify.equation_space import EquationSpace
 from ptp_symbolic.identify.row_motion import RowMotion, row_motion
 
@@ -37,7 +43,8 @@ def remainder(space: EquationSpace | None, values: Mapping[str, float]) -> dict[
         left, motion = rows[own], row_motion(space, axis)
         inputs = list(_inputs(space, number[own], time[own]))
         for against, unit, x in (*_sides(motion), *inputs):
-            maps.append({"axis": name, "against": against, "unit": unit, **binned(x, left)})
+            if np.isfinite(x).any() and np.nanmin(x) < np.nanmax(x):
+                maps.append({"axis": name, "against": against, "unit": unit, **binned(x, left)})
         for place, unit, x in (
             ("time", "Hz", time[own]),
             ("angle", "1/turn", motion.angle / (2.0 * np.pi)),
@@ -55,7 +62,7 @@ def hints(found: Mapping[str, Any] | None) -> list[str]:
     """What the residual torque depends on most, in plain words, the largest share first."""
     if found is None:
         return []
-    sides = [(m["share"], _said(m)) for m in found["maps"]]
+    sides = [(m["share"], _said(m)) for m in found["maps"] if m["share"] >= MATERIAL]
     sides += [
         (
             line["share"],
@@ -92,13 +99,16 @@ def _inputs(space: EquationSpace, number: NDArray[np.int64], time: FloatArray) -
 
 
 def binned(x: FloatArray, left: FloatArray) -> dict[str, Any]:
-    """Means of `left` [n] in equally full bins of `x` [n], their standard errors (rows whose
-    windows overlap count as one), and the share of the variance between the bins.
+    """Means of `left` [n] in equally full bins of `x` [n] (equal values share one), their standard
+    errors (rows whose windows overlap count as one), and the share of the variance between bins.
     """
     usable = np.isfinite(x)
+    if not usable.any():
+        return {"at": [], "mean": [], "error": [], "share": 0.0}
     x, left = x[usable], left[usable]
-    order = np.argsort(x, kind="stable")
-    parts = [part for part in np.array_split(order, BINS) if part.size]
+    edges = np.unique(np.quantile(x, np.linspace(0.0, 1.0, BINS + 1)[1:-1]))
+    place = np.searchsorted(edges, x, side="right")
+    parts = [np.flatnonzero(place == k) for k in np.unique(place)]
     mean = np.array([left[part].mean() for part in parts])
     error = [
         float(left[part].std() / np.sqrt(max(part.size / ROWS_PER_WINDOW, 1.0))) for part in parts
@@ -125,16 +135,19 @@ def strongest_line(
     by_angle: bool,
 ) -> tuple[float, float] | None:
     """The strongest line of `left` [n] over a place (time in s run by run, or turns) and the share
-    of the variance in it (Lomb, 1976; Scargle, 1982); None where the range holds too few cycles.
-    Frequencies end where a window averages two cycles away.
+    of the variance in it (Lomb, 1976; Scargle, 1982), beyond that of the strongest of white noise
+    (Fisher, 1929); None where the range holds too few cycles. Frequencies end where a window
+    averages two cycles away, or where there are two rows in a cycle.
     """
     span = max(float(np.ptp(place[runs == k])) for k in np.unique(runs))
-    slow = float(np.quantile(np.abs(rate), 0.1)) / (2.0 * np.pi) if by_angle else 1.0
-    lowest, highest = LEAST_CYCLES / max(span, 1e-12), 1.0 / max(half_width * slow, 1e-12)
+    moving = np.abs(rate[rate != 0.0])
+    slow = float(np.quantile(moving, 0.1)) / (2.0 * np.pi) if by_angle and moving.size else 1.0
+    lowest = LEAST_CYCLES / max(span, 1e-12)
+    highest = min(1.0 / max(half_width * slow, 1e-12), 0.5 * left.size / max(span, 1e-12))
     if not lowest < highest:
         return None
-    count = min(int((highest - lowest) * span * 2.0) + 1, left.size)
-    frequency = np.linspace(lowest, highest, max(count, 2))
+    count = int((highest - lowest) * span / CYCLES_APART) + 2
+    frequency = np.linspace(lowest, highest, count)
     power, whole = np.zeros(len(frequency)), 0.0
     for k in np.unique(runs):
         own = left[runs == k] - left[runs == k].mean()
@@ -144,5 +157,10 @@ def strongest_line(
         found = lombscargle(place[runs == k], own, 2.0 * np.pi * frequency, normalize=True)
         power += square * np.asarray(found)
         whole += square
+    if whole == 0.0:
+        return None
     best = int(np.argmax(power))
-    return (float(frequency[best]), float(power[best] / whole)) if whole > 0.0 else None
+    independent = max(left.size / ROWS_PER_WINDOW, 3.0)
+    chance = min(2.0 * np.log(independent) / independent, 1.0 - 1e-9)
+    share = (float(power[best] / whole) - chance) / (1.0 - chance)
+    return float(frequency[best]), max(share, 0.0)

@@ -81,7 +81,7 @@ def decide(found: Search) -> Verdict:
     alike: list[Rival] = []
     if trial.candidates:
         alike = rivals(seeker, trial, (*found.others, *seeker.others), fit)
-        trial, steps, alike = _simplest(trial, steps, alike)
+        trial, steps, alike = _simplest(seeker, trial, steps, alike)
     task.progress("simulating the validation runs")
     before = held_out_fit(task, found.declared)
     after = held_out_fit(task, trial) if trial.candidates else before
@@ -89,7 +89,7 @@ def decide(found: Search) -> Verdict:
     closest = None if trial.candidates else _closest(found)
     if held_out is not None and held_out.share < MATERIAL:
         for key in trial.keys:
-            refused[key] = "the validation runs are predicted no better with it"
+            refused[key] = "takes away too little of the error of the validation runs"
         closest, trial, steps, after, held_out, alike = trial, found.declared, [], before, None, []
     floor = floor_of(task, trial, carried_noise(task, trial.fit))
     named = confusable(trial, alike)
@@ -112,17 +112,23 @@ def decide(found: Search) -> Verdict:
 
 
 def _simplest(
-    chosen: Trial, steps: list[Step], alike: list[Rival]
+    seeker: Seeker, chosen: Trial, steps: list[Step], alike: list[Rival]
 ) -> tuple[Trial, list[Step], list[Rival]]:
-    """Of one effect and those that cannot be told from it, the one with the fewest parameters."""
+    """Of one effect and what cannot be told from it, the one with the fewest parameters, if
+    that is confirmed too.
+    """
     best = min(alike, key=lambda r: len(r.trial.fit.free), default=None)
     if len(steps) != 1 or best is None or len(best.trial.fit.free) >= len(chosen.fit.free):
         return chosen, steps, alike
     if len(best.trial.candidates) != 1:
         return chosen, steps, alike
     (candidate,) = best.trial.candidates
-    rest = [Rival(chosen, gain(best.trial, chosen)), *(r for r in alike if r is not best)]
-    return best.trial, [step_of(best.trial, candidate, steps[0].without)], rest
+    fit = unblinded(best.trial.fit, seeker.task.executor)
+    step = step_of(best.trial, candidate, steps[0].without)
+    if _weakness(seeker.task, seeker, best.trial, [step], fit) is not None:
+        return chosen, steps, alike
+    others = [chosen, *(r.trial for r in alike if r is not best)]
+    return best.trial, [step], [Rival(other, gain(best.trial, other)) for other in others]
 
 
 def _off_bounds(seeker: Seeker, trial: Trial, fit: Fit) -> Trial | None:
@@ -131,12 +137,9 @@ def _off_bounds(seeker: Seeker, trial: Trial, fit: Fit) -> Trial | None:
     """
     for candidate in trial.candidates:
         bound = at_bound(fit, candidate)
-        lacking = [
-            form
-            for form in forms(seeker.task, candidate)
-            if bound is not None and bound not in {f.name for f in form.free}
-        ]
-        if lacking:
+        kept = {f.name for f in candidate.free if f.name != bound}
+        lacking = [f for f in forms(seeker.task, candidate) if {p.name for p in f.free} <= kept]
+        if bound is not None and lacking:
             fullest = max(lacking, key=lambda form: len(form.free))
             return seeker.simplified(seeker.in_form(trial, candidate, fullest))
     return None

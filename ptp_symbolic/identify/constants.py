@@ -1,4 +1,4 @@
-"""Every number that the fits and the search chose: value, unit, quantity, and where it comes from.
+"""The named numbers of fits and search: value, unit, quantity, and where each comes from.
 
 One line each, in this form: value  # unit; quantity; source. A source is a derivation (from
 rounding, from a distribution, from the definition of the quantity), a requirement of the diagnosis
@@ -19,7 +19,7 @@ PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off; stated
 SMALL_PERCENT = 1.0  # %; change of a declared value that is called small; chosen
 ABOVE_NOISE = 1.1  # 1; rms over the floor that is still noise; chosen
 HELD_OUT_ABOVE = 1.25  # 1; the same on validation runs, which bear the errors of the fit; chosen
-MOST_CARRIED = 1.0  # 1; input noise over a signal's own that runs may carry; definition
+MOST_CARRIED = 1.0  # 1; noise of the inputs that a signal may show, over its own; definition
 UNIDENTIFIED = 1.0  # 1; half width of an interval over a value that is not known; definition
 NEAR_BOUND = 1e-4  # 1; distance from a bound over the size of a value that is at it; chosen
 FEWEST_BLOCKS = 12  # 1; blocks: Student's interval is then 12 % wider than a normal one; derived
@@ -32,9 +32,9 @@ SEED = 20130801  # 1; of every draw, so that equal logs have equal answers; arbi
 DRAWS = 3  # 1; random states at which a dependence is looked for; chosen
 
 # Robustness
-BEND = 2.5  # 1; sizes of the usual block beyond which it counts less; 95 % efficiency (Cauchy: 2.4)
+BEND = 2.5  # 1; sizes of the usual block beyond which a block counts less; chosen
 HUBER = 2.0  # 1; standard deviations beyond which a row counts linearly; 99 % efficiency
-FAR = 4.0  # 1; standard deviations that no noise reaches (one in 16,000); derived
+FAR = 4.0  # 1; standard deviations that noise seldom reaches (once in 16,000); derived
 RESTING = 5.0  # 1; the same for every rate of a log: one in 2 million; derived
 NEARBY = 2.0 * FAR  # 1; standard deviations from which on all windows count alike; chosen
 MANY_RUNS = 20  # 1; windows whose median stands for all: good to 28 % of their spread; chosen
@@ -57,8 +57,8 @@ SCORINGS = 20  # 1; of a spectrum: variances settle to a part in a thousand; der
 SENSOR_ITERATIONS = 4  # 1; an error of 2 % of the angle is left to 2e-7 of it; derived
 GAIN = 0.1  # 1; of the error of simulations: two gains in a row below end a fit; chosen
 ROUGH = 1e-2  # 1; error of simulations over the noise, while searching; chosen
-FIRST_RUNG = ((ITERATIONS, 2),)  # 1; of halving: iterations, and how many sets go on; chosen
-LAST_RUNG = ((ITERATIONS, 1),)  # 1; the same; definition
+FIRST_RUNG = ((ITERATIONS, 2),)  # iterations, sets; of halving: how many go on; chosen
+LAST_RUNG = ((ITERATIONS, 1),)  # iterations, sets; the same at last; definition
 SHARP = 1e-3  # 1; the same, at last: a tenth of the step by which errors are told apart; chosen
 
 # Windows and rows
@@ -88,11 +88,11 @@ DECLARED_AMOUNT = 0.05  # 1; share by which a declared value is changed to see i
 BINS = 16  # 1; of a map of what is left; chosen
 
 # Noise of a signal
-ORDER = 5  # 1; differences: a motion at a tenth of the sampling rate leaves 1 % of itself; derived
+ORDER = 5  # 1; differences: a motion at a tenth of the sampling rate leaves 0.6 %; derived
 PIECE = 256  # samples; over which the noise of a signal is taken; chosen
 SEGMENT = 64  # samples; of a periodogram: poles up to 0.95 are told from white noise; tested
 LOWEST = 3  # bins; below belong to the taper (2) and to the motion; derived
-OVERLAP_CORRELATION = 1.2  # 1; of periodograms of Hann windows that overlap by half; derived
+OVERLAP_CORRELATION = 1.2  # 1; spread of periodograms that overlap by half (Welch, 1967); chosen
 
 # Steps
 STEP = 0.02  # search coordinates; of differences at the end: as far as an interval reaches; chosen
@@ -108,7 +108,7 @@ SHRINKS = 4  # 1; of a response: down to a part in 256; chosen
 # Numerics
 ROUNDING = 1.0 / np.sqrt(12.0)  # counts; standard deviation of rounding; derived
 ROUNDING_OF_7200 = 2.0 * np.pi / 7200.0 * ROUNDING  # rad; of an encoder of 7200 counts; derived
-MAD_TO_SIGMA = 1.4826  # 1; standard deviation over median of a normal distribution; derived
+MAD_TO_SIGMA = 1.4826  # 1; of a normal number over its median absolute deviation; derived
 FINITE = 1e-3  # 1; step of difference quotients of what is nearly linear; chosen
 QUOTIENT = 1e-6  # rad, rad/s; the same of what is exact: near the cube root of rounding; derived
 SAME = 1e-3  # 1; relative difference of directions or values that count as one; chosen

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.identify.constants import FAR
+from ptp_symbolic.identify.constants import ABOVE_NOISE, FAR, MATERIAL, NOTHING
 from ptp_symbolic.identify.noise import white_noise
 from ptp_symbolic.identify.run import Run
 
@@ -20,8 +20,8 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Repeatability:
-    """Root mean square [ny] of one run about the mean of two with equal inputs, in the units of the
-    signals, and the `names` of such runs, two by two.
+    """Standard deviation [ny] of one run, from the differences of two with equal inputs, in the
+    units of the signals, and the `names` of such runs, two by two.
     """
 
     rms: FloatArray
@@ -31,8 +31,8 @@ class Repeatability:
 def repeatability(runs: Sequence[Run]) -> Repeatability | None:
     """The repeatability that whole `runs` show; None where no two have equal inputs and starts.
 
-    Inputs are equal where they differ by no more than their noise, starts where they differ by
-    less than FAR standard deviations of the signal.
+    Inputs are equal where they differ by no more than their noise, and by little beside what they
+    vary; starts where they differ by less than FAR standard deviations of the signal.
     """
     pairs = [(a, b) for a, b in itertools.combinations(runs, 2) if _alike(a, b)]
     if not pairs:
@@ -51,8 +51,9 @@ def _alike(a: Run, b: Run) -> bool:
     if np.max(np.abs((a.time - a.time[0]) - (b.time - b.time[0]))) > 0.5 * period:
         return False
     for one, other in zip(a.held_inputs.T, b.held_inputs.T, strict=True):
-        noise = np.hypot(white_noise(one), white_noise(other))
-        if np.sqrt(np.mean((one - other) ** 2)) > 1.5 * noise + 1e-9 * np.max(np.abs(one)):
+        noise = ABOVE_NOISE * np.hypot(white_noise(one), white_noise(other))
+        apart = float(np.sqrt(np.mean((one - other) ** 2)))
+        if apart > min(noise, MATERIAL * float(np.std(one))) + NOTHING * np.max(np.abs(one)):
             return False
     far = FAR * np.sqrt(2.0) / a.weight
     return bool(np.all(np.abs(a.measured[0] - b.measured[0]) <= far))

@@ -32,7 +32,7 @@ def part_averages(run: Run, column: int, delay: float, parts: int) -> FloatArray
 
 def thinned(run: Run, period: float) -> Run:
     """`run` with every so many samples alone that they come about every `period` s, the inputs
-    averaged in between; the run itself where it is sampled more slowly than that.
+    averaged in between; the run itself where less than two samples come in that time.
     """
     every = int(period / float(np.median(np.diff(run.time))) + 1e-6)
     if every < 2:

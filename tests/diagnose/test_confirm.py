@@ -53,6 +53,16 @@ def test_a_parameter_pressed_against_a_bound_is_named(value: float, named: str |
     assert at_bound(fit, EFFECT) == named
 
 
+@pytest.mark.parametrize(("place", "named"), [(7.0, "place"), (-7.0, "place"), (3.0, None)])
+def test_a_shape_at_its_bound_makes_another_effect(place: float, named: str | None) -> None:
+    """A spring that is relaxed far away is a constant torque."""
+    shape = free_parameter("place", 1.0, -7.0, 7.0)
+    spring = Candidate("spring", None, "", "", (SPRING, shape), {"k": 0.0})
+    values = {"k": 0.3, "place": place}
+    fit = finished([np.zeros(20)], [np.zeros((20, 2))], None, (SPRING, shape), values)
+    assert at_bound(fit, spring) == named
+
+
 def test_what_a_few_blocks_show_beyond_doubt_is_clear() -> None:
     """One run in six shows the effect, in a third of its samples; noise alone is not clear."""
     pulse = np.where(np.arange(600) % 300 < 100, np.sin(0.1 * np.arange(600)), 0.0)

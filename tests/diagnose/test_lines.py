@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.signatures import LEAST_CYCLES, _strongest
-from ptp_symbolic.identify.constants import CYCLES_APART
+from ptp_symbolic.diagnose.signatures import _strongest
+from ptp_symbolic.identify.constants import CYCLES_APART, LEAST_CYCLES
 from ptp_symbolic.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 
@@ -16,12 +16,17 @@ from tests.identify.curves import Floats
 def space_of(time: Floats, angle: Floats) -> Any:
     """One axis that was measured at `angle`, with a row at every sample."""
     rows = np.zeros(len(time), dtype=np.int64)
-    run = SimpleNamespace(time=time, signals=("theta_pan",), measured=angle[:, None])
+    run = SimpleNamespace(
+        time=time,
+        signals=("theta_pan",),
+        measured=angle[:, None],
+        weight=np.array([1e6]),
+        counts=np.array([np.nan]),
+    )
     return SimpleNamespace(
         labels=lambda: (rows, rows, time),
         runs=(run,),
         half_width=0.05,
-        resting=np.zeros(1),
         model=SimpleNamespace(module=SimpleNamespace(AXES=("pan",))),
     )
 

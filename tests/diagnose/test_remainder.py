@@ -61,6 +61,37 @@ def test_too_short_a_range_has_no_line() -> None:
     assert strongest_line(angle, angle, none, 0.08, np.full(300, 20.0), by_angle=True) is None
 
 
+def test_noise_has_no_line_and_a_constant_side_explains_nothing() -> None:
+    rng = np.random.default_rng(9)
+    runs = np.zeros(480, dtype=np.int64)
+    time = np.linspace(0.0, 12.0, 480)
+    shares = []
+    for _ in range(40):
+        left = overlapping_noise(rng, 480)
+        found = strongest_line(time, left, runs, 0.08, np.ones(480), by_angle=False)
+        assert found is not None
+        shares.append(found[1])
+    assert np.mean(np.array(shares) > 0.1) < 0.2
+    slow = np.sin(0.02 * np.arange(480))
+    assert binned(np.zeros(480), slow)["share"] < 0.05
+    level = np.where(slow > 0.0, 1.0, -1.0)
+    assert len(binned(level, slow)["at"]) == 2
+
+
+def test_a_joint_that_rests_has_lines_within_two_rows_of_a_cycle() -> None:
+    angle = np.cumsum(np.r_[np.zeros(200), np.full(200, 0.01)])
+    left = np.sin(2.0 * np.pi * 9.0 * angle)
+    rate = np.r_[np.zeros(200), np.full(200, 0.5)]
+    found = strongest_line(angle, left, np.zeros(400, np.int64), 0.08, rate, by_angle=True)
+    assert found is not None
+    assert found[0] == pytest.approx(9.0, abs=0.2)
+
+
+def test_a_side_without_values_gives_no_hint() -> None:
+    empty = binned(np.full(50, np.nan), np.ones(50))
+    assert hints({"maps": [{"axis": "pan", "against": "rate", **empty}], "lines": []}) == []
+
+
 def test_hints_name_the_strongest_first() -> None:
     m = {"axis": "pan", "against": "angle", "mean": [0.5, -2.0], "share": 0.4}
     weak = {**m, "against": "rate", "share": 0.05}
