@@ -9,7 +9,7 @@ from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
 from ptp_symbolic.diagnose.trial import Task, Trial, accuracy
 from ptp_symbolic.identify.blocks import leave_blocks_out
-from ptp_symbolic.identify.constants import MATERIAL, MOST, NEAR_BOUND, SHARP
+from ptp_symbolic.identify.constants import ELSEWHERE, MOST, NEAR_BOUND, SHARP
 from ptp_symbolic.identify.evaluate import evaluate
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.simulation.inputs import stack, table
@@ -71,7 +71,7 @@ def unstable_without(fit: Fit, candidate: Candidate) -> str | None:
         return None
     for number, name in enumerate(names):
         here = label == number
-        if float(effect[here] @ effect[here]) > (1.0 - MATERIAL) * square:
+        if float(effect[here] @ effect[here]) > (1.0 - ELSEWHERE) * square:
             continue
         shifted = effect + mine @ left.shifts[number, own]
         if float(shifted @ effect) < MOST * square:

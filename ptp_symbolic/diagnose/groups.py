@@ -20,7 +20,15 @@ from ptp_symbolic.diagnose.responses import Columns, least, response_columns
 from ptp_symbolic.diagnose.search import Seeker
 from ptp_symbolic.diagnose.signatures import Signature
 from ptp_symbolic.diagnose.trial import Task, Trial, fitted, halving, ranked
-from ptp_symbolic.identify.constants import ITERATIONS, MATERIAL, MOST, REACH, SIMILAR, TRIED
+from ptp_symbolic.identify.constants import (
+    ITERATIONS,
+    MATERIAL,
+    MOST,
+    NO_RIVAL,
+    REACH,
+    SIMILAR,
+    TRIED,
+)
 from ptp_symbolic.identify.coordinates import to_search, to_values
 from ptp_symbolic.identify.fit import Fit
 
@@ -69,7 +77,7 @@ def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> 
         if fresh and gain(chosen, other).share < MOST:
             trials.append(other)
     result: dict[tuple[str, ...], Rival] = {}
-    near = [t for t in ranked(trials) if gain(chosen, t).share < MOST]
+    near = [t for t in ranked(trials) if gain(chosen, t).share < NO_RIVAL]
     for trial in near[:TRIED]:
         refitted = seeker.polished(trial)
         rival = Rival(refitted, gain(chosen, refitted))

@@ -1,0 +1,130 @@
+"""What the table of constants says of them, worked out anew."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import integrate, signal, stats
+
+from ptp_symbolic.identify import constants as c
+from ptp_symbolic.identify import noise
+from ptp_symbolic.identify.weak_form import weak_average
+
+
+def said(name: str, checkout: Path) -> str:
+    """What the table says of a constant."""
+    text = (checkout / "ptp_symbolic/identify/constants.py").read_text(encoding="utf-8")
+    found = re.search(rf"^{name} = [^#\n]*#(.*)$", text, re.MULTILINE)
+    assert found is not None
+    return found[1]
+
+
+def bell(s: float) -> float:
+    """The test function of rows."""
+    return float((1.0 - s**2) ** 4)
+
+
+def wave_left(cycles: float) -> float:
+    """Share of a wave with so many cycles in a window that the average under the bell leaves."""
+    whole = integrate.quad(bell, -1.0, 1.0)[0]
+    return float(integrate.quad(lambda s: bell(s) * np.cos(np.pi * cycles * s), -1, 1)[0] / whole)
+
+
+def curvature_off(samples: float) -> float:
+    """Largest relative error of the second derivative of a parabola, not normalised."""
+    n = int(samples)
+    off = []
+    for shift in np.linspace(0.0, 1.0, 11):
+        s = -1.0 + (np.arange(n + 1) + shift) * 2.0 / n
+        s = s[s <= 1.0]
+        bent = (1.0 - s**2) ** 2 * (48.0 * s**2 - 8.0 * (1.0 - s**2))
+        off.append(abs(np.sum(0.5 * bent * s**2) / np.sum((1.0 - s**2) ** 4) - 1.0))
+    return float(max(off))
+
+
+def huber_efficiency(bend: float) -> float:
+    """Efficiency of Huber's estimate of a place for normal numbers (Huber, 1981, 4.5)."""
+    inside = stats.norm.cdf(bend) - stats.norm.cdf(-bend)
+    square = integrate.quad(lambda x: x**2 * stats.norm.pdf(x), -bend, bend)[0]
+    return float(inside**2 / (square + 2.0 * bend**2 * stats.norm.sf(bend)))
+
+
+def gap_off() -> float:
+    """Largest error of the mean second derivative of a quartic where almost LARGEST_GAP is
+    missing.
+    """
+    off = []
+    spacing = 1.0 / 32.0
+    for middle in np.linspace(-0.8, 0.8, 33):
+        time = np.arange(-64, 65) * spacing
+        time = time[np.abs(time - middle) > 0.5 * (c.LARGEST_GAP - 2.0 * spacing)]
+        at = np.flatnonzero(time == 0.0)
+        if at.size:
+            found = weak_average(time, time[:, None] ** 4, 1.0, 2, at)[0, 0]
+            off += [abs(found / (12.0 / 11.0) - 1.0)] if np.isfinite(found) else []
+    assert len(off) > 10
+    return float(max(off))
+
+
+def neighbours() -> float:
+    """Correlation of averages of white noise under bells one row apart."""
+    lag = 2.0 / c.ROWS_PER_WINDOW
+    both = integrate.quad(lambda s: bell(s) * bell(s - lag), lag - 1.0, 1.0)[0]
+    return float(both / integrate.quad(lambda s: bell(s) ** 2, -1.0, 1.0)[0])
+
+
+@pytest.mark.parametrize(
+    ("name", "quoted", "value"),
+    [
+        ("FEWEST_BLOCKS", "12 %", stats.t.ppf(0.975, c.FEWEST_BLOCKS - 1) / 1.959964 - 1.0),
+        ("MOST_BLOCKS", "5 %", 1.0 / np.sqrt(2.0 * (c.MOST_BLOCKS - 1))),
+        ("RESAMPLES", "0.35 %", np.sqrt(0.025 * 0.975 / c.RESAMPLES)),
+        ("MANY_RUNS", "28 %", np.sqrt(np.pi / 2.0 / c.MANY_RUNS)),
+        ("HUBER", "99 %", huber_efficiency(c.HUBER)),
+        ("SAMPLES_PER_WINDOW", "2e-4", curvature_off(c.SAMPLES_PER_WINDOW)),
+        ("MOST_COARSE", "0.3 %", curvature_off(c.MOST_COARSE)),
+        ("LEAST_SAMPLES", "6 %", curvature_off(c.LEAST_SAMPLES)),
+        ("ATTENUATED", "11 %", wave_left(c.ATTENUATED)),
+        ("CYCLES_APART", "3 %", 1.0 - np.sinc(c.CYCLES_APART / 2.0) ** 2),
+        ("BINS_PER_CYCLE", "10 %", 1.0 - np.sinc(1.0 / c.BINS_PER_CYCLE)),
+        ("ROWS_PER_WINDOW", "0.86", neighbours()),
+        ("ORDER", "0.6 %", (2.0 * np.sin(0.1 * np.pi)) ** c.ORDER / np.sqrt(252.0)),
+        ("SENSOR_ITERATIONS", "2e-7", 0.02**c.SENSOR_ITERATIONS),
+        ("HALVINGS", "1e-12", 0.5**c.HALVINGS),
+        ("MAD_TO_SIGMA", "0.6745", stats.norm.ppf(0.75)),
+        ("NOTHING", "2e-11", 1e5 * np.finfo(float).eps),
+        ("SINGULAR", "1.5e-8", np.sqrt(np.finfo(float).eps)),
+        ("QUOTIENT", "6e-6", np.finfo(float).eps ** (1.0 / 3.0)),
+    ],
+)
+def test_a_derived_number_is_what_the_table_says(
+    name: str, quoted: str, value: float, checkout: Path
+) -> None:
+    assert quoted in said(name, checkout)
+    number = float(quoted.removesuffix(" %")) / (100.0 if quoted.endswith("%") else 1.0)
+    assert value == pytest.approx(number, rel=0.3)
+
+
+def test_a_gap_in_a_window_spoils_little(checkout: Path) -> None:
+    assert "12 %" in said("LARGEST_GAP", checkout)
+    assert gap_off() <= 0.13
+
+
+@pytest.mark.parametrize("pole", [0.0, 0.5, 0.9])
+def test_so_many_scorings_settle_a_spectrum(
+    pole: float, checkout: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert "part in a thousand" in said("SCORINGS", checkout)
+    series = signal.lfilter([1.0], [1.0, -pole], np.random.default_rng(4).standard_normal(8000))
+    series += np.random.default_rng(5).standard_normal(8000)
+    usual = noise.coloured_noise([series], 0.1).rms
+    monkeypatch.setattr(noise, "SCORINGS", 20 * c.SCORINGS)
+    assert usual == pytest.approx(noise.coloured_noise([series], 0.1).rms, rel=1e-3)
+
+
+@pytest.mark.parametrize(("name", "once_in"), [("FAR", 16_000), ("RESTING", 1_700_000)])
+def test_noise_reaches_so_far_once_in(name: str, once_in: int, checkout: Path) -> None:
+    assert f"{once_in:,}" in said(name, checkout)
+    far = getattr(c, name)
+    assert 2.0 * stats.norm.sf(far) == pytest.approx(1.0 / once_in, rel=0.05)
