@@ -33,6 +33,12 @@ def test_the_size_of_what_sympy_cannot_prove_real_has_a_sign_for_a_slope(
     step = 1e-6
     difference = (value(x + step, c) - value(x - step, c)) / (2 * step)
     assert sp.lambdify((X, C), slope, "math")(x, c) == pytest.approx(difference, abs=1e-7)
+    bend = derivative(slope, X)
+    assert not bend.has(sp.Derivative, sp.arg, sp.re, sp.im)
+    first = sp.lambdify((X, C), slope, "math")
+    second = sp.lambdify((X, C), bend, [{"DiracDelta": lambda x: 0.0}, "math"])
+    curvature = (first(x + step, c) - first(x - step, c)) / (2 * step)
+    assert second(x, c) == pytest.approx(curvature, abs=1e-7)
 
 
 PRESETS = ("pan-drive", "pan-servo", "payload", "full", "tilt-drive", "tilt-drive-stroke-48")
