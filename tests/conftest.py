@@ -1,6 +1,8 @@
 """What every test may ask for."""
 
 import os
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -32,6 +34,25 @@ def shared(checkout: Path) -> Path:
     if not (folder / "fieldlogs").is_dir():
         pytest.skip(f"no field logs in {folder}: set PTP_SYMBOLIC_SHARED to the folder of the data")
     return folder
+
+
+@pytest.fixture
+def printed_in_two_processes() -> Callable[..., set[str]]:
+    """Runs a script with arguments under two hash seeds and returns what it printed."""
+
+    def run(script: str, *arguments: str) -> set[str]:
+        return {
+            subprocess.run(
+                [sys.executable, "-c", script, *arguments],
+                env={**os.environ, "PYTHONHASHSEED": seed},
+                capture_output=True,
+                check=True,
+                text=True,
+            ).stdout
+            for seed in ("1", "2")
+        }
+
+    return run
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -1,8 +1,6 @@
 """Modules that were once written are found again, by their mathematics and nothing else."""
 
-import os
-import subprocess
-import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -81,7 +79,9 @@ def test_another_program_writes_anew(
     assert len(written) == 2
 
 
-def test_the_description_is_the_same_in_every_process(checkout: Path) -> None:
+def test_the_description_is_the_same_in_every_process(
+    checkout: Path, printed_in_two_processes: Callable[..., set[str]]
+) -> None:
     script = (
         "import hashlib, sys\n"
         "from ptp_symbolic.derivation.assembly import assemble\n"
@@ -91,14 +91,4 @@ def test_the_description_is_the_same_in_every_process(checkout: Path) -> None:
         "print(hashlib.sha256(text.encode()).hexdigest())\n"
     )
     preset = checkout / "ptp_symbolic/platform/presets/thesis-tilt-drive.toml"
-    found = {
-        subprocess.run(
-            [sys.executable, "-c", script, str(preset)],
-            env=os.environ | {"PYTHONHASHSEED": seed},
-            check=True,
-            capture_output=True,
-            text=True,
-        ).stdout
-        for seed in ("1", "2")
-    }
-    assert len(found) == 1
+    assert len(printed_in_two_processes(script, str(preset))) == 1

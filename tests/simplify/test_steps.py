@@ -1,8 +1,6 @@
 """The named steps of the simplification: counted, checked, the same on every run."""
 
-import os
-import subprocess
-import sys
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -101,15 +99,7 @@ print(simplify_rigid(lagrange(machine)))
 """
 
 
-def test_the_result_does_not_depend_on_the_hash_seed() -> None:
-    texts = {
-        subprocess.run(
-            [sys.executable, "-c", SCRIPT],
-            env={**os.environ, "PYTHONHASHSEED": seed},
-            capture_output=True,
-            check=True,
-            text=True,
-        ).stdout
-        for seed in ("1", "2")
-    }
-    assert len(texts) == 1
+def test_the_result_does_not_depend_on_the_hash_seed(
+    printed_in_two_processes: Callable[..., set[str]],
+) -> None:
+    assert len(printed_in_two_processes(SCRIPT)) == 1
