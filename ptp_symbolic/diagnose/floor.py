@@ -15,6 +15,7 @@ from ptp_symbolic.identify.constants import ABOVE_NOISE, BEND, MANY_RUNS
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.least_squares import weighted_median
 from ptp_symbolic.identify.noise import coloured_noise
+from ptp_symbolic.identify.run import sizes
 from ptp_symbolic.identify.windows import propagated_noise
 
 FloatArray = NDArray[np.float64]
@@ -51,7 +52,7 @@ def left_over(fit: Fit) -> FloatArray:
     squares = mean_squares(fit.evaluations, fit.runs)
     if not np.all(np.isfinite(squares)):
         return np.full(squares.shape[1], np.inf)
-    size = np.array([len(run.time) for run in fit.runs], dtype=np.float64)
+    size = sizes(fit.runs)
     usual = weighted_median(squares, size)
     if len(squares) >= MANY_RUNS:
         return np.asarray(np.sqrt(usual))
@@ -66,7 +67,7 @@ def carried_noise(task: Task, fit: Fit) -> FloatArray:
     """
     p, runs = task.model.parameter_vector(dict(fit.values)), fit.runs
     every = propagated_noise(task.model, runs, fit.z, p, task.input_noise)
-    size = np.array([len(run.time) for run in runs], dtype=np.float64)
+    size = sizes(runs)
     return weighted_median(np.nan_to_num(every), size)
 
 

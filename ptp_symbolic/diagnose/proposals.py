@@ -126,35 +126,20 @@ def start_for(
     found: Proposals,
     candidates: Sequence[Candidate],
     values: Mapping[str, float],
+    linear: bool = False,
 ) -> dict[str, float]:
-    """Where the rows start a set; what they do not show, and its candidates, stays at `values`."""
-    shown, kept = _shown(found, candidates, values)
-    if found.regression is None or found.space is None:
-        return found.start | kept
-    return _refined(task, found.space, found.regression, found.start, shown).values | kept
-
-
-def roughly(
-    task: Task,
-    found: Proposals,
-    candidates: Sequence[Candidate],
-    values: Mapping[str, float],
-) -> dict[str, float]:
-    """As `start_for`, the rows taken as linear in all parameters."""
-    shown, kept = _shown(found, candidates, values)
-    if found.regression is None:
-        return found.start | kept
-    return start_of(task, found.regression, shown, found.start) | kept
-
-
-def _shown(
-    found: Proposals, candidates: Sequence[Candidate], values: Mapping[str, float]
-) -> tuple[list[Candidate], dict[str, float]]:
-    """The candidates that the rows show, and the `values` of those that they do not."""
-    signatures = () if found.regression is None else found.regression.signatures
-    seen = {(s.candidate.key, s.candidate.member) for s in signatures}
+    """Where the rows start a set, also fitted in what shapes it unless taken as `linear` in all
+    parameters; what the rows do not show of the candidates stays at `values`.
+    """
+    rows, space = found.regression, found.space
+    seen = {(s.candidate.key, s.candidate.member) for s in (rows.signatures if rows else ())}
     shown = [c for c in candidates if (c.key, c.member) in seen]
-    return shown, {name: values[name] for c in candidates if c not in shown for name in c.names}
+    kept = {name: values[name] for c in candidates if c not in shown for name in c.names}
+    if rows is None or space is None:
+        return found.start | kept
+    if linear:
+        return start_of(task, rows, shown, found.start) | kept
+    return _refined(task, space, rows, found.start, shown).values | kept
 
 
 def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | None:

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.proposals import Proposals, roughly
+from ptp_symbolic.diagnose.proposals import Proposals, start_for
 from ptp_symbolic.diagnose.trial import Task, Trial, continued, fitted, ranked
 from ptp_symbolic.identify.constants import ITERATIONS, MANY_RUNS
 
@@ -34,7 +34,7 @@ def screened(
         own = {name: f.start for c in (*added, candidate) for f in c.free for name in f.names}
         whole = {**values, **own, **candidate.shapes[0]}
         candidates = (*kept, *added, candidate)
-        starts = [whole, roughly(task, found, candidates, whole)]
+        starts = [whole, start_for(task, found, candidates, whole, linear=True)]
         first = ranked([fitted(part, candidates, start, None) for start in starts])[0]
         return continued(part, first, ITERATIONS)
 

@@ -15,7 +15,7 @@ from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters
 from ptp_symbolic.identify.least_squares import weighted_median
-from ptp_symbolic.identify.run import Run
+from ptp_symbolic.identify.run import Run, sizes
 from ptp_symbolic.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
@@ -185,7 +185,7 @@ def misfits(trials: Sequence[Trial]) -> list[float]:
     Runs or windows far worse than usual count only linearly; "usual" is that of the best trial.
     """
     squares = [mean_squares(t.fit.evaluations, t.fit.runs) for t in trials]
-    size = np.array([len(run.time) for run in trials[0].fit.runs], dtype=np.float64)
+    size = sizes(trials[0].fit.runs)
     usual = np.min([weighted_median(s, size) for s in squares], axis=0)
     result = []
     for square in squares:

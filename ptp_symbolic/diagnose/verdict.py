@@ -24,6 +24,7 @@ from ptp_symbolic.identify.constants import (
 )
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, unblinded
 from ptp_symbolic.identify.least_squares import weighted_median
+from ptp_symbolic.identify.run import sizes
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"
@@ -69,13 +70,15 @@ def decide(found: Search) -> Verdict:
     fit = unblinded(trial.fit, task.executor)
     while trial.candidates:
         simpler = _off_bounds(seeker, trial, fit)
-        if simpler is None:
-            why = _weakness(task, seeker, trial, steps, fit)
-            if why is None:
-                break
-            step, reason = why
+        weakness = _weakness(seeker, trial, steps, fit) if simpler is None else None
+        if simpler is not None:
+            trial = simpler
+        elif weakness is not None:
+            step, reason = weakness
             refused[step.candidate.key] = reason
-        trial = step.without if simpler is None else simpler
+            trial = step.without
+        else:
+            break
         steps = [seeker.step(trial, c) for c in trial.candidates]
         fit = unblinded(trial.fit, task.executor)
     alike: list[Rival] = []
@@ -125,7 +128,7 @@ def _simplest(
     (candidate,) = best.trial.candidates
     fit = unblinded(best.trial.fit, seeker.task.executor)
     step = step_of(best.trial, candidate, steps[0].without)
-    if _weakness(seeker.task, seeker, best.trial, [step], fit) is not None:
+    if _weakness(seeker, best.trial, [step], fit) is not None:
         return chosen, steps, alike
     others = [chosen, *(r.trial for r in alike if r is not best)]
     return best.trial, [step], [Rival(other, gain(best.trial, other)) for other in others]
@@ -145,10 +148,9 @@ def _off_bounds(seeker: Seeker, trial: Trial, fit: Fit) -> Trial | None:
     return None
 
 
-def _weakness(
-    task: Task, seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit
-) -> tuple[Step, str] | None:
+def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tuple[Step, str] | None:
     """The candidate of a trial that is confirmed least, and why not; None where all are."""
+    task = seeker.task
     weakest = min(steps, key=lambda s: s.gain.share)
     if not seeker.is_needed(weakest):
         return weakest, _too_little(weakest.gain)
@@ -199,7 +201,7 @@ def _is_quiet(after: Fit, floor: Floor) -> bool:
     that sticks at another sample than it did is off by counts.
     """
     squares = mean_squares(after.evaluations, after.runs)
-    size = np.array([len(run.time) for run in after.runs], dtype=np.float64)
+    size = sizes(after.runs)
     held_out = np.sqrt(weighted_median(squares, size))
     return bool(np.all(held_out <= HELD_OUT_ABOVE * floor.most))
 
@@ -214,7 +216,7 @@ def held_out_gain(after: Fit, before: Fit) -> Gain:
     """The share of the mean square error of validation runs or windows that is taken away; those
     far worse than usual count linearly.
     """
-    size = np.array([len(run.time) for run in after.runs], dtype=np.float64)
+    size = sizes(after.runs)
     squares = [mean_squares(fit.evaluations, fit.runs) for fit in (after, before)]
     usual = np.min([weighted_median(s, size) for s in squares], axis=0)
     bend = BEND**2 * np.maximum(usual, 1.0)

@@ -287,3 +287,8 @@ def by_source(runs: Sequence[Run]) -> list[list[int]]:
     for index, run in enumerate(runs):
         grouped.setdefault(run.name.partition("#")[0], []).append(index)
     return list(grouped.values())
+
+
+def sizes(runs: Sequence[Run]) -> FloatArray:
+    """How many samples every run has [n]."""
+    return np.array([len(run.time) for run in runs], dtype=np.float64)
