@@ -92,16 +92,24 @@ def over_windows(
             fitted(part, candidates, values, None, ITERATIONS, executor=executor)
             for values in ([t.values for t in trials] or starts)
         ]
-        trials = [continued(part, t, POLISH, executor=executor) for t in ranked(trials)[:1]]
+        trials = [settled(part, ranked(trials)[0], executor)]
         if trials[0].fit.failed:
             return []
     return [fitted(task, candidates, t.values, None) for t in trials]
 
 
+def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
+    """The trial fitted on until some iterations more change next to nothing."""
+    for _ in range(CYCLES):
+        before, trial = trial, continued(task, trial, ITERATIONS, executor=executor)
+        if is_alike(trial, before):
+            break
+    return trial
+
+
 def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
     """The trial fitted to its end: with derivatives where the motion is smooth, with finite
-    differences where friction makes it a staircase, in turn; with sharp simulations where little
-    but noise is left.
+    differences where friction makes it a staircase, in turn.
     """
     for _ in range(CYCLES):
         trial = continued(task, trial, POLISH, executor=task.executor)
@@ -113,10 +121,15 @@ def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
             stuck, trial = trial, started_anew(task, trial)
             if is_alike(trial, stuck):
                 break
-    if leaves_white_noise(trial, carried):
-        trial = continued(task, trial, POLISH, SHARP, executor=task.executor)
-        trial = continued(task, unbiased(trial), POLISH, SHARP, STEP, task.executor)
     return trial
+
+
+def sharpened(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+    """A polished trial fitted on with sharp simulations, where little but noise is left."""
+    if trial.fit.failed or not leaves_white_noise(trial, carried):
+        return trial
+    trial = continued(task, trial, POLISH, SHARP, executor=task.executor)
+    return continued(task, unbiased(trial), POLISH, SHARP, STEP, task.executor)
 
 
 def started_anew(task: Task, trial: Trial) -> Trial:

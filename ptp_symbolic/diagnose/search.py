@@ -27,6 +27,7 @@ from ptp_symbolic.diagnose.refits import (
     over_windows,
     polished,
     refitted_without_chaos,
+    sharpened,
 )
 from ptp_symbolic.diagnose.responses import Response, responses
 from ptp_symbolic.diagnose.screening import screened
@@ -98,7 +99,7 @@ class Seeker:
             if pruned.keys == best.keys:
                 break
             best, steps = pruned, fewer
-        best = self.simplified(best)
+        best = self.sharpened(self.simplified(best))
         without = {s.candidate.key: s.without for s in steps}
         members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
         others = tuple(self.others)
@@ -154,6 +155,10 @@ class Seeker:
     def polished(self, trial: Trial) -> Trial:
         """The trial fitted to its end."""
         return polished(self.task, trial, self.carried)
+
+    def sharpened(self, trial: Trial) -> Trial:
+        """A polished trial fitted with sharp simulations, where only noise is left."""
+        return sharpened(self.task, trial, self.carried)
 
     def restarted(self, trial: Trial) -> Trial:
         """A polished trial, or a better end from where the rows start its set, and from there over

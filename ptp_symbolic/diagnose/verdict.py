@@ -16,11 +16,12 @@ from ptp_symbolic.diagnose.trial import Task, Trial, accuracy, huber, mean_squar
 from ptp_symbolic.identify.constants import (
     BEND,
     BIGGEST,
+    GAIN,
     HELD_OUT_ABOVE,
     MATERIAL,
     MOST,
     POLISH,
-    SHARP,
+    ROUGH,
 )
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, unblinded
 from ptp_symbolic.identify.least_squares import weighted_median
@@ -72,11 +73,11 @@ def decide(found: Search) -> Verdict:
         simpler = _off_bounds(seeker, trial, fit)
         weakness = _weakness(seeker, trial, steps, fit) if simpler is None else None
         if simpler is not None:
-            trial = simpler
+            trial = seeker.sharpened(simpler)
         elif weakness is not None:
             step, reason = weakness
             refused[step.candidate.key] = reason
-            trial = step.without
+            trial = seeker.sharpened(step.without)
         else:
             break
         steps = [seeker.step(trial, c) for c in trial.candidates]
@@ -208,7 +209,7 @@ def _is_quiet(after: Fit, floor: Floor) -> bool:
 
 def held_out_fit(task: Task, trial: Trial) -> Fit:
     """The validation runs by the model of a trial, nothing but their starts fitted."""
-    effort = Effort(POLISH, 1e-3, accuracy(task, SHARP))
+    effort = Effort(POLISH, GAIN * ROUGH, accuracy(task, ROUGH))
     return fit_parameters(task.model, task.validate, (), trial.values, None, effort, task.executor)
 
 
