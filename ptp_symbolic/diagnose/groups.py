@@ -70,15 +70,17 @@ def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> 
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
     trials = halving(task, begun, ((ITERATIONS, len(begun)),))
-    tried = {t.keys for t in trials} | {chosen.keys}
     for other in ranked(others):
         same_size = len(other.candidates) == len(chosen.candidates)
-        fresh = same_size and other.keys not in tried and np.isfinite(other.fit.cost)
+        fresh = same_size and other.keys != chosen.keys and np.isfinite(other.fit.cost)
         if fresh and gain(chosen, other).share < MOST:
             trials.append(other)
     result: dict[tuple[str, ...], Rival] = {}
-    near = [t for t in ranked(trials) if gain(chosen, t).share < NO_RIVAL]
-    for trial in near[:TRIED]:
+    near: dict[tuple[str, ...], Trial] = {}
+    for trial in ranked(trials):
+        if gain(chosen, trial).share < NO_RIVAL:
+            near.setdefault(trial.keys, trial)
+    for trial in list(near.values())[:TRIED]:
         refitted = seeker.polished(trial)
         rival = Rival(refitted, gain(chosen, refitted))
         if not (rival.gain.share >= MATERIAL and rival.gain.is_clear(len(near))):

@@ -31,6 +31,7 @@ from ptp_symbolic.diagnose.refits import (
 )
 from ptp_symbolic.diagnose.responses import Response, responses
 from ptp_symbolic.diagnose.screening import screened
+from ptp_symbolic.diagnose.subsets import exchanges
 from ptp_symbolic.diagnose.trial import (
     Task,
     Trial,
@@ -85,8 +86,8 @@ class Seeker:
         if not self.is_at_noise(best):
             sets, unseen = self.proposed(), self.unseen(best)
             task.progress(f"refitting {len(sets) + len(unseen)} proposed sets")
-            found = halving(task, sets, FIRST_RUNG + LAST_RUNG) + halving(task, unseen, LAST_RUNG)
-            self.others += sets
+            found = halving(task, sets, FIRST_RUNG + LAST_RUNG, self.others)
+            found += halving(task, unseen, LAST_RUNG)
             found = [t for t in ranked(found) if is_near(t, found)]
             best = self.restarted(ranked([best, *(self.completed(t) for t in found)])[0])
         best, steps = self.pruned(best)
@@ -99,6 +100,10 @@ class Seeker:
             if pruned.keys == best.keys:
                 break
             best, steps = pruned, fewer
+        other = self.exchanged(best)
+        if other is not None:
+            self.others.append(best)
+            best, steps = self.pruned(other)
         best = self.sharpened(self.simplified(best))
         without = {s.candidate.key: s.without for s in steps}
         members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
@@ -260,8 +265,7 @@ class Seeker:
         begun = [t for r in found[:ADDED] for t in self.begun(r, trial)]
         close = screened(task, self.proposals, trial.candidates, wanted, trial.values)
         begun += [fitted(task, t.candidates, t.values, None) for t in close[:SCREENED]]
-        self.others += begun
-        left = halving(task, begun, FIRST_RUNG)
+        left = halving(task, begun, FIRST_RUNG, self.others)
         if not left:
             return None
         best = ranked([self.polished(t) for t in left if is_near(t, left)])[0]
@@ -270,6 +274,20 @@ class Seeker:
         have = {f.name for c in trial.candidates for f in c.free}
         added = {n: v for c in best.candidates for n, v in c.vanishing.items() if n not in have}
         return best if self.is_earned(gain(best, trial), p_value(best, added)) else None
+
+    def exchanged(self, trial: Trial) -> Trial | None:
+        """A set that fits better than that of the trial, with another candidate in the place of one
+        of its own; None where there is none. Those are tried that the rows find no worse.
+        """
+        if self.proposals.regression is None:
+            return None
+        sets = exchanges(self.proposals.regression, trial.candidates)[:TRIED]
+        begun = [t for candidates in sets for t in self.in_place(candidates, trial)]
+        left = halving(self.task, begun, ((ITERATIONS, TRIED),), self.others)
+        found = [self.polished(t) for t in left if is_near(t, [trial])]
+        self.others += found
+        best = ranked([trial, *found])[0]
+        return None if best is trial else best
 
     def simplified(self, trial: Trial) -> Trial:
         """Every candidate in the simplest of its forms that loses nothing clear and material."""

@@ -135,23 +135,33 @@ def locked_signatures(
     """Signatures of candidates with a frequency, at the strongest line of the weighted `residual`.
 
     A full scan over the place (time, or the angle of the candidate's axis): all frequencies from
-    one cycle over the whole range to those that the windows average away.
+    a few cycles over the whole range to those that the windows average away. What the wave moves
+    may turn with the machine: the residual is scanned as the candidate at no frequency shows it.
     """
     by_key = {c.key: c for c in reversed(candidates)}
     own = space.own_torque(space.model.parameter_vector(dict(values)))
     found = []
 
-    def rows(changed: Mapping[str, float]) -> FloatArray:
-        return space.rows(space.model.parameter_vector({**values, **changed}), own)
+    number = {name: k for k, name in enumerate(space.model.parameter_names)}
 
-    lines: dict[tuple[str, str | None], tuple[float, float]] = {}
+    def rows(changed: Mapping[str, float]) -> FloatArray:
+        p = space.model.parameter_vector(dict(values))
+        for name, value in changed.items():
+            p[number[name]] = value  # beyond its bounds too: a frequency of zero
+        return space.rows(p, own)
+
+    lines: dict[str, tuple[float, float]] = {}
     for candidate in candidates:
         if candidate.locked is None:
             continue
-        name, place = candidate.locked
-        if (place, candidate.axis) not in lines:
-            lines[place, candidate.axis] = _strongest(space, candidate, residual, weight)
-        frequency, lowest = lines[place, candidate.axis]
+        name, _ = candidate.locked
+        if candidate.key not in lines:
+            still = tuple({**shape, name: 0.0} for shape in candidate.shapes)
+            constant = _signature(
+                replace(candidate, shapes=still), brought(candidate, by_key), rows, weight
+            )
+            lines[candidate.key] = _strongest(space, candidate, residual, weight, constant.columns)
+        frequency, lowest = lines[candidate.key]
         limits = next(f for f in candidate.free if f.name == name)
         if not max(lowest, limits.lower) < frequency < limits.upper:
             continue
@@ -169,10 +179,18 @@ def locked_signatures(
 
 
 def _strongest(
-    space: EquationSpace, candidate: Candidate, residual: FloatArray, weight: FloatArray
+    space: EquationSpace,
+    candidate: Candidate,
+    residual: FloatArray,
+    weight: FloatArray,
+    carriers: FloatArray,
 ) -> tuple[float, float]:
     """The frequency in Hz, or in cycles per turn, of the strongest line of the residual torques,
     and the lowest that is a line.
+
+    `carriers` [n, m] is what the candidate does at no frequency, orthonormal when rows count by
+    `weight`: over many cycles sines and cosines on them are orthogonal too, so that the squared
+    transforms of the residual on each add up to what a wave of that frequency takes away.
     """
     equation, _, time = space.labels()
     assert candidate.locked is not None
@@ -194,13 +212,11 @@ def _strongest(
         return 0.0, 0.9 * lowest
     width = 1.0 / (BINS_PER_CYCLE * highest)
     bins = (place / width).astype(np.int64)
-    value = residual[rows] * np.sqrt(weight[rows])
+    value = residual[rows] * weight[rows]
     count = int(span / (width * CYCLES_APART)) + 1
     frequency = np.fft.rfftfreq(count, width)
     power = np.zeros(len(frequency))
-    for axis in own:
-        here = equation[rows] == axis
-        summed = np.bincount(bins[here], weights=value[here], minlength=int(bins.max()) + 1)
-        power += np.abs(np.fft.rfft(summed, count)) ** 2 / np.sum(weight[rows][here])
+    for carrier in carriers[rows].T:
+        power += np.abs(np.fft.rfft(np.bincount(bins, weights=value * carrier), count)) ** 2
     power[(frequency < lowest) | (frequency > highest)] = 0.0
     return float(frequency[int(np.argmax(power))]), 0.9 * lowest

@@ -14,7 +14,17 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.signatures import Signature
-from ptp_symbolic.identify.constants import FAR, FOLDS, HUBER, NOTHING, REWEIGHTINGS, SEED, WIDTH
+from ptp_symbolic.identify.constants import (
+    DEVIATIONS,
+    FAR,
+    FOLDS,
+    HUBER,
+    LITTLE,
+    NOTHING,
+    REWEIGHTINGS,
+    SEED,
+    WIDTH,
+)
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.equation_fit import robust_scale
 
@@ -123,6 +133,33 @@ def ranked_subsets(found: Regression, largest: int) -> list[Subset]:
                 if len(grown) == size and grown not in every and folds.is_complete(grown):
                     every[grown] = folds.subset(grown)
     return sorted(every.values(), key=lambda s: s.loss)
+
+
+def exchanges(found: Regression, candidates: Sequence[Candidate]) -> list[tuple[Candidate, ...]]:
+    """Sets with another candidate in the place of one of `candidates` that are no worse than these
+    on blocks left out, the best first. What the rows do not show of the candidates is kept.
+    """
+    found = reweighted(found, candidates)
+    number = {(s.candidate.key, s.candidate.member): k for k, s in enumerate(found.signatures)}
+    own = [number[c.key, c.member] for c in candidates if (c.key, c.member) in number]
+    hidden = tuple(c for c in candidates if (c.key, c.member) not in number)
+    folds = _Folds(found)
+    whole = folds.subset(own)
+    sets = [
+        tuple(sorted({*own, other} - {member}))
+        for member in own
+        for other in range(len(found.signatures))
+        if other not in own
+    ]
+    every = [folds.subset(chosen) for chosen in sets if folds.is_complete(chosen)]
+    keys = frozenset(c.key for c in candidates)
+    best: dict[frozenset[str], tuple[Candidate, ...]] = {}
+    for subset in sorted(every, key=lambda s: s.loss):
+        placed = (*subset.candidates, *hidden)
+        fresh = frozenset(c.key for c in placed)
+        if fresh != keys and is_no_worse(subset, whole, DEVIATIONS, LITTLE):
+            best.setdefault(fresh, placed)
+    return list(best.values())
 
 
 class _Folds:

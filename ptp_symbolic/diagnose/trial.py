@@ -228,9 +228,14 @@ def is_alike(trial: Trial, other: Trial) -> bool:
     return abs(cost[0] - cost[1]) < LITTLE * sum(run.size for run in trial.fit.runs)
 
 
-def halving(task: Task, trials: Sequence[Trial], rungs: Sequence[tuple[int, int]]) -> list[Trial]:
+def halving(
+    task: Task,
+    trials: Sequence[Trial],
+    rungs: Sequence[tuple[int, int]],
+    seen: list[Trial] | None = None,
+) -> list[Trial]:
     """Successive halving (Jamieson and Talwalkar, 2016): every rung gives the trials that are left
-    so many iterations, side by side, and keeps so many of them.
+    so many iterations, side by side, and keeps so many of them; the others end up in `seen`.
     """
     left = list(trials)
     for iterations, kept in rungs:
@@ -245,5 +250,7 @@ def halving(task: Task, trials: Sequence[Trial], rungs: Sequence[tuple[int, int]
             for trial in left
         ]
         left = [t for t in ranked([job.result() for job in go_on]) if np.isfinite(t.fit.cost)]
+        if seen is not None:
+            seen += left[kept:]
         left = left[:kept]
     return left

@@ -31,6 +31,11 @@ def space_of(time: Floats, angle: Floats) -> Any:
     )
 
 
+def flat(rows: int) -> Floats:
+    """A candidate whose wave has the same size everywhere."""
+    return np.full((rows, 1), rows**-0.5)
+
+
 def locked_to(place: str) -> Candidate:
     free = (free_parameter("n", 9.0, 0.5, 1e3),)
     return Candidate("cogging", "pan", "", "", free, {}, locked=("n", place))
@@ -45,7 +50,7 @@ def test_cogging_is_found_at_its_cycles_per_turn(cycles: float, seconds: float) 
     residual = 0.3 * np.sin(cycles * angle + 0.4)
     residual += 0.3 * np.random.default_rng(2).standard_normal(6000)
     space = space_of(time, angle)
-    found, _ = _strongest(space, locked_to("angle"), residual, np.ones(6000))
+    found, _ = _strongest(space, locked_to("angle"), residual, np.ones(6000), flat(6000))
     assert found == pytest.approx(cycles, abs=CYCLES_APART / (2.8 / (2.0 * np.pi)))
 
 
@@ -54,7 +59,7 @@ def test_a_slow_wave_is_no_line() -> None:
     time = np.linspace(0.0, 20.0, 4000)
     angle = (2.0 / 3.0) * np.pi * np.sin(2.0 * np.pi * time / 20.0)
     found, lowest = _strongest(
-        space_of(time, angle), locked_to("angle"), np.sin(2.0 * angle), np.ones(4000)
+        space_of(time, angle), locked_to("angle"), np.sin(2.0 * angle), np.ones(4000), flat(4000)
     )
     assert found >= LEAST_CYCLES * 1.5 - 1e-6
     assert lowest == pytest.approx(0.9 * 4.5, rel=1e-6)
@@ -64,5 +69,21 @@ def test_a_line_in_time_is_found_in_hertz() -> None:
     time = np.linspace(0.0, 60.0, 12000)
     residual = np.sin(2.0 * np.pi * 7.31 * time) + np.random.default_rng(3).standard_normal(12000)
     space = space_of(time, np.zeros(12000))
-    found, _ = _strongest(space, locked_to("time"), residual, np.ones(12000))
+    found, _ = _strongest(space, locked_to("time"), residual, np.ones(12000), flat(12000))
     assert found == pytest.approx(7.31, abs=CYCLES_APART / 60.0)
+
+
+def test_a_line_is_found_on_what_turns_with_the_machine() -> None:
+    """A base that shakes at 1.7 Hz in an unknown direction under an axis that turns by 0.4 Hz: the
+    torque itself has lines at 1.3 and 2.1 Hz, and a stronger one of another origin.
+    """
+    time = np.linspace(0.0, 30.0, 6000)
+    angle = 2.0 * np.pi * 0.4 * time
+    residual = np.sin(2.0 * np.pi * 1.7 * time + 0.3) * np.sin(0.9 - angle)
+    residual += 0.7 * np.sin(2.0 * np.pi * 3.1 * time)
+    carriers = np.linalg.qr(np.column_stack([np.sin(angle), np.cos(angle)]))[0]
+    space = space_of(time, angle)
+    found, _ = _strongest(space, locked_to("time"), residual, np.ones(6000), carriers)
+    assert found == pytest.approx(1.7, abs=CYCLES_APART / 30.0)
+    plain, _ = _strongest(space, locked_to("time"), residual, np.ones(6000), flat(6000))
+    assert plain == pytest.approx(3.1, abs=CYCLES_APART / 30.0)
