@@ -52,12 +52,14 @@ class Proposal:
 class Proposals:
     """The start of the declared model, sets to try, and candidates that the rows do not show.
 
-    `space` is None where the machine has no equation space; then only the simulation searches.
+    `asked_for` tells whether the rows prefer any set to none. `space` is None where the machine has
+    no equation space; then only the simulation searches.
     """
 
     start: dict[str, float]
     sets: tuple[Proposal, ...]
     unseen: tuple[Candidate, ...]
+    asked_for: bool
     space: EquationSpace | None
     regression: Regression | None
 
@@ -72,7 +74,7 @@ def propose(task: Task) -> Proposals:
     start = declared_start(task)
     space = equation_space(task, start)
     if space is None:
-        return Proposals(start, (), task.candidates, None, None)
+        return Proposals(start, (), task.candidates, False, None, None)
     first = fit_equations(space, task.free, start, 4, task.executor)
     values = possible(task, {**start, **first.values})
     here = {f.name: values[f.name] for f in task.free}
@@ -85,11 +87,11 @@ def propose(task: Task) -> Proposals:
     locked = locked_signatures(space, task.candidates, values, remainder(rows), rows.weight)
     every = [*seen, *locked]
     rows = regression(found.rows, declared, base, every, equation, block, found.weight)
-    chosen, rows = _best_sets(rows)
+    preferred, chosen, rows = _best_sets(rows)
     space.rows(task.model.parameter_vector(values))
     refine = partial(_refined, task, space, rows, values)
     sets = task.executor.map(refine, [s.candidates for s in chosen])
-    return Proposals(values, tuple(sets), tuple(unseen), space, rows)
+    return Proposals(values, tuple(sets), tuple(unseen), bool(preferred.candidates), space, rows)
 
 
 def _refined(
@@ -184,9 +186,9 @@ def possible(task: Task, values: Mapping[str, float]) -> dict[str, float]:
     return found
 
 
-def _best_sets(rows: Regression) -> tuple[list[Subset], Regression]:
-    """The sets that blocks left out favour: those that are no worse than the best, the simplest
-    first, then the best of every size. Scales follow the residual of the set that is chosen.
+def _best_sets(rows: Regression) -> tuple[Subset, list[Subset], Regression]:
+    """The set that blocks left out favour, and those to try: what is no worse than the best, the
+    simplest first, then the best of every size. Scales follow the residual of the favoured set.
     """
     chosen: Subset | None = None
     for _ in range(CYCLES):
@@ -202,7 +204,7 @@ def _best_sets(rows: Regression) -> tuple[list[Subset], Regression]:
     for subset in (*close[:2], every[0], *_best_by_size(every), *close[2:]):
         if subset.candidates:
             kept.setdefault(_keys(subset), subset)
-    return list(kept.values())[:PROPOSED], rows
+    return close[0], list(kept.values())[:PROPOSED], rows
 
 
 def _best_by_size(every: Sequence[Subset]) -> list[Subset]:

@@ -83,8 +83,9 @@ class Seeker:
     def search(self) -> Search:
         """Propose, refit, complete, prune, grow, simplify."""
         task, best = self.task, self.declared
-        if not self.is_at_noise(best):
-            sets, unseen = self.proposed(), self.unseen(best)
+        if self.proposals.asked_for or not self.is_at_noise(best):
+            sets = self.proposed()
+            unseen = [] if self.is_at_noise(best) else self.unseen(best)
             task.progress(f"refitting {len(sets) + len(unseen)} proposed sets")
             found = halving(task, sets, FIRST_RUNG + LAST_RUNG, self.others)
             found += halving(task, unseen, LAST_RUNG)
