@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.linear import effect_of, outside, stacked
 from ptp_symbolic.diagnose.trial import Task, Trial, accuracy
-from ptp_symbolic.identify.blocks import leave_blocks_out
+from ptp_symbolic.identify.blocks import leave_blocks_out, without_outliers
 from ptp_symbolic.identify.constants import ELSEWHERE, MOST, NEAR_BOUND, SHARP
 from ptp_symbolic.identify.evaluate import evaluate
 from ptp_symbolic.identify.fit import Fit
@@ -51,20 +51,23 @@ def at_bound(fit: Fit, candidate: Candidate) -> str | None:
 def unstable_without(fit: Fit, candidate: Candidate) -> str | None:
     """The first run without which less than half of the effect, or its opposite, would be found.
 
-    The effect is what it changes in the outputs, apart from what other parameters follow. Where a
-    single run holds all that is known of it, leaving that out says nothing.
+    The effect is what it changes in the outputs, apart from what other parameters follow; runs far
+    worse than usual weigh less. Where a single run holds all that is known of it, leaving that out
+    says nothing.
     """
     sources = [run.name.partition("#")[0] for run in fit.runs]
     names = list(dict.fromkeys(sources))
     residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
     columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
-    label = np.repeat([names.index(s) for s in sources], [run.size for run in fit.runs])
+    signals = fit.runs[0].measured.shape[1]
+    source = np.repeat([names.index(s) for s in sources], [len(run.time) for run in fit.runs])
+    residual, columns, step = without_outliers(residual, columns, source, signals)
+    label = np.repeat(source, signals)
     left = leave_blocks_out(residual, columns, label)
     own = [k for k, f in enumerate(fit.free) if f.name in candidate.parameters]
     others = [k for k in range(len(fit.free)) if k not in own]
-    effect = outside(effect_of(fit, candidate.vanishing, columns)[:, None], columns[:, others])[
-        :, 0
-    ]
+    whole = effect_of(fit, candidate.vanishing, columns) + columns[:, own] @ step[own]
+    effect = outside(whole[:, None], columns[:, others])[:, 0]
     mine = outside(columns[:, own], columns[:, others])
     square = float(effect @ effect)
     if square == 0.0:

@@ -18,11 +18,13 @@ from ptp_symbolic.identify.blocks import (
     bootstrap_share,
     jackknife_covariance,
     leave_blocks_out,
+    without_outliers,
 )
 from ptp_symbolic.identify.constants import BEND, FALSE_ALARM, NOTHING
 from ptp_symbolic.identify.coordinates import to_search
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.intervals import project_out
+from ptp_symbolic.identify.least_squares import weighted_median
 from ptp_symbolic.identify.run import by_source
 
 FloatArray = NDArray[np.float64]
@@ -61,7 +63,7 @@ def gain(larger: Trial, smaller: Trial) -> Gain:
     label = np.concatenate(labels)
     squares = [_block_squares(parts, label, signals) for parts in residuals]
     size = np.bincount(label)
-    scale = np.maximum((size @ squares[0]) / size.sum(), 1e-300)
+    scale = np.maximum(weighted_median(squares[0], size.astype(np.float64)), 1e-300)
     losses = [size * huber(s / scale, np.full(signals, BEND**2)).sum(axis=1) for s in squares]
     return compared(losses[0], losses[1])
 
@@ -81,7 +83,8 @@ def p_value(trial: Trial, zero: Mapping[str, float]) -> float:
 
     Hotelling's T^2 (1931) of their search coordinates, with the covariance of a jackknife over
     blocks of time under the model that has them: an effect that a few blocks show is as clear as
-    one that all show. 1 where the blocks are too few.
+    one that all show. Blocks far worse than usual weigh less, and the coordinates are those of one
+    step towards the fit with these weights (Bickel, 1975). 1 where the blocks are too few.
     """
     fit = trial.fit
     own = [k for k, f in enumerate(fit.free) if f.name in zero]
@@ -90,12 +93,14 @@ def p_value(trial: Trial, zero: Mapping[str, float]) -> float:
     sums = [e.residual.reshape(-1, signals).sum(axis=1) for e in fit.evaluations]
     series = [np.concatenate([sums[k] for k in group]) for group in by_source(fit.runs)]
     labels = block_labels([len(s) for s in series], block_length(series))
-    label = np.repeat(np.concatenate(labels), signals)
-    shifts = leave_blocks_out(residual, jacobian, label).shifts[:, own]
+    label = np.concatenate(labels)
+    residual, jacobian, step = without_outliers(residual, jacobian, label, signals)
+    shifts = leave_blocks_out(residual, jacobian, np.repeat(label, signals)).shifts[:, own]
     b, k = shifts.shape
     if b <= k + 1:
         return 1.0
-    away = (to_search(fit.free, fit.values) - to_search(fit.free, {**fit.values, **zero}))[own]
+    away = to_search(fit.free, fit.values) - to_search(fit.free, {**fit.values, **zero})
+    away = (away + step)[own]
     inverse = np.linalg.pinv(jackknife_covariance(shifts), rcond=1e-10, hermitian=True)
     statistic = float(away @ inverse @ away) * (b - k) / (k * (b - 1))
     return float(stats.f.sf(statistic, k, b - k))

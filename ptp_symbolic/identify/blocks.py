@@ -11,7 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.identify.constants import FEWEST_BLOCKS, MOST_BLOCKS, RESAMPLES, SEED
+from ptp_symbolic.identify.constants import (
+    BEND,
+    FEWEST_BLOCKS,
+    MOST_BLOCKS,
+    RESAMPLES,
+    SEED,
+    SINGULAR,
+)
+from ptp_symbolic.identify.least_squares import weighted_median
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -111,6 +119,26 @@ def leave_blocks_out(
         predicted[rows] = residual[rows] + own @ shift
         shifts[block] = shift / size
     return LeftOut(predicted, shifts)
+
+
+def without_outliers(
+    residual: FloatArray, jacobian: FloatArray, label: IntArray, signals: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """A fit in which blocks far worse than usual weigh less (Huber, 1964): residual [n] and
+    jacobian [n, nf] with these weights, and the one step [nf] to their optimum (Bickel, 1975).
+
+    `residual` is [n / signals, signals] in one column, `label` [n / signals] its blocks; every
+    signal has its own weight in a block.
+    """
+    size = np.bincount(label).astype(np.float64)
+    table = residual.reshape(-1, signals) ** 2
+    squares = np.column_stack([np.bincount(label, weights=c) / size for c in table.T])
+    usual = weighted_median(squares, size)
+    root = np.minimum(1.0, (BEND**2 * usual / np.maximum(squares, 1e-300)) ** 0.25)
+    weight = root[label].ravel()
+    residual, jacobian = weight * residual, weight[:, None] * jacobian
+    step = np.asarray(-np.linalg.lstsq(jacobian, residual, rcond=SINGULAR)[0], dtype=np.float64)
+    return residual + jacobian @ step, jacobian, step
 
 
 def jackknife_covariance(shifts: FloatArray) -> FloatArray:

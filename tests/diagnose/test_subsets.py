@@ -10,6 +10,7 @@ from ptp_symbolic.diagnose.signatures import Signature
 from ptp_symbolic.diagnose.subsets import (
     Regression,
     Subset,
+    exchanges,
     is_no_worse,
     ranked_subsets,
     regression,
@@ -165,3 +166,14 @@ def test_outliers_count_less_and_the_scale_is_that_of_the_other_rows() -> None:
     found = regression(rows, DECLARED, base, (), equation, block, np.ones(ROWS))
     assert found.scale == pytest.approx(np.ones(ROWS), rel=0.25)
     assert np.max(found.weight[::8]) < 0.06 * np.max(found.weight)
+
+
+def test_a_candidate_that_rows_cannot_tell_from_a_member_is_tried_in_its_place() -> None:
+    """Of "ad" the effect "a" has a double, "d" has none, and "b" is something else."""
+    rng = np.random.default_rng(5)
+    found = effects(rng, "abd")
+    twin = found[0].columns + 1e-3 * np.linalg.qr(rng.standard_normal((ROWS, 1)))[0]
+    found.append(signature("t", twin))
+    rows = rows_of(rng, found, {"a": 1.0, "d": 1.0}, BLOCKS)
+    chosen = tuple(s.candidate for s in rows.signatures if s.candidate.key in "ad")
+    assert [sorted(c.key for c in s) for s in exchanges(rows, chosen)] == [["d", "t"]]

@@ -12,6 +12,7 @@ from ptp_symbolic.identify.blocks import (
     bootstrap_share,
     jackknife_covariance,
     leave_blocks_out,
+    without_outliers,
 )
 from ptp_symbolic.identify.constants import FEWEST_BLOCKS, MOST_BLOCKS
 from tests.identify.curves import Floats
@@ -152,3 +153,19 @@ def test_the_interval_of_a_share_holds_the_truth_as_often_as_it_promises() -> No
         _, low, high = bootstrap_share(0.3 * whole + rng.standard_normal(40), whole, 0.95)
         held += low <= 0.3 <= high
     assert 0.90 < held / 200 < 0.99
+
+
+def test_a_block_far_worse_than_usual_does_not_carry_a_fit_away() -> None:
+    """A slope of 2 from eleven blocks with noise of 1, and one block that is off by 30: one step
+    with Huber's weights takes most of the error back; without such a block nothing moves.
+    """
+    rng = np.random.default_rng(6)
+    column, label = np.tile(np.linspace(-1.0, 1.0, 50), 12), np.repeat(np.arange(12), 50)
+    error = float((column @ column) ** -0.5)
+    for jump, least, most in ((0.0, 0.0, 4.0 * error), (30.0, 2.0, 0.4)):
+        measured = 2.0 * column + rng.standard_normal(600)
+        measured[label == 7] += jump * np.sign(column[label == 7])
+        slope = float(column @ measured / (column @ column))
+        _, _, step = without_outliers(measured - slope * column, -column[:, None], label, 1)
+        assert slope - 2.0 >= least - 4.0 * error
+        assert abs(slope + step[0] - 2.0) <= max(4.0 * error, most * abs(slope - 2.0))
