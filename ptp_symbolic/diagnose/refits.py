@@ -62,7 +62,7 @@ def refitted_without_chaos(task: Task, declared: Trial) -> tuple[Task, Trial]:
     if len(train) == len(task.train):
         return task, declared
     task.progress("refitting, runs that multiply the noise of their inputs in windows")
-    starts = [np.zeros(len(run.unknowns)) for run in task.validate]
+    starts = [run.guess for run in task.validate]
     any_left = np.zeros((len(starts), left.shape[1]))
     validate = without_chaos(model, task.validate, starts, any_left, p, noise)
     task = replace(task, train=train, validate=validate)

@@ -88,7 +88,7 @@ def fit_parameters(
     were never fitted are judged.
     """
     effort = effort or Effort()
-    start_z = list(z) if z is not None else [np.zeros(len(run.unknowns)) for run in runs]
+    start_z = list(z) if z is not None else [run.guess for run in runs]
     if not free:
         return _fit_starts(model, runs, fixed, start_z, effort, executor)
     problem = _problem(model, runs, free, fixed, effort, executor)

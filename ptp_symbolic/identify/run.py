@@ -17,14 +17,17 @@ from ptp_symbolic.simulation.inputs import InputTable, stack, table
 
 FloatArray = NDArray[np.float64]
 
+ANYWHERE = 1e3  # rad/s, half gaps; beyond any start of a machine
+
 
 @dataclass(frozen=True)
 class StartUnknown:
     """One unknown of the state at the start of a run.
 
     `tangent` [n] is the derivative of the start by the unknown; a `contact` index says that the
-    unknown is the place in that gap, from -1 (lower face) to 1 (upper face). `sigma` is its prior.
-    A search may begin at other `places` too: elsewhere in the gap, or at rest.
+    unknown is the place in that gap, from -1 (lower face) to 1 (upper face), and beyond where the
+    shaft is wound up. `sigma` is its prior. A search begins at `guess`, and may begin at other
+    `places` too: elsewhere in the gap, or at rest.
     """
 
     name: str
@@ -34,6 +37,7 @@ class StartUnknown:
     sigma: float
     contact: int | None = None
     places: tuple[float, ...] = ()
+    guess: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +64,11 @@ class Run:
     def size(self) -> int:
         """Number of residuals."""
         return int(self.measured.size)
+
+    @property
+    def guess(self) -> FloatArray:
+        """Values of the unknowns at which a search begins."""
+        return np.array([unknown.guess for unknown in self.unknowns])
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +159,9 @@ def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
 
     A parabola through a tenth of a second gives the rate, in the middle of it where the run is a
     window and `around` it is the rest of a log. A joint with dry friction
-    whose rate is within its noise is taken to be at rest; one that is near it may be.
+    whose rate is within its noise is taken to be at rest; one that is near it may be. A moving
+    joint is driven: its gear touches the face ahead and has wound up the shaft, nobody knows by how
+    much.
     """
     states = list(model.state_names)
     start = np.array(model.module.STATE_INITIAL, dtype=np.float64)
@@ -175,12 +186,23 @@ def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
             continue
         start[[states.index(name) for name in rates]] = rate
         places = (0.0, -rate) if may_rest and abs(rate) <= 3.0 * FAR * error else ()
-        unknowns.append(_unknown(states, rates[0], rates, 1e3, error, places))
-    for contact, (gear, _) in enumerate(model.module.CONTACT_ANGLES):
+        unknowns.append(_unknown(states, rates[0], rates, ANYWHERE, error, places))
+    for contact, (gear, joint) in enumerate(model.module.CONTACT_ANGLES):
         tangent = np.zeros(len(states))
         tangent[gear] = 1.0
+        rate = start[states.index(states[joint].replace("theta_", "omega_", 1))]
+        reach = ANYWHERE if around is not None or rate != 0.0 else 1.0
         unknowns.append(
-            StartUnknown(f"gap_place_{contact}", tangent, -1.0, 1.0, 1.0, contact, GAP_PLACES)
+            StartUnknown(
+                f"gap_place_{contact}",
+                tangent,
+                -reach,
+                reach,
+                reach,
+                contact,
+                GAP_PLACES,
+                float(np.sign(rate)),
+            )
         )
     return replace(run, start=start, unknowns=tuple(unknowns))
 

@@ -67,7 +67,7 @@ def _typical(grown: Sequence[tuple[FloatArray, FloatArray]], length: float) -> f
 def _grows(model: Model, run: Run, p: FloatArray) -> bool:
     """True when a small error of a starting angle grows by `ALLOWED_GROWTH` within the run."""
     none = np.zeros(0, dtype=np.int64)
-    e = evaluate(model, run, p, np.zeros(len(run.unknowns)), none, True, Tolerance())
+    e = evaluate(model, run, p, run.guess, none, True, Tolerance())
     angles = [i for i, u in enumerate(run.unknowns) if u.name.startswith("theta")]
     if e.failed:
         return True
@@ -79,7 +79,7 @@ def _drift(
     model: Model, run: Run, p: FloatArray, noise: FloatArray, rng: np.random.Generator
 ) -> tuple[FloatArray, FloatArray]:
     """Difference in counts [k] between a run and its noisy replay, and the time since start."""
-    z = np.zeros(len(run.unknowns))
+    z = run.guess
     found = _replay(model, run, p, z, noise, rng)
     if found is None:
         return np.zeros(0), np.zeros(0)
