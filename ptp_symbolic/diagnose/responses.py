@@ -17,7 +17,15 @@ from ptp_symbolic.diagnose.linear import stacked
 from ptp_symbolic.diagnose.proposals import Proposal
 from ptp_symbolic.diagnose.signatures import brought
 from ptp_symbolic.diagnose.trial import Task, Trial, simulated
-from ptp_symbolic.identify.constants import DECLARED_AMOUNT, FARTHEST, REACH, RIDGE, SHRINK, SHRINKS
+from ptp_symbolic.identify.constants import (
+    DECLARED_AMOUNT,
+    FARTHEST,
+    MOST,
+    REACH,
+    RIDGE,
+    SHRINK,
+    SHRINKS,
+)
 from ptp_symbolic.identify.coordinates import FreeParameter, to_search
 from ptp_symbolic.identify.fit import all_values
 
@@ -57,7 +65,8 @@ class Response:
 
 
 def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list[Response]:
-    """Responses of `candidates` that the trial does not have, the most promising first.
+    """Responses of `candidates` that the trial does not have, the most promising first, each in the
+    form that promises most.
 
     A candidate that needs another brings it along.
     """
@@ -84,9 +93,9 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
         )
 
     jobs = list(task.executor.map(respond, wanted))
-    best: dict[tuple[str, int], Response] = {}
+    best: dict[str, Response] = {}
     for response in sorted((r for r in jobs if r is not None), key=lambda r: r.left):
-        best.setdefault((response.candidate.key, response.candidate.member), response)
+        best.setdefault(response.candidate.key, response)
     return list(best.values())
 
 
@@ -125,8 +134,9 @@ def _column(
     candidate: Candidate,
     most: float,
 ) -> FloatArray | None:
-    """The response [n] per unit of a defining parameter, to the largest amount whose response stays
-    below `most`; None where nothing can be simulated or nothing changes.
+    """The response [n] per unit of a defining parameter, to an amount whose response stays below
+    `most`, with a margin where the first is too large: an encoder may show a thousandth of what is
+    usual. None where nothing can be simulated or nothing changes.
     """
     zero = candidate.vanishing[f.name]
     amount = f.start - zero
@@ -143,7 +153,9 @@ def _column(
                 return None
             if size <= most:
                 return change / amount
-        amount *= SHRINK
+            amount *= min(SHRINK, MOST * most / size)
+        else:
+            amount *= SHRINK
     return None
 
 

@@ -104,8 +104,8 @@ AT_BOUND = WIDE_STEP  # search coordinates; from nearer one step may reach a bou
 FIRST_DAMPING = 1e-3  # 1; of the diagonal; usual (Marquardt, 1963: 1e-2)
 FARTHEST = 0.5  # search coordinates; that free parameters follow a response; chosen
 REACH = 3.0  # 1; size of a response over the residual, beyond which it is not linear; chosen
-SHRINK = 0.25  # 1; of a response that reaches further; chosen
-SHRINKS = 4  # 1; of a response: down to a part in 256; chosen
+SHRINK = 0.25  # 1; of a response that reaches further, at most; chosen
+SHRINKS = 4  # 1; of a response that is no line: two would do for one; chosen
 
 # Numerics
 ROUNDING = 1.0 / np.sqrt(12.0)  # counts; standard deviation of rounding; derived
