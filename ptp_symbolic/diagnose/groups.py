@@ -19,6 +19,7 @@ from ptp_symbolic.diagnose.proposals import Proposals
 from ptp_symbolic.diagnose.responses import Columns, least, response_columns
 from ptp_symbolic.diagnose.search import Seeker
 from ptp_symbolic.diagnose.signatures import Signature
+from ptp_symbolic.diagnose.starts import in_place
 from ptp_symbolic.diagnose.trial import Task, Trial, fitted, halving, ranked
 from ptp_symbolic.identify.constants import (
     ITERATIONS,
@@ -66,7 +67,7 @@ def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> 
         for candidate in alike_along_motion(seeker.proposals, chosen, member)[:TRIED]:
             if candidate.key in refitted_already:
                 continue
-            begun += seeker.in_place((*kept, candidate), chosen)
+            begun += in_place(task, seeker.proposals, (*kept, candidate), chosen)
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
     trials = halving(task, begun, ((ITERATIONS, len(begun)),))

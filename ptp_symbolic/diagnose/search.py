@@ -2,7 +2,7 @@
 completed, pruned and grown until every candidate in it is needed and none outside would add to it.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,9 +14,7 @@ from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise
 from ptp_symbolic.diagnose.gain import Gain, gain, p_value
 from ptp_symbolic.diagnose.proposals import (
     Proposals,
-    declared_start,
     propose,
-    start_for,
     with_lines,
 )
 from ptp_symbolic.diagnose.refits import (
@@ -24,18 +22,17 @@ from ptp_symbolic.diagnose.refits import (
     fit_declared,
     forms,
     fullest,
-    over_windows,
     polished,
     refitted_without_chaos,
     sharpened,
 )
-from ptp_symbolic.diagnose.responses import Response, responses
+from ptp_symbolic.diagnose.responses import responses
 from ptp_symbolic.diagnose.screening import screened
+from ptp_symbolic.diagnose.starts import along, in_place, led, started
 from ptp_symbolic.diagnose.subsets import exchanges
 from ptp_symbolic.diagnose.trial import (
     Task,
     Trial,
-    continued,
     fitted,
     halving,
     is_alike,
@@ -50,10 +47,8 @@ from ptp_symbolic.identify.constants import (
     LAST_RUNG,
     MATERIAL,
     MOST,
-    PARTS_OF_THE_WAY,
     SCREENED,
     TRIED,
-    WIDE_STEP,
 )
 
 FloatArray = NDArray[np.float64]
@@ -84,7 +79,7 @@ class Seeker:
         """Propose, refit, complete, prune, grow, simplify."""
         task, best = self.task, self.declared
         if self.proposals.asked_for or not self.is_at_noise(best):
-            sets = self.proposed()
+            sets = started(task, self.declared, self.proposals)
             unseen = [] if self.is_at_noise(best) else self.unseen(best)
             task.progress(f"refitting {len(sets) + len(unseen)} proposed sets")
             found = halving(task, sets, FIRST_RUNG + LAST_RUNG, self.others)
@@ -111,48 +106,12 @@ class Seeker:
         others = tuple(self.others)
         return Search(task, self.declared, best, members, others, self.proposals, self.carried)
 
-    def proposed(self) -> list[Trial]:
-        """The proposed sets that do best over short windows, each at the better of two starts:
-        where the windows lead, and beside the declared model.
-        """
-        task, declared, sets = self.task, self.declared, self.proposals.sets
-        part = replace(task, train=task.windows[0]) if task.windows else task
-        jobs = [
-            task.executor.submit(fitted, part, s.candidates, s.values, None, ITERATIONS)
-            for s in sets
-        ]
-        begun = []
-        for led in ranked([job.result() for job in jobs])[:TRIED]:
-            own = {name for c in led.candidates for name in c.names}
-            beside = declared.values | {name: led.values[name] for name in own}
-            starts = [
-                fitted(task, led.candidates, led.values, None),
-                fitted(task, led.candidates, beside, declared.fit.z, 0, declared.fit),
-            ]
-            begun.append(ranked(starts)[0])
-        return begun
-
     def unseen(self, trial: Trial) -> list[Trial]:
         """The trial with each candidate that the rows cannot show, begun at its response in the
         outputs and part of the way there.
         """
         found = responses(self.task, trial, self.proposals.unseen)
-        return [t for r in found[:ADDED] for t in self.begun(r, trial)]
-
-    def begun(self, found: Response, parent: Trial) -> list[Trial]:
-        """Refits begun where a response in the outputs leads from `parent`, and part of the way
-        there. What the motion does not show has derivatives that mislead: they are looked for at
-        once.
-        """
-        task, proposal = self.task, found.proposal
-        origin = parent.values | dict(found.shape)
-        begun = []
-        for part in PARTS_OF_THE_WAY:
-            values = {n: origin[n] + part * (v - origin[n]) for n, v in proposal.values.items()}
-            begun.append(fitted(task, proposal.candidates, values, parent.fit.z, 0, parent.fit))
-        if found.candidate.key not in {c.key for c in self.proposals.unseen}:
-            return [ranked(begun)[0]]
-        return [continued(task, t, 1, secants=WIDE_STEP, executor=task.executor) for t in begun]
+        return [t for r in found[:ADDED] for t in along(self.task, self.proposals, r, trial)]
 
     def is_at_noise(self, trial: Trial) -> bool:
         """Whether a trial leaves white noise alone."""
@@ -172,28 +131,10 @@ class Seeker:
         """
         if not trial.candidates or self.is_at_noise(trial):
             return trial
-        begun = self.led(trial.candidates, trial.values)
+        begun = led(self.task, self.proposals, trial.candidates, trial.values)
         left = halving(self.task, begun, LAST_RUNG)
         fresh = [t for t in left if is_near(t, [trial]) and not is_alike(t, trial)]
         return ranked([trial, *(self.polished(t) for t in fresh)])[0]
-
-    def led(self, candidates: Sequence[Candidate], values: Mapping[str, float]) -> list[Trial]:
-        """A set where the rows start it (what they do not show stays at `values`), and where
-        windows lead from there and from the declared start.
-        """
-        task = self.task
-        start = start_for(task, self.proposals, candidates, values)
-        own = {name: start[name] for c in candidates for name in c.names}
-        begun = over_windows(task, candidates, [start, declared_start(task) | own], task.executor)
-        return [*begun, fitted(task, candidates, start, None)]
-
-    def in_place(self, candidates: Sequence[Candidate], trial: Trial) -> list[Trial]:
-        """A set like that of `trial`, where the rows start it, and where they start its candidates
-        alone.
-        """
-        start = start_for(self.task, self.proposals, candidates, trial.values)
-        beside = trial.values | {name: start[name] for c in candidates for name in c.names}
-        return [fitted(self.task, candidates, values, None) for values in (start, beside)]
 
     def completed(self, trial: Trial) -> Trial:
         """The trial polished, each of its candidates in its fullest form: an effect is allowed all
@@ -254,7 +195,8 @@ class Seeker:
     def grown(self, trial: Trial) -> Trial | None:
         """The trial with one more candidate that gains clearly and materially; None if none does.
 
-        Where only noise is left, those are tried that the motion alone cannot show.
+        Where only noise is left, those are tried that the motion alone cannot show. One that
+        promises far more than all others is tried before them.
         """
         task = self.task
         wanted = self.proposals.unseen if self.is_at_noise(trial) else task.candidates
@@ -263,10 +205,20 @@ class Seeker:
             return None
         names = " + ".join(trial.keys) or "the declared model"
         task.progress(f"adding one of {len(found)} candidates to {names}")
-        begun = [t for r in found[:ADDED] for t in self.begun(r, trial)]
+        if len(found) == 1 or found[0].left < MOST * found[1].left:
+            best = self.best_earning(along(task, self.proposals, found[0], trial), trial)
+            if best is not None:
+                return best
+        begun = [t for r in found[:ADDED] for t in along(task, self.proposals, r, trial)]
         close = screened(task, self.proposals, trial.candidates, wanted, trial.values)
         begun += [fitted(task, t.candidates, t.values, None) for t in close[:SCREENED]]
-        left = halving(task, begun, FIRST_RUNG, self.others)
+        return self.best_earning(begun, trial)
+
+    def best_earning(self, begun: Sequence[Trial], trial: Trial) -> Trial | None:
+        """The best of trials that are `begun`, polished, if what it has more than `trial` gains
+        clearly and materially.
+        """
+        left = halving(self.task, begun, FIRST_RUNG, self.others)
         if not left:
             return None
         best = ranked([self.polished(t) for t in left if is_near(t, left)])[0]
@@ -283,7 +235,9 @@ class Seeker:
         if self.proposals.regression is None:
             return None
         sets = exchanges(self.proposals.regression, trial.candidates)[:TRIED]
-        begun = [t for candidates in sets for t in self.in_place(candidates, trial)]
+        begun = [
+            t for candidates in sets for t in in_place(self.task, self.proposals, candidates, trial)
+        ]
         left = halving(self.task, begun, ((ITERATIONS, TRIED),), self.others)
         found = [self.polished(t) for t in left if is_near(t, [trial])]
         self.others += found
