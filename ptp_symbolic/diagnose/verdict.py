@@ -67,25 +67,17 @@ def decide(found: Search) -> Verdict:
     task = found.task
     refused: dict[str, str] = {}
     seeker = Seeker(task, found.declared, found.proposals, found.carried)
-    trial, steps = found.chosen, list(found.members)
-    fit = unblinded(trial.fit, task.executor)
-    while trial.candidates:
-        simpler = _off_bounds(seeker, trial, fit)
-        weakness = _weakness(seeker, trial, steps, fit) if simpler is None else None
-        if simpler is not None:
-            trial = seeker.sharpened(simpler)
-        elif weakness is not None:
-            step, reason = weakness
-            refused[step.candidate.key] = reason
-            trial = seeker.sharpened(step.without)
-        else:
-            break
-        steps = [seeker.step(trial, c) for c in trial.candidates]
-        fit = unblinded(trial.fit, task.executor)
+    trial, steps, fit = _confirmed(seeker, found.chosen, list(found.members), refused)
     alike: list[Rival] = []
-    if trial.candidates:
+    while trial.candidates:
         alike = rivals(seeker, trial, (*found.others, *seeker.others), fit)
         trial, steps, alike = _simplest(seeker, trial, steps, alike)
+        doubtful = _doubtful(seeker, trial, steps, alike)
+        if doubtful is None:
+            break
+        refused[doubtful.candidate.key] = "others predict as well, and more than noise is left"
+        trial, steps, fit = _confirmed(seeker, *_shortened(seeker, doubtful.without), refused)
+        alike = []
     task.progress("simulating the validation runs")
     before = held_out_fit(task, found.declared)
     after = held_out_fit(task, trial) if trial.candidates else before
@@ -112,6 +104,46 @@ def decide(found: Search) -> Verdict:
         before,
         after,
         held_out,
+    )
+
+
+def _confirmed(
+    seeker: Seeker, trial: Trial, steps: list[Step], refused: dict[str, str]
+) -> tuple[Trial, list[Step], Fit]:
+    """What is left of a trial when all that cannot be confirmed is taken out, noted in `refused`
+    with the reason; its steps, and its fit with derivatives that are not blind.
+    """
+    fit = unblinded(trial.fit, seeker.task.executor)
+    while trial.candidates:
+        simpler = _off_bounds(seeker, trial, fit)
+        weakness = _weakness(seeker, trial, steps, fit) if simpler is None else None
+        if simpler is not None:
+            trial, steps = _shortened(seeker, simpler)
+        elif weakness is not None:
+            step, reason = weakness
+            refused[step.candidate.key] = reason
+            trial, steps = _shortened(seeker, step.without)
+        else:
+            break
+        fit = unblinded(trial.fit, seeker.task.executor)
+    return trial, steps, fit
+
+
+def _shortened(seeker: Seeker, trial: Trial) -> tuple[Trial, list[Step]]:
+    """A trial that lacks something now, fitted sharply, and what its candidates gain."""
+    trial = seeker.sharpened(trial)
+    return trial, [seeker.step(trial, c) for c in trial.candidates]
+
+
+def _doubtful(seeker: Seeker, trial: Trial, steps: list[Step], alike: list[Rival]) -> Step | None:
+    """A declared value that others may stand in for, where more than noise is left; None if there
+    is none. It is known, after all: that it is wrong is the answer only where nothing else is.
+    """
+    if leaves_noise_alone(trial, floor_of(seeker.task, trial, seeker.carried)):
+        return None
+    named = confusable(trial, alike)
+    return next(
+        (s for s in steps if s.candidate.is_declared_value and named[s.candidate.key]), None
     )
 
 

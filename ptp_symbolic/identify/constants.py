@@ -68,6 +68,7 @@ SHORT = 1.0  # s; window beside the time constants of drives (0.05 s); chosen
 LONG = 3.0  # s; window beside runs of 10 s; chosen
 WINDOW_PERIOD = 5e-3  # s; between samples where windows only give starts; chosen
 START_SPAN = 0.1  # s; motion that tells a rate; chosen
+ANYWHERE = 1e3  # rad/s, half gaps; beyond any start of a machine; definition
 LEAST_START = 5  # samples; of a parabola with two degrees of freedom left; derived
 ALLOWED_COUNTS = 0.5  # counts; drift by input noise in a window: the most of rounding; derived
 ALLOWED_RISE = 2.0  # 1; of that drift, over the shortest window's; chosen

@@ -5,6 +5,7 @@ integrates its input noise, or whose errors grow (a torque-driven axis, a payloa
 axis), would be judged by that noise; it is cut into windows with starts of their own.
 """
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -16,15 +17,17 @@ from ptp_symbolic.identify.constants import (
     ALLOWED_GROWTH,
     ALLOWED_RISE,
     BEND,
+    LEAST_START,
     LENGTHS,
     MOST_CARRIED,
     SEED,
     SHORT,
+    START_SPAN,
 )
 from ptp_symbolic.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.identify.intervals import project_out
 from ptp_symbolic.identify.noise import white_noise
-from ptp_symbolic.identify.run import Run, split_run
+from ptp_symbolic.identify.run import Around, Run, with_start
 from ptp_symbolic.runtime.model import Model
 from ptp_symbolic.simulation.inputs import stack, table
 
@@ -163,3 +166,48 @@ def cut(model: Model, runs: Sequence[Run], length: float | None) -> tuple[Run, .
     if length is None:
         return tuple(runs)
     return tuple(piece for run in runs for piece in split_run(model, run, length))
+
+
+def _moving_edges(run: Run, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Shift inner edges by up to a quarter window to where every encoder moves fastest.
+
+    A window that starts near standstill may settle in the wrong branch of sticking and sliding.
+    """
+    encoders = np.flatnonzero(np.isfinite(run.counts))
+    if encoders.size == 0:
+        return edges
+    half = max(1, round(0.5 * START_SPAN / float(np.median(np.diff(run.time)))))
+    if len(run.time) <= 4 * half:
+        return edges
+    rate = np.zeros((len(run.time), encoders.size))
+    rate[half:-half] = run.measured[2 * half :, encoders] - run.measured[: -2 * half, encoders]
+    speed = np.abs(rate) / np.maximum(np.sqrt(np.mean(rate**2, axis=0)), 1e-300)
+    slowest = np.min(speed, axis=1)
+    reach = max(1, int(np.min(np.diff(edges)) // 4))
+    moved = [e - reach + int(np.argmax(slowest[e - reach : e + reach])) for e in edges[1:-1]]
+    return np.array([edges[0], *moved, edges[-1]])
+
+
+def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
+    """Cut a run into windows of about `length` s, each with a start of its own.
+
+    Neighbours share the sample between them, so that no step from sample to sample is lost.
+    """
+    duration = run.time[-1] - run.time[0]
+    pieces = max(1, min(round(duration / length), (len(run.time) - 1) // (2 * LEAST_START)))
+    if pieces == 1:
+        return (run,)
+    edges = _moving_edges(run, np.linspace(0, len(run.time) - 1, pieces + 1).astype(int))
+    windows = []
+    for number, (a, b) in enumerate(itertools.pairwise(edges)):
+        part = slice(a, b + 1)
+        piece = replace(
+            run,
+            name=f"{run.name}#{number + 1}",
+            time=np.ascontiguousarray(run.time[part]),
+            inputs=stack([table(run.time[part], c, "hold") for c in run.held_inputs[part].T]),
+            held_inputs=np.ascontiguousarray(run.held_inputs[part]),
+            measured=np.ascontiguousarray(run.measured[part]),
+        )
+        windows.append(with_start(model, piece, Around(run.time, run.measured, int(a))))
+    return tuple(windows)

@@ -11,11 +11,12 @@ import ptp_symbolic
 from ptp_symbolic.data import Log
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.identify.evaluate import Tolerance, evaluate, simulated_signals
-from ptp_symbolic.identify.run import Run, prepare_runs, split_run
+from ptp_symbolic.identify.run import Run, prepare_runs
 from ptp_symbolic.identify.windows import (
     cut,
     input_noise,
     propagated_noise,
+    split_run,
     window_length,
     without_chaos,
 )
