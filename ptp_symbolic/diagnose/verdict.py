@@ -1,6 +1,6 @@
 """The verdict: which effects are confirmed, which cannot be told apart, and what is left."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -72,11 +72,12 @@ def decide(found: Search) -> Verdict:
     while trial.candidates:
         alike = rivals(seeker, trial, (*found.others, *seeker.others), fit)
         trial, steps, alike = _simplest(seeker, trial, steps, alike)
-        doubtful = _doubtful(seeker, trial, steps, alike)
-        if doubtful is None:
+        floor = floor_of(task, trial, seeker.carried)
+        step = doubtful(trial, steps, confusable(trial, alike), floor)
+        if step is None:
             break
-        refused[doubtful.candidate.key] = "others predict as well, and more than noise is left"
-        trial, steps, fit = _confirmed(seeker, *_shortened(seeker, doubtful.without), refused)
+        refused[step.candidate.key] = "others predict as well, and more than noise is left"
+        trial, steps, fit = _confirmed(seeker, *_shortened(seeker, step.without), refused)
         alike = []
     task.progress("simulating the validation runs")
     before = held_out_fit(task, found.declared)
@@ -135,16 +136,17 @@ def _shortened(seeker: Seeker, trial: Trial) -> tuple[Trial, list[Step]]:
     return trial, [seeker.step(trial, c) for c in trial.candidates]
 
 
-def _doubtful(seeker: Seeker, trial: Trial, steps: list[Step], alike: list[Rival]) -> Step | None:
-    """A declared value that others may stand in for, where more than noise is left; None if there
-    is none. It is known, after all: that it is wrong is the answer only where nothing else is.
+def doubtful(
+    trial: Trial, steps: Sequence[Step], named: Mapping[str, tuple[str, ...]], floor: Floor
+) -> Step | None:
+    """A declared value in whose place others may stand (`named`), where more than noise is left;
+    None if there is none. It is known, after all: that it is wrong is the answer only where nothing
+    else is.
     """
-    if leaves_noise_alone(trial, floor_of(seeker.task, trial, seeker.carried)):
+    if leaves_noise_alone(trial, floor):
         return None
-    named = confusable(trial, alike)
-    return next(
-        (s for s in steps if s.candidate.is_declared_value and named[s.candidate.key]), None
-    )
+    known = [s for s in steps if s.candidate.is_declared_value]
+    return next((s for s in known if named[s.candidate.key]), None)
 
 
 def _simplest(

@@ -1,10 +1,12 @@
 """Words for what is left: training and validation runs are each held to the noise of their own."""
 
+from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from ptp_symbolic.diagnose.findings import Step
 from ptp_symbolic.diagnose.floor import Floor
 from ptp_symbolic.diagnose.trial import Trial
 from ptp_symbolic.diagnose.verdict import (
@@ -13,6 +15,7 @@ from ptp_symbolic.diagnose.verdict import (
     PARTLY,
     UNEXPLAINED,
     UP_TO_GROUP,
+    doubtful,
     word_of,
 )
 from tests.identify.straight import finished
@@ -68,3 +71,23 @@ def test_a_run_that_sticks_elsewhere_does_not_decide() -> None:
     trial = Trial((), finished([WAVE] * 3))
     after = finished([WAVE, WAVE, 40.0 * WAVE])
     assert word_of(trial, {}, floor(), floor(), after) == NOTHING_MISSING
+
+
+@pytest.mark.parametrize(
+    ("left", "declared_value", "group", "is_doubtful"),
+    [
+        (3.0, True, ("other",), True),
+        (1.0, True, ("other",), False),
+        (3.0, True, (), False),
+        (3.0, False, ("other",), False),
+    ],
+)
+def test_a_known_value_is_doubted_first(
+    left: float, declared_value: bool, group: tuple[str, ...], is_doubtful: bool
+) -> None:
+    """A declared value with look-alikes, where more than noise is left; an effect is kept."""
+    trial = Trial((EFFECT,), finished([left * WAVE] * 3))
+    candidate = SimpleNamespace(key="value", is_declared_value=declared_value)
+    steps = [cast(Step, SimpleNamespace(candidate=candidate))]
+    found = doubtful(trial, steps, {"value": group}, floor())
+    assert found is (steps[0] if is_doubtful else None)
