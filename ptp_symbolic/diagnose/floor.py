@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.diagnose.trial import Task, Trial, huber, mean_squares
-from ptp_symbolic.identify.constants import ABOVE_NOISE, BEND, MANY_RUNS
+from ptp_symbolic.identify.constants import ABOVE_NOISE, BEND, MANY_RUNS, POLES
 from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.least_squares import weighted_median
-from ptp_symbolic.identify.noise import coloured_noise
+from ptp_symbolic.identify.noise import coloured_noise, hidden_from_differences
 from ptp_symbolic.identify.run import sizes
 from ptp_symbolic.identify.windows import propagated_noise
 
@@ -72,8 +72,9 @@ def carried_noise(task: Task, fit: Fit) -> FloatArray:
 
 
 def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
-    """The floor, with the colour of the noise as the remainder of `trial` shows it. Where more is
-    left than noise of that colour, it is model error that has a colour: the floor is white then.
+    """The floor, with the colour of the noise as the remainder of `trial` shows it, but no more
+    than the differences of the measured signals leave room for. Where more is left than noise of
+    that colour, it is model error that has a colour: the floor is white then.
     """
     runs = trial.fit.runs
     rms, most = np.ones(len(runs[0].signals)), np.ones(len(runs[0].signals))
@@ -87,7 +88,9 @@ def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
                 if as_usual
             ]
             noise = coloured_noise(series, 1.0)
-            rms[column], most[column] = noise.rms, noise.most
+            seen = [ABOVE_NOISE * hidden_from_differences(p) for p in (noise.pole, max(POLES))]
+            rms[column] = min(noise.rms, np.hypot(1.0, seen[0]))
+            most[column] = min(noise.most, np.hypot(1.0, seen[1]))
     floor = Floor(rms, most, carried)
     white = np.ones(len(rms))
     return floor if leaves_noise_alone(trial, floor) else Floor(white, white, carried)

@@ -82,6 +82,15 @@ def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
     return Noise(float(np.sqrt(fits[best][1])), float(POLES[best]), float(np.sqrt(most)))
 
 
+def hidden_from_differences(pole: float) -> float:
+    """Standard deviation of an autoregression with `pole` that adds as much to the differences of
+    order ORDER as white noise of standard deviation 1 does: `white_noise` sees no more of it.
+    """
+    weights = np.array([(-1.0) ** k * comb(ORDER, k) for k in range(ORDER + 1)])
+    lags = np.abs(np.subtract.outer(np.arange(ORDER + 1), np.arange(ORDER + 1)))
+    return float(np.sqrt(comb(2 * ORDER, ORDER) / (weights @ pole**lags @ weights)))
+
+
 def _spectrum(series: Sequence[FloatArray]) -> tuple[FloatArray, int]:
     """Mean periodogram [SEGMENT/2 + 1] per sample of Hann windows that overlap by half (Welch,
     1967), scaled so that white noise of variance 1 has power 1, and the number of windows.

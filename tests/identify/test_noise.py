@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from ptp_symbolic.identify.noise import coloured_noise, white_noise
+from ptp_symbolic.identify.noise import coloured_noise, hidden_from_differences, white_noise
 from tests.identify.curves import Floats
 
 TIME = np.arange(4000)
@@ -100,3 +100,11 @@ def test_noise_is_at_least_what_is_known_of_it() -> None:
     assert (short.rms, short.pole, short.most) == (0.2, 0.0, 0.2)
     (row,) = remembering(0.0, 1, 4000)
     assert coloured_noise([0.01 * row], 0.2).rms == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("pole", [0.0, 0.5, 0.9, 0.95])
+def test_so_much_of_an_autoregression_is_hidden_from_differences(pole: float) -> None:
+    drawn = np.random.default_rng(3).standard_normal(200_000)
+    series = lfilter([np.sqrt(1.0 - pole**2)], [1.0, -pole], drawn)
+    size = hidden_from_differences(pole)
+    assert white_noise(size * series) == pytest.approx(1.0, rel=0.05)
