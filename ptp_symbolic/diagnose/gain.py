@@ -15,6 +15,7 @@ from ptp_symbolic.diagnose.trial import Trial, huber
 from ptp_symbolic.identify.blocks import (
     block_labels,
     block_length,
+    block_squares,
     bootstrap_share,
     jackknife_covariance,
     leave_blocks_out,
@@ -61,7 +62,7 @@ def gain(larger: Trial, smaller: Trial) -> Gain:
     series = [np.concatenate([difference[k] for k in group]) for group in by_source(runs)]
     labels = block_labels([len(s) for s in series], block_length(series))
     label = np.concatenate(labels)
-    squares = [_block_squares(parts, label, signals) for parts in residuals]
+    squares = [_predicted_squares(parts, label, signals) for parts in residuals]
     size = np.bincount(label)
     scale = np.maximum(weighted_median(squares[0], size.astype(np.float64)), 1e-300)
     losses = [size * huber(s / scale, np.full(signals, BEND**2)).sum(axis=1) for s in squares]
@@ -113,13 +114,11 @@ def _projected(fit: Fit) -> tuple[list[FloatArray], list[FloatArray]]:
     return residuals, jacobians
 
 
-def _block_squares(
+def _predicted_squares(
     parts: tuple[Sequence[FloatArray], Sequence[FloatArray]], label: IntArray, signals: int
 ) -> FloatArray:
     """Mean square [b, signals] of the residuals of every block, predicted by the other blocks."""
     residual, jacobian = np.concatenate(parts[0]), np.vstack(parts[1])
     prior = float(np.mean(residual**2))  # without the block no parameter moves by more than a unit
     left = leave_blocks_out(residual, jacobian, np.repeat(label, signals), prior)
-    table = left.predicted.reshape(-1, signals) ** 2
-    size = np.bincount(label)
-    return np.column_stack([np.bincount(label, weights=c) / size for c in table.T])
+    return block_squares(left.predicted, label, signals)

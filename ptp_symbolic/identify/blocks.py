@@ -121,6 +121,15 @@ def leave_blocks_out(
     return LeftOut(predicted, shifts)
 
 
+def block_squares(residual: FloatArray, label: IntArray, signals: int) -> FloatArray:
+    """Mean square [b, signals] of every block of `residual` [n], which holds `signals` values for
+    every entry of `label` [n / signals].
+    """
+    size = np.bincount(label)
+    table = residual.reshape(-1, signals) ** 2
+    return np.column_stack([np.bincount(label, weights=c) / size for c in table.T])
+
+
 def without_outliers(
     residual: FloatArray, jacobian: FloatArray, label: IntArray, signals: int
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -130,10 +139,8 @@ def without_outliers(
     `residual` is [n / signals, signals] in one column, `label` [n / signals] its blocks; every
     signal has its own weight in a block.
     """
-    size = np.bincount(label).astype(np.float64)
-    table = residual.reshape(-1, signals) ** 2
-    squares = np.column_stack([np.bincount(label, weights=c) / size for c in table.T])
-    usual = weighted_median(squares, size)
+    squares = block_squares(residual, label, signals)
+    usual = weighted_median(squares, np.bincount(label).astype(np.float64))
     root = np.minimum(1.0, (BEND**2 * usual / np.maximum(squares, 1e-300)) ** 0.25)
     weight = root[label].ravel()
     residual, jacobian = weight * residual, weight[:, None] * jacobian
