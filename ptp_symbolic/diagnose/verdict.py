@@ -22,6 +22,7 @@ from ptp_symbolic.identify.constants import (
     MOST,
     POLISH,
     ROUGH,
+    SHARP,
 )
 from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, unblinded
 from ptp_symbolic.identify.least_squares import weighted_median
@@ -243,7 +244,7 @@ def _is_quiet(after: Fit, floor: Floor) -> bool:
 
 def held_out_fit(task: Task, trial: Trial) -> Fit:
     """The validation runs by the model of a trial, nothing but their starts fitted."""
-    effort = Effort(POLISH, GAIN * ROUGH, accuracy(task, ROUGH))
+    effort = Effort(POLISH, GAIN * ROUGH, accuracy(task, SHARP))
     return fit_parameters(task.model, task.validate, (), trial.values, None, effort, task.executor)
 
 

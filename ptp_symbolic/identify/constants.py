@@ -106,7 +106,7 @@ FIRST_DAMPING = 1e-3  # 1; of the diagonal; usual (Marquardt, 1963: 1e-2)
 FARTHEST = 0.5  # search coordinates; that free parameters follow a response; chosen
 REACH = 3.0  # 1; size of a response over the residual, beyond which it is not linear; chosen
 SHRINK = 0.25  # 1; of a response that reaches further, at most; chosen
-SHRINKS = 4  # 1; of a response that is no line: two would do for one; chosen
+SHRINKS = 4  # 1; tries to make a response small enough: a straight one takes two; chosen
 
 # Numerics
 ROUNDING = 1.0 / np.sqrt(12.0)  # counts; standard deviation of rounding; derived
