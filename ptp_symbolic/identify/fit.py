@@ -250,7 +250,7 @@ def _fit_starts(
         found: list[Optimum] = []
         for begin in _places(problem, run, start):
             found.append(minimise(problem, nothing, [begin], effort.iterations, effort.gain))
-            if found[-1].cost <= ABOVE_NOISE**2 * run.size:
+            if found[-1].cost <= ABOVE_NOISE * run.size:
                 break
         return min(found, key=lambda optimum: optimum.cost)
 
