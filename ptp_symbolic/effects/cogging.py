@@ -26,8 +26,9 @@ def _contribute(place: Place) -> Contribution:
     potential = sp.Integer(0)
     for order, pair in enumerate(AMPLITUDES, start=1):
         sine, cosine = (place.parameter(p.name) for p in pair)
-        phase = order * cycles * place.gear_angle
-        potential += (sine * sp.cos(phase) - cosine * sp.sin(phase)) / (order * cycles)
+        waves = order * cycles
+        phase = waves * place.gear_angle
+        potential += sine * sp.cos(phase) / waves - cosine * sp.sin(phase) / waves
     return Contribution(potential=potential)
 
 

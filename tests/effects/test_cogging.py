@@ -58,3 +58,12 @@ def test_a_swing_in_a_notch_keeps_its_energy_and_the_time_of_a_pendulum(model: M
     height = 0.6 / NOTCHES * (np.cos(NOTCHES * found["theta_pan"]) - math.cos(swing))
     assert J / 2 * found["omega_pan"] ** 2 == pytest.approx(height, abs=1e-10)
     assert found.dissipated == pytest.approx(0.0, abs=0.0)
+
+
+def test_at_no_frequency_the_torque_is_that_of_the_cosine(model: Model) -> None:
+    """A scan for the frequency begins there; a potential over the frequency has no value."""
+    p = model.parameter_vector(NOTCHED)
+    p[model.parameter_names.index("n_cog_pan")] = 0.0
+    for angle in (0.0, 0.7, -2.0):
+        rate = model.rhs(0.0, np.array([angle, 0.0]), np.zeros(1), p)
+        assert J * rate[1] == pytest.approx(COS, rel=1e-12)
