@@ -34,7 +34,6 @@ class Parts:
 
     def resolve(self, expression: sp.Expr) -> sp.Expr:
         """Replace quantity placeholders, also inside other quantities."""
-        expression = sp.sympify(expression, strict=True)
         while True:
             present = expression.free_symbols & self.values.keys()
             if not present:
@@ -134,9 +133,7 @@ def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Part
         values[name] = values[name] + change.addition
     for name, change in changes:
         values[name] = change.through(values[name])
-    symbols = {
-        quantity_symbol(name): sp.sympify(value, strict=True) for name, value in values.items()
-    }
+    symbols = {quantity_symbol(name): value for name, value in values.items()}
     return Parts(contributions, tuple(effect.dissipative for effect, _ in placed), symbols)
 
 
