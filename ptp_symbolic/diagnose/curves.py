@@ -15,7 +15,8 @@ FloatArray = NDArray[np.float64]
 
 def curves_of(parts: Mapping[str, tuple[Fit, Fit]]) -> dict[str, Any]:
     """Measured and simulated signals of every run of each part ("train", "validate"), by the
-    declared and by the final model; the windows of a run joined at the times `borders`.
+    declared and by the final model; the windows of a run joined at the times `borders`. The key of
+    a curve is its `run`, with the part where both parts have a run of that name.
     """
     curves: dict[str, Any] = {}
     for name, (before_fit, after_fit) in parts.items():
@@ -27,7 +28,7 @@ def curves_of(parts: Mapping[str, tuple[Fit, Fit]]) -> dict[str, Any]:
         )
         for (source, before), later in groups:
             key = source if source not in curves else f"{source} ({name})"
-            curves[key] = _curve(name, before, later, units)
+            curves[key] = {"run": source, **_curve(name, before, later, units)}
     return curves
 
 

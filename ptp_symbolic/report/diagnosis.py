@@ -78,7 +78,8 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
     curves: {run: {"set": "train" or "validate", "time": [n] s, "signals": {signal: {"unit",
     "measured", "before", "after" (or None): [n], "counts": size of one count or None}},
     "angle": {axis: [n] rad}, "rate": {axis: [n] rad/s}, "borders": [k] s, the starts of windows
-    after the first (optional)}}. Loads nothing from elsewhere.
+    after the first (optional), "run": the name of the run where the key is not (optional)}}. Loads
+    nothing from elsewhere.
     """
     verdict = VERDICTS[diagnosis["verdict"]]
     if not diagnosis.get("added"):
@@ -170,7 +171,8 @@ def _motion(
     lines = sum(6 * len(curve["signals"]) for curve in curves.values())
     points = min(max(POINTS_IN_ALL // max(lines, 1), 100), 900)
     entries = []
-    for run, curve in curves.items():
+    for key_of_curve, curve in curves.items():
+        run = curve.get("run", key_of_curve)
         errors = {s: tables.error_of(diagnosis, curve["set"], s, run) for s in tables.STAGES}
         svg = figures.motion_figure(curve, _floors(diagnosis, curve["set"]), points)
         before, after = (errors[stage].get(key) for stage in ("before", "after"))

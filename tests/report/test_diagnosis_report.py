@@ -86,7 +86,7 @@ def test_gains_are_in_percent_with_their_interval() -> None:
     table = html[html.index('<section id="ranking">') : html.index('<section id="limits">')]
     assert "92.0 % (91.8 to 92.2 %)" in table
     assert "−0.2 % (−0.4 to 0.0 %)" in table
-    assert '<td class="n">–</td>' in table  # a fit without derivatives has no gain
+    assert '<td class="gain">–</td>' in table  # a fit without derivatives has no gain
 
 
 def test_the_closest_fit_is_shown_with_its_figures_where_nothing_was_confirmed() -> None:

@@ -196,6 +196,7 @@ def test_the_curves_of_a_run_carry_the_borders_of_its_windows() -> None:
         "run (validate)": "validate",
     }
     for curve in curves.values():
+        assert curve["run"] == "run"
         assert curve["borders"] == [4.0]
         assert len(curve["time"]) == 399
         assert curve["signals"]["theta_tilt"]["unit"] == "rad"
