@@ -7,7 +7,7 @@ import numpy as np
 
 from ptp_symbolic.diagnose.candidates import find_candidates, vanished
 from ptp_symbolic.diagnose.trial import Progress, Task
-from ptp_symbolic.identify.constants import LONG, SHORT, WINDOW_PERIOD
+from ptp_symbolic.identify.constants import LONG, MANY_RUNS, SHORT, WINDOW_PERIOD
 from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.fit import all_values_at_start
 from ptp_symbolic.identify.run import Run
@@ -38,12 +38,12 @@ def task_of(
     noise = tuple(noises[name] for name in model.input_names)
     length = window_length(model, train, start, noise)
     few = [thinned(run, WINDOW_PERIOD) for run in train]
-    whole = () if length is not None else tuple(cut(model, few, w) for w in (SHORT, LONG))
+    windows = (_spread(cut(model, few, SHORT)), cut(model, few, LONG)) if length is None else ()
     return Task(
         model,
         train,
         cut(model, train, length),
-        whole,
+        windows,
         cut(model, validate, length),
         free,
         fixed,
@@ -54,6 +54,11 @@ def task_of(
         frozenset(name for name, size in noises.items() if size is not None),
         _finest_angle(train),
     )
+
+
+def _spread(windows: tuple[Run, ...]) -> tuple[Run, ...]:
+    """Windows spread over the logs, at least as many as tell what is usual."""
+    return windows[:: max(1, len(windows) // MANY_RUNS)]
 
 
 def _finest_angle(runs: Sequence[Run]) -> float:

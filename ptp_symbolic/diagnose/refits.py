@@ -35,6 +35,7 @@ from ptp_symbolic.identify.constants import (
     WIDE_STEP,
 )
 from ptp_symbolic.identify.fit import Effort, fit_parameters
+from ptp_symbolic.identify.gap_places import gears_in_place
 from ptp_symbolic.identify.windows import without_chaos
 
 FloatArray = NDArray[np.float64]
@@ -99,11 +100,17 @@ def over_windows(
 
 
 def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
-    """The trial fitted on until some iterations more change next to nothing."""
+    """The trial fitted on until some iterations more change next to nothing, the gears put in their
+    places anew each time: a window that began on the wrong side of a gap holds the others back.
+    """
     for _ in range(CYCLES):
-        before, trial = trial, continued(task, trial, ITERATIONS, executor=executor)
-        if is_alike(trial, before):
+        fit = trial.fit
+        z = gears_in_place(fit.model, fit.runs, fit.values, fit.z, fit.tolerance, executor)
+        begun = replace(trial, fit=replace(fit, z=tuple(z)))
+        better = continued(task, begun, ITERATIONS, executor=executor)
+        if is_alike(better, trial):
             break
+        trial = better
     return trial
 
 
@@ -136,7 +143,7 @@ def started_anew(task: Task, trial: Trial) -> Trial:
     """A stuck trial fitted on from starts of its runs that are looked for anew: near the floor, a
     place in a gap that is a little off holds the parameters where they are.
     """
-    unsure = any(u.places for run in task.train for u in run.unknowns)
+    unsure = any(u.contact is not None or u.instead for run in task.train for u in run.unknowns)
     if not unsure or np.any(left_over(trial.fit) > NEARBY):
         return trial
     effort = Effort(POLISH, GAIN * ROUGH, accuracy(task, ROUGH))

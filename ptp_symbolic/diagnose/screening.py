@@ -10,7 +10,7 @@ from dataclasses import replace
 from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.proposals import Proposals, start_for
 from ptp_symbolic.diagnose.trial import Task, Trial, continued, fitted, ranked
-from ptp_symbolic.identify.constants import ITERATIONS, MANY_RUNS
+from ptp_symbolic.identify.constants import ITERATIONS
 
 
 def screened(
@@ -24,8 +24,7 @@ def screened(
     to some windows of the task, the best fit first. A fit begins where the rows start the set, or
     at `values` and the candidate's own start, whichever is better.
     """
-    windows = task.windows[0] if task.windows else task.train
-    part = replace(task, train=windows[:: max(1, len(windows) // MANY_RUNS)])
+    part = replace(task, train=task.windows[0]) if task.windows else task
     have = {c.key for c in kept}
     by_key = {c.key: c for c in reversed(task.candidates)}
 

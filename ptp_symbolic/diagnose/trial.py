@@ -27,7 +27,7 @@ class Task:
     """What stays the same through a diagnosis.
 
     `whole` are the training runs as they were logged, `train` the same or their windows, `windows`
-    the same in ever longer windows, `validate` the runs that only the report sees. `free` are the
+    some short and all longer ones, `validate` the runs that only the report sees. `free` are the
     declared free parameters, `fixed` the values of all others, every candidate switched off.
     `input_noise` is the declared noise of every input (None: as the logs show it), `declared_noise`
     names the outputs whose noise is declared, and `resolution` is the noise of the finest angle in

@@ -129,6 +129,5 @@ COARSEST = 10.0  # 1; of the default tolerance: beyond events are lost; chosen
 # Sequences
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried; halvings
 HALF_WIDTHS = (0.08, 0.11, 0.16, 0.22)  # s; windows of rows that are tried; factors of root two
-GAP_PLACES = (-0.9, -0.45, 0.45, 0.9)  # half gaps; starts in a gap that are tried; evenly spread
 PARTS_OF_THE_WAY = (1.0, 0.5)  # 1; of a response at which a refit begins; chosen
 POLES = np.concatenate([[0.0], np.linspace(0.3, 0.97, 40)])  # 1; of noise that are tried; a grid

@@ -3,13 +3,15 @@
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.identify.constants import ABOVE_NOISE, BLIND, STEP, TRIED
+from ptp_symbolic.identify.constants import ABOVE_NOISE, BLIND, STEP
 from ptp_symbolic.identify.coordinates import FreeParameter, limits, slopes, to_search, to_values
 from ptp_symbolic.identify.evaluate import Evaluation, Tolerance, evaluate
+from ptp_symbolic.identify.gap_places import gears_in_place, residual_of, with_gap_places
 from ptp_symbolic.identify.least_squares import Optimum, Problem, cost_of, minimise
 from ptp_symbolic.identify.requirements import keep_possible
 from ptp_symbolic.identify.run import Run
@@ -85,17 +87,20 @@ def fit_parameters(
     `misleading` from an earlier fit of the same parameters are replaced from the first step on.
 
     With no free parameter only the start unknowns of every run are fitted, which is how runs that
-    were never fitted are judged.
+    were never fitted are judged. Places in a gap are looked for where no starts `z` are given.
     """
     effort = effort or Effort()
-    start_z = list(z) if z is not None else [run.guess for run in runs]
     if not free:
-        return _fit_starts(model, runs, fixed, start_z, effort, executor)
+        return _fit_starts(model, runs, fixed, z, effort, executor)
     problem = _problem(model, runs, free, fixed, effort, executor)
     if problem.refine is not None and misleading is not None:
         problem.refine.chosen = list(misleading)
     phi = to_search(free, {f.name: f.start for f in free})
-    best = minimise(problem, phi, start_z, effort.iterations, effort.gain, effort.rejections)
+    values = {**fixed, **all_values(free, phi)}
+    if z is None:
+        guesses = [run.guess for run in runs]
+        z = gears_in_place(model, runs, values, guesses, effort.tolerance, executor)
+    best = minimise(problem, phi, z, effort.iterations, effort.gain, effort.rejections)
     values = {**fixed, **all_values(free, best.phi)}
     return Fit(
         model,
@@ -169,9 +174,8 @@ class _Simulations:
 
     def residual(self, index: int, phi: FloatArray, z: FloatArray) -> FloatArray | None:
         """Residual of one run; None where the simulation fails."""
-        p, run = self.parameters(phi), self.runs[index]
-        e = evaluate(self.model, run, p, z, self.columns, False, self.tolerance)
-        return None if e.failed else e.residual
+        p = self.parameters(phi)
+        return residual_of(self.model, p, self.tolerance, self.runs[index], z)
 
     def evaluate(
         self, phi: FloatArray, z: Sequence[FloatArray], tangents: bool
@@ -233,29 +237,33 @@ def _fit_starts(
     model: Model,
     runs: Sequence[Run],
     fixed: Mapping[str, float],
-    z: Sequence[FloatArray],
+    z: Sequence[FloatArray] | None,
     effort: Effort,
     executor: Executor | None,
 ) -> Fit:
     """Runs that share no free parameter are independent: fit the start of each by itself.
 
-    The place in a gap is hard to find from afar: the search begins at the best of several places,
-    and then at the next, unless nothing but rounding is left.
+    The search begins at the best of what is known, with the gear in its place, at rest and turning
+    back, and then at the next, unless nothing but rounding is left.
     """
     nothing = np.zeros(0)
+    simulated = partial(residual_of, model, model.parameter_vector(fixed), effort.tolerance)
 
-    def one(pair: tuple[Run, FloatArray]) -> Optimum:
-        run, start = pair
+    def one(run: Run, known: Sequence[FloatArray]) -> Optimum:
         problem = _problem(model, [run], (), fixed, effort, None)
+        starts = [with_gap_places(run, s, partial(simulated, run)) for s in run.guesses]
+        starts += known
+        costs = [cost_of(problem, problem.evaluate(nothing, [s], False), [s]) for s in starts]
         found: list[Optimum] = []
-        for begin in _places(problem, run, start):
-            found.append(minimise(problem, nothing, [begin], effort.iterations, effort.gain))
+        for index in np.argsort(costs, kind="stable"):
+            begin = [starts[index]]
+            found.append(minimise(problem, nothing, begin, effort.iterations, effort.gain))
             if found[-1].cost <= ABOVE_NOISE * run.size:
                 break
         return min(found, key=lambda optimum: optimum.cost)
 
-    pairs = list(zip(runs, z, strict=True))
-    best = list(executor.map(one, pairs)) if executor else [one(pair) for pair in pairs]
+    known = [[]] * len(runs) if z is None else [[start] for start in z]
+    best = list((executor.map if executor else map)(one, runs, known))
     return Fit(
         model,
         tuple(runs),
@@ -267,23 +275,3 @@ def _fit_starts(
         next((b.failed for b in best if b.failed), None),
         effort.tolerance,
     )
-
-
-def _places(problem: Problem, run: Run, start: FloatArray) -> list[FloatArray]:
-    """The best few starts of `run` that differ from `start` in the place in a gap or in whether a
-    joint is at rest, best first.
-    """
-    nothing, best = np.zeros(0), [start]
-    for index, unknown in enumerate(run.unknowns):
-        if unknown.places:
-            places = [_moved(best[0], index, v) for v in (best[0][index], *unknown.places)]
-            costs = [cost_of(problem, problem.evaluate(nothing, [p], False), [p]) for p in places]
-            best = [places[i] for i in np.argsort(costs, kind="stable")[:TRIED]]
-    return best
-
-
-def _moved(start: FloatArray, index: int, value: float) -> FloatArray:
-    """A copy of `start` with one entry changed."""
-    moved = start.copy()
-    moved[index] = value
-    return moved

@@ -11,7 +11,6 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.identify.constants import (
     ANYWHERE,
     FAR,
-    GAP_PLACES,
     LEAST_START,
     ROUNDING,
     START_SPAN,
@@ -30,8 +29,8 @@ class StartUnknown:
 
     `tangent` [n] is the derivative of the start by the unknown; a `contact` index says that the
     unknown is the place in that gap, from -1 (lower face) to 1 (upper face), and beyond where the
-    shaft is wound up. `sigma` is its prior. A search begins at `guess`, and may begin at other
-    `places` too: elsewhere in the gap, or at rest.
+    shaft is wound up; `column` is the measured angle of the joint behind it. `sigma` is its prior.
+    A search begins at `guess`, and may begin at other values `instead`: at rest, or turning back.
     """
 
     name: str
@@ -40,7 +39,8 @@ class StartUnknown:
     upper: float
     sigma: float
     contact: int | None = None
-    places: tuple[float, ...] = ()
+    column: int | None = None
+    instead: tuple[float, ...] = ()
     guess: float = 0.0
 
 
@@ -73,6 +73,17 @@ class Run:
     def guess(self) -> FloatArray:
         """Values of the unknowns at which a search begins."""
         return np.array([unknown.guess for unknown in self.unknowns])
+
+    @property
+    def guesses(self) -> list[FloatArray]:
+        """The guess, and the others at which a search may begin."""
+        starts = [self.guess]
+        for index, unknown in enumerate(self.unknowns):
+            for value in unknown.instead:
+                moved = self.guess
+                moved[index] = value
+                starts.append(moved)
+        return starts
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,8 +200,8 @@ def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
         if may_rest and _stays(run, column):
             continue
         start[[states.index(name) for name in rates]] = rate
-        places = (0.0, -rate) if may_rest and abs(rate) <= 3.0 * FAR * error else ()
-        unknowns.append(_unknown(states, rates[0], rates, ANYWHERE, error, places))
+        instead = (0.0, -rate) if may_rest and abs(rate) <= 3.0 * FAR * error else ()
+        unknowns.append(_unknown(states, rates[0], rates, ANYWHERE, error, instead))
     for contact, (gear, joint) in enumerate(model.module.CONTACT_ANGLES):
         tangent = np.zeros(len(states))
         tangent[gear] = 1.0
@@ -204,8 +215,8 @@ def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
                 reach,
                 reach,
                 contact,
-                GAP_PLACES,
-                float(np.sign(rate)),
+                run.signals.index(states[joint]) if states[joint] in run.signals else None,
+                guess=float(np.sign(rate)),
             )
         )
     return replace(run, start=start, unknowns=tuple(unknowns))
@@ -255,11 +266,11 @@ def _unknown(
     carried: list[str],
     limit: float,
     sigma: float,
-    places: tuple[float, ...] = (),
+    instead: tuple[float, ...] = (),
 ) -> StartUnknown:
     tangent = np.zeros(len(states))
     tangent[[states.index(c) for c in carried]] = 1.0
-    return StartUnknown(name, tangent, -limit, limit, sigma, None, places)
+    return StartUnknown(name, tangent, -limit, limit, sigma, instead=instead)
 
 
 def by_source(runs: Sequence[Run]) -> list[list[int]]:

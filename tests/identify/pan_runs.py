@@ -106,9 +106,14 @@ def unfree(names: dict[str, float]) -> dict[str, float]:
     return {name: value for name, value in KNOWN.items() if name not in names}
 
 
-def fitted(runs: tuple[Run, ...], free: tuple[FreeParameter, ...], fixed: dict[str, float]) -> Fit:
-    """Fit coarsely, then finely from there."""
-    first = fit_parameters(MODEL, runs, free, fixed, None, COARSE_STEPS)
+def fitted(
+    runs: tuple[Run, ...],
+    free: tuple[FreeParameter, ...],
+    fixed: dict[str, float],
+    z: list[Floats] | None = None,
+) -> Fit:
+    """Fit coarsely, from the starts `z` where they are given, then finely from there."""
+    first = fit_parameters(MODEL, runs, free, fixed, z, COARSE_STEPS)
     begin = tuple(
         free_parameter(f.name, first.values[f.name], f.lower, f.upper, None, f.tied) for f in free
     )

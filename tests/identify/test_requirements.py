@@ -128,12 +128,16 @@ def test_a_model_without_requirements_allows_everything() -> None:
     assert np.array_equal(allow(np.zeros(1), np.array([-9.0])), np.array([-9.0]))
 
 
-@pytest.mark.parametrize(("seed", "sliding", "static"), [(3, 0.17, 0.65), (1, 0.36, 0.36)])
+@pytest.mark.parametrize(
+    ("seed", "sliding", "static", "looked_for"),
+    [(3, 0.17, 0.65, False), (1, 0.36, 0.36, False), (3, 0.17, 0.65, True), (2, 0.36, 0.36, True)],
+)
 def test_a_machine_without_stribeck_effect_is_found_possible(
-    seed: int, sliding: float, static: float
+    seed: int, sliding: float, static: float, looked_for: bool
 ) -> None:
     """Breakaway and sliding friction are both 0.24 N m: the truth lies on the edge. The search
-    starts far inside, or on the edge elsewhere, and has to go along it.
+    starts far inside, or on the edge elsewhere, and has to go along it; the gear starts in the
+    middle of its gap, or where it is looked for.
     """
     truth = TRUTH | {"F_s_pan": 0.24}
     del truth["v_s_pan"]  # nothing depends on it
@@ -142,7 +146,8 @@ def test_a_machine_without_stribeck_effect_is_found_possible(
     by_name = {f.name: f for f in starts_off(truth, seed)}
     by_name["F_c_pan"] = free_parameter("F_c_pan", sliding, 0.0, 20.0)
     by_name["F_s_pan"] = free_parameter("F_s_pan", static, 0.0, 30.0)
-    fit = fitted(made.runs, tuple(by_name.values()), unfree(truth))
+    z = None if looked_for else [run.guess for run in made.runs]
+    fit = fitted(made.runs, tuple(by_name.values()), unfree(truth), z)
     assert fit.values["F_s_pan"] >= fit.values["F_c_pan"]
     MODEL.refuse_impossible(MODEL.parameter_vector(dict(fit.values)))
     assert fit.rms_counts() == pytest.approx(FLOOR, rel=0.15)
