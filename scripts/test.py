@@ -1,6 +1,8 @@
 """Set up `.venv` and run the tests: `python3 scripts/test.py [--long] [pytest arguments]`.
 
-`--long` runs the tests that take minutes, and only those. Needs Python 3.11+ and nothing else.
+One process per core runs them; `-n 0` keeps them in one, for a debugger. `--long` runs the tests
+that take minutes, and only those, one after the other: they use all cores themselves. Needs Python
+3.11+ and nothing else.
 """
 
 from __future__ import annotations
@@ -10,13 +12,15 @@ import sys
 
 from environment import CHECKOUT, PYTHON, prepare_environment
 
+SIDE_BY_SIDE = ["-n", "auto", "--dist", "worksteal"]
+
 
 def main(arguments: list[str]) -> int:
     """Run pytest with the arguments and return its exit code."""
-    marks = ["-m", "long"] if "--long" in arguments else []
+    way = ["-m", "long"] if "--long" in arguments else SIDE_BY_SIDE
     passed_on = [argument for argument in arguments if argument != "--long"]
     prepare_environment(extras=("dev", "test"))
-    command = [str(PYTHON), "-m", "pytest", *marks, *passed_on]
+    command = [str(PYTHON), "-m", "pytest", *way, *passed_on]
     return subprocess.run(command, cwd=CHECKOUT).returncode
 
 
