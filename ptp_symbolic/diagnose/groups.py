@@ -16,6 +16,7 @@ from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.gain import Gain, gain
 from ptp_symbolic.diagnose.linear import canonical_correlation, effect_of, outside, stacked
 from ptp_symbolic.diagnose.proposals import Proposals
+from ptp_symbolic.diagnose.refits import started_anew
 from ptp_symbolic.diagnose.responses import Columns, least, response_columns
 from ptp_symbolic.diagnose.search import Seeker
 from ptp_symbolic.diagnose.signatures import Signature
@@ -28,7 +29,6 @@ from ptp_symbolic.identify.constants import (
     NO_RIVAL,
     REACH,
     SIMILAR,
-    TRIED,
 )
 from ptp_symbolic.identify.coordinates import to_search, to_values
 from ptp_symbolic.identify.fit import Fit
@@ -56,18 +56,26 @@ class Similarity:
 def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> list[Rival]:
     """Sets as large as the chosen one, of which these logs do not prefer the chosen one clearly and
     materially, `others` among them. `fit` is its fit with derivatives that are not blind.
+
+    A few iterations tell which come near the chosen set. Where that leaves more than noise, a set
+    that it cannot be told from by its response is fitted to its end, however far it is till then.
     """
     task = seeker.task
     begun: list[Trial] = []
+    resembling: set[tuple[str, ...]] = set()
     for member in chosen.candidates:
         kept = tuple(c for c in chosen.candidates if c is not member)
-        alike = look_alikes(task, chosen, fit, member)[:TRIED]
-        begun += [fitted(task, (*kept, s.candidate), s.values, chosen.fit.z, 0, fit) for s in alike]
-        refitted_already = {s.candidate.key for s in alike}
-        for candidate in alike_along_motion(seeker.proposals, chosen, member)[:TRIED]:
-            if candidate.key in refitted_already:
-                continue
+        similar = look_alikes(task, chosen, fit, member)
+        begun += [
+            fitted(task, (*kept, s.candidate), s.values, chosen.fit.z, 0, fit) for s in similar
+        ]
+        along = alike_along_motion(seeker.proposals, chosen, member)
+        wanted = {c.key: c for c in (*(s.candidate for s in similar), *along)}
+        for candidate in wanted.values():
             begun += in_place(task, seeker.proposals, (*kept, candidate), chosen)
+        if not seeker.is_at_noise(chosen):
+            keys = {c.key for c in kept}
+            resembling |= {tuple(sorted({*keys, s.candidate.key})) for s in similar}
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
     trials = halving(task, begun, ((ITERATIONS, len(begun)),))
@@ -76,17 +84,30 @@ def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> 
         fresh = same_size and other.keys != chosen.keys and np.isfinite(other.fit.cost)
         if fresh and gain(chosen, other).share < MOST:
             trials.append(other)
-    result: dict[tuple[str, ...], Rival] = {}
-    near: dict[tuple[str, ...], Trial] = {}
+    best: dict[tuple[str, ...], Trial] = {}
     for trial in ranked(trials):
-        if gain(chosen, trial).share < NO_RIVAL:
-            near.setdefault(trial.keys, trial)
-    for trial in list(near.values())[:TRIED]:
-        refitted = seeker.polished(trial)
-        rival = Rival(refitted, gain(chosen, refitted))
-        if not (rival.gain.share >= MATERIAL and rival.gain.is_clear(len(near))):
-            result.setdefault(refitted.keys, rival)
-    return list(result.values())
+        best.setdefault(trial.keys, trial)
+    found = []
+    for trial in best.values():
+        if trial.keys in resembling:
+            found.append(started_anew(task, seeker.polished(trial), seeker.carried))
+        elif gain(chosen, trial).share < NO_RIVAL:
+            found.append(seeker.polished(trial))
+    compared = [Rival(trial, gain(chosen, trial)) for trial in found]
+    return [r for r in compared if not is_clearly_more(r.gain, len(compared))]
+
+
+def is_clearly_more(earned: Gain, tests: int) -> bool:
+    """Whether one set predicts materially better than another, clearly so over so many `tests`."""
+    return earned.share >= MATERIAL and earned.is_clear(tests)
+
+
+def overtaking(chosen: Trial, found: Sequence[Rival]) -> Trial | None:
+    """The best of the rivals that predict clearly and materially better than the chosen set; None
+    if none does.
+    """
+    better = [r.trial for r in found if is_clearly_more(gain(r.trial, chosen), len(found))]
+    return ranked(better)[0] if better else None
 
 
 def alike_along_motion(found: Proposals, chosen: Trial, member: Candidate) -> list[Candidate]:

@@ -14,7 +14,6 @@ from ptp_symbolic.diagnose.proposals import Proposals, declared_start
 from ptp_symbolic.diagnose.trial import (
     Task,
     Trial,
-    accuracy,
     continued,
     fitted,
     halving,
@@ -23,8 +22,8 @@ from ptp_symbolic.diagnose.trial import (
     ranked,
 )
 from ptp_symbolic.identify.constants import (
+    AT_BOUND,
     CYCLES,
-    GAIN,
     ITERATIONS,
     LAST_RUNG,
     NEARBY,
@@ -34,7 +33,8 @@ from ptp_symbolic.identify.constants import (
     STEP,
     WIDE_STEP,
 )
-from ptp_symbolic.identify.fit import Effort, fit_parameters
+from ptp_symbolic.identify.coordinates import limits, to_search
+from ptp_symbolic.identify.fit import Fit
 from ptp_symbolic.identify.gap_places import gears_in_place
 from ptp_symbolic.identify.windows import without_chaos
 
@@ -115,19 +115,51 @@ def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
 
 
 def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
-    """The trial fitted to its end: with derivatives where the motion is smooth, with finite
-    differences where friction makes it a staircase, in turn.
+    """The trial fitted to its end, and from there with starts of its runs that are looked for anew
+    where that end is near the floor.
     """
-    for _ in range(CYCLES):
-        trial = continued(task, trial, POLISH, executor=task.executor)
+    trial = _to_its_end(task, trial, carried)
+    near = bool(np.all(left_over(trial.fit) <= NEARBY))
+    return started_anew(task, trial, carried) if near else trial
+
+
+def started_anew(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+    """The trial, or a better end from elsewhere: with declared parameters that ended at a bound
+    back at their starts, and with starts of the runs looked for anew. A bound lets no step tell
+    what lies inside, and places in a gap that have followed the parameters keep these in place.
+    """
+    unsure = any(u.contact is not None or u.instead for run in task.train for u in run.unknowns)
+    if not unsure:
+        return trial
+    bound = at_bounds(trial.fit)
+    inside = {n: f.start for f in task.free if f.name in bound for n in f.names}
+    ways = [({**trial.values, **inside}, trial.fit.z)] if inside else []
+    for values, z in (*ways, (trial.values, None)):
         if leaves_white_noise(trial, carried):
             break
-        smooth = trial
-        trial = continued(task, unbiased(trial), POLISH, ROUGH, WIDE_STEP, task.executor)
+        again = fitted(task, trial.candidates, values, z, parent=trial.fit)
+        trial = ranked([trial, _to_its_end(task, again, carried)])[0]
+    return trial
+
+
+def at_bounds(fit: Fit) -> set[str]:
+    """The free parameters that ended where one step may reach a bound."""
+    phi, (lower, upper) = to_search(fit.free, fit.values), limits(fit.free)
+    near = np.minimum(phi - lower, upper - phi) <= AT_BOUND
+    return {f.name for f, ended in zip(fit.free, near, strict=True) if ended}
+
+
+def _to_its_end(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+    """The trial fitted with derivatives where the motion is smooth, with finite differences where
+    friction makes it a staircase, in turn.
+    """
+    for _ in range(CYCLES):
+        smooth = continued(task, trial, POLISH, executor=task.executor)
+        if leaves_white_noise(smooth, carried):
+            return smooth
+        trial = continued(task, unbiased(smooth), POLISH, ROUGH, WIDE_STEP, task.executor)
         if is_alike(trial, smooth):
-            stuck, trial = trial, started_anew(task, trial)
-            if is_alike(trial, stuck):
-                break
+            break
     return trial
 
 
@@ -137,21 +169,6 @@ def sharpened(task: Task, trial: Trial, carried: FloatArray) -> Trial:
         return trial
     trial = continued(task, trial, POLISH, SHARP, executor=task.executor)
     return continued(task, unbiased(trial), POLISH, SHARP, STEP, task.executor)
-
-
-def started_anew(task: Task, trial: Trial) -> Trial:
-    """A stuck trial fitted on from starts of its runs that are looked for anew: near the floor, a
-    place in a gap that is a little off holds the parameters where they are.
-    """
-    unsure = any(u.contact is not None or u.instead for run in task.train for u in run.unknowns)
-    if not unsure or np.any(left_over(trial.fit) > NEARBY):
-        return trial
-    effort = Effort(POLISH, GAIN * ROUGH, accuracy(task, ROUGH))
-    starts = fit_parameters(task.model, task.train, (), trial.values, None, effort, task.executor)
-    again = fitted(
-        task, trial.candidates, trial.values, starts.z, POLISH, trial.fit, executor=task.executor
-    )
-    return ranked([trial, again])[0]
 
 
 def expected_gain(trial: Trial, vanishing: Mapping[str, float]) -> float:

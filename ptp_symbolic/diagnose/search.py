@@ -158,8 +158,26 @@ class Seeker:
         smaller = fitted(self.task, kept, values, trial.fit.z, ITERATIONS, trial.fit, executor=run)
         if gain(trial, smaller).share < MOST:
             smaller = self.restarted(self.polished(smaller))
+        if ranked([smaller, self.declared])[0] is self.declared:
+            smaller = self.beside_declared(smaller)
         self.others.append(smaller)
         return smaller
+
+    def beside_declared(self, trial: Trial) -> Trial:
+        """A trial that fits worse than the declared model, which it contains: it is stuck, and is
+        begun anew beside that, its effects as they are or switched off.
+        """
+        own = {name: trial.values[name] for c in trial.candidates for name in c.names}
+        off = {
+            n: c.vanishing[f.name] for c in trial.candidates for f in c.defining for n in f.names
+        }
+        declared = self.declared
+        begun = [
+            fitted(self.task, trial.candidates, values, declared.fit.z, 0, declared.fit)
+            for values in (declared.values | own, declared.values | own | off)
+        ]
+        left = halving(self.task, begun, LAST_RUNG)
+        return ranked([trial, *(self.polished(t) for t in left)])[0]
 
     def step(self, trial: Trial, candidate: Candidate) -> Step:
         """What a candidate gains."""

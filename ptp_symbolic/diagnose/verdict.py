@@ -9,7 +9,7 @@ from ptp_symbolic.diagnose.confirm import answers_to_inputs, at_bound, why_uncon
 from ptp_symbolic.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.diagnose.floor import Floor, carried_noise, floor_of, leaves_noise_alone
 from ptp_symbolic.diagnose.gain import Gain, compared, gain
-from ptp_symbolic.diagnose.groups import Rival, confusable, rivals
+from ptp_symbolic.diagnose.groups import Rival, confusable, overtaking, rivals
 from ptp_symbolic.diagnose.refits import forms
 from ptp_symbolic.diagnose.search import Seeker
 from ptp_symbolic.diagnose.trial import Task, Trial, accuracy, huber, mean_squares, ranked
@@ -72,6 +72,14 @@ def decide(found: Search) -> Verdict:
     alike: list[Rival] = []
     while trial.candidates:
         alike = rivals(seeker, trial, (*found.others, *seeker.others), fit)
+        better = overtaking(trial, alike)
+        if better is not None:
+            seeker.others.append(trial)
+            trial, steps, fit = _confirmed(
+                seeker, *_shortened(seeker, seeker.restarted(better)), refused
+            )
+            alike = []
+            continue
         trial, steps, alike = _simplest(seeker, trial, steps, alike)
         floor = floor_of(task, trial, seeker.carried)
         step = doubtful(trial, steps, confusable(trial, alike), floor)
@@ -85,7 +93,7 @@ def decide(found: Search) -> Verdict:
     after = held_out_fit(task, trial) if trial.candidates else before
     held_out = held_out_gain(after, before) if trial.candidates else None
     closest = None if trial.candidates else _closest(found)
-    if held_out is not None and held_out.share < MATERIAL:
+    if held_out is not None and is_taken_back(held_out):
         for key in trial.keys:
             refused[key] = "takes away too little of the error of the validation runs"
         closest, trial, steps, after, held_out, alike = trial, found.declared, [], before, None, []
@@ -107,6 +115,11 @@ def decide(found: Search) -> Verdict:
         after,
         held_out,
     )
+
+
+def is_taken_back(held_out: Gain) -> bool:
+    """Whether the validation runs do not bear out what the training runs named."""
+    return held_out.share < MATERIAL
 
 
 def _confirmed(

@@ -20,6 +20,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from tests.benchmark.entry import Entry
+from tests.benchmark.scaled import apply
 from tests.benchmark.score import score
 from tests.benchmark.sets import generate
 
@@ -36,9 +37,11 @@ def make_missing(entry: Entry, folder: Path) -> bool:
     return True
 
 
-def diagnose_one(folder: Path, cores: Sequence[int]) -> None:
+def diagnose_one(folder: Path, cores: Sequence[int], scale: str | None = None) -> None:
     """In a process of its own: diagnose a set on `cores`, write diagnosis.json and usage.json."""
     os.sched_setaffinity(0, set(cores))
+    if scale is not None:
+        apply(scale)
     import resource
 
     from ptp_symbolic.diagnosis_run import diagnose_platform
@@ -83,13 +86,16 @@ def _watch(process: "subprocess.Popen[bytes]", deadline: float) -> tuple[bool, f
     return True, peak
 
 
-def run_one(entry: Entry, out: Path, cores: Sequence[int]) -> dict[str, Any]:
+def run_one(
+    entry: Entry, out: Path, cores: Sequence[int], scale: str | None = None
+) -> dict[str, Any]:
     """Make and diagnose a set, write its outcome.json and return it."""
     folder = out / entry.id
     make_missing(entry, folder)
     for stale in ("diagnosis.json", "usage.json"):
         (folder / stale).unlink(missing_ok=True)
     arguments = ["diagnose-one", "--out", str(folder), "--cores", ",".join(map(str, cores))]
+    arguments += [] if scale is None else ["--scale", scale]
     begun = time.monotonic()
     with (folder / "log.txt").open("wb") as log:
         process = subprocess.Popen(
@@ -138,7 +144,7 @@ def progress_bar() -> Progress:
     return Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True))
 
 
-def run_all(entries: Sequence[Entry], out: Path, jobs: int) -> None:
+def run_all(entries: Sequence[Entry], out: Path, jobs: int, scale: str | None = None) -> None:
     """Diagnose the entries without an outcome, `jobs` at a time; prints a line per set."""
     todo = [entry for entry in entries if not (out / entry.id / "outcome.json").exists()]
     cores = sorted(os.sched_getaffinity(0))
@@ -150,7 +156,7 @@ def run_all(entries: Sequence[Entry], out: Path, jobs: int) -> None:
     def work(entry: Entry) -> dict[str, Any]:
         share = shares.get()
         try:
-            return run_one(entry, out, share)
+            return run_one(entry, out, share, scale)
         finally:
             shares.put(share)
 

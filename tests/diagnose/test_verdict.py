@@ -16,6 +16,8 @@ from ptp_symbolic.diagnose.verdict import (
     UNEXPLAINED,
     UP_TO_GROUP,
     doubtful,
+    held_out_gain,
+    is_taken_back,
     word_of,
 )
 from tests.identify.straight import finished
@@ -91,3 +93,14 @@ def test_a_known_value_is_doubted_first(
     steps = [cast(Step, SimpleNamespace(candidate=candidate))]
     found = doubtful(trial, steps, {"value": group}, floor())
     assert found is (steps[0] if is_doubtful else None)
+
+
+@pytest.mark.parametrize(("left", "taken_back"), [(0.9, False), (0.97, True), (1.3, True)])
+def test_validation_runs_that_improve_by_less_than_a_tenth_take_a_name_back(
+    left: float, taken_back: bool
+) -> None:
+    """The share of the mean square: 19, 6 and -69 %."""
+    before, after = finished([2.0 * WAVE] * 4), finished([2.0 * left * WAVE] * 4)
+    earned = held_out_gain(after, before)
+    assert earned.share == pytest.approx(1.0 - left**2, rel=1e-9)
+    assert is_taken_back(earned) is taken_back

@@ -1,0 +1,52 @@
+"""Sections of chosen constants are scaled, with what follows from them, and nothing else is."""
+
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from tests.benchmark.scaled import scale_section, sections
+
+TABLE = """
+# Effort
+TRIED = 3  # 1; alternatives; scaled
+PROPOSED = 2 * TRIED  # sets; that rows propose; derived
+RUNG = ((4, 2),)  # iterations, sets; of halving; scaled
+SHARE = 0.25  # 1; of a step; scaled
+
+# Decisions
+ABOVE_NOISE = 1.1  # 1; rms over the floor; scaled
+LEVEL = 0.05  # 1; chance of a false alarm; stated level
+"""
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> ModuleType:
+    module = ModuleType("table")
+    module.__file__ = str(tmp_path / "table.py")
+    Path(module.__file__).write_text(TABLE)
+    exec(TABLE, module.__dict__)
+    return module
+
+
+def test_chosen_constants_by_section() -> None:
+    assert sections(TABLE) == {"effort": ["TRIED", "RUNG", "SHARE"], "decisions": ["ABOVE_NOISE"]}
+
+
+def test_a_section_is_scaled_with_what_follows_from_it(table: ModuleType) -> None:
+    scale_section(table, "effort", 2.0)
+    assert (table.TRIED, table.PROPOSED, table.RUNG, table.SHARE) == (6, 12, ((8, 4),), 0.5)
+    assert (table.ABOVE_NOISE, table.LEVEL) == (1.1, 0.05)
+
+
+def test_counts_stay_whole_and_ratios_above_one(table: ModuleType) -> None:
+    scale_section(table, "effort", 0.1)
+    assert (table.TRIED, table.PROPOSED, table.RUNG) == (1, 2, ((1, 1),))
+    scale_section(table, "decisions", 0.5)
+    assert table.TRIED == 3
+    assert table.ABOVE_NOISE == pytest.approx(1.05, rel=1e-12)
+
+
+def test_an_unknown_section_is_refused(table: ModuleType) -> None:
+    with pytest.raises(KeyError):
+        scale_section(table, "colours", 2.0)

@@ -1,0 +1,45 @@
+"""When a set that resembles the chosen one takes its place."""
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.diagnose.gain import gain
+from ptp_symbolic.diagnose.groups import Rival, overtaking
+from ptp_symbolic.diagnose.trial import Trial
+from tests.identify.straight import finished
+
+NOISE = np.random.default_rng(3).normal(size=(4, 600))
+
+
+def trial(size: float) -> Trial:
+    """A trial that leaves `size` times the same noise in four runs."""
+    return Trial((), finished([size * noise for noise in NOISE]))
+
+
+def overtaken_by(*sizes: float) -> Trial | None:
+    chosen = trial(1.0)
+    others = [trial(size) for size in sizes]
+    return overtaking(chosen, [Rival(other, gain(chosen, other)) for other in others])
+
+
+@pytest.mark.parametrize("size", [1.4, 1.0, 0.96])
+def test_what_predicts_no_better_than_by_a_tenth_takes_no_place(size: float) -> None:
+    """0.96 squared leaves 92 % of the loss."""
+    assert overtaken_by(size) is None
+
+
+def test_the_best_of_those_that_predict_better_takes_the_place() -> None:
+    found = overtaken_by(0.9, 0.5, 0.7)
+    assert found is not None
+    assert found.fit.cost == trial(0.5).fit.cost
+
+
+@pytest.mark.parametrize(("rivals", "is_clear"), [(1, True), (20, False)])
+def test_among_many_rivals_a_gain_must_be_clearer(rivals: int, is_clear: bool) -> None:
+    """Half of one run in four improves to nothing: 1.75 standard errors, p = 0.048."""
+    chosen = trial(1.0)
+    residuals = [noise.copy() for noise in NOISE]
+    residuals[2][:300] = 0.0
+    other = Trial((), finished(residuals))
+    found = overtaking(chosen, [Rival(other, gain(chosen, other))] * rivals)
+    assert found is (other if is_clear else None)
