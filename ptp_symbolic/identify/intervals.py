@@ -1,8 +1,9 @@
 """Confidence intervals that allow for residuals correlated in time.
 
-The residuals of a simulation error fit are never white: the covariance is that of a jackknife over
-blocks of time, as long as the residual's own correlation asks for, the unknown starts projected
-out. It never gets smaller than that of white noise of the declared size.
+The residuals of a simulation error fit are never white: what the noise of an input leaves in an
+angle may last for a whole run. The covariance is that of a jackknife over a few long blocks of
+time, the unknown starts projected out. Intervals never get narrower than those of white noise of
+the declared size.
 """
 
 from dataclasses import dataclass
@@ -12,10 +13,10 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from ptp_symbolic.identify.blocks import (
-    block_labels,
     block_length,
     jackknife_covariance,
     leave_blocks_out,
+    long_blocks,
 )
 from ptp_symbolic.identify.constants import NOTHING, SAME, UNIDENTIFIED, WIDEST
 from ptp_symbolic.identify.coordinates import FreeParameter, slopes, to_search, wrapped
@@ -94,15 +95,16 @@ def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
     columns = np.vstack([project_out(e.by_parameter, e.by_start) for e in fit.evaluations])
     sums = [r.reshape(-1, signals).sum(axis=1) for r in residuals]
     series = [np.concatenate([sums[k] for k in group]) for group in by_source(fit.runs)]
-    labels = block_labels([len(s) for s in series], block_length(series))
-    residual, label = np.concatenate(residuals), np.repeat(np.concatenate(labels), signals)
+    label = long_blocks([len(s) for s in series], block_length(series), columns, signals)
+    residual = np.concatenate(residuals)
     inverse, lost = _inverse(columns.T @ columns)
     white = inverse * max(1.0, float(np.mean(residual**2)))
     shifts = leave_blocks_out(residual, columns, label).shifts
-    robust = jackknife_covariance(shifts)
-    larger = np.maximum(np.diag(robust), np.diag(white))
-    scale = np.sqrt(larger / np.maximum(np.diag(robust), 1e-300))
-    return robust * np.outer(scale, scale), degrees_of_freedom(shifts), lost
+    robust, degrees = jackknife_covariance(shifts), degrees_of_freedom(shifts)
+    spread = np.maximum(np.diag(robust), 1e-300)
+    wider = np.diag(white) * stats.norm.ppf(0.975) ** 2 > spread * stats.t.ppf(0.975, degrees) ** 2
+    scale = np.where(wider, np.sqrt(np.diag(white) / spread), 1.0)
+    return robust * np.outer(scale, scale), np.where(wider, np.inf, degrees), lost
 
 
 def degrees_of_freedom(shifts: FloatArray) -> FloatArray:

@@ -12,6 +12,7 @@ from ptp_symbolic.identify.blocks import (
     bootstrap_share,
     jackknife_covariance,
     leave_blocks_out,
+    long_blocks,
     without_outliers,
 )
 from ptp_symbolic.identify.constants import FEWEST_BLOCKS, MOST_BLOCKS
@@ -169,3 +170,29 @@ def test_a_block_far_worse_than_usual_does_not_carry_a_fit_away() -> None:
         _, _, step = without_outliers(measured - slope * column, -column[:, None], label, 1)
         assert slope - 2.0 >= least - 4.0 * error
         assert abs(slope + step[0] - 2.0) <= max(4.0 * error, most * abs(slope - 2.0))
+
+
+def test_blocks_are_as_few_as_a_students_interval_allows() -> None:
+    column = np.sin(0.3 * np.arange(1200))[:, None]
+    label = long_blocks([600, 600], 5.0, column, 1)
+    assert label.tolist() == np.repeat(np.arange(FEWEST_BLOCKS), 1200 // FEWEST_BLOCKS).tolist()
+    both = long_blocks([600, 600], 5.0, np.repeat(column, 2, axis=0), 2)
+    assert both.tolist() == np.repeat(label, 2).tolist()
+
+
+def test_no_block_holds_nearly_all_that_is_known_of_a_direction() -> None:
+    """The second column is seen during 80 samples that lie within a block of 100, or during 40 that
+    lie within one of 50.
+    """
+    columns = np.column_stack([np.ones(1200), np.zeros(1200)])
+    columns[505:585, 1] = 1.0
+    label = long_blocks([1200], 5.0, columns, 1)
+    assert label.max() + 1 == 2 * FEWEST_BLOCKS
+    columns[545:585, 1] = 0.0
+    assert long_blocks([1200], 5.0, columns, 1).max() + 1 == 4 * FEWEST_BLOCKS
+
+
+def test_blocks_end_at_the_length_that_the_correlation_asks_for() -> None:
+    columns = np.column_stack([np.ones(1200), np.zeros(1200)])
+    columns[505, 1] = 1.0
+    assert long_blocks([1200], 40.0, columns, 1).max() + 1 == 30
