@@ -22,8 +22,8 @@ from ptp_symbolic.diagnose.trial import (
     ranked,
 )
 from ptp_symbolic.identify.constants import (
-    AT_BOUND,
     CYCLES,
+    FAR_OFF,
     ITERATIONS,
     LAST_RUNG,
     NEARBY,
@@ -33,8 +33,7 @@ from ptp_symbolic.identify.constants import (
     STEP,
     WIDE_STEP,
 )
-from ptp_symbolic.identify.coordinates import limits, to_search
-from ptp_symbolic.identify.fit import Fit
+from ptp_symbolic.identify.coordinates import FreeParameter
 from ptp_symbolic.identify.gap_places import gears_in_place
 from ptp_symbolic.identify.windows import without_chaos
 
@@ -46,10 +45,24 @@ def fit_declared(task: Task, proposals: Proposals) -> Trial:
     and from those two themselves.
     """
     starts = [proposals.start, declared_start(task)]
-    begun = over_windows(task, (), starts, task.executor)
+    spread = far_starts(task, proposals.start) if has_rough_starts(task) else []
+    begun = over_windows(task, (), [*starts, *spread], task.executor)
     begun += [fitted(task, (), values, None) for values in starts]
     best = halving(task, begun, LAST_RUNG) or begun[-1:]
     return polished(task, best[0], carried_noise(task, best[0].fit))
+
+
+def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]]:
+    """`values` with one declared parameter after the other as far from its start as that may be
+    off: rows tell an inertia behind a gear by its share in the whole alone, and fits that begin
+    with a gap and too little of it end with none.
+    """
+    return [
+        {**values, **dict.fromkeys(f.names, _inside(f, factor * f.start))}
+        for f in task.free
+        for factor in (FAR_OFF, 1.0 / FAR_OFF)
+        if f.start > 0.0
+    ]
 
 
 def refitted_without_chaos(task: Task, declared: Trial) -> tuple[Task, Trial]:
@@ -115,38 +128,50 @@ def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
 
 
 def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
-    """The trial fitted to its end, and from there with starts of its runs that are looked for anew
-    where that end is near the floor.
-    """
+    """The trial fitted to its end, and begun anew where that is near the floor."""
     trial = _to_its_end(task, trial, carried)
-    near = bool(np.all(left_over(trial.fit) <= NEARBY))
-    return started_anew(task, trial, carried) if near else trial
+    return started_anew(task, trial, carried) if _is_near_floor(trial) else trial
+
+
+def _is_near_floor(trial: Trial) -> bool:
+    return bool(np.all(left_over(trial.fit) <= NEARBY))
 
 
 def started_anew(task: Task, trial: Trial, carried: FloatArray) -> Trial:
-    """The trial, or a better end from elsewhere: with declared parameters that ended at a bound
-    back at their starts, and with starts of the runs looked for anew. A bound lets no step tell
-    what lies inside, and places in a gap that have followed the parameters keep these in place.
+    """The trial, or a better end from elsewhere: with starts of the runs looked for anew, and with
+    declared parameters that have strayed back at their starts or as far off as a start may be.
+
+    Places in a gap that have followed the parameters keep these in place, and a parameter that the
+    others' errors drove to where it does nothing has no derivative that leads back.
     """
-    unsure = any(u.contact is not None or u.instead for run in task.train for u in run.unknowns)
-    if not unsure:
+    if leaves_white_noise(trial, carried) or not has_rough_starts(task):
         return trial
-    bound = at_bounds(trial.fit)
-    inside = {n: f.start for f in task.free if f.name in bound for n in f.names}
-    ways = [({**trial.values, **inside}, trial.fit.z)] if inside else []
-    for values, z in (*ways, (trial.values, None)):
-        if leaves_white_noise(trial, carried):
-            break
-        again = fitted(task, trial.candidates, values, z, parent=trial.fit)
-        trial = ranked([trial, _to_its_end(task, again, carried)])[0]
-    return trial
+    begun = [fitted(task, trial.candidates, trial.values, None, parent=trial.fit)]
+    strayed = strayed_from_start(task, trial.values)
+    for factor in (1.0, FAR_OFF, 1.0 / FAR_OFF) if strayed else ():
+        back = {n: _inside(f, factor * f.start) for f in strayed for n in f.names}
+        values = trial.values | back
+        begun.append(fitted(task, trial.candidates, values, trial.fit.z, parent=trial.fit))
+    left = halving(task, begun, LAST_RUNG)
+    return ranked([trial, *(_to_its_end(task, t, carried) for t in left)])[0]
 
 
-def at_bounds(fit: Fit) -> set[str]:
-    """The free parameters that ended where one step may reach a bound."""
-    phi, (lower, upper) = to_search(fit.free, fit.values), limits(fit.free)
-    near = np.minimum(phi - lower, upper - phi) <= AT_BOUND
-    return {f.name for f, ended in zip(fit.free, near, strict=True) if ended}
+def has_rough_starts(task: Task) -> bool:
+    """Whether runs may begin at several places, in a gap or at rest: the misfit is rough then."""
+    return any(u.contact is not None or u.instead for run in task.train for u in run.unknowns)
+
+
+def strayed_from_start(task: Task, values: Mapping[str, float]) -> list[FreeParameter]:
+    """Declared parameters further from where they started than a start may be off."""
+    return [
+        f
+        for f in task.free
+        if f.start > 0.0 and not f.start / FAR_OFF <= values[f.name] <= FAR_OFF * f.start
+    ]
+
+
+def _inside(free: FreeParameter, value: float) -> float:
+    return float(np.clip(value, free.lower, free.upper))
 
 
 def _to_its_end(task: Task, trial: Trial, carried: FloatArray) -> Trial:

@@ -12,6 +12,7 @@ from ptp_symbolic.diagnose.candidates import Candidate
 from ptp_symbolic.diagnose.findings import Search, Step, is_earned, step_of
 from ptp_symbolic.diagnose.floor import carried_noise, leaves_white_noise
 from ptp_symbolic.diagnose.gain import Gain, gain, p_value
+from ptp_symbolic.diagnose.nested import beside_declared, declared_from
 from ptp_symbolic.diagnose.proposals import (
     Proposals,
     propose,
@@ -76,7 +77,9 @@ class Seeker:
         self.others: list[Trial] = []
 
     def search(self) -> Search:
-        """Propose, refit, complete, prune, grow, simplify."""
+        """Propose, refit, complete, prune, grow, simplify; from the beginning where the chosen set
+        leads the declared model to a better place.
+        """
         task, best = self.task, self.declared
         if self.proposals.asked_for or not self.is_at_noise(best):
             sets = started(task, self.declared, self.proposals)
@@ -100,6 +103,11 @@ class Seeker:
         if other is not None:
             self.others.append(best)
             best, steps = self.pruned(other)
+        if best.candidates:
+            again = declared_from(task, best, self.declared, self.carried)
+            if again is not None:
+                self.declared, self.others = again, []
+                return self.search()
         best = self.sharpened(self.simplified(best))
         without = {s.candidate.key: s.without for s in steps}
         members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
@@ -159,25 +167,9 @@ class Seeker:
         if gain(trial, smaller).share < MOST:
             smaller = self.restarted(self.polished(smaller))
         if ranked([smaller, self.declared])[0] is self.declared:
-            smaller = self.beside_declared(smaller)
+            smaller = beside_declared(self.task, smaller, self.declared, self.carried)
         self.others.append(smaller)
         return smaller
-
-    def beside_declared(self, trial: Trial) -> Trial:
-        """A trial that fits worse than the declared model, which it contains: it is stuck, and is
-        begun anew beside that, its effects as they are or switched off.
-        """
-        own = {name: trial.values[name] for c in trial.candidates for name in c.names}
-        off = {
-            n: c.vanishing[f.name] for c in trial.candidates for f in c.defining for n in f.names
-        }
-        declared = self.declared
-        begun = [
-            fitted(self.task, trial.candidates, values, declared.fit.z, 0, declared.fit)
-            for values in (declared.values | own, declared.values | own | off)
-        ]
-        left = halving(self.task, begun, LAST_RUNG)
-        return ranked([trial, *(self.polished(t) for t in left)])[0]
 
     def step(self, trial: Trial, candidate: Candidate) -> Step:
         """What a candidate gains."""
@@ -192,20 +184,24 @@ class Seeker:
         return is_earned(earned, p, len(self.task.candidates))
 
     def pruned(self, trial: Trial) -> tuple[Trial, list[Step]]:
-        """Take out what seems to gain least until all that is left is needed, with its gains. A set
-        that gains little over the declared model holds no candidate that gains more.
+        """Take out candidates until all that is left is needed, with its gains: of those that are
+        not needed the one without which the rest fits best, for two that act alike can each be
+        done without while the other is there. Those are refitted first that seem to gain little. A
+        set that gains little over the declared model holds no candidate that gains more.
         """
         while trial.candidates:
             if gain(trial, self.declared).share < MATERIAL:
                 return self.declared, []
-            steps = []
+            steps: list[Step] = []
             expected = {c.key: expected_gain(trial, c.vanishing) for c in trial.candidates}
-            for candidate in sorted(trial.candidates, key=lambda c: expected[c.key]):
-                step = self.step(trial, candidate)
-                if not self.is_needed(step):
-                    trial = step.without
+            little = [c for c in trial.candidates if expected[c.key] < MOST]
+            for part in (little, [c for c in trial.candidates if c not in little]):
+                fresh = [self.step(trial, candidate) for candidate in part]
+                unneeded = [step.without for step in fresh if not self.is_needed(step)]
+                steps += fresh
+                if unneeded:
+                    trial = ranked(unneeded)[0]
                     break
-                steps.append(step)
             else:
                 return trial, steps
         return trial, []

@@ -44,7 +44,7 @@ def test_counts_stay_whole_and_ratios_above_one(table: ModuleType) -> None:
     assert (table.TRIED, table.PROPOSED, table.RUNG) == (1, 2, ((1, 1),))
     scale_section(table, "decisions", 0.5)
     assert table.TRIED == 3
-    assert table.ABOVE_NOISE == pytest.approx(1.05, rel=1e-12)
+    assert pytest.approx(1.05, rel=1e-12) == table.ABOVE_NOISE
 
 
 def test_an_unknown_section_is_refused(table: ModuleType) -> None:

@@ -1,4 +1,4 @@
-"""Fits that are stuck: off a bound, and off places in a gap that have followed the parameters."""
+"""Fits that are stuck: parameters that strayed, places in a gap that have followed them."""
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.diagnose.floor import leaves_white_noise
-from ptp_symbolic.diagnose.refits import at_bounds, started_anew
+from ptp_symbolic.diagnose.refits import started_anew, strayed_from_start
 from ptp_symbolic.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.identify.coordinates import free_parameter
 from tests.identify.pan_runs import COUNT, FLOOR, KNOWN, MODEL, THREE, TRUTH, make_runs
-from tests.identify.straight import finished
 from tests.independent.pan_drive import PanDrive
 
 FREE = (
     free_parameter("J_pan", 0.05, 1e-3, 2.0),
     free_parameter("d_shaft_pan", 1.0, 0.0, 100.0),
 )
+NAMES = tuple(f.name for f in FREE)
 NOTHING_CARRIED = np.zeros(2)
 
 
@@ -33,21 +33,24 @@ def task() -> Iterator[Task]:
         )  # fmt: skip
 
 
-def test_parameters_at_bounds_are_told_from_others() -> None:
-    """Within a tenth of the start, or of the value where that is searched by its logarithm."""
-    values = {"J_pan": 1.05e-3, "d_shaft_pan": 0.2}
-    fit = finished([np.ones(9)], [np.ones((9, 2))], None, FREE, values)
-    assert at_bounds(fit) == {"J_pan"}
-    fit = finished([np.ones(9)], [np.ones((9, 2))], None, FREE, {"J_pan": 1.2e-3, "d_shaft_pan": 0})
-    assert at_bounds(fit) == {"d_shaft_pan"}
+@pytest.mark.parametrize(
+    ("inertia", "damping", "expected"),
+    [(0.05, 1.0, []), (0.19, 0.26, []), (0.21, 0.26, ["J_pan"]), (0.012, 0.0, [*NAMES])],
+)
+def test_parameters_further_off_than_a_start_may_be_have_strayed(
+    task: Task, inertia: float, damping: float, expected: list[str]
+) -> None:
+    """Four times either way: 0.0125 to 0.2 kg m^2 and 0.25 to 4 N m s/rad."""
+    found = strayed_from_start(task, {"J_pan": inertia, "d_shaft_pan": damping})
+    assert [f.name for f in found] == expected
 
 
-def test_a_fit_that_ended_at_bounds_is_led_away_from_them(task: Task) -> None:
+def test_a_fit_whose_parameters_strayed_is_led_back(task: Task) -> None:
     stuck = fitted(task, (), {**task.fixed, "J_pan": 1e-3, "d_shaft_pan": 0.0}, None)
     assert not leaves_white_noise(stuck, NOTHING_CARRIED)
     found = started_anew(task, stuck, NOTHING_CARRIED)
     assert leaves_white_noise(found, NOTHING_CARRIED)
-    for name in ("J_pan", "d_shaft_pan"):
+    for name in NAMES:
         assert found.values[name] == pytest.approx(TRUTH[name], rel=0.1)
 
 

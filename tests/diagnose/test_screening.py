@@ -6,7 +6,6 @@ matrix exponential. The platform declares the damper alone.
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
 import pytest
