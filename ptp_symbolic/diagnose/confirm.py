@@ -12,6 +12,7 @@ from ptp_symbolic.identify.blocks import leave_blocks_out, without_outliers
 from ptp_symbolic.identify.constants import ELSEWHERE, MOST, NEAR_BOUND, SHARP
 from ptp_symbolic.identify.evaluate import evaluate
 from ptp_symbolic.identify.fit import Fit
+from ptp_symbolic.identify.intervals import estimates
 from ptp_symbolic.simulation.inputs import stack, table
 
 FloatArray = NDArray[np.float64]
@@ -24,10 +25,20 @@ def why_unconfirmed(task: Task, trial: Trial, fit: Fit, candidate: Candidate) ->
     bound = at_bound(fit, candidate)
     if bound is not None:
         return f"{bound} ends at its bound"
+    if not is_amount_known(fit, candidate):
+        return "its amount cannot be told from zero"
     run = unstable_without(fit, candidate)
     if run is not None:
         return f"its value does not hold when {run} is left out"
     return None
+
+
+def is_amount_known(fit: Fit, candidate: Candidate) -> bool:
+    """Whether the interval of any parameter that switches the candidate on is narrower than its
+    value: a set may need an effect that only makes up for others.
+    """
+    own = {f.name for f in candidate.defining}
+    return any(e.identified for e in estimates(fit) if e.name in own)
 
 
 def at_bound(fit: Fit, candidate: Candidate) -> str | None:

@@ -2,8 +2,9 @@
 
 One line each, in this form: value  # unit; quantity; source. A source is a derivation (from
 rounding, from a distribution, from the definition of the quantity), a requirement of the diagnosis
-that its report states, or "chosen": then nothing better than the benchmark speaks for it. Decisions
-and statistics come first, then robustness, effort, windows and rows, numerics.
+that its report states, or "scaled": then nothing better than the benchmark speaks for it, and
+`python -m tests.benchmark run --scale SECTION=FACTOR` shows what hangs on those of a section.
+Decisions and statistics come first, then robustness, effort, windows and rows, numerics.
 """
 
 import numpy as np
@@ -81,7 +82,7 @@ LARGEST_GAP = 0.34  # half widths; without a sample: a mean curvature is off by 
 PARTS = 2  # 1; of a sample in which states are integrated along the motion; scaled
 LATE_PARTS = 2 * PARTS  # 1; the same where inputs are late and change within a sample; derived
 CALM = 5e-3  # 1; noise of an averaged acceleration over what accelerates; scaled
-FAR_OFF = 4.0  # 1; factor by which a start may be off when rows are chosen; scaled
+FAR_OFF = 4.0  # 1; factor by which the start of a declared parameter may be off; scaled
 CYCLES_APART = 0.2  # 1/range; step of a frequency scan: a line between is dimmed by 3 %; derived
 LEAST_CYCLES = 3.0  # 1/range; slower waves with harmonics fit any slow change; scaled
 BINS_PER_CYCLE = 4.0  # 1; of the highest frequency of a scan: a bin dims it by 10 %; derived

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.confirm import at_bound, unstable_without
+from ptp_symbolic.diagnose.confirm import at_bound, is_amount_known, unstable_without
 from ptp_symbolic.diagnose.findings import is_earned
 from ptp_symbolic.diagnose.gain import Gain, p_value
 from ptp_symbolic.diagnose.trial import Trial
@@ -45,6 +45,15 @@ def test_an_effect_that_one_run_asks_for_and_others_deny_does_not_hold() -> None
 def test_an_effect_that_one_run_alone_can_show_is_let_be() -> None:
     columns = [0.0 * w for w in waves(3)] + waves(1)
     assert unstable_without(fit_of(columns, [0.0, 0.0, 0.0, 1.0]), EFFECT) is None
+
+
+@pytest.mark.parametrize(("stiffness", "is_known"), [(0.01, False), (1.0, True)])
+def test_an_effect_needs_an_amount_that_can_be_told_from_zero(
+    stiffness: float, is_known: bool
+) -> None:
+    """The fit is good to 1 / sqrt(600) = 0.04 under noise of one."""
+    fit = fit_of(waves(4), [stiffness] * 4, 1.0)
+    assert is_amount_known(fit, EFFECT) is is_known
 
 
 @pytest.mark.parametrize(("value", "named"), [(4.9999, "k"), (-5.0, "k"), (0.0, None), (2.0, None)])
