@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.diagnose.floor import leaves_white_noise
+from ptp_symbolic.diagnose.nested import beside_declared, declared_from
 from ptp_symbolic.diagnose.refits import started_anew, strayed_from_start
 from ptp_symbolic.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.identify.coordinates import free_parameter
@@ -58,3 +59,18 @@ def test_a_trial_that_leaves_noise_alone_stays(task: Task) -> None:
     at_truth: Trial = fitted(task, (), task.fixed, None, 12)
     assert leaves_white_noise(at_truth, NOTHING_CARRIED)
     assert started_anew(task, at_truth, NOTHING_CARRIED) is at_truth
+
+
+def test_a_declared_model_that_was_stuck_goes_where_a_set_leads_it(task: Task) -> None:
+    stuck = fitted(task, (), {**task.fixed, "J_pan": 1e-3, "d_shaft_pan": 0.0}, None)
+    elsewhere = fitted(task, (), {**task.fixed, "J_pan": 0.08, "d_shaft_pan": 1.2}, None)
+    found = declared_from(task, elsewhere, stuck, NOTHING_CARRIED)
+    assert found is not None and leaves_white_noise(found, NOTHING_CARRIED)
+    assert declared_from(task, stuck, found, NOTHING_CARRIED) is None
+
+
+def test_a_set_that_is_stuck_goes_where_the_declared_model_leads_it(task: Task) -> None:
+    stuck = fitted(task, (), {**task.fixed, "J_pan": 1e-3, "d_shaft_pan": 0.0}, None)
+    declared = fitted(task, (), task.fixed, None, 12)
+    found = beside_declared(task, stuck, declared, NOTHING_CARRIED)
+    assert leaves_white_noise(found, NOTHING_CARRIED)
