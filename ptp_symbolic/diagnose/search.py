@@ -89,20 +89,12 @@ class Seeker:
             found += halving(task, unseen, LAST_RUNG)
             found = [t for t in ranked(found) if is_near(t, found)]
             best = self.restarted(ranked([best, *(self.completed(t) for t in found)])[0])
-        best, steps = self.pruned(best)
-        for _ in range(LARGEST):
-            grown = self.grown(best)
-            if grown is None:
-                break
-            self.others.append(best)
-            pruned, fewer = self.pruned(self.restarted(self.completed(grown)))
-            if pruned.keys == best.keys:
-                break
-            best, steps = pruned, fewer
+        best, steps = self.extended(*self.pruned(best))
         other = self.exchanged(best)
         if other is not None:
             self.others.append(best)
             best, steps = self.pruned(other)
+        best, steps = self.by_effects_alone(best, steps)
         if best.candidates:
             again = declared_from(task, best, self.declared, self.carried)
             if again is not None:
@@ -113,6 +105,46 @@ class Seeker:
         members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
         others = tuple(self.others)
         return Search(task, self.declared, best, members, others, self.proposals, self.carried)
+
+    def extended(self, best: Trial, steps: list[Step]) -> tuple[Trial, list[Step]]:
+        """A pruned trial with one candidate more as long as one is needed; and the `steps` of its
+        candidates.
+        """
+        for _ in range(LARGEST):
+            grown = self.grown(best)
+            if grown is None:
+                break
+            self.others.append(best)
+            pruned, fewer = self.pruned(self.restarted(self.completed(grown)))
+            if pruned.keys == best.keys:
+                break
+            best, steps = pruned, fewer
+        return best, steps
+
+    def by_effects_alone(self, best: Trial, steps: list[Step]) -> tuple[Trial, list[Step]]:
+        """The trial, or what forward selection from the declared model makes of effects alone, if
+        that fits better, or leaves only noise too with no more parameters.
+
+        Declared values are known, and a few of them changed together imitate much: they scale all
+        torques of an axis that is driven by a voltage. A single one that leaves only noise is not
+        doubted here.
+        """
+        quiet = self.is_at_noise(best)
+        known = [c for c in best.candidates if c.is_declared_value]
+        if quiet and (not known or len(best.candidates) == 1):
+            return best, steps
+        effects = tuple(c for c in self.task.candidates if not c.is_declared_value)
+        seeker = Seeker(
+            replace(self.task, candidates=effects), self.declared, self.proposals, self.carried
+        )
+        seeker.others = self.others
+        other, fewer = seeker.extended(self.declared, [])
+        no_larger = self.is_at_noise(other) and len(other.fit.free) <= len(best.fit.free)
+        if ranked([best, other])[0] is best and not (quiet and no_larger):
+            self.others.append(other)
+            return best, steps
+        self.others.append(best)
+        return other, fewer
 
     def unseen(self, trial: Trial) -> list[Trial]:
         """The trial with each candidate that the rows cannot show, begun at its response in the
