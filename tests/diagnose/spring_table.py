@@ -1,0 +1,101 @@
+"""Logs whose motion is known in closed form, and the task to find what their platform lacks.
+
+A body on a spring and a damper under a torque that is held from sample to sample: its motion is a
+matrix exponential. The platform declares the damper, and a payload of known mass, alone.
+"""
+
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+from scipy.linalg import expm
+
+from ptp_symbolic import loop
+from ptp_symbolic.data import Log
+from ptp_symbolic.diagnose.preparation import task_of
+from ptp_symbolic.diagnose.trial import Task
+from ptp_symbolic.diagnosis_run import effect_keys
+from ptp_symbolic.identify.run import prepare_runs
+from ptp_symbolic.platform import read_platform
+
+INERTIA, DAMPING, STIFFNESS = 0.05, 0.1, 0.8  # kg m^2, N m s/rad, N m/rad
+PAYLOAD = 2.0 * 0.1**2  # kg m^2, of the inertia
+PERIOD, SAMPLES = 0.01, 600
+COUNT = 2.0 * np.pi / 65536
+PLATFORM = """[platform]
+name = "table"
+title = "A turntable"
+axes = ["pan"]
+[[effects]]
+effect = "rigid_bodies"
+[[effects]]
+effect = "payload"
+[[effects]]
+effect = "viscous_friction"
+axis = "pan"
+[parameters.J_pan]
+start = 0.06
+unit = "kg m^2"
+bounds = [0.001, 1.0]
+[parameters.b_pan]
+start = 0.15
+unit = "N m s/rad"
+bounds = [0.0, 10.0]
+[parameters.m_payload]
+value = 2.0
+unit = "kg"
+[parameters.c_x_payload]
+value = 0.1
+unit = "m"
+[parameters.c_y_payload]
+value = 0.0
+unit = "m"
+[parameters.J_z_payload]
+value = 0.0
+unit = "kg m^2"
+[signals.tau_pan]
+role = "input"
+column = "torque"
+unit = "N m"
+[signals.theta_pan]
+role = "output"
+column = "angle"
+unit = "rad"
+counts_per_revolution = 65536
+"""
+
+
+def log(seed: int) -> Log:
+    """Six seconds under a torque that changes every half second."""
+    rng = np.random.default_rng(seed)
+    torque = np.repeat(rng.uniform(-0.5, 0.5, SAMPLES // 50), 50)
+    flow = np.zeros((3, 3))
+    flow[0, 1], flow[1] = 1.0, [-STIFFNESS / INERTIA, -DAMPING / INERTIA, 1.0 / INERTIA]
+    step = expm(PERIOD * flow)
+    state, angle = np.zeros(2), np.zeros(SAMPLES)
+    for k in range(SAMPLES - 1):
+        state = (step @ [*state, torque[k]])[:2]
+        angle[k + 1] = state[0]
+    reading = np.rint(angle / COUNT) * COUNT
+    return Log(f"run_{seed}", PERIOD * np.arange(SAMPLES), torque[:, None], reading[:, None])
+
+
+@contextmanager
+def spring_table(folder: Path) -> Iterator[Task]:
+    """The task, its platform written to `folder`."""
+    path = folder / "table.toml"
+    path.write_text(PLATFORM)
+    platform = read_platform(path)
+    model = loop.emit(loop.with_candidates(platform))
+    train, validate = (
+        prepare_runs(model, platform, [log(seed) for seed in seeds]) for seeds in ((1, 2), (3,))
+    )
+    free, known = loop.free_parameters(platform, model), loop.known_values(platform, model)
+    noises = {signal.signal: signal.noise for signal in platform.signals}
+    with ThreadPoolExecutor(2) as executor:
+        yield task_of(
+            model, train, validate, free, known, effect_keys(platform), noises, executor,
+            lambda text: None,
+        )  # fmt: skip

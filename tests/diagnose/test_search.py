@@ -1,0 +1,59 @@
+"""The second road of the search: effects alone, where declared values were changed or more than
+noise is left; on logs whose motion is known in closed form.
+"""
+
+from collections.abc import Iterator
+
+import pytest
+
+from ptp_symbolic.diagnose.floor import carried_noise
+from ptp_symbolic.diagnose.proposals import propose
+from ptp_symbolic.diagnose.refits import fit_declared
+from ptp_symbolic.diagnose.search import Seeker
+from ptp_symbolic.diagnose.trial import Trial, fitted
+from tests.diagnose.spring_table import STIFFNESS, spring_table
+
+
+@pytest.fixture(scope="module")
+def seeker(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Seeker]:
+    with spring_table(tmp_path_factory.mktemp("table")) as task:
+        proposals = propose(task)
+        declared = fit_declared(task, proposals)
+        yield Seeker(task, declared, proposals, carried_noise(task, declared.fit))
+
+
+def trial(seeker: Seeker, *keys: str) -> Trial:
+    """These candidates fitted to their end, each in its fullest form."""
+    task = seeker.task
+    full = {c.key: c for c in sorted(task.candidates, key=lambda c: len(c.free))}
+    chosen = tuple(full[key] for key in keys)
+    amounts = {f.name: f.start for c in chosen for f in c.free}
+    shapes = {name: value for c in chosen for name, value in c.shapes[0].items()}
+    start = seeker.declared.values | amounts | shapes
+    return seeker.polished(fitted(task, chosen, start, None))
+
+
+def test_a_declared_value_that_leaves_more_than_noise_gives_way_to_the_spring(
+    seeker: Seeker,
+) -> None:
+    wrong = trial(seeker, "declared_value:c_x_payload")
+    assert not seeker.is_at_noise(wrong)
+    found, steps = seeker.by_effects_alone(wrong, [])
+    assert found.keys == ("cable_spring@pan",)
+    assert found.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
+    assert [s.candidate.key for s in steps] == ["cable_spring@pan"]
+
+
+def test_a_declared_value_beside_the_spring_is_taken_out(seeker: Seeker) -> None:
+    """Both leave noise alone: the set with fewer parameters is the answer."""
+    larger = trial(seeker, "cable_spring@pan", "declared_value:c_x_payload")
+    assert seeker.is_at_noise(larger)
+    found, _ = seeker.by_effects_alone(larger, [])
+    assert found.keys == ("cable_spring@pan",)
+
+
+def test_effects_that_leave_noise_alone_are_not_searched_again(seeker: Seeker) -> None:
+    alone = trial(seeker, "cable_spring@pan")
+    assert seeker.is_at_noise(alone)
+    found, _ = seeker.by_effects_alone(alone, [])
+    assert found is alone
