@@ -89,12 +89,14 @@ class Seeker:
             found += halving(task, unseen, LAST_RUNG)
             found = [t for t in ranked(found) if is_near(t, found)]
             best = self.restarted(ranked([best, *(self.completed(t) for t in found)])[0])
-        best, steps = self.extended(*self.pruned(best))
+        begun, steps = self.pruned(best)
+        best, steps = self.extended(begun, steps)
         other = self.exchanged(best)
         if other is not None:
             self.others.append(best)
             best, steps = self.pruned(other)
-        best, steps = self.by_effects_alone(best, steps)
+        if begun.candidates or any(c.is_declared_value for c in best.candidates):
+            best, steps = self.by_effects_alone(best, steps)
         if best.candidates:
             again = declared_from(task, best, self.declared, self.carried)
             if again is not None:
