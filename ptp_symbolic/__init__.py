@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ptp_symbolic.runtime.model import Model
-    from ptp_symbolic.sensitivities.forward import sensitivity
-    from ptp_symbolic.simulation.run import simulate
+    from ptp_symbolic.numeric.runtime.model import Model
+    from ptp_symbolic.numeric.sensitivities.forward import sensitivity
+    from ptp_symbolic.numeric.simulation.run import simulate
 
 __version__ = "0.1.0"
 __all__ = ["__version__", "inverse_dynamics", "load", "sensitivity", "simulate"]
@@ -17,9 +17,9 @@ __all__ = ["__version__", "inverse_dynamics", "load", "sensitivity", "simulate"]
 # Imported when they are first asked for: importing the package stays free of SymPy and numba. Some
 # of them stand above rooms that import this file, so that not even a type checker may follow them.
 _HOMES = {
-    "inverse_dynamics": "ptp_symbolic.joint_torques",
-    "sensitivity": "ptp_symbolic.sensitivities.forward",
-    "simulate": "ptp_symbolic.simulation.run",
+    "inverse_dynamics": "ptp_symbolic.models.inverse_dynamics",
+    "sensitivity": "ptp_symbolic.numeric.sensitivities.forward",
+    "simulate": "ptp_symbolic.numeric.simulation.run",
 }
 
 
@@ -38,11 +38,11 @@ def load(source: str | Path) -> Model:
 
     Raises InputError when there is no such model, or the platform cannot be used.
     """
-    from ptp_symbolic.runtime.loader import load_model, model_names
+    from ptp_symbolic.numeric.runtime.loader import load_model, model_names
 
     if str(source) in model_names():
         return load_model(str(source))
-    from ptp_symbolic.loop import emit
+    from ptp_symbolic.models.emission import emit
     from ptp_symbolic.platform import platform_file, read_platform
 
     return emit(read_platform(platform_file(source, model_names())))

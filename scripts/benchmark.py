@@ -36,12 +36,24 @@ from rich.table import Table
 from scipy.integrate import solve_ivp
 
 import ptp_symbolic
-from ptp_symbolic import loop
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.kernels.records import DONE, KERNEL
+from ptp_symbolic.numeric.simulation.passage import (
+    Accuracy,
+    Passage,
+    pass_through,
+    tolerance_weights,
+)
+from ptp_symbolic.numeric.simulation.signals.inputs import (
+    InputSignal,
+    constant,
+    multisine,
+    ramp,
+    stack,
+    step,
+)
 from ptp_symbolic.platform import ParameterDeclaration, read_platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import InputSignal, constant, multisine, ramp, stack, step
-from ptp_symbolic.simulation.kernels import DONE, KERNEL
-from ptp_symbolic.simulation.passage import Accuracy, Passage, pass_through, tolerance_weights
 
 Row = dict[str, Any]
 END = 10.0  # s
@@ -234,7 +246,7 @@ def sampled_controller() -> list[Row]:
     servo, rows = read_platform("thesis-pan-servo"), []
     fast = ParameterDeclaration("t_sample_pan", "s", 1e-3)
     kept = tuple(p for p in servo.parameters if p.name != "t_sample_pan")
-    model = loop.emit(replace(servo, parameters=(*kept, fast)))
+    model = emission.emit(replace(servo, parameters=(*kept, fast)))
     goal = ramp(0.0, 1.0, 0.0, 5.0)
     run = prepare(model, goal)
     exact = run(1e-11, method="runge_kutta")

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.numeric.runtime.model import Model
 
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-shared", "-fPIC")
 LOOPS = """

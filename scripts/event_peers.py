@@ -5,11 +5,11 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.input_values import evaluate_inputs
-from ptp_symbolic.simulation.inputs import InputTable
-from ptp_symbolic.simulation.kernels import KERNEL, Equations
-from ptp_symbolic.simulation.modes import switch_contacts, violation
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.events.modes import switch_contacts, violation
+from ptp_symbolic.numeric.simulation.kernels.records import KERNEL, Equations
+from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
+from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 
 FloatArray = NDArray[np.float64]
 PAST = 1e-11  # s; how far a peer is carried past an event, so that the mode has really ended

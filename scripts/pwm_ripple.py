@@ -10,11 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.run import Trajectory
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, ramp, step
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import InputSignal, constant, ramp, step
-from ptp_symbolic.simulation.run import Trajectory
 
 KINDS = ("averaged", "switching", "bipolar")
 SETTLED, FINE = 400, 200  # carrier periods; samples of each part of one
@@ -25,7 +26,7 @@ def with_bridge(source: str, kind: str) -> Model:
     base = read_platform(source)
     others = tuple(e for e in base.effects if e.effect != "pwm_drive")
     bridge = EffectDeclaration("pwm_drive", "pan", None, kind)
-    return loop.emit(replace(base, effects=(*others, bridge)))
+    return emission.emit(replace(base, effects=(*others, bridge)))
 
 
 def locked(kind: str) -> Model:
@@ -36,7 +37,7 @@ def locked(kind: str) -> Model:
         EffectDeclaration("dc_motor", "pan", None),
         EffectDeclaration("pwm_drive", "pan", None, kind),
     )
-    return loop.emit(Platform("locked", "Locked motor", ("pan",), 9.81, effects, (), ()))
+    return emission.emit(Platform("locked", "Locked motor", ("pan",), 9.81, effects, (), ()))
 
 
 def closed_form(high: float, low: float, share: float, p: Mapping[str, float]) -> float:

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic import atomic
-from ptp_symbolic.atomic import check_writable, write_files_atomically, write_text_if_changed
+from ptp_symbolic import atomic_files
+from ptp_symbolic.atomic_files import check_writable, write_files_atomically, write_text_if_changed
 from ptp_symbolic.errors import InputError
 
 
@@ -55,7 +55,7 @@ def test_a_disk_that_fills_up_leaves_the_old_files(
         raise OSError(28, "No space left on device")
 
     (tmp_path / "a.txt").write_text("old")
-    monkeypatch.setattr(atomic.os, "fsync", full)
+    monkeypatch.setattr(atomic_files.os, "fsync", full)
     with pytest.raises(InputError, match="cannot be written: No space left on device"):
         write_files_atomically(tmp_path, {"a.txt": "new", "b.txt": "new"})
     with pytest.raises(InputError, match="No space left"):
@@ -153,7 +153,7 @@ def test_text_is_written_only_if_it_changed(tmp_path: Path) -> None:
 WRITER = """
 import sys
 from pathlib import Path
-from ptp_symbolic.atomic import write_files_atomically
+from ptp_symbolic.atomic_files import write_files_atomically
 for count in range(10**9):
     text = str(count % 10) * 200_000
     write_files_atomically(Path(sys.argv[1]), {"a.txt": text, "b.txt": text})
@@ -163,7 +163,7 @@ for count in range(10**9):
 def test_a_killed_process_leaves_whole_files_and_one_temporary_folder_at_most(
     tmp_path: Path,
 ) -> None:
-    root = Path(atomic.__file__).parents[1]
+    root = Path(atomic_files.__file__).parents[1]
     environment = {**os.environ, "PYTHONPATH": str(root)}
     for kill in range(8):
         process = subprocess.Popen(

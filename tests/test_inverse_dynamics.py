@@ -7,11 +7,11 @@ import pytest
 from scipy.integrate import cumulative_simpson, solve_ivp
 
 import ptp_symbolic
-from ptp_symbolic import loop
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.joint_torques import Motion
+from ptp_symbolic.models import emission, variants
+from ptp_symbolic.models.inverse_dynamics import Motion
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
-from ptp_symbolic.simulation.inputs import constant, multisine
 from tests.independent import rigid_platform
 
 PLATFORMS = "tests/platforms"
@@ -68,7 +68,7 @@ def test_erratum_18_amplitudes_of_table_5_4(offset: float, pan: float, tilt: flo
 
 def test_drives_are_left_out_and_friction_opposes_the_motion() -> None:
     platform = read_platform("thesis-pan-drive")
-    assert [e.effect for e in loop.torque_driven(platform).effects] == [
+    assert [e.effect for e in variants.torque_driven(platform).effects] == [
         "rigid_bodies", "viscous_friction", "csvs_friction", "direction_dependent_friction",
     ]  # fmt: skip
     motion = ([[0.0]] * 4, [[0.5], [-0.5], [0.0], [0.0]], [[0.0], [0.0], [1.0], [0.0]])
@@ -98,7 +98,7 @@ def test_motions_that_do_not_fit_are_refused(motion: tuple, message: str) -> Non
 
 def test_a_free_tilt_axis_on_a_driven_pan_axis() -> None:
     """Against SciPy with Newton and Euler by hand; the ledger counts what the pan motion takes."""
-    model = loop.emit(driven("thesis-payload", "pan"))
+    model = emission.emit(driven("thesis-payload", "pan"))
     assert model.input_names == ("alpha_pan", "tau_tilt")
     values = {**model.defaults, "c_y_payload": 0.04}
     times, start = np.linspace(0.0, 3.0, 1501), np.array([0.0, 0.4, 1.0, 0.0])
@@ -130,7 +130,7 @@ def test_a_free_tilt_axis_on_a_driven_pan_axis() -> None:
 
 def test_a_locked_pan_axis_leaves_a_pendulum() -> None:
     """Period of small swings about the hanging position; the pan angle does not move at all."""
-    model = loop.emit(driven("thesis-payload", "pan"))
+    model = emission.emit(driven("thesis-payload", "pan"))
     values = {**model.defaults, "b_tilt": 0.0}
     found = ptp_symbolic.simulate(
         model, 5.0, None, {"b_tilt": 0.0}, {"theta_tilt": np.pi / 2 + 1e-3, "theta_pan": 0.7},
@@ -146,7 +146,7 @@ def test_a_locked_pan_axis_leaves_a_pendulum() -> None:
 
 def test_a_steadily_turning_pan_axis_lifts_the_payload() -> None:
     """Conical pendulum: the sine of the tilt is gravity over what the turning does."""
-    model = loop.emit(driven("thesis-payload", "pan"))
+    model = emission.emit(driven("thesis-payload", "pan"))
     values, turning = model.defaults, 15.0
     spread = values["J_z_payload"] + values["J_z_tilt"] + values["m_payload"] * 0.01
     spread -= values["J_x_payload"] + values["J_x_tilt"]
@@ -160,7 +160,7 @@ def test_a_steadily_turning_pan_axis_lifts_the_payload() -> None:
 
 def test_friction_of_the_free_joint_still_sticks() -> None:
     platform = driven(f"{PLATFORMS}/fieldlog_two_axis.toml", "pan")
-    model = loop.emit(platform)
+    model = emission.emit(platform)
     assert model.mode_names == ("slide_tilt",)
     assert "F_c_pan" not in model.parameter_names
     held = {"F_c_tilt": 5.0, "F_s_tilt": 5.0}
@@ -170,7 +170,7 @@ def test_friction_of_the_free_joint_still_sticks() -> None:
 
 
 def test_both_joints_prescribed() -> None:
-    model = loop.emit(driven("thesis-payload", "pan", "tilt"))
+    model = emission.emit(driven("thesis-payload", "pan", "tilt"))
     inputs = {"alpha_pan": constant(2.0), "alpha_tilt": constant(-1.0)}
     found = ptp_symbolic.simulate(model, 1.0, inputs)
     assert found.x[-1] == pytest.approx([1.0, -0.5, 2.0, -1.0], rel=1e-12)
@@ -178,4 +178,4 @@ def test_both_joints_prescribed() -> None:
 
 def test_a_motor_on_a_prescribed_axis_is_refused() -> None:
     with pytest.raises(InputError, match="axis 'pan' is prescribed, and a motor or a shaft works"):
-        loop.emit(driven("thesis-pan-drive", "pan"))
+        emission.emit(driven("thesis-pan-drive", "pan"))

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from ptp_symbolic import module_cache
-from ptp_symbolic.derivation.assembly import assemble
-from ptp_symbolic.derivation.equations import Equations
-from ptp_symbolic.derivation.placement import declared_parameters, place_effects
-from ptp_symbolic.parameters import Parameter
+from ptp_symbolic.models import module_cache
 from ptp_symbolic.platform import read_platform
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.derivation.placement import declared_parameters, place_effects
+from ptp_symbolic.symbolic.parameters import Parameter
 
 Machine = tuple[Equations, dict[str, Parameter]]
 
@@ -84,8 +84,8 @@ def test_the_description_is_the_same_in_every_process(
 ) -> None:
     script = (
         "import hashlib, sys\n"
-        "from ptp_symbolic.derivation.assembly import assemble\n"
-        "from ptp_symbolic.module_cache import described\n"
+        "from ptp_symbolic.symbolic.derivation.assembly import assemble\n"
+        "from ptp_symbolic.models.module_cache import described\n"
         "from ptp_symbolic.platform import read_platform\n"
         "text = described(assemble(read_platform(sys.argv[1])))\n"
         "print(hashlib.sha256(text.encode()).hexdigest())\n"

@@ -9,7 +9,7 @@ SHOWN = 6
 
 def note_defaults(platform: Platform) -> None:
     """Print one line on stderr with the parameters that keep the default of the catalogue."""
-    from ptp_symbolic.derivation.placement import undeclared_parameters
+    from ptp_symbolic.symbolic.derivation.placement import undeclared_parameters
 
     left = undeclared_parameters(platform)
     if not left:

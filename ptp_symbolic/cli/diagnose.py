@@ -52,9 +52,9 @@ def diagnose(
     source: str, train: tuple[str, ...], validate: tuple[str, ...], out: Path, as_json: bool
 ) -> None:
     """Find the effect that a declared platform lacks, from its logs."""
-    from ptp_symbolic.atomic import check_writable, write_files_atomically
-    from ptp_symbolic.diagnosis_run import diagnose_platform
-    from ptp_symbolic.regenerate import declared_platform
+    from ptp_symbolic.atomic_files import check_writable, write_files_atomically
+    from ptp_symbolic.diagnosis_workflow import diagnose_platform
+    from ptp_symbolic.models.committed import declared_platform
 
     platform = declared_platform(source)
     check_writable(out)
@@ -78,9 +78,9 @@ def fit(source: str, logs: tuple[str, ...], out: Path, as_json: bool) -> None:
 
     Writes fit.json, and platform.toml with the fitted values as starts.
     """
-    from ptp_symbolic.atomic import check_writable, write_files_atomically
-    from ptp_symbolic.diagnosis_run import fit_platform
-    from ptp_symbolic.regenerate import declared_platform
+    from ptp_symbolic.atomic_files import check_writable, write_files_atomically
+    from ptp_symbolic.diagnosis_workflow import fit_platform
+    from ptp_symbolic.models.committed import declared_platform
 
     platform = declared_platform(source)
     check_writable(out)

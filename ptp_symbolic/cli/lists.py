@@ -42,7 +42,7 @@ def _print_table(rows: Sequence[Mapping[str, str]]) -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def effects(effect: str | None, as_json: bool) -> None:
     """List the effects that a platform can declare, or explain one of them."""
-    from ptp_symbolic.effects import EFFECTS
+    from ptp_symbolic.symbolic.effects import EFFECTS
 
     if effect is not None:
         _explain(effect, as_json)
@@ -61,7 +61,7 @@ def effects(effect: str | None, as_json: bool) -> None:
 
 
 def _explain(name: str, as_json: bool) -> None:
-    from ptp_symbolic.derivation.placement import find_effect
+    from ptp_symbolic.symbolic.derivation.placement import find_effect
 
     effect = find_effect(name)
     kinds = [_described(kind) for kind in (effect, *effect.kinds)]
@@ -86,8 +86,8 @@ def _explain(name: str, as_json: bool) -> None:
 
 def _described(kind: Any) -> dict[str, Any]:
     """One kind of an effect as data; `<axis>` stands for pan or tilt."""
-    from ptp_symbolic.derivation.placement import effects_that_define
-    from ptp_symbolic.effects.effect import Place
+    from ptp_symbolic.symbolic.derivation.placement import effects_that_define
+    from ptp_symbolic.symbolic.effects.effect import Place
 
     axes = ("pan", "tilt")
     place = Place(axes, "<axis>" if kind.on_axis else None, None, frozenset())
@@ -136,7 +136,7 @@ def _as_row(parameter: Mapping[str, Any]) -> dict[str, str]:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def models(as_json: bool) -> None:
     """List the committed models."""
-    from ptp_symbolic.runtime.loader import load_model, model_names
+    from ptp_symbolic.numeric.runtime.loader import load_model, model_names
 
     found = [(name, load_model(name)) for name in model_names()]
     _show(

@@ -14,9 +14,9 @@ def regenerate(models: tuple[str, ...], out: Path | None, check: bool) -> int:
 
     With --out, emit the equations of platforms as modules: numpy, numba and nothing else.
     """
-    from ptp_symbolic.regenerate import regenerate as emit
-    from ptp_symbolic.regenerate import stray_modules
-    from ptp_symbolic.runtime.loader import generated_folder
+    from ptp_symbolic.models.committed import regenerate as emit
+    from ptp_symbolic.models.committed import stray_modules
+    from ptp_symbolic.numeric.runtime.loader import generated_folder
 
     if out is not None:
         return _emit_platforms(models, out, check)
@@ -32,10 +32,10 @@ def regenerate(models: tuple[str, ...], out: Path | None, check: bool) -> int:
 
 
 def _emit_platforms(sources: tuple[str, ...], out: Path, check: bool) -> int:
-    from ptp_symbolic.atomic import check_writable
+    from ptp_symbolic.atomic_files import check_writable
     from ptp_symbolic.cli.declared import note_defaults
     from ptp_symbolic.errors import InputError
-    from ptp_symbolic.regenerate import declared_platform, regenerate_into
+    from ptp_symbolic.models.committed import declared_platform, regenerate_into
 
     if not sources:
         raise InputError("Nothing to emit into --out; name a platform TOML, a preset or a model.")

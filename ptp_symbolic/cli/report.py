@@ -18,9 +18,9 @@ def report() -> None:
 @click.option("--out", type=Path, required=True, help="Folder for the document.")
 def derivation(source: str, out: Path) -> None:
     """Write the derivation of a platform's equations in LaTeX, and as PDF where pdflatex is."""
-    from ptp_symbolic.atomic import check_writable, write_files_atomically
+    from ptp_symbolic.atomic_files import check_writable, write_files_atomically
+    from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.platform import naming_file
-    from ptp_symbolic.regenerate import declared_platform
     from ptp_symbolic.report.derivation import render_derivation
     from ptp_symbolic.report.pdf import compile_pdf
 

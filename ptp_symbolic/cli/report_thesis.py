@@ -13,9 +13,9 @@ from ptp_symbolic.cli.diagnose import progress_line
 @click.option("--json", "as_json", is_flag=True, help="Print thesis.json instead of file names.")
 def thesis(out: Path, as_json: bool) -> None:
     """Recompute the thesis: thesis.json, figures, thesis.tex, and thesis.pdf where pdflatex is."""
-    from ptp_symbolic.atomic import check_writable, write_files_atomically
+    from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.report.pdf import compile_pdf
-    from ptp_symbolic.report.thesis.document import thesis_files
+    from ptp_symbolic.thesis.document import thesis_files
 
     check_writable(out)
     files = thesis_files(progress_line())

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.run import Trajectory
+from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, stack
 from ptp_symbolic.platform import Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.input_values import evaluate_inputs
-from ptp_symbolic.simulation.inputs import InputSignal, constant, stack
-from ptp_symbolic.simulation.run import Trajectory
 
 FloatArray = NDArray[np.float64]
 

@@ -7,30 +7,30 @@ from itertools import groupby
 
 import sympy as sp
 
-from ptp_symbolic.codegen.dynamics import solve_accelerations, state_rates
-from ptp_symbolic.codegen.latex import latex_of, rate_latex, symbol_latex
-from ptp_symbolic.codegen.statements import (
+from ptp_symbolic.platform import Platform
+from ptp_symbolic.report.derivation_symbols import frames, symbols
+from ptp_symbolic.report.latex_text import PREAMBLE, escaped, formulas, table
+from ptp_symbolic.report.source import THESIS
+from ptp_symbolic.symbolic.codegen.dynamics import solve_accelerations, state_rates
+from ptp_symbolic.symbolic.codegen.latex import latex_of, rate_latex, symbol_latex
+from ptp_symbolic.symbolic.codegen.statements import (
     RELATIONS,
     Statement,
     by_name,
     friction_statements,
     statements,
 )
-from ptp_symbolic.derivation.admissible import refuse_impossible
-from ptp_symbolic.derivation.assembly import assemble
-from ptp_symbolic.derivation.equations import Contact, Equations
-from ptp_symbolic.derivation.kane import kane
-from ptp_symbolic.derivation.lagrange import lagrange
-from ptp_symbolic.derivation.newton_euler import newton_euler
-from ptp_symbolic.derivation.proof import compare_numerically, prove_equal
-from ptp_symbolic.derivation.properties import energy_remainder, is_passive, is_symmetric
-from ptp_symbolic.effects.effect import slide
-from ptp_symbolic.platform import Platform
-from ptp_symbolic.report.derivation_symbols import frames, symbols
-from ptp_symbolic.report.latex_text import PREAMBLE, escaped, formulas, table
-from ptp_symbolic.report.source import THESIS
-from ptp_symbolic.simplify.base_parameters import BaseForm
-from ptp_symbolic.simplify.steps import SimplifiedEquations, simplify_rigid
+from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
+from ptp_symbolic.symbolic.derivation.kane import kane
+from ptp_symbolic.symbolic.derivation.lagrange import lagrange
+from ptp_symbolic.symbolic.derivation.newton_euler import newton_euler
+from ptp_symbolic.symbolic.derivation.proof import compare_numerically, prove_equal
+from ptp_symbolic.symbolic.derivation.properties import energy_remainder, is_passive, is_symmetric
+from ptp_symbolic.symbolic.effects.effect import slide
+from ptp_symbolic.symbolic.simplify.base_parameters import BaseForm
+from ptp_symbolic.symbolic.simplify.steps import SimplifiedEquations, simplify_rigid
 
 LAST_LINES = 14  # on the last page at least
 ROUTES = (("Newton--Euler", newton_euler), ("Kane", kane), ("Lagrange", lagrange))

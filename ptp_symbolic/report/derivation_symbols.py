@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from ptp_symbolic.codegen.latex import latex_of, symbol_latex
-from ptp_symbolic.derivation.equations import Equations
-from ptp_symbolic.effects.effect import slide
-from ptp_symbolic.parameters import Parameter
 from ptp_symbolic.platform import ParameterDeclaration, Platform
 from ptp_symbolic.report.latex_text import displayed, escaped, table, unit_latex
+from ptp_symbolic.symbolic.codegen.latex import latex_of, symbol_latex
+from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.effects.effect import slide
+from ptp_symbolic.symbolic.parameters import Parameter
 
 PAN = r"The pan frame turns about the vertical $z$ axis of the base by $\theta_{\mathrm{pan}}$"
 TILT = r"the tilt frame turns about the $y$ axis of the {base} by $\theta_{{\mathrm{{tilt}}}}$"

@@ -44,7 +44,7 @@ def diagnose_one(folder: Path, cores: Sequence[int], scale: str | None = None) -
         apply(scale)
     import resource
 
-    from ptp_symbolic.diagnosis_run import diagnose_platform
+    from ptp_symbolic.diagnosis_workflow import diagnose_platform
     from ptp_symbolic.platform import read_platform
 
     begun = time.monotonic()

@@ -61,7 +61,7 @@ def scale_section(module: ModuleType, section: str, factor: float) -> None:
 
 def apply(text: str) -> None:
     """Scale the constants of the package as `text`, "section=factor", asks for."""
-    from ptp_symbolic.identify import constants
+    from ptp_symbolic.numeric.identify import constants
 
     section, _, factor = text.partition("=")
     scale_section(constants, section, float(factor))

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from ptp_symbolic.effects import EFFECTS
+from ptp_symbolic.symbolic.effects import EFFECTS
 
 
 def test_names_are_whole_through_a_pipe(call, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ptp_symbolic.data import read_inputs, read_log
+from ptp_symbolic.numeric.data import read_inputs, read_log
 from ptp_symbolic.platform import read_platform
 
 IDEAL = ("simulate", "--platform", "thesis-ideal")

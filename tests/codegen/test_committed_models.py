@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import ptp_symbolic
-from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.models.committed import COMMITTED, regenerate
+from ptp_symbolic.numeric.runtime.loader import generated_folder, load_module
 from ptp_symbolic.platform import read_platform
-from ptp_symbolic.regenerate import COMMITTED, regenerate
-from ptp_symbolic.runtime.loader import generated_folder, load_module
-from ptp_symbolic.simplify.steps import simplify_rigid
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.simplify.steps import simplify_rigid
 from tests.independent import rigid_platform
 
 STATES = 1000
@@ -25,7 +25,7 @@ def test_nothing_has_drifted() -> None:
 
 @pytest.mark.parametrize("seed", ["1", "20"])
 def test_same_bytes_under_every_hash_seed(seed: str) -> None:
-    code = "from ptp_symbolic.regenerate import regenerate as r; print(r(check=True).changed)"
+    code = "from ptp_symbolic.models.committed import regenerate as r; print(r(check=True).changed)"
     environment = {**os.environ, "PYTHONHASHSEED": seed}
     done = subprocess.run(
         [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True

@@ -5,7 +5,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop
+from ptp_symbolic.models import emission
 from tests.effects.test_backlash_kinds import KINDS, PAYLOAD, platform
 
 MODES = ((1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (1.0, 1.0, 1.0), (0.0, -1.0, 1.0))
@@ -25,7 +25,7 @@ def values(
 @pytest.mark.parametrize("modes", MODES)
 @pytest.mark.parametrize("kind", KINDS)
 def test_emitted_derivatives_in_every_mode(kind: str, modes: tuple[float, ...]) -> None:
-    model = loop.emit(platform(kind, "payload", "csvs_friction", site="gear"))
+    model = emission.emit(platform(kind, "payload", "csvs_friction", site="gear"))
     rng, module, p = np.random.default_rng(3), model.module, model.parameter_vector(PAYLOAD)
     x, u, m = rng.normal(size=len(model.state_names)), rng.normal(size=2), np.array(modes)
     n, z = len(x), np.concatenate([x, p])

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 import sympy as sp
 
-from ptp_symbolic import loop
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.models import emission
 from ptp_symbolic.platform import read_platform
 
 HOSTILE = "__import__('os').system('touch mark')"
@@ -122,7 +122,7 @@ def test_free_text_of_a_platform_never_reaches_sympify(
 ) -> None:
     """Titles and columns may hold any text; none of it is converted or parsed."""
     platform = read_platform(written(tmp_path, *FREE))
-    model = loop.emit(platform)
+    model = emission.emit(platform)
     assert (model.title, platform.signals[0].column) == (HOSTILE, HOSTILE)
     assert converted == []
 

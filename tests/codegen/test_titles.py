@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 import ptp_symbolic
-from ptp_symbolic.codegen.module import module_text
-from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic.numeric.runtime.loader import load_module
 from ptp_symbolic.platform import read_platform
-from ptp_symbolic.runtime.loader import load_module
+from ptp_symbolic.symbolic.codegen.module import module_text
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 PLATFORM = """[platform]
 name = "named"

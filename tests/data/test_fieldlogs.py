@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ptp_symbolic.data import read_logs
+from ptp_symbolic.numeric.data import read_logs
 from ptp_symbolic.platform import read_platform
 
 

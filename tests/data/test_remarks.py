@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ptp_symbolic.data import Log, refuse_motionless, refuse_wrapped_angles, remarks
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data import Log, refuse_motionless, refuse_wrapped_angles, remarks
 from ptp_symbolic.platform import read_platform
 
 PLATFORM = read_platform(Path(__file__).parents[1] / "platforms" / "fieldlog_pan.toml")

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.data import read_split_logs
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data import read_split_logs
 from ptp_symbolic.platform import Platform, SignalDeclaration
 
 SIGNALS = (

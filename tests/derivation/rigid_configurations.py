@@ -3,7 +3,7 @@
 import numpy as np
 import sympy as sp
 
-from ptp_symbolic.bodies import Body, RigidConfiguration
+from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration
 
 AXES = (("pan", "tilt"), ("pan",), ("tilt",))
 LOADS = ("balanced", "payload", "payload on a tilted base")

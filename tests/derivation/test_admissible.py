@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from ptp_symbolic import loop
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.models import emission
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, read_platform
 
 
@@ -48,7 +48,7 @@ TILT, PAN, PAYLOAD = "thesis-tilt-drive", "thesis-pan-drive", "thesis-payload"
 )
 def test_impossible_machines_are_refused(platform: Platform, message: str) -> None:
     with pytest.raises(InputError, match=message) as refused:
-        loop.emit(platform)
+        emission.emit(platform)
     assert "\n" not in str(refused.value)
 
 
@@ -60,16 +60,16 @@ def test_an_axis_without_inertia_is_refused() -> None:
     )
     platform = Platform("empty", "Nothing turns", ("tilt",), 9.81, effects, parameters, ())
     with pytest.raises(InputError, match=r"m_payload = 0 kg.*every axis needs inertia; give"):
-        loop.emit(platform)
+        emission.emit(platform)
 
 
 def test_a_point_mass_and_a_rod_exist() -> None:
-    loop.emit(changed(PAYLOAD, J_x_payload=0.0, J_y_payload=0.0, J_z_payload=0.0))
-    loop.emit(changed(PAYLOAD, J_x_payload=0.0, J_y_payload=6.8e-3, J_z_payload=6.8e-3))
+    emission.emit(changed(PAYLOAD, J_x_payload=0.0, J_y_payload=0.0, J_z_payload=0.0))
+    emission.emit(changed(PAYLOAD, J_x_payload=0.0, J_y_payload=6.8e-3, J_z_payload=6.8e-3))
 
 
 def test_two_coupled_screws_are_refused() -> None:
     drives = tuple(EffectDeclaration("linear_actuator", axis, None) for axis in ("pan", "tilt"))
     platform = read_platform(PAYLOAD)
     with pytest.raises(InputError, match="Two coupled joints have friction that depends"):
-        loop.emit(replace(platform, effects=(*platform.effects, *drives)))
+        emission.emit(replace(platform, effects=(*platform.effects, *drives)))

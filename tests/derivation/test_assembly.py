@@ -5,7 +5,6 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
-from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import (
     EffectDeclaration,
@@ -13,6 +12,7 @@ from ptp_symbolic.platform import (
     Platform,
     read_platform,
 )
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 IDEAL = read_platform("thesis-ideal")
 THETA, PAN_RATE, TILT_RATE = sp.symbols("theta_tilt omega_pan omega_tilt", real=True)

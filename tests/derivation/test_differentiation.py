@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from ptp_symbolic import loop
-from ptp_symbolic.derivation.differentiation import derivative
+from ptp_symbolic.models import emission, variants
 from ptp_symbolic.platform import read_platform
+from ptp_symbolic.symbolic.derivation.differentiation import derivative
 
 X, C = sp.symbols("x c", real=True)
 
@@ -49,9 +49,9 @@ def test_guards_hold_the_size_of_a_load_and_the_logarithm_of_a_rest(checkout: Pa
     """The tilt drive with the three effects whose breakaway torque SymPy cannot prove real."""
     platform = read_platform(checkout / "ptp_symbolic/platform/presets/thesis-tilt-drive.toml")
     added = [
-        e for e in loop.candidate_effects(platform) if e.effect in (*BREAKAWAY, "csvs_friction")
+        e for e in variants.candidate_effects(platform) if e.effect in (*BREAKAWAY, "csvs_friction")
     ]
-    model = loop.emit(replace(platform, effects=(*platform.effects, *added)))
+    model = emission.emit(replace(platform, effects=(*platform.effects, *added)))
     assert {"a_rest_tilt", "F_cos3_tilt", "mu_load_tilt"} <= {p.name for p in model.parameters}
 
 
@@ -60,6 +60,6 @@ def test_guards_hold_the_size_of_a_load_and_the_logarithm_of_a_rest(checkout: Pa
 def test_every_machine_is_emitted_with_all_candidates(preset: str, checkout: Path) -> None:
     """A diagnosis begins with this."""
     platform = read_platform(checkout / f"ptp_symbolic/platform/presets/thesis-{preset}.toml")
-    names = {p.name for p in loop.emit(loop.with_candidates(platform)).parameters}
+    names = {p.name for p in emission.emit(variants.with_candidates(platform)).parameters}
     axis = "tilt" if "tilt" in preset else "pan"
     assert {f"a_rest_{axis}", f"F_cos3_{axis}", f"mu_load_{axis}"} <= names

@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from ptp_symbolic.derivation.trigonometry import normal_form
+from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
 
 X, Y = sp.symbols("x y", real=True)
 

@@ -9,16 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from ptp_symbolic.bodies import RigidEquations
-from ptp_symbolic.derivation.kane import kane
-from ptp_symbolic.derivation.lagrange import lagrange
-from ptp_symbolic.derivation.newton_euler import newton_euler
-from ptp_symbolic.derivation.properties import (
+from ptp_symbolic.symbolic.derivation.kane import kane
+from ptp_symbolic.symbolic.derivation.lagrange import lagrange
+from ptp_symbolic.symbolic.derivation.newton_euler import newton_euler
+from ptp_symbolic.symbolic.derivation.properties import (
     energy_remainder,
     is_passive,
     is_symmetric,
     smallest_eigenvalue,
 )
+from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
 from tests.derivation import rigid_configurations as machines
 
 TILTED = "payload on a tilted base"

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from ptp_symbolic.bodies import RigidConfiguration, RigidEquations
-from ptp_symbolic.derivation.kane import kane
-from ptp_symbolic.derivation.lagrange import lagrange
-from ptp_symbolic.derivation.newton_euler import newton_euler
-from ptp_symbolic.derivation.proof import compare_numerically, prove_equal
-from ptp_symbolic.derivation.trigonometry import normal_form
+from ptp_symbolic.symbolic.derivation.kane import kane
+from ptp_symbolic.symbolic.derivation.lagrange import lagrange
+from ptp_symbolic.symbolic.derivation.newton_euler import newton_euler
+from ptp_symbolic.symbolic.derivation.proof import compare_numerically, prove_equal
+from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
+from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
 from tests.derivation import rigid_configurations as machines
 from tests.independent import rigid_platform
 

@@ -2,10 +2,10 @@
 
 import sympy as sp
 
-from ptp_symbolic import kinematics
-from ptp_symbolic.bodies import RigidConfiguration, RigidEquations
-from ptp_symbolic.derivation.lagrange import lagrange
-from ptp_symbolic.derivation.trigonometry import normal_form
+from ptp_symbolic.symbolic.derivation.lagrange import lagrange
+from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
+from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
 from tests.derivation import rigid_configurations as machines
 from tests.derivation.rigid_configurations import symbol
 

@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 from scipy.linalg import expm
 
-from ptp_symbolic import loop
-from ptp_symbolic.data import Log
-from ptp_symbolic.diagnose.preparation import task_of
-from ptp_symbolic.diagnose.trial import Task
-from ptp_symbolic.diagnosis_run import effect_keys
-from ptp_symbolic.identify.run import prepare_runs
+from ptp_symbolic.diagnosis_workflow import effect_keys
+from ptp_symbolic.models import declared, emission, variants
+from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.diagnose.preparation import task_of
+from ptp_symbolic.numeric.diagnose.trial import Task
+from ptp_symbolic.numeric.identify.run import prepare_runs
 from ptp_symbolic.platform import read_platform
 
 INERTIA, DAMPING, STIFFNESS = 0.05, 0.1, 0.8  # kg m^2, N m s/rad, N m/rad
@@ -88,11 +88,11 @@ def spring_table(folder: Path) -> Iterator[Task]:
     path = folder / "table.toml"
     path.write_text(PLATFORM)
     platform = read_platform(path)
-    model = loop.emit(loop.with_candidates(platform))
+    model = emission.emit(variants.with_candidates(platform))
     train, validate = (
         prepare_runs(model, platform, [log(seed) for seed in seeds]) for seeds in ((1, 2), (3,))
     )
-    free, known = loop.free_parameters(platform, model), loop.known_values(platform, model)
+    free, known = declared.free_parameters(platform, model), declared.known_values(platform, model)
     noises = {signal.signal: signal.noise for signal in platform.signals}
     with ThreadPoolExecutor(2) as executor:
         yield task_of(

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.confirm import at_bound, is_amount_known, unstable_without
-from ptp_symbolic.diagnose.findings import is_earned
-from ptp_symbolic.diagnose.gain import Gain, p_value
-from ptp_symbolic.diagnose.trial import Trial
-from ptp_symbolic.identify.constants import FALSE_ALARM, MATERIAL
-from ptp_symbolic.identify.coordinates import free_parameter
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.confirm import at_bound, is_amount_known, unstable_without
+from ptp_symbolic.numeric.diagnose.findings import is_earned
+from ptp_symbolic.numeric.diagnose.gain import Gain, p_value
+from ptp_symbolic.numeric.diagnose.trial import Trial
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MATERIAL
+from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnosis_run import diagnose_platform
+from ptp_symbolic.diagnosis_workflow import diagnose_platform
 from ptp_symbolic.platform import read_platform
 
 SAMPLE = Path(__file__).parents[2] / "ptp_symbolic" / "samples" / "tilted_base"

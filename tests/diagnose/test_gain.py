@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy import special, stats
 
-from ptp_symbolic.diagnose.gain import Gain, compared, gain
-from ptp_symbolic.diagnose.trial import BEND, Trial
-from ptp_symbolic.diagnose.verdict import held_out_gain
-from ptp_symbolic.identify.coordinates import free_parameter
+from ptp_symbolic.numeric.diagnose.gain import Gain, compared, gain
+from ptp_symbolic.numeric.diagnose.trial import BEND, Trial
+from ptp_symbolic.numeric.diagnose.verdict import held_out_gain
+from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.diagnosis_run import diagnose_platform
+from ptp_symbolic.diagnosis_workflow import diagnose_platform
 from ptp_symbolic.platform import read_platform
 from tests.independent import make_logs
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import null_space, orth, subspace_angles
 
-from ptp_symbolic.diagnose.linear import canonical_correlation, outside
+from ptp_symbolic.numeric.diagnose.linear import canonical_correlation, outside
 
 RNG = np.random.default_rng(31)
 COLUMNS = RNG.normal(size=(200, 3))

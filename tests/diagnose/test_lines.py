@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.signatures import _strongest
-from ptp_symbolic.identify.constants import CYCLES_APART, LEAST_CYCLES
-from ptp_symbolic.identify.coordinates import free_parameter
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.signatures import _strongest
+from ptp_symbolic.numeric.identify.constants import CYCLES_APART, LEAST_CYCLES
+from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 
 

@@ -14,17 +14,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop
-from ptp_symbolic.derivation.placement import place_effects
-from ptp_symbolic.diagnose.verdict import NOTHING_MISSING
-from ptp_symbolic.diagnosis_run import diagnose_platform
-from ptp_symbolic.effects import EFFECTS
-from ptp_symbolic.effects.effect import Effect
+from ptp_symbolic.diagnosis_workflow import diagnose_platform
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.models import emission, variants
+from ptp_symbolic.numeric.diagnose.verdict import NOTHING_MISSING
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.run import Trajectory, simulate
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, table
 from ptp_symbolic.platform import Platform, read_platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant, table
-from ptp_symbolic.simulation.run import Trajectory, simulate
+from ptp_symbolic.symbolic.derivation.placement import place_effects
+from ptp_symbolic.symbolic.effects import EFFECTS
+from ptp_symbolic.symbolic.effects.effect import Effect
 from tests.independent import pan_logs, two_axis_logs
 
 PLATFORMS = Path(__file__).parents[1] / "platforms"
@@ -54,7 +54,7 @@ def machine_with(effect: Effect, name: str) -> tuple[Platform, Platform] | None:
     """The machine `name` without `effect`, and the same machine with it; None: it has no place."""
     bare = without(read_platform(PLATFORMS / f"{name}.toml"), effect)
     try:
-        found = [d for d in loop.candidate_effects(bare) if d.effect == effect.id]
+        found = [d for d in variants.candidate_effects(bare) if d.effect == effect.id]
     except InputError:
         return None
     return (bare, replace(bare, effects=(*bare.effects, found[0]))) if found else None
@@ -132,7 +132,7 @@ def write_log(path: Path, header: str, rows: list[str]) -> None:
 
 def write_runs(full: Platform, which: int, folder: Path) -> bool:
     """Logs of `full`, train and validation; False where they are no test of a model."""
-    model = loop.emit(full)
+    model = emission.emit(full)
     values = planted_values(model, full, which)
     if "u_pan" in model.input_names:
         return write_driven_runs(model, values, folder)

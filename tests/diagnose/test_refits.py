@@ -6,11 +6,11 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnose.floor import leaves_white_noise
-from ptp_symbolic.diagnose.nested import beside_declared, declared_from
-from ptp_symbolic.diagnose.refits import started_anew, strayed_from_start
-from ptp_symbolic.diagnose.trial import Task, Trial, fitted
-from ptp_symbolic.identify.coordinates import free_parameter
+from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
+from ptp_symbolic.numeric.diagnose.nested import beside_declared, declared_from
+from ptp_symbolic.numeric.diagnose.refits import started_anew, strayed_from_start
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
+from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.pan_runs import COUNT, FLOOR, KNOWN, MODEL, THREE, TRUTH, make_runs
 from tests.independent.pan_drive import PanDrive
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnose.remainder import binned, hints, strongest_line
-from ptp_symbolic.identify.constants import ROWS_PER_WINDOW
+from ptp_symbolic.numeric.diagnose.remainder import binned, hints, strongest_line
+from ptp_symbolic.numeric.identify.constants import ROWS_PER_WINDOW
 
 
 def overlapping_noise(rng: np.random.Generator, count: int) -> np.ndarray:

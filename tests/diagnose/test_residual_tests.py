@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnose.residual_tests import correlations, residual_tests
-from ptp_symbolic.identify.constants import LAGS
+from ptp_symbolic.numeric.diagnose.residual_tests import correlations, residual_tests
+from ptp_symbolic.numeric.identify.constants import LAGS
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 

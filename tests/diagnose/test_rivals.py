@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnose.gain import gain
-from ptp_symbolic.diagnose.groups import Rival, overtaking
-from ptp_symbolic.diagnose.trial import Trial
+from ptp_symbolic.numeric.diagnose.gain import gain
+from ptp_symbolic.numeric.diagnose.groups import Rival, overtaking
+from ptp_symbolic.numeric.diagnose.trial import Trial
 from tests.identify.straight import finished
 
 NOISE = np.random.default_rng(3).normal(size=(4, 600))

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from ptp_symbolic.diagnose.floor import carried_noise
-from ptp_symbolic.diagnose.proposals import propose
-from ptp_symbolic.diagnose.refits import fit_declared
-from ptp_symbolic.diagnose.search import Seeker
-from ptp_symbolic.diagnose.trial import Trial, fitted
+from ptp_symbolic.numeric.diagnose.floor import carried_noise
+from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.refits import fit_declared
+from ptp_symbolic.numeric.diagnose.search import Seeker
+from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
 from tests.diagnose.spring_table import STIFFNESS, spring_table
 
 

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.signatures import Signature
-from ptp_symbolic.diagnose.subsets import (
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.signatures import Signature
+from ptp_symbolic.numeric.diagnose.subsets import (
     Regression,
     Subset,
     exchanges,
@@ -16,8 +16,8 @@ from ptp_symbolic.diagnose.subsets import (
     regression,
     remainder,
 )
-from ptp_symbolic.identify.constants import FAR, FOLDS
-from ptp_symbolic.identify.coordinates import free_parameter
+from ptp_symbolic.numeric.identify.constants import FAR, FOLDS
+from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 
 ROWS, BLOCKS = 400, 40

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnose.trial import BEND, Trial, misfits, ranked
+from ptp_symbolic.numeric.diagnose.trial import BEND, Trial, misfits, ranked
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 

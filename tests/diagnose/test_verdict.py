@@ -6,10 +6,10 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnose.findings import Step
-from ptp_symbolic.diagnose.floor import Floor
-from ptp_symbolic.diagnose.trial import Trial
-from ptp_symbolic.diagnose.verdict import (
+from ptp_symbolic.numeric.diagnose.findings import Step
+from ptp_symbolic.numeric.diagnose.floor import Floor
+from ptp_symbolic.numeric.diagnose.trial import Trial
+from ptp_symbolic.numeric.diagnose.verdict import (
     EXPLAINED,
     NOTHING_MISSING,
     PARTLY,

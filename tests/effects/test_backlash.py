@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 EFFECTS = (
     EffectDeclaration("rigid_bodies", None, None),
@@ -27,7 +28,7 @@ FACES = {1.0: "upper", -1.0: "lower"}
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 def test_default_gap_is_the_mean_reading_of_table_5_7() -> None:

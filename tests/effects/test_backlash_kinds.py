@@ -8,14 +8,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from ptp_symbolic import loop, sensitivity, simulate
+from ptp_symbolic import sensitivity, simulate
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.events.impacts import RESTING_SPEED
+from ptp_symbolic.numeric.simulation.run import Trajectory
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from ptp_symbolic.platform.writer import platform_text
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.impacts import RESTING_SPEED
-from ptp_symbolic.simulation.inputs import constant, multisine
-from ptp_symbolic.simulation.run import Trajectory
 from tests.independent.rigid_platform import accelerations, mass_matrix
 
 METHODS = ("rosenbrock", "runge_kutta")
@@ -52,7 +53,7 @@ def platform(kind: str | None, *more: str, site: str | None = None) -> Platform:
 
 @pytest.fixture(scope="module")
 def bouncing() -> Model:
-    return loop.emit(platform("elastic_impact"))
+    return emission.emit(platform("elastic_impact"))
 
 
 def approach(found: Trajectory) -> np.ndarray:
@@ -109,7 +110,7 @@ def test_bounces_end_at_the_limit_of_their_sum(bouncing: Model, e: float, method
 
 
 def test_a_strike_keeps_the_momentum_of_every_coupled_body() -> None:
-    model = loop.emit(platform("elastic_impact", "payload"))
+    model = emission.emit(platform("elastic_impact", "payload"))
     parameters = {**FREE, **PAYLOAD, "e_gap_pan": 0.7}
     start = {"theta_tilt": 0.5, "omega_tilt": -0.4, "theta_gear_pan": GAP / 2 - 1e-9}
     start |= {"omega_gear_pan": 0.6, "omega_pan": -0.2}
@@ -125,7 +126,7 @@ def test_a_strike_keeps_the_momentum_of_every_coupled_body() -> None:
 
 
 def test_a_coupled_platform_bounces_as_in_a_piecewise_integration() -> None:
-    model = loop.emit(platform("elastic_impact", "payload"))
+    model = emission.emit(platform("elastic_impact", "payload"))
     parameters = {**FREE, **PAYLOAD, "e_gap_pan": 0.9}
     end, x = 0.6, np.array([0.0, 0.5, -0.2, -0.4, 0.0, 0.6])
     found = simulate(
@@ -159,7 +160,7 @@ def test_a_coupled_platform_bounces_as_in_a_piecewise_integration() -> None:
 @pytest.mark.parametrize("method", METHODS)
 def test_a_held_load_is_the_play_operator(method: str) -> None:
     """Equation 2.17, at the angles that the gear output took."""
-    model = loop.emit(platform("hysteresis_friction", "viscous_friction"))
+    model = emission.emit(platform("hysteresis_friction", "viscous_friction"))
     found = simulate(model, np.linspace(0.0, 4.0, 40001), VOLTAGE, DRIVEN, method=method)
     expected = [0.0]
     for gear in found["theta_gear_pan"][1:]:
@@ -174,7 +175,7 @@ def test_a_held_load_is_the_play_operator(method: str) -> None:
 @pytest.mark.parametrize("method", METHODS)
 def test_a_coasting_load_follows_a_piecewise_integration(method: str) -> None:
     """Equation 2.18 with erratum 29: joined while the torque pushes, of one speed when struck."""
-    model = loop.emit(platform("hysteresis_inertia"))
+    model = emission.emit(platform("hysteresis_inertia"))
     found = simulate(model, [0.0, 3.0], VOLTAGE, UNDAMPED, method=method, rtol=1e-10, atol=1e-11)
     side, t, x = 0, 0.0, np.zeros(5)
 
@@ -209,7 +210,7 @@ def test_a_coasting_load_follows_a_piecewise_integration(method: str) -> None:
 @pytest.mark.parametrize("site", ["gear", "joint"])
 def test_dry_friction_beside_rigid_faces(kind: str, site: str) -> None:
     """Bodies that rest are struck loose and come to rest again; both methods see the same."""
-    model = loop.emit(platform(kind, "csvs_friction", site=site))
+    model = emission.emit(platform(kind, "csvs_friction", site=site))
     runs = [simulate(model, 4.0, VOLTAGE, DRY, method=method) for method in METHODS]
     for found in runs:
         assert_sound(found)
@@ -224,7 +225,7 @@ def test_strikes_on_one_axis_reach_the_play_of_the_other(kind: str) -> None:
     given = platform(kind, "payload")
     tilt = tuple(replace(e, axis="tilt") for e in given.effects if e.effect == "dc_motor")
     tilt += (EffectDeclaration("backlash", "tilt", None, "elastic_impact"),)
-    model = loop.emit(replace(given, effects=(*given.effects, *tilt)))
+    model = emission.emit(replace(given, effects=(*given.effects, *tilt)))
     axes = {"N_tilt": 1.0, "J_motor_tilt": 0.03, "K_t_tilt": 0.3, "gap_tilt": 0.02, "R_tilt": 1.0}
     parameters = UNDAMPED | PAYLOAD | axes
     inputs = VOLTAGE | {"u_tilt": multisine([9.0, 4.0], [0.8, 2.3])}
@@ -240,7 +241,7 @@ def test_strikes_on_one_axis_reach_the_play_of_the_other(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_tangents_through_strikes(kind: str) -> None:
-    model = loop.emit(platform(kind, "viscous_friction"))
+    model = emission.emit(platform(kind, "viscous_friction"))
     names = [n for n in ("J_pan", "gap_pan", "K_t_pan", "e_gap_pan") if n in model.parameter_names]
     parameters = {**DRIVEN, **({"e_gap_pan": 0.9} if kind == "elastic_impact" else {})}
     end = {"elastic_impact": 0.2}.get(kind, 2.0)
@@ -269,8 +270,8 @@ def test_the_kind_is_read_and_written(tmp_path: Path) -> None:
     path.write_text(platform_text(given))
     assert 'kind = "hysteresis_friction"' in path.read_text()
     assert read_platform(path) == given
-    usual = loop.emit(platform(None, "shaft_compliance"))
-    assert loop.emit(platform("dead_zone", "shaft_compliance")).module is usual.module
+    usual = emission.emit(platform(None, "shaft_compliance"))
+    assert emission.emit(platform("dead_zone", "shaft_compliance")).module is usual.module
 
 
 def test_what_does_not_go_together_is_refused(bouncing: Model) -> None:
@@ -287,12 +288,12 @@ def test_what_does_not_go_together_is_refused(bouncing: Model) -> None:
     refused += [(replace(bare, effects=(motor,)), "'dc_motor' has no kinds; remove kind")]
     for wrong, message in refused:
         with pytest.raises(InputError, match=message):
-            loop.emit(wrong)
+            emission.emit(wrong)
     for method in (*METHODS, "fixed_step"):
         with pytest.raises(InputError, match=r"starts 0\.02 rad ahead of the joint, beyond a"):
             simulate(
                 bouncing, 1.0, parameters=FREE, initial={"theta_gear_pan": 0.02}, method=method
             )
-    held = loop.emit(platform("hysteresis_friction"))
+    held = emission.emit(platform("hysteresis_friction"))
     with pytest.raises(InputError, match="in the gap, where friction holds the joint"):
         simulate(held, 1.0, parameters=FREE, initial={"omega_pan": 0.02})

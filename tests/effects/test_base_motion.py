@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.derivation.assembly import assemble
-from ptp_symbolic.kinematics import TIME
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
 from ptp_symbolic.platform import EffectDeclaration, Platform
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.mechanics.kinematics import TIME
 
 EFFECTS = tuple(
     EffectDeclaration(e, None, None) for e in ("rigid_bodies", "payload", "base_motion")
@@ -36,7 +37,7 @@ def test_torques_are_those_of_weight_and_inertia_force() -> None:
 
 def test_pan_axis_that_points_along_the_motion_stays_at_rest() -> None:
     along = {"theta_pan": SHAKE["psi_base"]}
-    found = simulate(loop.emit(platform("pan")), [0.0, 3.0], None, SHAKE, along)
+    found = simulate(emission.emit(platform("pan")), [0.0, 3.0], None, SHAKE, along)
     assert found["theta_pan"][-1] == pytest.approx(SHAKE["psi_base"], abs=1e-12)
 
 
@@ -49,7 +50,7 @@ def test_hanging_payload_swings_like_a_driven_pendulum() -> None:
     swing = MASS * ARM * push / total / (own**2 - driven**2)
     shake = SHAKE | {"a_base": push, "psi_base": 0.0}
     found = simulate(
-        loop.emit(platform("tilt")), np.linspace(0.0, 3.0, 31), None, body | shake,
+        emission.emit(platform("tilt")), np.linspace(0.0, 3.0, 31), None, body | shake,
         {"theta_tilt": np.pi / 2}, rtol=1e-11, atol=1e-14,
     )  # fmt: skip
     steady = swing * np.sin(driven * found.t + 0.4)

@@ -5,9 +5,10 @@ import pytest
 import sympy as sp
 from scipy.special import ellipk
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
 from ptp_symbolic.platform import EffectDeclaration, Platform
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 EFFECTS = tuple(EffectDeclaration(e, None, None) for e in ("rigid_bodies", "payload", "base_tilt"))
 M, C = sp.symbols("m_payload c_x_payload", real=True)
@@ -45,7 +46,8 @@ def test_pan_axis_swings_about_the_azimuth_like_a_pendulum() -> None:
     slow = np.sqrt(mass * 9.81 * arm * np.sin(beta) / (inertia + mass * arm**2))
     half_period = 2.0 * ellipk(np.sin(amplitude / 2) ** 2) / slow
     found = simulate(
-        loop.emit(platform("pan")), [0.0, half_period], initial={"theta_pan": alpha - amplitude},
+        emission.emit(platform("pan")), [0.0, half_period],
+        initial={"theta_pan": alpha - amplitude},
         parameters={"beta_base": beta, "alpha_base": alpha}, rtol=1e-11, atol=1e-12,
     )  # fmt: skip
     assert found["theta_pan"][-1] == pytest.approx(alpha + amplitude, abs=1e-8)

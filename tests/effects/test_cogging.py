@@ -7,10 +7,11 @@ import pytest
 import sympy as sp
 from scipy.special import ellipk
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 BODY = EffectDeclaration("rigid_bodies", None, None)
 COGGING = EffectDeclaration("cogging", "pan", None)
@@ -21,7 +22,7 @@ NOTCHED = {"J_pan": J, "T_sin_pan": SIN, "T_cos_pan": COS, "n_cog_pan": NOTCHES}
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 def test_period_and_amplitude_of_the_torque(model: Model) -> None:

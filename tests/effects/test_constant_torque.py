@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant
 
 EFFECTS = (
     EffectDeclaration("rigid_bodies", None, None),
@@ -20,7 +21,7 @@ BALANCED = {"c_x_payload": 0.0, "tau0_tilt": TORQUE}
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

@@ -5,11 +5,12 @@ import math
 import pytest
 import sympy as sp
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, ramp
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant, ramp
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 EFFECTS = (
     EffectDeclaration("rigid_bodies", None, None),
@@ -30,7 +31,7 @@ def equation_4_1(rate: float) -> float:
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 @pytest.mark.parametrize("rate", RATES)

@@ -5,11 +5,12 @@ import pytest
 import sympy as sp
 from scipy.linalg import expm
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 EFFECTS = (
     EffectDeclaration("rigid_bodies", None, None),
@@ -25,7 +26,7 @@ FREE = {"J_pan": J_LOAD, "b_pan": 0.0}
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 def test_power_balance_over_the_gear() -> None:

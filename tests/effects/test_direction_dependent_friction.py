@@ -4,10 +4,11 @@ import math
 
 import pytest
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, ramp
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant, ramp
 
 EFFECTS = (
     EffectDeclaration("rigid_bodies", None, None),
@@ -26,7 +27,7 @@ for name, f, b in zip(NAMES, FORWARD, BACKWARD, strict=True):
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 @pytest.mark.parametrize("rate", [0.005, -0.005, 0.03, -0.03, 0.4, -0.4])

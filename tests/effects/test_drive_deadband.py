@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, ramp
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant, ramp
 
 EFFECTS = (
     EffectDeclaration("rigid_bodies", None, None),
@@ -21,7 +22,7 @@ R, L, K_T, N, DEAD = 12.9, 6.9e-3, 0.0724, 500.0, 0.7
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 @pytest.mark.parametrize("command", [0.699, -0.699, 0.3])

@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant
 
 BODY = EffectDeclaration("rigid_bodies", None, None)
 DISC = EffectDeclaration("encoder_eccentricity", "pan", None)
@@ -19,7 +20,7 @@ OFF = {"e_sin_pan": SIN, "e_cos_pan": COS}
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 def reading(model: Model, pan: float, tilt: float = 0.0) -> dict[str, float]:

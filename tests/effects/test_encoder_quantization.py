@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 BODY = EffectDeclaration("rigid_bodies", None, None)
 COUNTER = EffectDeclaration("encoder_quantization", "pan", None)
@@ -18,7 +19,9 @@ COUNT = 2 * math.pi / 7200
 
 
 def counted(*effects: EffectDeclaration) -> Model:
-    return loop.emit(Platform("counts", "Counted angle", ("pan",), 9.81, (BODY, *effects), (), ()))
+    return emission.emit(
+        Platform("counts", "Counted angle", ("pan",), 9.81, (BODY, *effects), (), ())
+    )
 
 
 def reading(model: Model, angle: float, **values: float) -> float:

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
 
 EFFECTS = (
     EffectDeclaration("rigid_bodies", None, None),
@@ -32,7 +33,7 @@ def error(angle: float | np.ndarray) -> float | np.ndarray:
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

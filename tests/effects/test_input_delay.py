@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, sensitivity, simulate
-from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.simulation.inputs import (
+from ptp_symbolic import sensitivity, simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.simulation.signals.inputs import (
     InputSignal,
     cubic_transition,
     ramp,
@@ -14,6 +14,7 @@ from ptp_symbolic.simulation.inputs import (
     table,
     trapezoid,
 )
+from ptp_symbolic.platform import EffectDeclaration, Platform
 
 BODY = EffectDeclaration("rigid_bodies", None, None)
 DELAY = EffectDeclaration("input_delay", "pan", None)
@@ -36,7 +37,7 @@ def platform(*axes: str) -> Platform:
 @pytest.mark.parametrize("delay", [0.0, 0.002, LATE, 0.37])
 def test_a_late_step_of_torque_gives_a_late_parabola(delay: float) -> None:
     values = {"J_pan": J, "t_delay_pan": delay}
-    found = simulate(loop.emit(platform("pan")), 0.5, {"tau_pan": step(0.0, 1.3, 0.1)}, values)
+    found = simulate(emission.emit(platform("pan")), 0.5, {"tau_pan": step(0.0, 1.3, 0.1)}, values)
     since = np.maximum(found.t - 0.1 - delay, 0.0)
     assert found["omega_pan"] == pytest.approx(1.3 / J * since, abs=1e-9)
     assert found["theta_pan"] == pytest.approx(0.65 / J * since**2, abs=1e-9)
@@ -47,7 +48,7 @@ def test_a_motor_answers_every_signal_late(signal: InputSignal) -> None:
     motor = tuple(
         EffectDeclaration(e, "pan", None) for e in ("dc_motor", "csvs_friction", "input_delay")
     )
-    model = loop.emit(Platform("late", "Late motor", ("pan",), 9.81, (BODY, *motor), (), ()))
+    model = emission.emit(Platform("late", "Late motor", ("pan",), 9.81, (BODY, *motor), (), ()))
     driven, times = {"u_pan": signal}, np.linspace(0.0, 0.5, 26)
     prompt = simulate(model, times, driven, rtol=1e-10)
     late = simulate(model, [0.0, *(times + LATE)], driven, {"t_delay_pan": LATE}, rtol=1e-10)
@@ -58,7 +59,7 @@ def test_a_motor_answers_every_signal_late(signal: InputSignal) -> None:
 
 
 def test_the_other_axis_is_not_late() -> None:
-    model = loop.emit(platform("pan", "tilt"))
+    model = emission.emit(platform("pan", "tilt"))
     values = {"J_y_tilt": J, "t_delay_pan": LATE}
     found = simulate(model, 0.3, {"tau_tilt": step(0.0, 0.2, 0.1)}, values)
     assert found["omega_tilt"] == pytest.approx(4.0 * np.maximum(found.t - 0.1, 0.0), abs=1e-9)
@@ -66,7 +67,7 @@ def test_the_other_axis_is_not_late() -> None:
 
 def test_a_later_command_costs_rate_and_angle_at_once() -> None:
     """Derivatives by the delay after a step: -tau/J of the rate, minus the rate of the angle."""
-    model, values = loop.emit(platform("pan")), {"J_pan": J, "t_delay_pan": LATE}
+    model, values = emission.emit(platform("pan")), {"J_pan": J, "t_delay_pan": LATE}
     driven = {"tau_pan": step(0.0, 1.3, 0.1)}
     found = sensitivity(model, [0.0, 0.1, 0.3], driven, values, by_parameters=["t_delay_pan"])
     assert found.states[:2] == pytest.approx(0.0, abs=0.0)

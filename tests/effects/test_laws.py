@@ -8,16 +8,16 @@ import pint
 import pytest
 import sympy as sp
 
-from ptp_symbolic import effects as catalogue
-from ptp_symbolic import loop
-from ptp_symbolic.codegen import dynamics
-from ptp_symbolic.derivation.assembly import assemble
-from ptp_symbolic.derivation.equations import Equations
-from ptp_symbolic.derivation.placement import available_quantities, place_effects
-from ptp_symbolic.effects import EFFECTS, Effect
-from ptp_symbolic.kinematics import TIME
+from ptp_symbolic.models import emission, variants
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from ptp_symbolic.platform.units import to_si
+from ptp_symbolic.symbolic import effects as catalogue
+from ptp_symbolic.symbolic.codegen import dynamics
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.derivation.placement import available_quantities, place_effects
+from ptp_symbolic.symbolic.effects import EFFECTS, Effect
+from ptp_symbolic.symbolic.mechanics.kinematics import TIME
 
 PLATFORMS = Path(__file__).parents[1] / "platforms"
 BASES = tuple(
@@ -38,7 +38,7 @@ def with_effect(effect: Effect) -> Platform:
         if any(e.effect == effect.id for e in base.effects):
             return base
         available = available_quantities(place_effects(base))
-        for addition in loop.candidate_effects(base):
+        for addition in variants.candidate_effects(base):
             needs = {need.format(axis=addition.axis) for need in effect.needs}
             if addition.effect == effect.id and needs <= available:
                 return replace(base, effects=(*base.effects, addition))
@@ -139,7 +139,7 @@ def test_defaults_starts_and_where_it_vanishes_lie_within_the_bounds(effect: Eff
 @pytest.mark.parametrize("base", BASES, ids=lambda base: base.name)
 def test_all_candidates_fit_into_one_machine(base: Platform) -> None:
     """Names of parameters and states differ: a diagnosis places them all at once."""
-    everything = replace(base, effects=(*base.effects, *loop.candidate_effects(base)))
+    everything = replace(base, effects=(*base.effects, *variants.candidate_effects(base)))
     assert len(assemble(everything).effects) == len(everything.effects)
 
 
@@ -194,7 +194,7 @@ def value_of(equations: Equations, name: str, rng: np.random.Generator) -> float
 @pytest.mark.parametrize("size", [1e-3, 1.0, 30.0])
 def test_a_dissipative_effect_takes_energy_out(effect: Effect, size: float) -> None:
     """Its own share of what the machine dissipates, with the effect at work and switched off."""
-    model, rng = loop.emit(with_effect(effect)), np.random.default_rng(5)
+    model, rng = emission.emit(with_effect(effect)), np.random.default_rng(5)
     own = {p.name: p for p in model.parameters if p.vanishes is not None}
     names = {
         n for e in assemble(with_effect(effect)).effects if e.effect is effect for n in e.parameters
@@ -234,7 +234,7 @@ def unit_factor(unit: str) -> float:
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=IDS)
 def test_other_units_give_the_same_motion(effect: Effect) -> None:
-    model, rng = loop.emit(with_effect(effect)), np.random.default_rng(2)
+    model, rng = emission.emit(with_effect(effect)), np.random.default_rng(2)
     units = model.units
     names = (model.state_names, model.input_names, model.parameter_names)
     x, u = (rng.normal(size=len(n)) for n in names[:2])

@@ -8,12 +8,12 @@ import pytest
 import sympy as sp
 
 import ptp_symbolic
-from ptp_symbolic import loop
-from ptp_symbolic.linkage import Linkage
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, table
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, read_platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.screw import Screw
-from ptp_symbolic.simulation.inputs import constant, table
+from ptp_symbolic.symbolic.mechanisms.linkage import Linkage
+from ptp_symbolic.symbolic.mechanisms.screw import Screw
 from tests.independent import rigid_platform, tilt_drive
 from tests.independent.tilt_drive import TiltDrive
 
@@ -156,7 +156,7 @@ def test_dry_friction_in_the_joint_is_a_part_of_the_load(factor: float) -> None:
     values = {"F_c_tilt": 2.0, "F_s_tilt": 2.0, "F_v_tilt": 0.0}
     declared = tuple(ParameterDeclaration(name, None, v) for name, v in values.items())
     effects, parameters = (*platform.effects, dry), (*platform.parameters, *declared)
-    model = loop.emit(replace(platform, effects=effects, parameters=parameters))
+    model = emission.emit(replace(platform, effects=effects, parameters=parameters))
     drive = TiltDrive(c_x=0.05, c_z=0.02, F_joint=2.0)
     found, truth = trajectory(model, drive, factor)
     assert np.abs(found - truth).max(axis=0) == pytest.approx(0.0, abs=1e-8)
@@ -257,7 +257,7 @@ def test_sensitivities_against_differences() -> None:
 def test_behind_a_stiff_shaft_it_moves_as_without() -> None:
     platform = read_platform("thesis-tilt-drive")
     shaft = EffectDeclaration("shaft_compliance", "tilt", None)
-    model = loop.emit(replace(platform, effects=(*platform.effects, shaft)))
+    model = emission.emit(replace(platform, effects=(*platform.effects, shaft)))
     inputs = {"u_tilt": table(CORNERS, VOLTS, "linear")}
     stiff = {"k_shaft_tilt": 1e6, "d_shaft_tilt": 50.0, "c_x_payload": 0.01}
     times = np.linspace(0.0, 1.0, 11)

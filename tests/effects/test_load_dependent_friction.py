@@ -5,10 +5,11 @@ import math
 import pytest
 from scipy.optimize import brentq
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, ramp
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant, ramp
 
 BODY = EffectDeclaration("rigid_bodies", None, None)
 GEARED = tuple(
@@ -32,12 +33,12 @@ SAGGED = {"theta_pan": -LOAD / SHAFT}
 
 @pytest.fixture(scope="module")
 def geared() -> Model:
-    return loop.emit(Platform("load", "", ("pan",), 9.81, (BODY, *GEARED), (), ()))
+    return emission.emit(Platform("load", "", ("pan",), 9.81, (BODY, *GEARED), (), ()))
 
 
 @pytest.fixture(scope="module")
 def rigid() -> Model:
-    return loop.emit(Platform("load", "", ("pan",), 9.81, (BODY, *RIGID), (), ()))
+    return emission.emit(Platform("load", "", ("pan",), 9.81, (BODY, *RIGID), (), ()))
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

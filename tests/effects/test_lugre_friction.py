@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine, ramp
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant, multisine, ramp
 
 EFFECTS = (
     EffectDeclaration("rigid_bodies", None, None),
@@ -29,7 +30,7 @@ def curve(rate: float) -> float:
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 @pytest.mark.parametrize("rate", [0.004, -0.02, 0.3])

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 EFFECTS = tuple(
     EffectDeclaration(e, None, None) for e in ("rigid_bodies", "payload", "payload_com_offset")
@@ -21,7 +22,7 @@ MASS, ARM, INERTIA = 4.992, 0.1, 6.5e-4 + 6.8e-3
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 def test_shift_grows_the_inertia_after_steiner() -> None:

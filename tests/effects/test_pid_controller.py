@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from ptp_symbolic import loop, sensitivity, simulate
+from ptp_symbolic import sensitivity, simulate
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, ramp, step
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import InputSignal, ramp, step
 
 J, L, R, KT, JM, N = 0.05, 6.9e-3, 12.9, 0.0724, 1.1e-5, 500.0
 COUNT = 2 * math.pi / 7200
@@ -22,7 +23,7 @@ GAINS = {"K_p_pan": 300.0, "K_i_pan": 900.0, "K_d_pan": 4.0}
 def servo(*more: str) -> Model:
     names = ("rigid_bodies", "dc_motor", "pid_controller", *more)
     effects = (EffectDeclaration(n, None if n == "rigid_bodies" else "pan", None) for n in names)
-    return loop.emit(Platform("servo", "Servo", ("pan",), 9.81, tuple(effects), (), ()))
+    return emission.emit(Platform("servo", "Servo", ("pan",), 9.81, tuple(effects), (), ()))
 
 
 @dataclass
@@ -253,4 +254,4 @@ def test_without_a_motor_it_has_nothing_to_command() -> None:
         EffectDeclaration("pid_controller", "pan", None),
     )
     with pytest.raises(InputError, match="acts on 'command_pan', which no declared effect defines"):
-        loop.emit(Platform("servo", "", ("pan",), 9.81, effects, (), ()))
+        emission.emit(Platform("servo", "", ("pan",), 9.81, effects, (), ()))

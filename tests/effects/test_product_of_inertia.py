@@ -5,11 +5,12 @@ import pytest
 import sympy as sp
 from scipy.integrate import quad
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 EFFECTS = tuple(EffectDeclaration(e, None, None) for e in ("rigid_bodies", "product_of_inertia"))
 PLATFORM = Platform("skew", "Skew tilt body", ("pan", "tilt"), 9.81, EFFECTS, (), ())
@@ -25,7 +26,7 @@ BODY = {"J_pan": J_PAN} | {
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 def test_coupling_inertia_of_erratum_27() -> None:

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from ptp_symbolic import loop, sensitivity, simulate
+from ptp_symbolic import sensitivity, simulate
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, step, table
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from ptp_symbolic.platform.writer import platform_text
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant, step, table
 
 J, L, R, KT, JM, N = 0.05, 6.9e-3, 12.9, 0.0724, 1.1e-5, 500.0
 U, F = 24.0, 6e6 / 512
@@ -29,7 +30,7 @@ def driven(kind: str | None, *more: str) -> Model:
         EffectDeclaration("pwm_drive", "pan", None, kind),
         *(EffectDeclaration(name, "pan", None) for name in more),
     )
-    return loop.emit(Platform("driven", "Driven", ("pan",), 9.81, effects, (), ()))
+    return emission.emit(Platform("driven", "Driven", ("pan",), 9.81, effects, (), ()))
 
 
 def ripple(duty: float, low: float) -> tuple[float, float]:
@@ -154,12 +155,12 @@ def test_the_kind_is_declared_in_the_platform(tmp_path: Path) -> None:
     path = tmp_path / "pan.toml"
     path.write_text(platform_text(with_kind))
     assert read_platform(path).effects[-1].kind == "switching"
-    assert "bridge_pan" in loop.emit(read_platform(path)).state_names
+    assert "bridge_pan" in emission.emit(read_platform(path)).state_names
     path.write_text(path.read_text().replace('"switching"', '"humming"'))
     with pytest.raises(
         InputError, match=r"no kind 'humming'\. Choose one of: averaged, switching,"
     ):
-        loop.emit(read_platform(path))
+        emission.emit(read_platform(path))
 
 
 def test_a_carrier_that_starts_with_a_sample_takes_the_new_command() -> None:
@@ -170,8 +171,8 @@ def test_a_carrier_that_starts_with_a_sample_takes_the_new_command() -> None:
     )
     times = np.arange(900) * 2048 / 6e6
     goal = {"setpoint_pan": step(0.01, 0.01, 1.0)}
-    found = simulate(loop.emit(replace(base, effects=effects)), times, goal)
+    found = simulate(emission.emit(replace(base, effects=effects)), times, goal)
     assert len(np.unique(found["command_pan"])) > 5
     assert found["duty_pan"] == pytest.approx(found["command_pan"] / U, abs=1e-15)
-    mean = simulate(loop.emit(base), times, goal)
+    mean = simulate(emission.emit(base), times, goal)
     assert found["theta_pan"] == pytest.approx(mean["theta_pan"], abs=2 * math.pi / 7200)

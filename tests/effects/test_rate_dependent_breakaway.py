@@ -5,10 +5,11 @@ import math
 import pytest
 from scipy.optimize import brentq
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, ramp, table
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant, ramp, table
 
 EFFECTS = (
     EffectDeclaration("rigid_bodies", None, None),
@@ -29,7 +30,7 @@ def breakaway(rest: float) -> float:
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 @pytest.mark.parametrize("slope", [0.2, -2.0, 50.0])

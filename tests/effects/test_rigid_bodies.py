@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 EFFECTS = (EffectDeclaration("rigid_bodies", None, None),)
 PLATFORM = Platform("bodies", "Two bodies", ("pan", "tilt"), 9.81, EFFECTS, (), ())
@@ -18,7 +19,7 @@ J_PAN, J_X, J_Y, J_Z = 5.3e-4, 4.1e-4, 6.5e-4, 2.7e-4
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 def test_kinetic_energy_is_that_of_the_body_rates() -> None:

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 EFFECTS = (
     EffectDeclaration("rigid_bodies", None, None),
@@ -24,7 +25,7 @@ START = {"theta_gear_pan": TWIST, "omega_gear_pan": SPIN, "omega_pan": SPIN}
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 def test_torque_opposes_twist_and_relative_speed() -> None:

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.derivation.assembly import assemble
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 J, B = 5.3e-4, 0.004
 
@@ -23,7 +24,7 @@ def platform(axes: tuple[str, ...], axis: str) -> Platform:
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(platform(("pan",), "pan"))
+    return emission.emit(platform(("pan",), "pan"))
 
 
 def test_rate_decays_with_the_time_constant_j_over_b(model: Model) -> None:

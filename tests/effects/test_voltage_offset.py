@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant, multisine
 
 EFFECTS = (
     EffectDeclaration("rigid_bodies", None, None),
@@ -20,7 +21,7 @@ R, K_T, N, OFFSET, DAMPING = 12.9, 0.0724, 500.0, -0.35, 8.0
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 def steady_speed(volts: float) -> float:

@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, ramp
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant, ramp
 
 BODY = EffectDeclaration("rigid_bodies", None, None)
 R, L, K_T, N, LIMIT = 12.9, 6.9e-3, 0.0724, 500.0, 12.0
@@ -16,7 +17,7 @@ R, L, K_T, N, LIMIT = 12.9, 6.9e-3, 0.0724, 500.0, 12.0
 
 def drive(*stages: str) -> Model:
     effects = (BODY, *(EffectDeclaration(e, "pan", None) for e in ("dc_motor", *stages)))
-    return loop.emit(Platform("rails", "Pan axis and supply", ("pan",), 9.81, effects, (), ()))
+    return emission.emit(Platform("rails", "Pan axis and supply", ("pan",), 9.81, effects, (), ()))
 
 
 @pytest.fixture(scope="module")

@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, step, table
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant, step, table
 
 EFFECTS = (
     EffectDeclaration("rigid_bodies", None, None),
@@ -24,7 +25,7 @@ TIMES = np.linspace(0.0, 3.0, 31)
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return loop.emit(PLATFORM)
+    return emission.emit(PLATFORM)
 
 
 def test_constant_stall_current_heats_exponentially(model: Model) -> None:

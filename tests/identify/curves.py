@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from ptp_symbolic.identify.evaluate import Evaluation
-from ptp_symbolic.identify.least_squares import Problem
+from ptp_symbolic.numeric.identify.evaluate import Evaluation
+from ptp_symbolic.numeric.identify.least_squares import Problem
 
 Floats = NDArray[np.float64]
 Fails = Callable[[Floats], bool]

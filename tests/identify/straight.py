@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 import ptp_symbolic
-from ptp_symbolic.identify.coordinates import FreeParameter
-from ptp_symbolic.identify.evaluate import Evaluation
-from ptp_symbolic.identify.fit import Fit
-from ptp_symbolic.identify.run import Run
-from ptp_symbolic.simulation.inputs import constant, stack
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.evaluate import Evaluation
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, stack
 from tests.identify.curves import Floats
 
 MODEL = ptp_symbolic.load("ideal")  # a Fit has one; the statistics never ask it for anything

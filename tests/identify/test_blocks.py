@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
-from ptp_symbolic.identify.blocks import (
+from ptp_symbolic.numeric.identify.blocks import (
     block_labels,
     block_length,
     bootstrap_share,
@@ -15,7 +15,7 @@ from ptp_symbolic.identify.blocks import (
     long_blocks,
     without_outliers,
 )
-from ptp_symbolic.identify.constants import FEWEST_BLOCKS, MOST_BLOCKS
+from ptp_symbolic.numeric.identify.constants import FEWEST_BLOCKS, MOST_BLOCKS
 from tests.identify.curves import Floats
 
 

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from scipy import integrate, signal, stats
 
-from ptp_symbolic.identify import constants as c
-from ptp_symbolic.identify import noise
-from ptp_symbolic.identify.weak_form import weak_average
+from ptp_symbolic.numeric.identify import constants as c
+from ptp_symbolic.numeric.identify import noise
+from ptp_symbolic.numeric.identify.weak_form import weak_average
 
 
 def said(name: str, checkout: Path) -> str:
     """What the table says of a constant."""
-    text = (checkout / "ptp_symbolic/identify/constants.py").read_text(encoding="utf-8")
+    text = (checkout / "ptp_symbolic/numeric/identify/constants.py").read_text(encoding="utf-8")
     found = re.search(rf"^{name} = [^#\n]*#(.*)$", text, re.MULTILINE)
     assert found is not None
     return found[1]

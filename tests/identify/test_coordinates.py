@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ptp_symbolic.identify.coordinates import (
+from ptp_symbolic.numeric.identify.coordinates import (
     FreeParameter,
     free_parameter,
     limits,

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from ptp_symbolic.identify.coordinates import free_parameter
-from ptp_symbolic.identify.evaluate import Tolerance, evaluate
-from ptp_symbolic.identify.fit import Effort, Fit, fit_parameters, run_counts, unblinded
-from ptp_symbolic.identify.intervals import estimates
+from ptp_symbolic.numeric.identify.coordinates import free_parameter
+from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
+from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters, run_counts, unblinded
+from ptp_symbolic.numeric.identify.intervals import estimates
 from tests.identify.pan_runs import (
     FINE_STEPS,
     FLOOR,

@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import lsq_linear
 from scipy.signal import lfilter
 
-from ptp_symbolic.identify.coordinates import FreeParameter, free_parameter
-from ptp_symbolic.identify.fit import Fit
-from ptp_symbolic.identify.intervals import (
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.intervals import (
     Estimate,
     degrees_of_freedom,
     estimates,

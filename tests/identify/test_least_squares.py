@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear, minimize_scalar
 
-from ptp_symbolic.identify.constants import LARGEST_STEP
-from ptp_symbolic.identify.least_squares import (
+from ptp_symbolic.numeric.identify.constants import LARGEST_STEP
+from ptp_symbolic.numeric.identify.least_squares import (
     Optimum,
     Problem,
     cost_of,

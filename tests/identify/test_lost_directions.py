@@ -6,9 +6,9 @@ from typing import cast
 import numpy as np
 import pytest
 
-from ptp_symbolic.identify.coordinates import free_parameter
-from ptp_symbolic.identify.fit import Fit
-from ptp_symbolic.identify.intervals import estimates
+from ptp_symbolic.numeric.identify.coordinates import free_parameter
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.intervals import estimates
 
 RNG = np.random.default_rng(5)
 TIME = np.arange(0.0, 20.0, 0.01)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from ptp_symbolic.identify.noise import coloured_noise, hidden_from_differences, white_noise
+from ptp_symbolic.numeric.identify.noise import coloured_noise, hidden_from_differences, white_noise
 from tests.identify.curves import Floats
 
 TIME = np.arange(4000)

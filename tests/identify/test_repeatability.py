@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.identify.repeatability import repeatability
-from ptp_symbolic.identify.run import Run
+from ptp_symbolic.numeric.identify.repeatability import repeatability
+from ptp_symbolic.numeric.identify.run import Run
 from tests.identify.straight import run_of
 
 SAMPLES = 2000

@@ -6,11 +6,16 @@ import numpy as np
 import pytest
 
 import ptp_symbolic
-from ptp_symbolic.identify.coordinates import FreeParameter, free_parameter, to_search, to_values
-from ptp_symbolic.identify.fit import Effort, all_values, fit_parameters
-from ptp_symbolic.identify.intervals import estimates
-from ptp_symbolic.identify.requirements import Allow, keep_possible
-from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.numeric.identify.coordinates import (
+    FreeParameter,
+    free_parameter,
+    to_search,
+    to_values,
+)
+from ptp_symbolic.numeric.identify.fit import Effort, all_values, fit_parameters
+from ptp_symbolic.numeric.identify.intervals import estimates
+from ptp_symbolic.numeric.identify.requirements import Allow, keep_possible
+from ptp_symbolic.numeric.runtime.model import Model
 from tests.identify.pan_runs import (
     FLOOR,
     MODEL,

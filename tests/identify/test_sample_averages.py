@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ptp_symbolic.identify.sample_averages import thinned
+from ptp_symbolic.numeric.identify.sample_averages import thinned
 from tests.identify.straight import run_of
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic.identify.weak_form import weak_average
+from ptp_symbolic.numeric.identify.weak_form import weak_average
 
 HALF_WIDTH = 0.08
 

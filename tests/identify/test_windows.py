@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import ptp_symbolic
-from ptp_symbolic.data import Log
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.identify.evaluate import Tolerance, evaluate, simulated_signals
-from ptp_symbolic.identify.run import Run, prepare_runs
-from ptp_symbolic.identify.windows import (
+from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate, simulated_signals
+from ptp_symbolic.numeric.identify.run import Run, prepare_runs
+from ptp_symbolic.numeric.identify.windows import (
     cut,
     input_noise,
     propagated_noise,
@@ -20,8 +20,8 @@ from ptp_symbolic.identify.windows import (
     window_length,
     without_chaos,
 )
+from ptp_symbolic.numeric.simulation.passage import Accuracy, default_method, pass_through
 from ptp_symbolic.platform import Platform, SignalDeclaration
-from ptp_symbolic.simulation.passage import Accuracy, default_method, pass_through
 from tests.identify.curves import Floats
 
 COUNTS = 7200

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import scipy.io
 
-from ptp_symbolic.diagnosis_run import diagnose_platform
+from ptp_symbolic.diagnosis_workflow import diagnose_platform
 from ptp_symbolic.platform import read_platform
 
 pytestmark = pytest.mark.long

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import ptp_symbolic
-from ptp_symbolic.simulation.inputs import stack, step
-from ptp_symbolic.simulation.passage import tolerance_weights
+from ptp_symbolic.numeric.simulation.passage import tolerance_weights
+from ptp_symbolic.numeric.simulation.signals.inputs import stack, step
 
 
 @pytest.mark.parametrize("method", ["LSODA", "DOP853"])

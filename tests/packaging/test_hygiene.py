@@ -85,7 +85,7 @@ def test_the_patterns_find_what_they_are_for(
     assert bool(pattern.search(text)) is caught
 
 
-CONSTANTS = "ptp_symbolic/identify/constants.py"
+CONSTANTS = "ptp_symbolic/numeric/identify/constants.py"
 SCALED = 53  # constants that nothing but the benchmark speaks for: this may fall, not rise
 
 
@@ -108,7 +108,7 @@ def numeric_constants(source: str) -> list[str]:
 def test_numbers_that_were_chosen_stand_in_one_table(checkout: Path) -> None:
     """Each with its unit, its quantity and where it comes from."""
     for folder in ("diagnose", "identify"):
-        for module in sorted((checkout / "ptp_symbolic" / folder).glob("*.py")):
+        for module in sorted((checkout / "ptp_symbolic/numeric" / folder).glob("*.py")):
             if module != checkout / CONSTANTS:
                 assert numeric_constants(module.read_text(encoding="utf-8")) == [], module
     lines = (checkout / CONSTANTS).read_text(encoding="utf-8").splitlines()

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 NUMERIC_WING = ("runtime", "data", "simulation", "sensitivities", "identify", "diagnose")
-SYMBOLIC_WING = ("parameters", "kinematics", "effects", "derivation", "simplify", "codegen")
+SYMBOLIC_WING = ("mechanics", "mechanisms", "effects", "derivation", "simplify", "codegen")
 
 
 def run_python(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -30,13 +30,13 @@ def test_import_leaves_sympy_alone(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("room", NUMERIC_WING)
 def test_numeric_wing_works_where_sympy_is_missing(room: str, tmp_path: Path) -> None:
-    program = f"import sys; sys.modules['sympy'] = None; import ptp_symbolic.{room}"
+    program = f"import sys; sys.modules['sympy'] = None; import ptp_symbolic.numeric.{room}"
     ran = run_python(tmp_path, "-c", program)
     assert ran.returncode == 0, ran.stderr
 
 
 @pytest.mark.parametrize("room", SYMBOLIC_WING)
 def test_symbolic_wing_works_where_numba_is_missing(room: str, tmp_path: Path) -> None:
-    program = f"import sys; sys.modules['numba'] = None; import ptp_symbolic.{room}"
+    program = f"import sys; sys.modules['numba'] = None; import ptp_symbolic.symbolic.{room}"
     ran = run_python(tmp_path, "-c", program)
     assert ran.returncode == 0, ran.stderr

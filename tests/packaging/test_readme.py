@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.derivation.admissible import refuse_impossible
-from ptp_symbolic.derivation.assembly import assemble
-from ptp_symbolic.derivation.placement import undeclared_parameters
-from ptp_symbolic.effects import EFFECTS
 from ptp_symbolic.platform import read_platform
+from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.placement import undeclared_parameters
+from ptp_symbolic.symbolic.effects import EFFECTS
 
 COMMANDS = (
     "platforms",

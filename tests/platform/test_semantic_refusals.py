@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic import loop
-from ptp_symbolic.derivation.placement import place_effects, undeclared_parameters
 from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.models import emission
 from ptp_symbolic.platform import Platform, read_platform
+from ptp_symbolic.symbolic.derivation.placement import place_effects, undeclared_parameters
 
 HEAD = """[platform]
 name = "bench"
@@ -72,7 +72,7 @@ def test_they_name_the_file_and_what_to_do(tmp_path: Path, text: str, message: s
 def test_a_value_that_nobody_wrote_is_called_default(tmp_path: Path) -> None:
     platform = declared(tmp_path, FRICTION + "[parameters]\nF_c_pan = { value = 1.0 }")
     with pytest.raises(InputError) as refused:
-        loop.emit(platform)
+        emission.emit(platform)
     assert "Impossible F_c_pan = 1 N m, F_s_pan = 0.675 N m (default): " in str(refused.value)
     assert str(refused.value).startswith(f"{tmp_path / 'bench.toml'}: ")
 
@@ -88,7 +88,7 @@ def test_a_number_without_unit_is_in_the_si_unit_of_the_effect(tmp_path: Path) -
         declared(tmp_path, f"[parameters]\nJ_pan = {{ value = {text} }}")
         for text in ("0.002", '2.0e4, unit = "g cm^2"')
     )
-    assert loop.emit(plain).defaults == pytest.approx(loop.emit(given).defaults, rel=1e-12)
+    assert emission.emit(plain).defaults == pytest.approx(emission.emit(given).defaults, rel=1e-12)
 
 
 def test_the_source_of_a_platform_is_no_part_of_what_it_says(tmp_path: Path) -> None:

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.codegen.latex import symbol_latex
-from ptp_symbolic.derivation.assembly import assemble
 from ptp_symbolic.platform import preset_names, read_platform
 from ptp_symbolic.report.derivation import has_warning, render_derivation
 from ptp_symbolic.report.derivation_symbols import CATALOGUE
 from ptp_symbolic.report.latex_text import escaped
 from ptp_symbolic.report.pdf import compile_pdf
+from ptp_symbolic.symbolic.codegen.latex import symbol_latex
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 
 @pytest.mark.parametrize("name", preset_names())

@@ -9,15 +9,15 @@ from typing import Any
 
 import pytest
 
-from ptp_symbolic import loop
-from ptp_symbolic.codegen.effect_equations import effect_equations
-from ptp_symbolic.diagnosis_run import _equations_tex
-from ptp_symbolic.effects import EFFECTS
-from ptp_symbolic.effects.effect import Place
+from ptp_symbolic.diagnosis_workflow import _equations_tex
+from ptp_symbolic.models import variants
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.diagnosis import render_diagnosis
 from ptp_symbolic.report.latex_text import PREAMBLE
+from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
+from ptp_symbolic.symbolic.effects import EFFECTS
+from ptp_symbolic.symbolic.effects.effect import Place
 from tests.report.synthetic_diagnosis import synthetic_diagnosis
 
 PLATFORMS = Path(__file__).parent.parent / "platforms"
@@ -42,7 +42,7 @@ def platforms() -> tuple[Platform, ...]:
 @cache
 def equations_of(effect: str) -> tuple[list[dict[str, Any]], EffectDeclaration]:
     for platform in platforms():
-        for found in loop.candidate_effects(platform):
+        for found in variants.candidate_effects(platform):
             if found.effect == effect:
                 extended = replace(platform, effects=(*platform.effects, found))
                 return effect_equations(extended, effect, found.axis), found

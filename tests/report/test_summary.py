@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnose import summary
-from ptp_symbolic.diagnose.candidates import Candidate
-from ptp_symbolic.diagnose.curves import curves_of
-from ptp_symbolic.diagnose.errors import error_of
-from ptp_symbolic.diagnose.residual_tests import residual_tests
-from ptp_symbolic.diagnose.trial import Trial
-from ptp_symbolic.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED
-from ptp_symbolic.identify.coordinates import free_parameter
-from ptp_symbolic.identify.intervals import Estimate
+from ptp_symbolic.numeric.diagnose import summary
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.curves import curves_of
+from ptp_symbolic.numeric.diagnose.errors import error_of
+from ptp_symbolic.numeric.diagnose.residual_tests import residual_tests
+from ptp_symbolic.numeric.diagnose.trial import Trial
+from ptp_symbolic.numeric.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED
+from ptp_symbolic.numeric.identify.coordinates import free_parameter
+from ptp_symbolic.numeric.identify.intervals import Estimate
 
 DECLARED = 6.5e-4
 COUNT = 1e-3  # rad

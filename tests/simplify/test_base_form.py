@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from ptp_symbolic.bodies import Body, RigidConfiguration, RigidEquations
-from ptp_symbolic.derivation.lagrange import lagrange
-from ptp_symbolic.derivation.trigonometry import normal_form
-from ptp_symbolic.simplify.base_parameters import BaseForm, base_form
-from ptp_symbolic.simplify.operations import (
+from ptp_symbolic.symbolic.derivation.lagrange import lagrange
+from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
+from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration, RigidEquations
+from ptp_symbolic.symbolic.simplify.base_parameters import BaseForm, base_form
+from ptp_symbolic.symbolic.simplify.operations import (
     operation_count,
     share_subexpressions,
     written_operations,
 )
-from ptp_symbolic.simplify.solve import accelerations
+from ptp_symbolic.symbolic.simplify.solve import accelerations
 from tests.derivation import rigid_configurations as machines
 from tests.derivation.rigid_configurations import symbol
 

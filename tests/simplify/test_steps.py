@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from ptp_symbolic.derivation.lagrange import lagrange
-from ptp_symbolic.derivation.trigonometry import normal_form
-from ptp_symbolic.simplify import steps as simplification
-from ptp_symbolic.simplify.reduction import factor_entry, reduce_trigonometry
-from ptp_symbolic.simplify.steps import simplify_rigid
+from ptp_symbolic.symbolic.derivation.lagrange import lagrange
+from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
+from ptp_symbolic.symbolic.simplify import steps as simplification
+from ptp_symbolic.symbolic.simplify.reduction import factor_entry, reduce_trigonometry
+from ptp_symbolic.symbolic.simplify.steps import simplify_rigid
 from tests.derivation import rigid_configurations as machines
 from tests.derivation.rigid_configurations import symbol
 
@@ -91,8 +91,8 @@ def test_factoring_collects_by_functions_of_the_state() -> None:
 
 
 SCRIPT = """
-from ptp_symbolic.derivation.lagrange import lagrange
-from ptp_symbolic.simplify.steps import simplify_rigid
+from ptp_symbolic.symbolic.derivation.lagrange import lagrange
+from ptp_symbolic.symbolic.simplify.steps import simplify_rigid
 from tests.derivation import rigid_configurations as machines
 machine = machines.configuration(("pan", "tilt"), "payload on a tilted base")
 print(simplify_rigid(lagrange(machine)))

@@ -10,7 +10,7 @@ import types
 import numpy as np
 from numba import njit
 
-from ptp_symbolic.runtime.model import Model
+from ptp_symbolic.numeric.runtime.model import Model
 
 J, K, F_C, F_S = 0.5, 8.0, 0.3, 0.5
 

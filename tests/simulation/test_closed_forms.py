@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import ptp_symbolic
-from ptp_symbolic.simulation.inputs import constant, multisine, ramp, step
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine, ramp, step
 from tests.simulation.block import F_C, F_S, J, K, block
 
 METHODS = ("rosenbrock", "runge_kutta")

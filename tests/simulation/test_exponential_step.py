@@ -8,18 +8,23 @@ from numba import njit
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from ptp_symbolic import loop
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.kernels.records import DONE, KERNEL
+from ptp_symbolic.numeric.simulation.methods.phi_functions import double, fill_phi_functions
+from ptp_symbolic.numeric.simulation.passage import (
+    Accuracy,
+    Passage,
+    pass_through,
+    tolerance_weights,
+)
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, ramp, stack, step
 from ptp_symbolic.platform import (
     EffectDeclaration,
     ParameterDeclaration,
     Platform,
     read_platform,
 )
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import InputSignal, constant, ramp, stack, step
-from ptp_symbolic.simulation.kernels import DONE, KERNEL
-from ptp_symbolic.simulation.passage import Accuracy, Passage, pass_through, tolerance_weights
-from ptp_symbolic.simulation.phi_functions import double, fill_phi_functions
 from tests.effects import test_pid_controller as pid
 
 END = 4.0
@@ -60,7 +65,7 @@ def servo() -> Model:
     platform = read_platform("thesis-pan-servo")
     kept = tuple(p for p in platform.parameters if p.name != "t_sample_pan")
     fast = ParameterDeclaration("t_sample_pan", "s", 1e-3)
-    return loop.emit(replace(platform, parameters=(*kept, fast)))
+    return emission.emit(replace(platform, parameters=(*kept, fast)))
 
 
 def passage(
@@ -114,7 +119,7 @@ def test_the_order_is_two_in_what_is_not_linear(figure) -> None:
     bodies, more = EffectDeclaration("rigid_bodies", None, None), (
         EffectDeclaration(name, "pan", None) for name in names
     )  # fmt: skip
-    model = loop.emit(Platform("flight", "Flight", ("pan",), 9.81, (bodies, *more), (), ()))
+    model = emission.emit(Platform("flight", "Flight", ("pan",), 9.81, (bodies, *more), (), ()))
     load = {"J_pan": 100.0, "gap_pan": 1.0, "k3_cable_pan": 40.0, "K_p_pan": 0.0}
     speed, end = 0.1, 24.0
     exact = solve_ivp(

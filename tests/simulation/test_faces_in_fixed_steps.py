@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, simulate
-from ptp_symbolic.simulation.inputs import constant
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.simulation.signals.inputs import constant
 from tests.effects.test_backlash_kinds import (
     DRY,
     FREE,
@@ -19,7 +20,7 @@ from tests.effects.test_backlash_kinds import (
 
 @pytest.mark.parametrize("e", [0.5, 1.0])
 def test_bounces_come_late_by_less_the_shorter_the_step(e: float) -> None:
-    model = loop.emit(platform("elastic_impact"))
+    model = emission.emit(platform("elastic_impact"))
     speed, powers = 0.3, e ** np.arange(1.0, 9.0)
     times = GAP / 2 / speed + GAP / speed * np.cumsum([0.0, *1.0 / powers[:-1]])
     after, late = times + GAP / speed / powers / 2, []
@@ -37,7 +38,7 @@ def test_bounces_come_late_by_less_the_shorter_the_step(e: float) -> None:
 @pytest.mark.parametrize("e", [0.0, 0.3, 0.8])
 def test_bounces_that_end_leave_the_faces_together(e: float) -> None:
     """They neither sink into each other nor bounce on below the length of a step."""
-    model, step = loop.emit(platform("elastic_impact")), 1e-4
+    model, step = emission.emit(platform("elastic_impact")), 1e-4
     given = ({"u_pan": constant(500.0)}, {**PUSHED, "e_gap_pan": e}, {"i_pan": 50.0})
     found = simulate(model, 1.0, *given, method="fixed_step", step=step)
     located = simulate(model, 1.0, *given)
@@ -53,7 +54,7 @@ def test_bounces_that_end_leave_the_faces_together(e: float) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("site", ["gear", "joint"])
 def test_dry_friction_beside_rigid_faces(kind: str, site: str) -> None:
-    model = loop.emit(platform(kind, "csvs_friction", site=site))
+    model = emission.emit(platform(kind, "csvs_friction", site=site))
     located = simulate(model, 4.0, VOLTAGE, DRY)
     angles, missing = [], []
     for step in (1e-4, 1e-5):

@@ -8,9 +8,10 @@ other, and MuJoCo's result must approach this one as its step shrinks.
 import numpy as np
 import pytest
 
-from ptp_symbolic import loop, simulate
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.simulation.signals.inputs import table
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.simulation.inputs import table
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo is an extra")
 
@@ -84,7 +85,7 @@ def simulate_with_mujoco(step: float, ends: np.ndarray) -> np.ndarray:
 def test_mujoco_converges_to_the_located_events(figure) -> None:
     ends = np.linspace(0.0, 2.6, 27)
     inputs = {f"tau_{axis}": table(TIMES, torque, "hold") for axis, torque in TORQUES.items()}
-    ours = simulate(loop.emit(PLATFORM), ends, inputs, VALUES, START, rtol=1e-9, atol=1e-11)
+    ours = simulate(emission.emit(PLATFORM), ends, inputs, VALUES, START, rtol=1e-9, atol=1e-11)
     angles = np.column_stack([ours["theta_pan"], ours["theta_tilt"]])
     modes = {event.mode for event in ours.events}
     assert {"sticks", "slides forward", "slides backward"} <= modes

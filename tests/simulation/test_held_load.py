@@ -7,9 +7,10 @@ import pytest
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from ptp_symbolic import loop, sensitivity, simulate
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import multisine, step, table
+from ptp_symbolic import sensitivity, simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import multisine, step, table
 from tests.effects.test_backlash_kinds import (
     DRIVEN,
     GAP,
@@ -31,7 +32,7 @@ FRICTION = {"F_c_pan": 0.05, "F_s_pan": 0.08, "F_v_pan": 0.01, "v_s_pan": 0.05}
 
 @pytest.fixture(scope="module")
 def sprung() -> Model:
-    return loop.emit(platform("hysteresis_friction", "cable_spring"))
+    return emission.emit(platform("hysteresis_friction", "cable_spring"))
 
 
 def with_soft_faces(stiffness: float) -> NDArray[np.float64]:
@@ -105,7 +106,7 @@ def test_the_rest_is_complete_and_ends_when_the_motor_outdoes_the_load(sprung: M
 @pytest.mark.parametrize("load", ["constant_torque", "cable_spring"])
 def test_dry_friction_beside_the_rest(load: str, site: str) -> None:
     """These loads chattered; both methods see the same, and energy is lost alone."""
-    model = loop.emit(platform("hysteresis_friction", load, "csvs_friction", site=site))
+    model = emission.emit(platform("hysteresis_friction", load, "csvs_friction", site=site))
     force = {"tau0_pan": -0.3} if load == "constant_torque" else {"k1_cable_pan": SPRING}
     parameters = {n: v for n, v in DRIVEN.items() if n != "b_pan"} | FRICTION | force
     for signal in (step(3.0, 0.0, 0.5), multisine([6.0, 3.0], [0.7, 1.9])):

@@ -13,8 +13,8 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import chirp
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.simulation.input_values import evaluate_inputs
-from ptp_symbolic.simulation.inputs import (
+from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
+from ptp_symbolic.numeric.simulation.signals.inputs import (
     InputSignal,
     constant,
     cubic_transition,
@@ -26,7 +26,7 @@ from ptp_symbolic.simulation.inputs import (
     table,
     trapezoid,
 )
-from ptp_symbolic.simulation.profile_text import parse_profile
+from ptp_symbolic.numeric.simulation.signals.profile_text import parse_profile
 
 TIMES = np.linspace(-1.0, 12.0, 1301)
 

@@ -8,11 +8,11 @@ import pytest
 from numba import njit
 
 import ptp_symbolic
-from ptp_symbolic import loop
+from ptp_symbolic.models import emission, variants
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.run import Trajectory
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine, step, table
 from ptp_symbolic.platform import read_platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import constant, multisine, step, table
-from ptp_symbolic.simulation.run import Trajectory
 from tests.simulation.block import block
 
 PAN_AXIS = Path(__file__).parents[1] / "platforms" / "fieldlog_pan.toml"
@@ -35,10 +35,10 @@ def missing(found: Trajectory) -> float:
 def everything() -> tuple[Model, dict[str, float]]:
     """The pan axis of the logs with every effect that it can have, and each of them at work."""
     base = read_platform(PAN_AXIS)
-    more = {e.effect: e for e in loop.candidate_effects(base)}
+    more = {e.effect: e for e in variants.candidate_effects(base)}
     given = {e.effect for e in base.effects}
     added = tuple(e for name, e in more.items() if name not in given)
-    model = loop.emit(replace(base, effects=(*base.effects, *added)))
+    model = emission.emit(replace(base, effects=(*base.effects, *added)))
     at_work = {
         p.name: p.starts[0] for p in model.parameters if p.starts and p.default == p.vanishes
     }

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-from ptp_symbolic.simulation import linear
-from ptp_symbolic.simulation.lanes import LANES, padded
+from ptp_symbolic.numeric.simulation.kernels import linear
+from ptp_symbolic.numeric.simulation.kernels.lanes import LANES, padded
 
 CHANCE = np.random.default_rng(5)
 

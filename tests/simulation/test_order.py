@@ -19,11 +19,11 @@ from scipy.optimize import brentq
 from scipy.special import ellipj, ellipk
 
 import ptp_symbolic
-from ptp_symbolic import loop
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.run import Trajectory
+from ptp_symbolic.numeric.simulation.signals.inputs import ramp, step
 from ptp_symbolic.platform import EffectDeclaration, Platform
-from ptp_symbolic.runtime.model import Model
-from ptp_symbolic.simulation.inputs import ramp, step
-from ptp_symbolic.simulation.run import Trajectory
 from tests.simulation.block import block
 
 METHODS = ("rosenbrock", "runge_kutta")
@@ -153,7 +153,7 @@ def flying() -> Model:
     names = ("dc_motor", "csvs_friction", "backlash", "shaft_compliance", "cable_spring")
     effects = [EffectDeclaration(name, "pan", None) for name in names]
     bodies = EffectDeclaration("rigid_bodies", None, None)
-    return loop.emit(Platform("flight", "Flight", ("pan",), 9.81, (bodies, *effects), (), ()))
+    return emission.emit(Platform("flight", "Flight", ("pan",), 9.81, (bodies, *effects), (), ()))
 
 
 FLIGHT = {

@@ -7,10 +7,10 @@ import pytest
 
 import ptp_symbolic
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.simulation.inputs import constant, multisine, stack, step, table
-from ptp_symbolic.simulation.kernels import DIVERGED
-from ptp_symbolic.simulation.passage import Accuracy, default_method, pass_through
-from ptp_symbolic.simulation.rodas5p import COUPLING, GAMMA, STAGES, A, C, D
+from ptp_symbolic.numeric.simulation.kernels.records import DIVERGED
+from ptp_symbolic.numeric.simulation.methods.rodas5p import COUPLING, GAMMA, STAGES, A, C, D
+from ptp_symbolic.numeric.simulation.passage import Accuracy, default_method, pass_through
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine, stack, step, table
 from tests.simulation.block import J, block
 
 

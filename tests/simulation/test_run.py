@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 
 import ptp_symbolic
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.simulation.inputs import multisine, ramp, step
-from ptp_symbolic.simulation.tableau import ERROR, A, C
+from ptp_symbolic.numeric.simulation.methods.tableau import ERROR, A, C
+from ptp_symbolic.numeric.simulation.signals.inputs import multisine, ramp, step
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.report.thesis import (
+from ptp_symbolic.thesis import (
     backlash,
     configurations,
     contact,
@@ -19,7 +19,7 @@ from ptp_symbolic.report.thesis import (
     rigid,
     tilt_drive,
 )
-from ptp_symbolic.report.thesis.items import Item, compared, erratum, half_last_digit
+from ptp_symbolic.thesis.items import Item, compared, erratum, half_last_digit
 
 
 def by_id(items: list[Item]) -> dict[str, Item]:

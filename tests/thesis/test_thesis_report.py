@@ -13,8 +13,8 @@ from click.testing import CliRunner
 from ptp_symbolic.cli.report_thesis import thesis
 from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.pdf import compile_pdf
-from ptp_symbolic.report.thesis import document
-from ptp_symbolic.report.thesis.errata import ERRATA
+from ptp_symbolic.thesis import document
+from ptp_symbolic.thesis.errata import ERRATA
 
 FIGURES = (
     *(f"fig_5_{n}" for n in (1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 14, 15, 16, 17, 18)),

@@ -1,0 +1,1 @@
+"""Platforms made into models: emission and its cache, the committed ones, variants."""

@@ -1,0 +1,107 @@
+"""Emit the committed models into `generated/`, or check that they are what would be emitted."""
+
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ptp_symbolic.atomic_files import write_text_if_changed
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.runtime.loader import generated_folder
+from ptp_symbolic.platform import Platform, platform_file, read_platform
+from ptp_symbolic.symbolic.codegen.module import module_text, sealed
+from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+
+COMMITTED = {
+    "ideal": "thesis-ideal",
+    "payload": "thesis-payload",
+    "pan_drive": "thesis-pan-drive",
+    "tilt_drive": "thesis-tilt-drive",
+    "full": "thesis-full",
+}
+LINE_LENGTH = 100
+
+
+def declared_platform(source: str | Path) -> Platform:
+    """Read the platform of a committed model, a preset or a file.
+
+    Raises InputError for what is none of them, and for a file that cannot be used.
+    """
+    name = COMMITTED.get(str(source), source)
+    return read_platform(platform_file(name, tuple(COMMITTED)))
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Modules that were written (or, when checking, would be), by file name."""
+
+    changed: tuple[str, ...]
+    unchanged: tuple[str, ...]
+
+
+def regenerate(models: Sequence[str] = (), check: bool = False) -> Outcome:
+    """Emit committed `models` (all without a name); with `check` nothing is written.
+
+    Raises InputError for an unknown model.
+    """
+    for model in models:
+        if model not in COMMITTED:
+            declared_platform(model)  # refuses what is no platform either
+            raise InputError(
+                f"'{model}' is a platform, not one of the committed models"
+                f" {', '.join(COMMITTED)}; add --out FOLDER to emit its module there."
+            )
+    texts = {model: module_of(read_platform(COMMITTED[model])) for model in models or COMMITTED}
+    return _write(texts, generated_folder(), check)
+
+
+def regenerate_into(folder: Path, platforms: Sequence[Platform], check: bool = False) -> Outcome:
+    """Emit a module for each of `platforms` into `folder`, named as they are.
+
+    With `check` nothing is written. Raises InputError for a machine that cannot exist, and for two
+    platforms of one name.
+    """
+    names = [platform.name for platform in platforms]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"Two platforms are called '{name}'; change the name of one.")
+    texts = {platform.name: module_of(platform) for platform in platforms}
+    return _write(texts, folder, check)
+
+
+def module_of(platform: Platform) -> str:
+    """Text of the module of `platform`, formatted and sealed with its checksum."""
+    equations = assemble(platform)
+    refuse_impossible(equations, platform)
+    return sealed(formatted(module_text(equations)))
+
+
+def _write(texts: Mapping[str, str], folder: Path, check: bool) -> Outcome:
+    changed: list[str] = []
+    unchanged: list[str] = []
+    for name, text in texts.items():
+        path = folder / f"{name}.py"
+        same = path.is_file() and path.read_text(encoding="utf-8") == text
+        (unchanged if same else changed).append(path.name)
+        if not same and not check:
+            write_text_if_changed(path, text)
+    return Outcome(tuple(changed), tuple(unchanged))
+
+
+def formatted(text: str) -> str:
+    """`text` as ruff formats it, whatever the configuration of the machine."""
+    command = [sys.executable, "-m", "ruff", "format", "--isolated", "--stdin-filename", "model.py"]
+    command += ["--config", f"line-length={LINE_LENGTH}", "-"]
+    done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        reason = done.stderr.strip().splitlines()
+        raise InputError(f"ruff could not format a module: {reason[-1] if reason else 'no ruff'}.")
+    return done.stdout
+
+
+def stray_modules(folder: Path) -> tuple[str, ...]:
+    """Modules in `folder` that no committed model emits."""
+    known = {"__init__", *COMMITTED}
+    return tuple(sorted(p.name for p in folder.glob("*.py") if p.stem not in known))

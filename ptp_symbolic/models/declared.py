@@ -1,0 +1,63 @@
+"""What a platform declares of a model: free parameters, known values, signals."""
+
+from dataclasses import replace
+
+from ptp_symbolic.errors import unknown
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.platform import Platform, naming_file
+
+
+def free_parameters(platform: Platform, model: Model) -> tuple[FreeParameter, ...]:
+    """The parameters that `platform` leaves to be fitted, as far as `model` has them."""
+    own = {p.name: p for p in model.parameters}
+    ties: dict[str, list[str]] = {}
+    for declaration in platform.parameters:
+        if declaration.same_as is not None and declaration.name in own:
+            ties.setdefault(declaration.same_as, []).append(declaration.name)
+    return tuple(
+        replace(
+            free_parameter(
+                d.name,
+                d.value,
+                own[d.name].lower if d.lower is None else d.lower,
+                own[d.name].upper if d.upper is None else d.upper,
+                own[d.name].period,
+                tuple(ties.get(d.name, ())),
+            ),
+            table=d.value,
+        )
+        for d in platform.parameters
+        if d.free and d.name in own
+    )
+
+
+def known_values(platform: Platform, model: Model) -> dict[str, tuple[float, float | None]]:
+    """Values of the parameters that `platform` declares as known and `model` has, each with the
+    most by which it may be off, where the platform says so.
+    """
+    own = set(model.parameter_names)
+    return {
+        d.name: (d.value, d.uncertainty)
+        for d in platform.parameters
+        if not d.free and d.same_as is None and d.name in own
+    }
+
+
+def refuse_unknown_signals(platform: Platform, model: Model) -> None:
+    """Raise InputError for a signal of `platform` that `model` does not have.
+
+    An input more than the model takes is let be, unless one that it takes is missing.
+    """
+    inputs, outputs = (
+        [s.signal for s in platform.signals if s.role == r] for r in ("input", "output")
+    )
+    complete = set(model.input_names) <= set(inputs)
+    with naming_file(platform):
+        for role, given, known in (
+            ("input", () if complete else inputs, model.input_names),
+            ("output", outputs, model.output_names),
+        ):
+            for name in given:
+                if name not in known:
+                    raise unknown(f"{role} signal", name, known)

@@ -1,0 +1,27 @@
+"""A platform made into a model: derived, emitted, loaded."""
+
+from dataclasses import replace
+
+from ptp_symbolic.models.module_cache import emitted
+from ptp_symbolic.numeric.runtime.loader import load_module
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.platform import Platform
+from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.placement import (
+    declared_parameters,
+    place_effects,
+)
+
+
+def emit(platform: Platform) -> Model:
+    """Derive, emit and load the model of `platform`; modules are kept by their mathematics.
+
+    Machines that differ in their numbers alone share a module, which is compiled once. Raises
+    InputError when no machine with its parameters can exist.
+    """
+    equations = assemble(platform)
+    refuse_impossible(equations, platform)
+    path = emitted(equations, declared_parameters(place_effects(platform)))
+    own = {p.name: (p.default, p.lower, p.upper) for p in equations.parameters}
+    return replace(load_module(path, path.stem), declared=(platform.name, platform.title, own))

@@ -1,0 +1,124 @@
+"""Inverse dynamics: the torques on the joints that a prescribed motion takes."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike, NDArray
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.models.committed import COMMITTED
+from ptp_symbolic.models.variants import torque_driven
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.platform import ParameterDeclaration, Platform, read_platform
+from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.effects.effect import slide
+from ptp_symbolic.symbolic.mechanics import kinematics
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Angles [k, n] in rad, rates in rad/s and accelerations in rad/s^2 of the n joints.
+
+    `times` [k] in s matter on a base that moves; left out, all are zero.
+    """
+
+    angles: ArrayLike
+    rates: ArrayLike
+    accelerations: ArrayLike
+    times: ArrayLike | None = None
+
+    def arrays(self, axes: tuple[str, ...]) -> tuple[FloatArray, ...]:
+        """Angles, rates, accelerations [k, n] and times [k] as checked arrays.
+
+        Raises InputError for shapes that differ and values that are not finite.
+        """
+        named = {
+            "angles": np.array(self.angles, dtype=np.float64),
+            "rates": np.array(self.rates, dtype=np.float64),
+            "accelerations": np.array(self.accelerations, dtype=np.float64),
+        }
+        for name, array in named.items():
+            if array.ndim != 2 or array.shape[1] != len(axes) or len(array) != len(named["angles"]):
+                raise InputError(
+                    f"Motion: {name} have shape {array.shape}; give [k, {len(axes)}], a column for"
+                    f" each of {', '.join(axes)}."
+                )
+        count = len(named["angles"])
+        times = np.zeros(count) if self.times is None else np.array(self.times, dtype=np.float64)
+        if times.shape != (count,):
+            raise InputError(f"Motion: times have shape {times.shape}; give [{count}].")
+        for name, array in (*named.items(), ("times", times)):
+            if not np.all(np.isfinite(array)):
+                raise InputError(f"Motion: {name} are not all finite; remove what is not.")
+        return (*named.values(), times)
+
+
+def inverse_dynamics(
+    machine: Model | Platform | str | Path,
+    motion: Motion | tuple[ArrayLike, ...],
+    parameters: Mapping[str, float] | None = None,
+) -> FloatArray:
+    """Return the torques [k, n] in N m on the joints that make `machine` follow `motion`.
+
+    `machine` is a platform, the name of a model or a preset, or the path of a platform file; its
+    motors and shafts are left out. `motion` is a `Motion`, or angles, rates and accelerations. Dry
+    friction acts against the rate, and where that is zero against the acceleration; at rest it is
+    left out, as any torque up to breakaway holds. States of effects keep their initial values.
+    Raises InputError for a motion or parameters that do not fit.
+    Source: Murray, Li and Sastry, A Mathematical Introduction to Robotic Manipulation, 1994,
+    Eq. 4.24.
+    """
+    platform = _with_values(_platform(machine), parameters or {})
+    equations = assemble(torque_driven(platform))
+    refuse_impossible(equations, platform)
+    angles, rates, accelerations, times = _motion(motion).arrays(equations.axes)
+    ways = np.where(rates != 0.0, np.sign(rates), np.sign(accelerations))
+    wanted = [sp.Symbol(f"alpha_{axis}", real=True) for axis in equations.axes]
+    sliding = [slide(axis) for axis in equations.axes]
+    arguments = [*equations.coordinates, *equations.rates, *wanted, *sliding, kinematics.TIME]
+    function = sp.lambdify(arguments, _torques(equations, wanted), "numpy", cse=True)
+    columns = (*angles.T, *rates.T, *accelerations.T, *ways.T, times)
+    return np.column_stack([np.broadcast_to(row, times.shape) for row in function(*columns)])
+
+
+def _motion(given: Motion | tuple[ArrayLike, ...]) -> Motion:
+    if isinstance(given, Motion):
+        return given
+    if not 3 <= len(given) <= 4:
+        raise InputError(
+            f"Motion: {len(given)} arrays; give angles, rates and accelerations, and times if any."
+        )
+    return Motion(*given)
+
+
+def _torques(equations: Equations, wanted: list[sp.Symbol]) -> list[sp.Expr]:
+    """Joint torques as functions of the motion alone, at the declared parameters."""
+    torques = sp.Matrix(equations.mass_matrix * sp.Matrix(wanted) - equations.forcing)
+    for friction in equations.frictions:
+        torques[equations.rates.index(friction.rate)] += slide(friction.axis) * friction.level
+    known = {sp.Symbol(p.name, real=True): sp.Float(p.default, 17) for p in equations.parameters}
+    known |= {sp.Symbol(s.name, real=True): sp.Float(s.initial) for s in equations.extra_states}
+    known |= {sp.Symbol(i.name, real=True): sp.Float(0) for i in equations.inputs}
+    return [equations.written_out(torque).xreplace(known) for torque in torques]
+
+
+def _platform(machine: Model | Platform | str | Path) -> Platform:
+    if isinstance(machine, Platform):
+        return machine
+    name = machine.name if isinstance(machine, Model) else str(machine)
+    if isinstance(machine, Model) and name not in COMMITTED:
+        raise InputError(f"Model '{name}' is not a committed one; give its platform instead.")
+    return read_platform(COMMITTED.get(name, name))
+
+
+def _with_values(platform: Platform, values: Mapping[str, float]) -> Platform:
+    kept = tuple(p for p in platform.parameters if p.name not in values)
+    given = tuple(ParameterDeclaration(n, None, float(v)) for n, v in values.items())
+    return replace(platform, parameters=(*kept, *given))

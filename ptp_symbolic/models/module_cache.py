@@ -1,0 +1,97 @@
+"""Emitted modules of a user's machines, kept by their mathematics in a folder of their own.
+
+Writing the module of a machine with all its candidates takes many times as long as deriving its
+equations: what was once written is found again by the equations and the program that wrote it.
+"""
+
+import functools
+import hashlib
+import os
+import tempfile
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import fields, is_dataclass, replace
+from pathlib import Path
+from types import FunctionType
+
+import sympy as sp
+
+from ptp_symbolic.atomic_files import write_text_if_changed
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.runtime.loader import verify
+from ptp_symbolic.symbolic.codegen.module import module_text
+from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.parameters import Parameter
+
+DIGITS = 16  # of a SHA-256 in a name: 64 bits
+
+
+def cache_folder() -> Path:
+    """Folder of modules emitted for platforms of the user (PTP_SYMBOLIC_CACHE, else the usual)."""
+    named = os.environ.get("PTP_SYMBOLIC_CACHE")
+    if named:
+        return Path(named)
+    base = os.environ.get("XDG_CACHE_HOME")
+    root = Path(base) if base else Path.home() / ".cache"
+    if not os.access(root if root.exists() else root.parent, os.W_OK):
+        root = Path(tempfile.gettempdir())
+    return root / "ptp_symbolic"
+
+
+def emitted(equations: Equations, usual: Mapping[str, Parameter]) -> Path:
+    """The module of `equations`, written unless it is there.
+
+    Machines that differ in their numbers alone share it, and what is compiled of it: it has the
+    `usual` values of all parameters.
+    """
+    shared = replace(
+        equations,
+        name="machine",
+        title="Machine of a user",
+        parameters=tuple(usual[p.name] for p in equations.parameters),
+    )
+    folder = cache_folder()
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    known = folder / f"{_digest(_program(), described(shared))}.name"
+    if known.is_file():
+        path = folder / known.read_text(encoding="utf-8")
+        with suppress(OSError, InputError):
+            verify(path)
+            return path
+    text = module_text(shared)
+    path = folder / f"ptp_model_{_digest(text)}.py"
+    write_text_if_changed(path, text)
+    write_text_if_changed(known, path.name)
+    return path
+
+
+def described(value: object) -> str:
+    """`value` as a text that is the same in every process: expressions, records, functions by
+    their names (what effects compute stands in the equations).
+    """
+    if isinstance(value, sp.Basic | sp.MatrixBase):
+        return str(sp.srepr(value))
+    if is_dataclass(value):
+        parts = [f"{f.name}={described(getattr(value, f.name))}" for f in fields(value)]
+        return f"{type(value).__name__}({', '.join(parts)})"
+    if isinstance(value, Mapping):
+        return described(sorted((described(k), described(v)) for k, v in value.items()))
+    if isinstance(value, tuple | list):
+        return f"[{', '.join(map(described, value))}]"
+    if isinstance(value, frozenset | set):
+        return described(sorted(map(described, value)))
+    if isinstance(value, FunctionType):
+        return f"{value.__module__}.{value.__qualname__}"
+    return repr(value)
+
+
+@functools.cache
+def _program() -> str:
+    """Digest of the sources of this package and of the version of SymPy."""
+    root = Path(__file__).parents[1]
+    sources = [path.read_text(encoding="utf-8") for path in sorted(root.rglob("*.py"))]
+    return _digest(sp.__version__, *sources)
+
+
+def _digest(*texts: str) -> str:
+    return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:DIGITS]

@@ -1,0 +1,84 @@
+"""Variants of a platform: with candidate effects, extended by what was found, driven by torques."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform
+from ptp_symbolic.symbolic.derivation.placement import (
+    available_quantities,
+    place_effects,
+)
+from ptp_symbolic.symbolic.effects import EFFECTS
+
+
+def candidate_effects(platform: Platform) -> tuple[EffectDeclaration, ...]:
+    """Effects that could be added to `platform`: searchable, not declared, with what they need,
+    which may itself be one of them.
+    """
+    declared = {(effect.id, place.axis) for effect, place in place_effects(platform)}
+    order = {effect.id: number for number, effect in enumerate(EFFECTS)}
+    found: list[EffectDeclaration] = []
+    while True:
+        extended = replace(platform, effects=(*platform.effects, *found))
+        available = available_quantities(place_effects(extended))
+        added = [
+            EffectDeclaration(effect.id, axis, None)
+            for effect in EFFECTS
+            for axis in (platform.axes if effect.on_axis else (None,))
+            if not effect.structural
+            and (effect.id, axis) not in declared | {(e.effect, e.axis) for e in found}
+            and {need.format(axis=axis) for need in effect.needs} <= available
+        ]
+        if not added:
+            return tuple(sorted(found, key=lambda e: order[e.effect]))
+        found += added
+
+
+def with_candidates(platform: Platform) -> Platform:
+    """`platform` with every candidate effect added."""
+    return replace(platform, effects=(*platform.effects, *candidate_effects(platform)))
+
+
+def torque_driven(platform: Platform) -> Platform:
+    """`platform` with torques on its joints: without motors, shafts, and what acts on those alone.
+
+    Friction at the gear output then acts on the joint.
+    """
+    kept = []
+    for effect, place in place_effects(platform):
+        added = effect.contribute(place)
+        if not (added.drives or added.shafts or added.plays or added.prescribed):
+            kept.append((effect, replace(place, shafts=frozenset())))
+    while True:
+        available = available_quantities(kept)
+        usable = [
+            (effect, place)
+            for effect, place in kept
+            if all(need.format(axis=place.axis) in available for need in effect.needs)
+        ]
+        if len(usable) == len(kept):
+            break
+        kept = usable
+    own = {p.name for effect, place in kept for p in effect.parameters(place)}
+    return replace(
+        platform,
+        effects=tuple(EffectDeclaration(e.id, place.axis, place.site) for e, place in kept),
+        parameters=tuple(p for p in platform.parameters if p.name in own),
+    )
+
+
+def extended(
+    platform: Platform,
+    added: Sequence[EffectDeclaration],
+    values: Mapping[str, float],
+    fitted: Sequence[ParameterDeclaration],
+) -> Platform:
+    """`platform` with effects and fitted parameters added; `values` are the new starts."""
+    kept = []
+    replaced = {p.name for p in fitted}
+    for declaration in platform.parameters:
+        if declaration.name in replaced:
+            continue
+        value = values.get(declaration.name, declaration.value)
+        kept.append(replace(declaration, value=value))
+    return replace(platform, effects=(*platform.effects, *added), parameters=(*kept, *fitted))

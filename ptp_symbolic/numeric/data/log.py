@@ -1,0 +1,176 @@
+"""Logs of a machine: the columns that its platform names, in SI units."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data.table import Table, read_numbers, read_table
+from ptp_symbolic.platform import Platform, SignalDeclaration, naming_file
+from ptp_symbolic.platform.units import compatible, to_si
+
+MIN_ROWS = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """One run: `time` [n] in s, strictly increasing; `inputs` [n, nu]; `outputs` [n, ny].
+
+    Columns are in the order of the platform's signals of that role and in their units (SI). The
+    sampling may be irregular; an input holds from its sample to the next.
+    """
+
+    name: str
+    time: NDArray[np.float64]
+    inputs: NDArray[np.float64]
+    outputs: NDArray[np.float64]
+
+
+def read_log(path: Path | str, platform: Platform) -> Log:
+    """Read one CSV log with the signals that `platform` declares.
+
+    Raises InputError, with the line where there is one, for a file that is missing, not text or
+    truncated, a missing signal or a wrong unit, cells that are no finite numbers, time stamps that
+    do not increase, and fewer than 10 rows.
+    """
+    path = Path(path)
+    inputs = [signal for signal in platform.signals if signal.role == "input"]
+    outputs = [signal for signal in platform.signals if signal.role == "output"]
+    if not outputs:
+        with naming_file(platform):
+            raise InputError(
+                f"Platform '{platform.name}' has no output signal to compare with {path}; add one, "
+                "such as [signals.theta_pan]."
+            )
+    time, values = _read_signals(path, [*inputs, *outputs])
+    split = len(inputs)
+    return Log(
+        path.stem,
+        time,
+        np.ascontiguousarray(values[:, :split]),
+        np.ascontiguousarray(values[:, split:]),
+    )
+
+
+def read_inputs(
+    path: Path | str, platform: Platform
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Read only time [n] in s and inputs [n, nu] in SI of a CSV, to drive a simulation with.
+
+    Raises InputError as `read_log` does.
+    """
+    inputs = [signal for signal in platform.signals if signal.role == "input"]
+    if not inputs:
+        with naming_file(platform):
+            raise InputError(
+                f"Platform '{platform.name}' has no input signal to read from {path}; add one, "
+                "such as [signals.u_pan]."
+            )
+    return _read_signals(Path(path), inputs)
+
+
+def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...]:
+    """Read logs from files and folders; a folder stands for all *.csv in it, sorted by name.
+
+    Logs of the same file name are told apart by their folder (`train/crawl`). Raises InputError as
+    `read_log` does, for a folder without logs, and for a log that is given twice.
+    """
+    files = [file for path in paths for file in csv_files(Path(path))]
+    if not files:
+        raise InputError("No log is given; name at least one CSV or a folder of them.")
+    places = [file.resolve() for file in files]
+    for file, place in zip(files, places, strict=True):
+        if places.count(place) > 1:
+            raise InputError(f"{file}: is given twice; name each log once.")
+    stems = [file.stem for file in files]
+    logs = []
+    for file, place in zip(files, places, strict=True):
+        log = read_log(file, platform)
+        if stems.count(file.stem) > 1:
+            name = f"{place.parent.name}/{place.stem}"
+            log = Log(name, log.time, log.inputs, log.outputs)
+        logs.append(log)
+    return tuple(logs)
+
+
+def csv_files(path: Path) -> list[Path]:
+    """The logs at `path`: itself, or those of a folder. Raises InputError where it has none."""
+    if not path.is_dir():
+        return [path]
+    files = sorted(file for file in path.glob("*.csv") if not file.name.startswith("."))
+    if not files:
+        raise InputError(f"{path}: the folder has no *.csv in it; name the folder of the logs.")
+    return files
+
+
+def _read_signals(
+    path: Path, signals: Sequence[SignalDeclaration]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return time [n] and the signals [n, len(signals)] in SI."""
+    table = read_table(path)
+    names = [name for name, _ in table.headings]
+    if "time" not in names:
+        raise InputError(f"{path}:1: column 'time [s]' is missing; {_listing(table)}.")
+    clock = table.headings[names.index("time")][1]
+    second = _factor(f"{path}:1: column 'time'", "time", "time", "s", clock)
+    missing = [signal.column for signal in signals if signal.column not in names]
+    if missing:
+        raise InputError(
+            f"{path}:1: signal {', '.join(repr(name) for name in missing)} is missing; "
+            f"{_listing(table)}."
+        )
+    columns = [names.index("time"), *(names.index(signal.column) for signal in signals)]
+    factors = [
+        _factor(f"{path}:1: column '{s.column}'", s.column, s.signal, s.unit, table.headings[k][1])
+        for s, k in zip(signals, columns[1:], strict=True)
+    ]
+    numbers = read_numbers(table, columns)
+    if len(numbers) < MIN_ROWS:
+        raise InputError(
+            f"{path}: has {len(numbers)} rows of numbers; a log needs at least {MIN_ROWS}."
+        )
+    time = np.ascontiguousarray(numbers[:, 0])
+    _check_time(path, time, clock or "s")
+    if second != 1.0:
+        time *= second
+    values = np.ascontiguousarray(numbers[:, 1:])
+    if any(factor != 1.0 for factor in factors):
+        values *= np.array(factors)
+    return time, values
+
+
+def _listing(table: Table) -> str:
+    columns = [name if unit is None else f"{name} [{unit}]" for name, unit in table.headings]
+    text = ", ".join(columns)
+    return "the header has " + (text if len(text) <= 300 else text[:297] + "...")
+
+
+def _factor(where: str, column: str, signal: str, wanted: str, unit: str | None) -> float:
+    """Return the factor from the unit in the header to the `wanted` SI unit of the signal."""
+    if not unit:
+        raise InputError(f"{where} has no unit; write '{column} [{wanted}]'.")
+    try:
+        fits = compatible(unit, wanted)
+        factor = to_si(unit)[0]
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+    if not fits:
+        raise InputError(
+            f"{where} is in {unit}, but {signal} is in {wanted}; correct the header "
+            "or the platform."
+        )
+    return factor
+
+
+def _check_time(path: Path, time: NDArray[np.float64], unit: str) -> None:
+    wrong = np.flatnonzero(np.diff(time) <= 0)
+    if len(wrong):
+        row = int(wrong[0]) + 1
+        what = "repeats" if time[row] == time[row - 1] else "goes back from"
+        raise InputError(
+            f"{path}:{row + 2}: time {float(time[row])!r} {unit} {what} {float(time[row - 1])!r} "
+            f"{unit} of the line before; time stamps must increase."
+        )

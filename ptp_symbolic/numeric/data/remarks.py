@@ -1,0 +1,110 @@
+"""What can be seen of logs before anything is fitted: what they cannot tell, and what is wrong."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data.log import Log
+from ptp_symbolic.platform import Platform, SignalDeclaration
+
+FloatArray = NDArray[np.float64]
+
+HALF_TURN = np.pi  # rad: no platform turns further from one sample to the next
+FEW_COUNTS = 3.0  # of an encoder: an angle that stays within them did not move
+SATURATED = 0.5  # share of the samples at the largest or smallest value of a signal that changes
+FEW_LEVELS = 5  # of a signal that is switched
+LONG_PAUSE = 10.0  # sampling periods between two samples
+JITTER = 0.2  # of the sampling period, rms
+
+
+def refuse_wrapped_angles(logs: Sequence[Log], platform: Platform) -> None:
+    """Raise InputError for an angle that jumps by a turn from one sample to the next."""
+    for log in logs:
+        for k, signal in enumerate(_outputs(platform)):
+            step = np.diff(log.outputs[:, k])
+            if signal.unit == "rad" and np.any(np.abs(step) > HALF_TURN):
+                row = int(np.argmax(np.abs(step) > HALF_TURN)) + 1
+                raise InputError(
+                    f"{log.name}: '{signal.column}' jumps by {step[row - 1]:.4g} rad at"
+                    f" {log.time[row]:.6g} s; at most half a turn is allowed from one sample to the"
+                    " next: unwrap the angle, so that it goes on beyond a turn."
+                )
+
+
+def refuse_motionless(logs: Sequence[Log], platform: Platform) -> None:
+    """Raise InputError where no angle moves in any of the logs."""
+    angles = [(k, s) for k, s in enumerate(_outputs(platform)) if s.unit == "rad"]
+    if angles and not any(_moves(logs, k, s) for k, s in angles):
+        names = " and ".join(f"'{s.column}'" for _, s in angles)
+        verb = "stays" if len(angles) == 1 else "stay"
+        raise InputError(
+            f"{names} {verb} within {FEW_COUNTS:.0f} counts in all logs to be fitted; without"
+            " motion nothing can be told of the machine: give logs in which it moves."
+        )
+
+
+def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
+    """What these logs cannot tell, or what is odd about them, a sentence each."""
+    found = []
+    outputs = _outputs(platform)
+    inputs = [s for s in platform.signals if s.role == "input"]
+    for k, signal in enumerate(outputs):
+        if signal.unit == "rad" and not _moves(logs, k, signal):
+            found.append(f"'{signal.column}' never moves: nothing can be told of that axis.")
+    if inputs and all(np.ptp(log.inputs[:, k]) == 0.0 for log in logs for k in range(len(inputs))):
+        found.append(
+            "No input changes within a run: what depends on the inputs can hardly be told apart."
+        )
+    for signal, columns in (
+        *((s, [log.outputs[:, k] for log in logs]) for k, s in enumerate(outputs)),
+        *((s, [log.inputs[:, k] for log in logs]) for k, s in enumerate(inputs)),
+    ):
+        share = _at_ends(np.concatenate(columns))
+        if share > SATURATED:
+            found.append(
+                f"'{signal.column}' is at its largest or smallest value in {100 * share:.0f} % of"
+                " the samples: it may be saturated, and the rest tells little."
+            )
+    for log in logs:
+        found += _clock_remarks(log)
+    return tuple(found)
+
+
+def _outputs(platform: Platform) -> list[SignalDeclaration]:
+    return [s for s in platform.signals if s.role == "output"]
+
+
+def _moves(logs: Sequence[Log], column: int, signal: SignalDeclaration) -> bool:
+    """Whether an angle leaves its first values by more than rounding and noise."""
+    count = 2.0 * np.pi / signal.counts_per_revolution if signal.counts_per_revolution else 0.0
+    still = max(FEW_COUNTS * count, 2.0 * FEW_COUNTS * (signal.noise or 0.0))
+    return any(float(np.ptp(log.outputs[:, column])) > still for log in logs)
+
+
+def _at_ends(values: FloatArray) -> float:
+    """Share of the samples at the largest or smallest value; none of a signal that only switches
+    between a few levels, which is no saturation.
+    """
+    levels = np.unique(values)
+    if len(levels) <= FEW_LEVELS:
+        return 0.0
+    return float(np.mean((values == levels[0]) | (values == levels[-1])))
+
+
+def _clock_remarks(log: Log) -> list[str]:
+    step = np.diff(log.time)
+    period = float(np.median(step))
+    found = []
+    if float(step.max()) > LONG_PAUSE * period:
+        row = int(np.argmax(step))
+        found.append(
+            f"{log.name}: no samples from {log.time[row]:.6g} s to {log.time[row + 1]:.6g} s;"
+            " inputs are taken to hold meanwhile."
+        )
+    usual = step[step <= LONG_PAUSE * period]
+    jitter = float(np.std(usual)) / period
+    if jitter > JITTER:
+        found.append(f"{log.name}: the sampling period varies by {100 * jitter:.0f} % rms.")
+    return found

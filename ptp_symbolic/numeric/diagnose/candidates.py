@@ -1,0 +1,155 @@
+"""Candidates: effects that the declared machine may lack, and declared values that may be wrong."""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from ptp_symbolic.numeric.identify.constants import PLAUSIBLE_FACTOR, WIDE_STEP
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
+from ptp_symbolic.numeric.runtime.model import EffectInstance, Model, ModelParameter
+
+DECLARED_VALUE = "declared_value"
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One explanation, or a nested member of it: id, axis and the parameters that it frees.
+
+    `free` are the parameters with the amounts at which a search begins; those in `vanishing` switch
+    it off at the values given, all others shape it. `shapes` are sets of values of the shaping
+    parameters from which a search begins. `locked` is a shaping frequency that a scan finds, with
+    what it is locked to ("time" or "angle"). `brings` are keys of candidates without which it has
+    nothing to act on. `member` numbers the nested versions, the simplest first.
+    """
+
+    id: str
+    axis: str | None
+    title: str
+    separating_experiment: str
+    free: tuple[FreeParameter, ...]
+    vanishing: Mapping[str, float]
+    shapes: tuple[Mapping[str, float], ...] = ({},)
+    locked: tuple[str, str] | None = None
+    brings: tuple[str, ...] = ()
+    member: int = 0
+    member_title: str = ""
+
+    @property
+    def key(self) -> str:
+        """Id and axis in one word, e.g. ``cable_spring@pan``."""
+        return self.id if self.axis is None else f"{self.id}@{self.axis}"
+
+    @property
+    def is_declared_value(self) -> bool:
+        """True where it frees a value that the platform declares as known."""
+        return self.id.startswith(DECLARED_VALUE)
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of the parameters that it frees."""
+        return tuple(f.name for f in self.free)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the parameters that it frees and of those tied to them."""
+        return tuple(name for f in self.free for name in f.names)
+
+    @property
+    def defining(self) -> tuple[FreeParameter, ...]:
+        """The parameters that switch it on."""
+        return tuple(f for f in self.free if f.name in self.vanishing)
+
+
+def find_candidates(
+    model: Model, declared: Sequence[str], known: Mapping[str, tuple[float, float | None]]
+) -> tuple[Candidate, ...]:
+    """Candidates in the emitted union `model`: the members of effects not in `declared`, then
+    `known` values, each with the most by which it may be off (None: a factor).
+    """
+    by_name = {p.name: p for p in model.parameters}
+    found: list[Candidate] = []
+    for effect in model.effects:
+        if effect.key not in declared and effect.parameters:
+            found += _members(effect, by_name, declared)
+    for name, (value, uncertainty) in known.items():
+        if name in by_name:
+            found += _declared_value(by_name[name], value, uncertainty)
+    return tuple(found)
+
+
+def _members(
+    effect: EffectInstance, by_name: Mapping[str, ModelParameter], declared: Sequence[str]
+) -> list[Candidate]:
+    members = effect.members or (("", effect.parameters, ()),)
+    brings = tuple(key for key in effect.acts_on if key not in declared)
+    found = []
+    for number, (title, names, ties) in enumerate(members):
+        own = [by_name[name] for name in names]
+        followers = {leader: tuple(f for f, t in ties if t == leader) for _, leader in ties}
+        shaping = [p for p in own if p.vanishes is None and p.locked_to is None]
+        grid = itertools.product(*(p.starts or (p.default,) for p in shaping))
+        locked = next(((p.name, p.locked_to) for p in own if p.locked_to is not None), None)
+        found.append(
+            Candidate(
+                effect.id,
+                effect.axis,
+                effect.title,
+                effect.separating_experiment,
+                tuple(_freed(p, followers.get(p.name, ())) for p in own),
+                {p.name: p.vanishes for p in own if p.vanishes is not None},
+                tuple(dict(zip([p.name for p in shaping], point, strict=True)) for point in grid),
+                locked,
+                brings,
+                number,
+                title,
+            )
+        )
+    return found
+
+
+def _freed(parameter: ModelParameter, tied: tuple[str, ...]) -> FreeParameter:
+    """The parameter with the amount at which it begins: its first start that does something."""
+    usual = parameter.starts or (parameter.default,)
+    amount = next((s for s in usual if s != parameter.vanishes), None)
+    if amount is None:
+        amount = WIDE_STEP * min(1.0, parameter.upper - parameter.lower)
+    return free_parameter(
+        parameter.name, amount, parameter.lower, parameter.upper, parameter.period, tied
+    )
+
+
+def _declared_value(
+    parameter: ModelParameter, value: float, uncertainty: float | None
+) -> list[Candidate]:
+    """A declared value as a candidate; none where it is zero or known exactly."""
+    if value == 0.0 or uncertainty == 0.0:
+        return []
+    if uncertainty is None:
+        ends = sorted((value / PLAUSIBLE_FACTOR, value * PLAUSIBLE_FACTOR))
+    else:
+        ends = [value - uncertainty, value + uncertainty]
+    lower, upper = max(ends[0], parameter.lower), min(ends[1], parameter.upper)
+    if not lower < value < upper:
+        return []
+    freed = free_parameter(parameter.name, value, lower, upper, parameter.period)
+    return [
+        Candidate(
+            f"{DECLARED_VALUE}:{parameter.name}",
+            None,
+            f"declared value of {parameter.name} is wrong ({parameter.meaning})",
+            f"Measure {parameter.name} on its own, apart from the machine.",
+            (freed,),
+            {parameter.name: value},
+        )
+    ]
+
+
+def vanished(model: Model, declared: Sequence[str]) -> dict[str, float]:
+    """Parameter values at which every effect outside `declared` is off."""
+    by_name = {p.name: p for p in model.parameters}
+    return {
+        name: by_name[name].default if by_name[name].vanishes is None else by_name[name].vanishes  # type: ignore[misc]
+        for effect in model.effects
+        if effect.key not in declared
+        for name in effect.parameters
+    }

@@ -1,0 +1,111 @@
+"""What an effect must stand before it is named, besides its predictive gain."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.linear import effect_of, outside, stacked
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, accuracy
+from ptp_symbolic.numeric.identify.blocks import leave_blocks_out, without_outliers
+from ptp_symbolic.numeric.identify.constants import ELSEWHERE, MOST, NEAR_BOUND, SHARP
+from ptp_symbolic.numeric.identify.evaluate import evaluate
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.intervals import estimates
+from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
+
+FloatArray = NDArray[np.float64]
+
+
+def why_unconfirmed(task: Task, trial: Trial, fit: Fit, candidate: Candidate) -> str | None:
+    """Why `candidate` of a trial cannot be named; None where nothing speaks against it. `fit` is
+    the trial's, with derivatives that are not blind.
+    """
+    bound = at_bound(fit, candidate)
+    if bound is not None:
+        return f"{bound} ends at its bound"
+    if not is_amount_known(fit, candidate):
+        return "its amount cannot be told from zero"
+    run = unstable_without(fit, candidate)
+    if run is not None:
+        return f"its value does not hold when {run} is left out"
+    return None
+
+
+def is_amount_known(fit: Fit, candidate: Candidate) -> bool:
+    """Whether the interval of any parameter that switches the candidate on is narrower than its
+    value: a set may need an effect that only makes up for others.
+    """
+    own = {f.name for f in candidate.defining}
+    return any(e.identified for e in estimates(fit) if e.name in own)
+
+
+def at_bound(fit: Fit, candidate: Candidate) -> str | None:
+    """A parameter of the candidate that the fit pressed to a bound at which it does not vanish.
+
+    A shape counts too: at the end of its range an effect becomes another one, as a spring that is
+    relaxed far away becomes a constant torque.
+    """
+    own = {f.name: f for f in fit.free}
+    for begun in candidate.free:
+        f, value = own[begun.name], fit.values[begun.name]
+        if f.period is not None:
+            continue
+        near = NEAR_BOUND * max(abs(f.start), abs(value))
+        ends = [end for end in (f.lower, f.upper) if abs(value - end) <= near]
+        if ends and abs(value - candidate.vanishing.get(f.name, np.inf)) > near:
+            return f.name
+    return None
+
+
+def unstable_without(fit: Fit, candidate: Candidate) -> str | None:
+    """The first run without which less than half of the effect, or its opposite, would be found.
+
+    The effect is what it changes in the outputs, apart from what other parameters follow; runs far
+    worse than usual weigh less. Where a single run holds all that is known of it, leaving that out
+    says nothing.
+    """
+    sources = [run.name.partition("#")[0] for run in fit.runs]
+    names = list(dict.fromkeys(sources))
+    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    signals = fit.runs[0].measured.shape[1]
+    source = np.repeat([names.index(s) for s in sources], [len(run.time) for run in fit.runs])
+    residual, columns, step = without_outliers(residual, columns, source, signals)
+    label = np.repeat(source, signals)
+    left = leave_blocks_out(residual, columns, label)
+    own = [k for k, f in enumerate(fit.free) if f.name in candidate.parameters]
+    others = [k for k in range(len(fit.free)) if k not in own]
+    whole = effect_of(fit, candidate.vanishing, columns) + columns[:, own] @ step[own]
+    effect = outside(whole[:, None], columns[:, others])[:, 0]
+    mine = outside(columns[:, own], columns[:, others])
+    square = float(effect @ effect)
+    if square == 0.0:
+        return None
+    for number, name in enumerate(names):
+        here = label == number
+        if float(effect[here] @ effect[here]) > (1.0 - ELSEWHERE) * square:
+            continue
+        shifted = effect + mine @ left.shifts[number, own]
+        if float(shifted @ effect) < MOST * square:
+            return name
+    return None
+
+
+def answers_to_inputs(task: Task, trial: Trial) -> bool:
+    """Whether the inputs move the fitted model by more than it leaves over: a model so inert that
+    free starts alone follow the logs explains nothing.
+    """
+    p, none = task.model.parameter_vector(trial.values), np.zeros(0, dtype=np.int64)
+    moved = left = 0.0
+    for (run, e), z in zip(trial.fit.pairs(), trial.fit.z, strict=True):
+        quiet = np.zeros_like(run.held_inputs)
+        idle = replace(
+            run, inputs=stack([table(run.time, c, "hold") for c in quiet.T]), held_inputs=quiet
+        )
+        found = evaluate(task.model, idle, p, z, none, False, accuracy(task, SHARP))
+        if found.failed is None:
+            moved += float(np.sum((found.residual - e.residual) ** 2))
+            left += float(np.sum(e.residual**2))
+    return moved > left

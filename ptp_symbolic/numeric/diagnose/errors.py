@@ -1,0 +1,87 @@
+"""The error of a fit, in one definition for every place that shows one.
+
+Root mean square over all samples of all runs (or windows) of a part, nothing left out: of the angle
+signals in rad and in counts of each signal's own encoder, and of every signal in its own unit.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.evaluate import Evaluation
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.run import Run
+
+FloatArray = NDArray[np.float64]
+Pair = tuple[Run, Evaluation]
+
+DEFINITION = (
+    "root mean square over all samples of all runs of the part, the state at the start of each run"
+    " or window fitted; of the angles together in rad, and in counts of their own encoders"
+)
+
+
+def by_source(pairs: Sequence[Pair]) -> dict[str, list[Pair]]:
+    """Pairs by run, the windows of one run together."""
+    grouped: dict[str, list[Pair]] = {}
+    for run, evaluation in pairs:
+        grouped.setdefault(run.name.partition("#")[0], []).append((run, evaluation))
+    return grouped
+
+
+def angle_columns(run: Run) -> list[int]:
+    """Measured columns that are angles; all columns where there is none."""
+    found = [k for k, name in enumerate(run.signals) if name.startswith("theta_")]
+    return found or list(range(len(run.signals)))
+
+
+def error_of(fit: Fit, units: dict[str, str], floor: FloatArray | None = None) -> dict[str, Any]:
+    """Errors of `fit` in total, by run and by signal; those of a `floor` [ny], in units of the
+    noise of every signal, where one is given.
+    """
+    pairs = fit.pairs()
+    return {
+        "total": _error(pairs, floor),
+        "by_run": {name: _error(group, floor) for name, group in by_source(pairs).items()},
+        "by_signal": {
+            name: _signal_error(pairs, k, units[name], floor)
+            for k, name in enumerate(fit.runs[0].signals)
+        },
+    }
+
+
+def residual(run: Run, evaluation: Evaluation, floor: FloatArray | None) -> FloatArray:
+    """Residuals [k, ny] in the units of the signals, or the `floor` in their place."""
+    table = evaluation.residual.reshape(run.measured.shape)
+    if floor is not None:
+        table = np.broadcast_to(floor, table.shape)
+    return np.asarray(table / run.weight)
+
+
+def _error(pairs: Sequence[Pair], floor: FloatArray | None) -> dict[str, float | None]:
+    columns = angle_columns(pairs[0][0])
+    counts = pairs[0][0].counts[columns]
+    left = np.vstack([residual(run, e, floor)[:, columns] for run, e in pairs])
+    measured = np.vstack([run.measured[:, columns] for run, _ in pairs])
+    centred = np.vstack(
+        [run.measured[:, columns] - run.measured[:, columns].mean(axis=0) for run, _ in pairs]
+    )
+    norm = float(np.linalg.norm(left))
+    in_counts = float(np.sqrt(np.mean((left / counts) ** 2)))
+    return {
+        "rmse_counts": in_counts if np.isfinite(in_counts) else None,
+        "rmse": norm / float(np.sqrt(left.size)),
+        "relative_l2": norm / max(float(np.linalg.norm(measured)), 1e-300),
+        "fit_percent": 100.0 * (1.0 - norm / max(float(np.linalg.norm(centred)), 1e-300)),
+    }
+
+
+def _signal_error(
+    pairs: Sequence[Pair], column: int, unit: str, floor: FloatArray | None
+) -> dict[str, Any]:
+    """Error of one signal in its own unit, and in counts where it has an encoder."""
+    left = np.concatenate([residual(run, e, floor)[:, column] for run, e in pairs])
+    rms, count = float(np.sqrt(np.mean(left**2))), float(pairs[0][0].counts[column])
+    return {"rmse": rms, "unit": unit, "rmse_counts": rms / count if np.isfinite(count) else None}

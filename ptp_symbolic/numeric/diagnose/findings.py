@@ -1,0 +1,53 @@
+"""What a search finds: the chosen set, what its members gain, and whether that is enough."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
+from ptp_symbolic.numeric.diagnose.proposals import Proposals
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MATERIAL
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A candidate of a set, what it gains, how likely it is found where it is not (see `p_value`),
+    and the trial without it.
+    """
+
+    candidate: Candidate
+    gain: Gain
+    p_value: float
+    without: Trial
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What the search found: the declared model, the chosen set (the same where nothing is added),
+    what every member of it gains, all other trials, and the noise of the inputs [ny] as the
+    declared model carries it to the outputs. `task` has the candidates with a frequency where a
+    line was found, and without those that have none.
+    """
+
+    task: Task
+    declared: Trial
+    chosen: Trial
+    members: tuple[Step, ...]
+    others: tuple[Trial, ...]
+    proposals: Proposals
+    carried: FloatArray
+
+
+def step_of(trial: Trial, candidate: Candidate, without: Trial) -> Step:
+    """What `candidate` gains in `trial` over the trial `without` it."""
+    return Step(candidate, gain(trial, without), p_value(trial, candidate.vanishing), without)
+
+
+def is_earned(earned: Gain, p: float, tests: int) -> bool:
+    """Whether a gain is material, and clear over so many `tests` (Bonferroni)."""
+    return earned.share >= MATERIAL and earned.lower > 0.0 and p < FALSE_ALARM / max(tests, 1)

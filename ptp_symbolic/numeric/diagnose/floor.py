@@ -1,0 +1,108 @@
+"""The noise floor: what a perfect model leaves, and whether a model leaves no more.
+
+Rounding and noise of a signal, as the platform declares them or as its logs show; the colour of
+that noise, where it is not declared, from what the model leaves; and the noise of the inputs,
+carried to the outputs by the model itself.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, huber, mean_squares
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, BEND, MANY_RUNS, POLES
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.least_squares import weighted_median
+from ptp_symbolic.numeric.identify.noise import coloured_noise, hidden_from_differences
+from ptp_symbolic.numeric.identify.run import sizes
+from ptp_symbolic.numeric.identify.windows import propagated_noise
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Floor:
+    """What a perfect model leaves in every signal [ny], in units of the rounding and noise that
+    weights stand for: the `noise` of the signal, the `largest` that it may have at 95 % (noise of
+    unknown colour), and what the inputs `carried` there.
+    """
+
+    noise: FloatArray
+    largest: FloatArray
+    carried: FloatArray
+
+    @property
+    def level(self) -> FloatArray:
+        """Root mean square [ny] of all that a perfect model leaves."""
+        return np.hypot(self.noise, self.carried)
+
+    @property
+    def most(self) -> FloatArray:
+        """The largest root mean square [ny] that may be noise."""
+        return np.hypot(self.largest, self.carried)
+
+
+def left_over(fit: Fit) -> FloatArray:
+    """Root mean square [ny] of what a fit leaves in every signal.
+
+    Of many windows the median of the samples counts, for one in twenty begins on the wrong side of
+    a rest; of few runs, those far worse than usual count linearly.
+    """
+    squares = mean_squares(fit.evaluations, fit.runs)
+    if not np.all(np.isfinite(squares)):
+        return np.full(squares.shape[1], np.inf)
+    size = sizes(fit.runs)
+    usual = weighted_median(squares, size)
+    if len(squares) >= MANY_RUNS:
+        return np.asarray(np.sqrt(usual))
+    bounded = huber(squares, BEND**2 * np.maximum(usual, 1.0))
+    return np.asarray(np.sqrt(size @ bounded / size.sum()))
+
+
+def carried_noise(task: Task, fit: Fit) -> FloatArray:
+    """What the noise of the inputs leaves in every signal [ny], by the model of `fit`.
+
+    The median of the samples counts, so that a replay which sticks elsewhere does not.
+    """
+    p, runs = task.model.parameter_vector(dict(fit.values)), fit.runs
+    every = propagated_noise(task.model, runs, fit.z, p, task.input_noise)
+    size = sizes(runs)
+    return weighted_median(np.nan_to_num(every), size)
+
+
+def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
+    """The floor, with the colour of the noise as the remainder of `trial` shows it, but no more
+    than the differences of the measured signals leave room for. Where more is left than noise of
+    that colour, it is model error that has a colour: the floor is white then.
+    """
+    runs = trial.fit.runs
+    rms, most = np.ones(len(runs[0].signals)), np.ones(len(runs[0].signals))
+    squares = mean_squares(trial.fit.evaluations, runs)
+    usual = squares <= BEND**2 * np.maximum(left_over(trial.fit) ** 2, 1.0)
+    for column, signal in enumerate(runs[0].signals):
+        if signal not in task.declared_noise:
+            series = [
+                e.residual.reshape(run.measured.shape)[:, column]
+                for (run, e), as_usual in zip(trial.fit.pairs(), usual[:, column], strict=True)
+                if as_usual
+            ]
+            noise = coloured_noise(series, 1.0)
+            seen = [ABOVE_NOISE * hidden_from_differences(p) for p in (noise.pole, max(POLES))]
+            rms[column] = min(noise.rms, np.hypot(1.0, seen[0]))
+            most[column] = min(noise.most, np.hypot(1.0, seen[1]))
+    floor = Floor(rms, most, carried)
+    white = np.ones(len(rms))
+    return floor if leaves_noise_alone(trial, floor) else Floor(white, white, carried)
+
+
+def leaves_white_noise(trial: Trial, carried: FloatArray) -> bool:
+    """Whether a trial leaves no more than rounding, white noise and what the inputs carry there; a
+    search goes on where it does, whatever the colour of the remainder.
+    """
+    return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * np.hypot(1.0, carried)))
+
+
+def leaves_noise_alone(trial: Trial, floor: Floor) -> bool:
+    """Whether what a trial leaves cannot be told from noise, in any signal."""
+    return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.most))

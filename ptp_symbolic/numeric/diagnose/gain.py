@@ -1,0 +1,124 @@
+"""By how much a larger model predicts better: losses of blocks that the fit did not see.
+
+Every block of the training runs is left out in turn and predicted by the others (see
+`identify.blocks`); the losses of two models on the same blocks are compared in pairs.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from ptp_symbolic.numeric.diagnose.trial import Trial, huber
+from ptp_symbolic.numeric.identify.blocks import (
+    block_labels,
+    block_length,
+    block_squares,
+    bootstrap_share,
+    jackknife_covariance,
+    leave_blocks_out,
+    without_outliers,
+)
+from ptp_symbolic.numeric.identify.constants import BEND, FALSE_ALARM, NOTHING
+from ptp_symbolic.numeric.identify.coordinates import to_search
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.intervals import project_out
+from ptp_symbolic.numeric.identify.least_squares import weighted_median
+from ptp_symbolic.numeric.identify.run import by_source
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Gain:
+    """Share of the predictive loss of the smaller model that the larger one takes away, its 95 %
+    interval, and its t statistic with `degrees` of freedom over blocks.
+    """
+
+    share: float
+    lower: float
+    upper: float
+    statistic: float
+    degrees: int
+
+    def is_clear(self, tests: int) -> bool:
+        """Whether the gain is above zero at 5 % over so many `tests` (Bonferroni, one-sided)."""
+        threshold = stats.t.ppf(1.0 - FALSE_ALARM / max(tests, 1), max(self.degrees, 1))
+        return self.statistic > float(threshold)
+
+
+def gain(larger: Trial, smaller: Trial) -> Gain:
+    """The predictive gain of `larger` over `smaller`, both fitted to the same runs."""
+    runs = larger.fit.runs
+    residuals = [_projected(t.fit) for t in (larger, smaller)]
+    signals = runs[0].measured.shape[1]
+    difference = [
+        (b**2 - a**2).reshape(-1, signals).sum(axis=1)
+        for a, b in zip(residuals[0][0], residuals[1][0], strict=True)
+    ]
+    series = [np.concatenate([difference[k] for k in group]) for group in by_source(runs)]
+    labels = block_labels([len(s) for s in series], block_length(series))
+    label = np.concatenate(labels)
+    squares = [_predicted_squares(parts, label, signals) for parts in residuals]
+    size = np.bincount(label)
+    scale = np.maximum(weighted_median(squares[0], size.astype(np.float64)), 1e-300)
+    losses = [size * huber(s / scale, np.full(signals, BEND**2)).sum(axis=1) for s in squares]
+    return compared(losses[0], losses[1])
+
+
+def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
+    """The gain from the losses [b] of the same blocks by two models."""
+    taken = smaller - larger
+    share, lower, upper = bootstrap_share(taken, smaller, 1.0 - FALSE_ALARM)
+    influence = (taken - taken.mean()) / max(float(smaller.sum()), 1e-300)
+    b = len(taken)
+    error = float(np.sqrt(b / max(b - 1, 1) * np.sum(influence**2)))
+    return Gain(share, lower, upper, share / max(error, NOTHING), b - 1)
+
+
+def p_value(trial: Trial, zero: Mapping[str, float]) -> float:
+    """Probability that parameters this far from `zero`, or further, are found where they are zero.
+
+    Hotelling's T^2 (1931) of their search coordinates, with the covariance of a jackknife over
+    blocks of time under the model that has them: an effect that a few blocks show is as clear as
+    one that all show. Blocks far worse than usual weigh less, and the coordinates are those of one
+    step towards the fit with these weights (Bickel, 1975). 1 where the blocks are too few.
+    """
+    fit = trial.fit
+    own = [k for k, f in enumerate(fit.free) if f.name in zero]
+    residual, jacobian = (np.concatenate(parts) for parts in _projected(fit))
+    signals = fit.runs[0].measured.shape[1]
+    sums = [e.residual.reshape(-1, signals).sum(axis=1) for e in fit.evaluations]
+    series = [np.concatenate([sums[k] for k in group]) for group in by_source(fit.runs)]
+    labels = block_labels([len(s) for s in series], block_length(series))
+    label = np.concatenate(labels)
+    residual, jacobian, step = without_outliers(residual, jacobian, label, signals)
+    shifts = leave_blocks_out(residual, jacobian, np.repeat(label, signals)).shifts[:, own]
+    b, k = shifts.shape
+    if b <= k + 1:
+        return 1.0
+    away = to_search(fit.free, fit.values) - to_search(fit.free, {**fit.values, **zero})
+    away = (away + step)[own]
+    inverse = np.linalg.pinv(jackknife_covariance(shifts), rcond=1e-10, hermitian=True)
+    statistic = float(away @ inverse @ away) * (b - k) / (k * (b - 1))
+    return float(stats.f.sf(statistic, k, b - k))
+
+
+def _projected(fit: Fit) -> tuple[list[FloatArray], list[FloatArray]]:
+    """Residuals [k * ny] and Jacobians [k * ny, nf] of every run, its unknown start taken out."""
+    residuals = [project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations]
+    jacobians = [project_out(e.by_parameter, e.by_start) for e in fit.evaluations]
+    return residuals, jacobians
+
+
+def _predicted_squares(
+    parts: tuple[Sequence[FloatArray], Sequence[FloatArray]], label: IntArray, signals: int
+) -> FloatArray:
+    """Mean square [b, signals] of the residuals of every block, predicted by the other blocks."""
+    residual, jacobian = np.concatenate(parts[0]), np.vstack(parts[1])
+    prior = float(np.mean(residual**2))  # without the block no parameter moves by more than a unit
+    left = leave_blocks_out(residual, jacobian, np.repeat(label, signals), prior)
+    return block_squares(left.predicted, label, signals)

@@ -1,0 +1,223 @@
+"""Candidates that the logs cannot tell from one that was chosen.
+
+An effect of the chosen set is compared, at the fit, with what every other candidate would change in
+the outputs, both without what the declared parameters and the other effects can follow (canonical
+correlation: Hotelling, 1936). Those that resemble it are refitted in its place to the same depth;
+the ones that predict as well form its group.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.gain import Gain, gain
+from ptp_symbolic.numeric.diagnose.linear import canonical_correlation, effect_of, outside, stacked
+from ptp_symbolic.numeric.diagnose.proposals import Proposals
+from ptp_symbolic.numeric.diagnose.refits import started_anew
+from ptp_symbolic.numeric.diagnose.responses import Columns, least, response_columns
+from ptp_symbolic.numeric.diagnose.search import Seeker
+from ptp_symbolic.numeric.diagnose.signatures import Signature
+from ptp_symbolic.numeric.diagnose.starts import in_place
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, ranked
+from ptp_symbolic.numeric.identify.constants import (
+    ITERATIONS,
+    MATERIAL,
+    MOST,
+    NO_RIVAL,
+    REACH,
+    SIMILAR,
+)
+from ptp_symbolic.numeric.identify.coordinates import to_search, to_values
+from ptp_symbolic.numeric.identify.fit import Fit
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Rival:
+    """A set that predicts as well as the chosen one; `gain` is that of the chosen over it."""
+
+    trial: Trial
+    gain: Gain
+
+
+@dataclass(frozen=True, eq=False)
+class Similarity:
+    """A candidate in the place of another: their correlation, and where its refit starts."""
+
+    candidate: Candidate
+    correlation: float
+    values: dict[str, float]
+
+
+def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> list[Rival]:
+    """Sets as large as the chosen one, of which these logs do not prefer the chosen one clearly and
+    materially, `others` among them. `fit` is its fit with derivatives that are not blind.
+
+    A few iterations tell which come near the chosen set. Where that leaves more than noise, a set
+    that it cannot be told from by its response is fitted to its end, however far it is till then.
+    """
+    task = seeker.task
+    begun: list[Trial] = []
+    resembling: set[tuple[str, ...]] = set()
+    for member in chosen.candidates:
+        kept = tuple(c for c in chosen.candidates if c is not member)
+        similar = look_alikes(task, chosen, fit, member)
+        begun += [
+            fitted(task, (*kept, s.candidate), s.values, chosen.fit.z, 0, fit) for s in similar
+        ]
+        along = alike_along_motion(seeker.proposals, chosen, member)
+        wanted = {c.key: c for c in (*(s.candidate for s in similar), *along)}
+        for candidate in wanted.values():
+            begun += in_place(task, seeker.proposals, (*kept, candidate), chosen)
+        if not seeker.is_at_noise(chosen):
+            keys = {c.key for c in kept}
+            resembling |= {tuple(sorted({*keys, s.candidate.key})) for s in similar}
+    if begun:
+        task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
+    trials = halving(task, begun, ((ITERATIONS, len(begun)),))
+    for other in ranked(others):
+        same_size = len(other.candidates) == len(chosen.candidates)
+        fresh = same_size and other.keys != chosen.keys and np.isfinite(other.fit.cost)
+        if fresh and gain(chosen, other).share < MOST:
+            trials.append(other)
+    best: dict[tuple[str, ...], Trial] = {}
+    for trial in ranked(trials):
+        best.setdefault(trial.keys, trial)
+    found = []
+    for trial in best.values():
+        if trial.keys in resembling:
+            found.append(started_anew(task, seeker.polished(trial), seeker.carried))
+        elif gain(chosen, trial).share < NO_RIVAL:
+            found.append(seeker.polished(trial))
+    compared = [Rival(trial, gain(chosen, trial)) for trial in found]
+    return [r for r in compared if not is_clearly_more(r.gain, len(compared))]
+
+
+def is_clearly_more(earned: Gain, tests: int) -> bool:
+    """Whether one set predicts materially better than another, clearly so over so many `tests`."""
+    return earned.share >= MATERIAL and earned.is_clear(tests)
+
+
+def overtaking(chosen: Trial, found: Sequence[Rival]) -> Trial | None:
+    """The best of the rivals that predict clearly and materially better than the chosen set; None
+    if none does.
+    """
+    better = [r.trial for r in found if is_clearly_more(gain(r.trial, chosen), len(found))]
+    return ranked(better)[0] if better else None
+
+
+def alike_along_motion(found: Proposals, chosen: Trial, member: Candidate) -> list[Candidate]:
+    """Candidates whose signature correlates above SIMILAR with that of `member`, as it is fitted,
+    apart from what the declared parameters and the other members can follow; best first.
+    """
+    rows = found.regression
+    if rows is None:
+        return []
+    root = np.sqrt(rows.weight)[:, None]
+    own = {c.key for c in chosen.candidates}
+    mine = [s for s in rows.signatures if s.candidate.key == member.key]
+    named = {f.name for f in member.defining}
+    whole = [s for s in mine if {f.name for f in s.candidate.defining} == named]
+    if not whole:
+        return []
+    parts = [
+        slope * (chosen.values[f.name] - member.vanishing[f.name])
+        for f, slope in zip(whole[0].candidate.defining, _nearest(whole[0], chosen), strict=True)
+    ]
+    rest = [s.columns for s in rows.signatures if s.candidate.key in own - {member.key}]
+    away = np.column_stack([rows.base, *rest]) * root
+    target = outside(np.sum(parts, axis=0)[:, None] * root, away)[:, 0]
+    correlation: dict[str, tuple[float, Candidate]] = {}
+    for s in rows.signatures:
+        if s.candidate.key in own:
+            continue
+        value = canonical_correlation(target, outside(s.columns * root, away))
+        if value > max(SIMILAR, correlation.get(s.candidate.key, (0.0, s.candidate))[0]):
+            correlation[s.candidate.key] = value, s.candidate
+    return [c for _, c in sorted(correlation.values(), key=lambda pair: -pair[0])]
+
+
+def _nearest(signature: Signature, chosen: Trial) -> tuple[FloatArray, ...]:
+    """The slopes at the shaping values nearest to the fitted ones."""
+    here = chosen.values
+    far = [
+        sum(abs(v - here[name]) / max(abs(v), abs(here[name]), 1e-300) for name, v in shape.items())
+        for shape in signature.candidate.shapes
+    ]
+    return signature.slopes[int(np.argmin(far))]
+
+
+def confusable(chosen: Trial, found: Sequence[Rival]) -> dict[str, tuple[str, ...]]:
+    """For every key of the chosen set the keys that may stand in its place."""
+    named: dict[str, set[str]] = {key: set() for key in chosen.keys}
+    for rival in found:
+        other = set(rival.trial.keys) - set(chosen.keys)
+        for key in set(chosen.keys) - set(rival.trial.keys):
+            named[key] |= other
+    return {key: tuple(sorted(keys)) for key, keys in named.items()}
+
+
+def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[Similarity]:
+    """Candidates whose response correlates above SIMILAR with the effect of `member`, best
+    first.
+    """
+    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+    table = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    own = [k for k, f in enumerate(fit.free) if f.name in member.parameters]
+    others = [k for k in range(len(fit.free)) if k not in own]
+    effect = effect_of(fit, member.vanishing, table)
+    away = table[:, others]
+    target = outside(effect[:, None], away)[:, 0]
+    size = float(np.linalg.norm(target))
+    if size == 0.0:
+        return []
+    off = {name: member.vanishing[f.name] for f in member.defining for name in f.names}
+    base = trial.values | off
+    full = {c.key: c for c in sorted(task.candidates, key=lambda c: len(c.free))}
+    wanted = [(c, shape) for c in full.values() if c.key not in trial.keys for shape in c.shapes]
+    most = REACH * float(np.linalg.norm(effect))
+
+    def compare(pair: tuple[Candidate, Mapping[str, float]]) -> Similarity | None:
+        candidate, shape = pair
+        found = response_columns(task, trial, candidate, shape, most)
+        if found is None:
+            return None
+        correlation = canonical_correlation(target, outside(found.table, away))
+        if correlation < SIMILAR:
+            return None
+        values = _instead(base, fit, others, residual - effect, away, found)
+        return Similarity(candidate, correlation, values | dict(found.base))
+
+    best: dict[str, Similarity] = {}
+    jobs = [s for s in task.executor.map(compare, wanted) if s is not None]
+    for s in sorted(jobs, key=lambda s: -s.correlation):
+        best.setdefault(s.candidate.key, s)
+    return list(best.values())
+
+
+def _instead(
+    base: Mapping[str, float],
+    fit: Fit,
+    others: Sequence[int],
+    residual: FloatArray,
+    away: FloatArray,
+    found: Columns,
+) -> dict[str, float]:
+    """Values of all parameters where `found` takes up the `residual` of the fit without a
+    member.
+    """
+    amounts, _ = least(residual, away, found)
+    shift = np.zeros(len(fit.free))
+    shift[list(others)] = amounts[: len(others)]
+    phi = to_search(fit.free, fit.values) + shift
+    moved = to_values(fit.free, phi)
+    values = dict(base)
+    for k in others:
+        f = fit.free[k]
+        values.update(dict.fromkeys(f.names, moved[f.name]))
+    values.update(found.values(amounts[len(others) :]))
+    return values

@@ -1,0 +1,57 @@
+"""Linear algebra at a fit: what an effect changes in the residuals, apart from what others
+follow.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.constants import SINGULAR
+from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.intervals import project_out
+
+FloatArray = NDArray[np.float64]
+
+
+def stacked(fit: Fit, columns: Sequence[FloatArray]) -> FloatArray:
+    """Columns [k, c] of every run below one another, without what the unknown starts can
+    explain.
+    """
+    pairs = zip(columns, fit.evaluations, strict=True)
+    return np.vstack([project_out(c, e.by_start) for c, e in pairs])
+
+
+def effect_of(fit: Fit, vanishing: Mapping[str, float], table: FloatArray) -> FloatArray:
+    """What parameters change in the residuals [n] at the fit against their values in `vanishing`,
+    linearly: `table` [n, nf] are the derivatives by the search coordinates.
+    """
+    unit = slopes(fit.free, to_search(fit.free, fit.values))
+    effect = np.zeros(len(table))
+    for k, f in enumerate(fit.free):
+        if f.name in vanishing:
+            effect += table[:, k] / unit[k] * (fit.values[f.name] - vanishing[f.name])
+    return effect
+
+
+def outside(columns: FloatArray, away: FloatArray) -> FloatArray:
+    """The part of `columns` [n, k] orthogonal to those of `away` [n, m]."""
+    size = np.linalg.norm(away, axis=0)
+    kept = away[:, size > 0.0] / size[size > 0.0]
+    if not kept.shape[1]:
+        return columns
+    left, values, _ = np.linalg.svd(kept, full_matrices=False)
+    basis = left[:, values > SINGULAR * values[0]]
+    return np.asarray(columns - basis @ (basis.T @ columns))
+
+
+def canonical_correlation(target: FloatArray, columns: FloatArray) -> float:
+    """Largest correlation of `target` [n] with any combination of `columns` [n, k]."""
+    size = np.linalg.norm(columns, axis=0)
+    kept = columns[:, size > 0.0] / size[size > 0.0]
+    if not kept.shape[1] or not np.any(target):
+        return 0.0
+    left, values, _ = np.linalg.svd(kept, full_matrices=False)
+    basis = left[:, values > SINGULAR * values[0]]
+    return float(np.linalg.norm(basis.T @ target) / np.linalg.norm(target))

@@ -1,0 +1,40 @@
+"""The declared model and the sets that contain it: neither is stuck where the other shows a way.
+
+A set fits no worse than the declared model, which it contains, and what it gains is only worth a
+name where the declared model had the same chance.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.gain import gain
+from ptp_symbolic.numeric.diagnose.refits import polished
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, is_near, ranked
+from ptp_symbolic.numeric.identify.constants import LAST_RUNG, MATERIAL
+
+FloatArray = NDArray[np.float64]
+
+
+def beside_declared(task: Task, trial: Trial, declared: Trial, carried: FloatArray) -> Trial:
+    """A trial that fits worse than the declared model, begun anew beside that, its effects as they
+    are or switched off.
+    """
+    own = {name: trial.values[name] for c in trial.candidates for name in c.names}
+    off = {n: c.vanishing[f.name] for c in trial.candidates for f in c.defining for n in f.names}
+    begun = [
+        fitted(task, trial.candidates, values, declared.fit.z, 0, declared.fit)
+        for values in (declared.values | own, declared.values | own | off)
+    ]
+    left = halving(task, begun, LAST_RUNG)
+    return ranked([trial, *(polished(task, t, carried) for t in left)])[0]
+
+
+def declared_from(task: Task, trial: Trial, declared: Trial, carried: FloatArray) -> Trial | None:
+    """The declared model fitted from where a trial ended, its effects switched off; None unless
+    that is materially better than `declared`, which was stuck then.
+    """
+    off = {name: task.fixed[name] for c in trial.candidates for name in c.names}
+    left = halving(task, [fitted(task, (), trial.values | off, trial.fit.z)], LAST_RUNG)
+    again = [polished(task, t, carried) for t in left if is_near(t, [declared])]
+    best = ranked([declared, *again])[0]
+    return best if gain(best, declared).share >= MATERIAL else None

@@ -1,0 +1,68 @@
+"""What is settled before a diagnosis: candidates, windows, noise."""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+
+import numpy as np
+
+from ptp_symbolic.numeric.diagnose.candidates import find_candidates, vanished
+from ptp_symbolic.numeric.diagnose.trial import Progress, Task
+from ptp_symbolic.numeric.identify.constants import LONG, MANY_RUNS, SHORT, WINDOW_PERIOD
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.fit import all_values_at_start
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.sample_averages import thinned
+from ptp_symbolic.numeric.identify.windows import cut, window_length
+from ptp_symbolic.numeric.runtime.model import Model
+
+
+def task_of(
+    model: Model,
+    train: tuple[Run, ...],
+    validate: tuple[Run, ...],
+    free: tuple[FreeParameter, ...],
+    known: Mapping[str, tuple[float, float | None]],
+    declared: Sequence[str],
+    noises: Mapping[str, float | None],
+    executor: Executor,
+    progress: Progress,
+) -> Task:
+    """All that stays the same through a diagnosis, or through a fit where nothing is `declared`.
+
+    `known` are the known values with the most by which each may be off, `declared` the keys of the
+    effects that are no candidates, `noises` the declared noise of every signal.
+    """
+    off = vanished(model, declared) if declared else {}
+    fixed = {**model.defaults, **off, **{name: value for name, (value, _) in known.items()}}
+    start = model.parameter_vector({**fixed, **all_values_at_start(free)})
+    noise = tuple(noises[name] for name in model.input_names)
+    length = window_length(model, train, start, noise)
+    few = [thinned(run, WINDOW_PERIOD) for run in train]
+    windows = (_spread(cut(model, few, SHORT)), cut(model, few, LONG)) if length is None else ()
+    return Task(
+        model,
+        train,
+        cut(model, train, length),
+        windows,
+        cut(model, validate, length),
+        free,
+        fixed,
+        find_candidates(model, declared, known) if declared else (),
+        executor,
+        progress,
+        noise,
+        frozenset(name for name, size in noises.items() if size is not None),
+        _finest_angle(train),
+    )
+
+
+def _spread(windows: tuple[Run, ...]) -> tuple[Run, ...]:
+    """Windows spread over the logs, at least as many as tell what is usual."""
+    return windows[:: max(1, len(windows) // MANY_RUNS)]
+
+
+def _finest_angle(runs: Sequence[Run]) -> float:
+    """Smallest noise of a measured angle in rad; of any signal where no angle is measured."""
+    run = runs[0]
+    angles = [k for k, name in enumerate(run.signals) if name.startswith("theta_")]
+    return float(np.min(1.0 / run.weight[angles or list(range(len(run.weight)))]))

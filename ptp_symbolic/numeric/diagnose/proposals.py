@@ -1,0 +1,273 @@
+"""What the equation space proposes: where to start the declared model, and which sets to try."""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.signatures import locked_signatures, signatures
+from ptp_symbolic.numeric.diagnose.subsets import (
+    Regression,
+    Subset,
+    is_no_worse,
+    ranked_subsets,
+    regression,
+    remainder,
+    reweighted,
+)
+from ptp_symbolic.numeric.diagnose.trial import Task, restarted
+from ptp_symbolic.numeric.identify.constants import (
+    CYCLES,
+    DEVIATIONS,
+    FAR_OFF,
+    LARGEST,
+    LITTLE,
+    PROPOSED,
+    REFINEMENTS,
+    SHORT,
+)
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised
+from ptp_symbolic.numeric.identify.equation_space import EquationSpace, prepare_equation_space
+from ptp_symbolic.numeric.identify.fit import all_values_at_start
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Proposal:
+    """A set of candidates and the values of all parameters at which to start it."""
+
+    candidates: tuple[Candidate, ...]
+    values: dict[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Proposals:
+    """The start of the declared model, sets to try, and candidates that the rows do not show.
+
+    `asked_for` tells whether the rows prefer any set to none. `space` is None where the machine has
+    no equation space; then only the simulation searches.
+    """
+
+    start: dict[str, float]
+    sets: tuple[Proposal, ...]
+    unseen: tuple[Candidate, ...]
+    asked_for: bool
+    space: EquationSpace | None
+    regression: Regression | None
+
+
+def declared_start(task: Task) -> dict[str, float]:
+    """All parameters at the declared starts, every candidate switched off."""
+    return {**task.fixed, **all_values_at_start(task.free)}
+
+
+def propose(task: Task) -> Proposals:
+    """Regress the residual torques and currents along the measured motion on all candidates."""
+    start = declared_start(task)
+    space = equation_space(task, start)
+    if space is None:
+        return Proposals(start, (), task.candidates, False, None, None)
+    first = fit_equations(space, task.free, start, 4, task.executor)
+    values = possible(task, {**start, **first.values})
+    here = {f.name: values[f.name] for f in task.free}
+    found = linearised(space, task.free, values, here, task.executor, own_torque=True)
+    equation, run, time = space.labels()
+    block = run * 100_000 + (time // SHORT).astype(np.int64)
+    seen, unseen = signatures(space, task.candidates, values, found.weight, task.executor)
+    declared, base = task.free, found.jacobian
+    rows = regression(found.rows, declared, base, seen, equation, block, found.weight)
+    locked = locked_signatures(space, task.candidates, values, remainder(rows), rows.weight)
+    every = [*seen, *locked]
+    rows = regression(found.rows, declared, base, every, equation, block, found.weight)
+    preferred, chosen, rows = _best_sets(rows)
+    space.rows(task.model.parameter_vector(values))
+    refine = partial(_refined, task, space, rows, values)
+    sets = task.executor.map(refine, [s.candidates for s in chosen])
+    return Proposals(values, tuple(sets), tuple(unseen), bool(preferred.candidates), space, rows)
+
+
+def _refined(
+    task: Task,
+    space: EquationSpace,
+    rows: Regression,
+    values: Mapping[str, float],
+    candidates: Sequence[Candidate],
+) -> Proposal:
+    """A set started where the rows ask for it, the parameters that shape it fitted to them too."""
+    begun = start_of(task, rows, candidates, values)
+    own = {(s.candidate.key, s.candidate.member): s.candidate for s in rows.signatures}
+    placed = tuple(own[c.key, c.member] for c in candidates)
+    free = (*task.free, *(restarted(f, begun[f.name]) for c in placed for f in c.free))
+    found = fit_equations(space, free, begun, REFINEMENTS)
+    return Proposal(placed, possible(task, {**begun, **found.values}))
+
+
+def with_lines(candidates: Sequence[Candidate], found: Proposals) -> tuple[Candidate, ...]:
+    """Candidates, those with a frequency at the line that was found, or left out without one."""
+    if found.regression is None:
+        return tuple(c for c in candidates if c.locked is None)
+    lines = {
+        (s.candidate.key, s.candidate.member): s.candidate
+        for s in found.regression.signatures
+        if s.candidate.locked is not None
+    }
+    placed = [c if c.locked is None else lines.get((c.key, c.member)) for c in candidates]
+    return tuple(c for c in placed if c is not None)
+
+
+def start_for(
+    task: Task,
+    found: Proposals,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+    linear: bool = False,
+) -> dict[str, float]:
+    """Where the rows start a set, also fitted in what shapes it unless taken as `linear` in all
+    parameters; what the rows do not show of the candidates stays at `values`.
+    """
+    rows, space = found.regression, found.space
+    seen = {(s.candidate.key, s.candidate.member) for s in (rows.signatures if rows else ())}
+    shown = [c for c in candidates if (c.key, c.member) in seen]
+    kept = {name: values[name] for c in candidates if c not in shown for name in c.names}
+    if rows is None or space is None:
+        return found.start | kept
+    if linear:
+        return start_of(task, rows, shown, found.start) | kept
+    return _refined(task, space, rows, found.start, shown).values | kept
+
+
+def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | None:
+    """The equation space of the training runs; None where angles are missing or states sampled."""
+    vector = task.model.parameter_vector
+    varied = dict(start)
+    for candidate in task.candidates:
+        for f in candidate.free:
+            amount = f.start
+            if candidate.is_declared_value:
+                amount = min(1.05 * f.start, f.upper)
+            varied.update(dict.fromkeys(f.names, amount))
+    others = []
+    for f in task.free:
+        for factor in (FAR_OFF, 1.0 / FAR_OFF):
+            value = float(np.clip(f.start * factor, f.lower, f.upper))
+            others.append(vector({**start, **dict.fromkeys(f.names, value)}))
+    try:
+        space = prepare_equation_space(
+            task.model, task.whole, vector(dict(start)), others, vector(varied)
+        )
+    except InputError:
+        return None
+    enough = min(int(rows.kept.sum()) for rows in space.rows_of) >= 0
+    total = sum(int(rows.kept.sum()) for rows in space.rows_of)
+    return space if enough and total > 4 * (len(task.free) + 1) else None
+
+
+def possible(task: Task, values: Mapping[str, float]) -> dict[str, float]:
+    """`values` with every relation met that the machine needs: of two parameters the first
+    raised.
+    """
+    found = dict(values)
+    margin = np.zeros(len(task.model.module.REQUIREMENTS))
+    for names, *_ in task.model.module.REQUIREMENTS:
+        task.model.module.margins(task.model.parameter_vector(found), margin)
+        if np.all(margin >= 0.0):
+            break
+        most = max(found[name] for name in names)
+        for name in names:
+            found[name] = most
+    return found
+
+
+def _best_sets(rows: Regression) -> tuple[Subset, list[Subset], Regression]:
+    """The set that blocks left out favour, and those to try: what is no worse than the best, the
+    simplest first, then the best of every size. Scales follow the residual of the favoured set.
+    """
+    chosen: Subset | None = None
+    for _ in range(CYCLES):
+        every = ranked_subsets(rows, LARGEST)
+        close = [s for s in every if is_no_worse(s, every[0], DEVIATIONS, LITTLE)]
+        close.sort(key=lambda s: (len(s.candidates), s.columns, s.loss))
+        again = chosen is not None and _keys(chosen) == _keys(close[0])
+        chosen = close[0]
+        if again:
+            break
+        rows = reweighted(rows, chosen.candidates)
+    kept: dict[frozenset[str], Subset] = {}
+    for subset in (*close[:2], every[0], *_best_by_size(every), *close[2:]):
+        if subset.candidates:
+            kept.setdefault(_keys(subset), subset)
+    return close[0], list(kept.values())[:PROPOSED], rows
+
+
+def _best_by_size(every: Sequence[Subset]) -> list[Subset]:
+    """The two best single candidates, the best pair and the best triple."""
+    found = []
+    for size, count in ((1, 2), (2, 1), (3, 1)):
+        distinct: dict[frozenset[str], Subset] = {}
+        for subset in every:
+            if len(subset.candidates) == size:
+                distinct.setdefault(_keys(subset), subset)
+        found += list(distinct.values())[:count]
+    return found
+
+
+def _keys(subset: Subset) -> frozenset[str]:
+    return frozenset(c.key for c in subset.candidates)
+
+
+def start_of(
+    task: Task, rows: Regression, candidates: Sequence[Candidate], values: Mapping[str, float]
+) -> dict[str, float]:
+    """Values at which to start a set: the amounts that the rows ask for, within bounds, at the best
+    values of the parameters that shape its members; the declared parameters follow.
+    """
+    own = {(s.candidate.key, s.candidate.member): s for s in rows.signatures}
+    found = [own[c.key, c.member] for c in candidates]
+    root = np.sqrt(rows.weight)
+    right = np.concatenate([rows.rows * root, np.zeros(len(rows.declared))])
+    best, result = np.inf, dict(values)
+    for shapes in itertools.product(*(range(len(s.candidate.shapes)) for s in found)):
+        free: list[tuple[FreeParameter, float]] = []
+        columns = [rows.base[:, k] for k in range(rows.base.shape[1])]
+        for signature, shape in zip(found, shapes, strict=True):
+            for f, column in zip(
+                signature.candidate.defining, signature.slopes[shape], strict=True
+            ):
+                free.append((f, signature.candidate.vanishing[f.name]))
+                columns.append(column)
+        table = np.column_stack(columns) * root[:, None]
+        declared = rows.declared
+        prior = np.zeros((len(declared), table.shape[1]))
+        prior[:, : len(declared)] = np.diag([1.0 / f.scale for f in declared])
+        table = np.vstack([table, prior])
+        around = [(f, values[f.name]) for f in declared] + free
+        lower = np.array([f.lower - centre for f, centre in around])
+        upper = np.array([f.upper - centre for f, centre in around])
+        size = np.maximum(np.linalg.norm(table, axis=0), 1e-300)
+        triangle = np.asarray(np.linalg.qr(np.column_stack([table / size, right]), mode="r"))
+        k = int(table.shape[1])
+        solved = lsq_linear(
+            triangle[:, :k], -triangle[:, k], ((lower - 1e-12) * size, (upper + 1e-12) * size)
+        )
+        if solved.cost < best:
+            best, amounts = solved.cost, solved.x / size
+            result = dict(values)
+            for f, amount in zip(declared, amounts, strict=False):
+                value = float(np.clip(values[f.name] + amount, f.lower, f.upper))
+                result.update(dict.fromkeys(f.names, value))
+            for (f, zero), amount in zip(free, amounts[len(declared) :], strict=True):
+                value = float(np.clip(zero + amount, f.lower, f.upper))
+                if any(f.name in s.finite for s in found) and amount != 0.0:
+                    value = f.start
+                result.update(dict.fromkeys(f.names, value))
+            for signature, shape in zip(found, shapes, strict=True):
+                result.update(signature.candidate.shapes[shape])
+    return possible(task, result)

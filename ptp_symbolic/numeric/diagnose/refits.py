@@ -1,0 +1,225 @@
+"""Refits of a set by simulation: over short windows first, then whole runs, at last to the end."""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.floor import carried_noise, leaves_white_noise, left_over
+from ptp_symbolic.numeric.diagnose.linear import effect_of, outside, stacked
+from ptp_symbolic.numeric.diagnose.proposals import Proposals, declared_start
+from ptp_symbolic.numeric.diagnose.trial import (
+    Task,
+    Trial,
+    continued,
+    fitted,
+    halving,
+    is_alike,
+    mean_squares,
+    ranked,
+)
+from ptp_symbolic.numeric.identify.constants import (
+    CYCLES,
+    FAR_OFF,
+    ITERATIONS,
+    LAST_RUNG,
+    NEARBY,
+    POLISH,
+    ROUGH,
+    SHARP,
+    STEP,
+    WIDE_STEP,
+)
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.gap_places import gears_in_place
+from ptp_symbolic.numeric.identify.windows import without_chaos
+
+FloatArray = NDArray[np.float64]
+
+
+def fit_declared(task: Task, proposals: Proposals) -> Trial:
+    """The declared model, from where windows lead from the rows' start and from the declared one,
+    and from those two themselves.
+    """
+    starts = [proposals.start, declared_start(task)]
+    spread = far_starts(task, proposals.start) if has_rough_starts(task) else []
+    begun = over_windows(task, (), [*starts, *spread], task.executor)
+    begun += [fitted(task, (), values, None) for values in starts]
+    best = halving(task, begun, LAST_RUNG) or begun[-1:]
+    return polished(task, best[0], carried_noise(task, best[0].fit))
+
+
+def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]]:
+    """`values` with one declared parameter after the other as far from its start as that may be
+    off: rows tell an inertia behind a gear by its share in the whole alone, and fits that begin
+    with a gap and too little of it end with none.
+    """
+    return [
+        {**values, **dict.fromkeys(f.names, _inside(f, factor * f.start))}
+        for f in task.free
+        for factor in (FAR_OFF, 1.0 / FAR_OFF)
+        if f.start > 0.0
+    ]
+
+
+def refitted_without_chaos(task: Task, declared: Trial) -> tuple[Task, Trial]:
+    """The task with runs cut into windows where the fitted model carries the noise of the inputs
+    further than the noise of the outputs (see `without_chaos`), and the declared model refitted.
+    """
+    model, noise = task.model, task.input_noise
+    p = model.parameter_vector(declared.values)
+    left = np.sqrt(mean_squares(declared.fit.evaluations, task.train))
+    train = without_chaos(model, task.train, declared.fit.z, left, p, noise)
+    if len(train) == len(task.train):
+        return task, declared
+    task.progress("refitting, runs that multiply the noise of their inputs in windows")
+    starts = [run.guess for run in task.validate]
+    any_left = np.zeros((len(starts), left.shape[1]))
+    validate = without_chaos(model, task.validate, starts, any_left, p, noise)
+    task = replace(task, train=train, validate=validate)
+    begun = fitted(task, (), declared.values, None)
+    return task, polished(task, begun, carried_noise(task, begun.fit))
+
+
+def unbiased(trial: Trial) -> Trial:
+    """The trial with nothing known of which derivatives mislead: they are looked for anew."""
+    return replace(trial, fit=replace(trial.fit, misleading=None))
+
+
+def over_windows(
+    task: Task,
+    candidates: Sequence[Candidate],
+    starts: Sequence[Mapping[str, float]],
+    executor: Executor | None = None,
+) -> list[Trial]:
+    """The trial that begins where fits over ever longer windows lead from the best of `starts`: a
+    whole run that sticks where the machine slid leads a fit astray, windows do not (multiple
+    shooting: Bock, 1983). None where the runs are windows already, or no fit succeeds.
+    """
+    trials: list[Trial] = []
+    for windows in task.windows:
+        part = replace(task, train=windows)
+        trials = [
+            fitted(part, candidates, values, None, ITERATIONS, executor=executor)
+            for values in ([t.values for t in trials] or starts)
+        ]
+        trials = [settled(part, ranked(trials)[0], executor)]
+        if trials[0].fit.failed:
+            return []
+    return [fitted(task, candidates, t.values, None) for t in trials]
+
+
+def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
+    """The trial fitted on until some iterations more change next to nothing, the gears put in their
+    places anew each time: a window that began on the wrong side of a gap holds the others back.
+    """
+    for _ in range(CYCLES):
+        fit = trial.fit
+        z = gears_in_place(fit.model, fit.runs, fit.values, fit.z, fit.tolerance, executor)
+        begun = replace(trial, fit=replace(fit, z=tuple(z)))
+        better = continued(task, begun, ITERATIONS, executor=executor)
+        if is_alike(better, trial):
+            break
+        trial = better
+    return trial
+
+
+def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+    """The trial fitted to its end, and begun anew where that is near the floor."""
+    trial = _to_its_end(task, trial, carried)
+    return started_anew(task, trial, carried) if _is_near_floor(trial) else trial
+
+
+def _is_near_floor(trial: Trial) -> bool:
+    return bool(np.all(left_over(trial.fit) <= NEARBY))
+
+
+def started_anew(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+    """The trial, or a better end from elsewhere: with starts of the runs looked for anew, and with
+    declared parameters that have strayed back at their starts or as far off as a start may be.
+
+    Places in a gap that have followed the parameters keep these in place, and a parameter that the
+    others' errors drove to where it does nothing has no derivative that leads back.
+    """
+    if leaves_white_noise(trial, carried) or not has_rough_starts(task):
+        return trial
+    begun = [fitted(task, trial.candidates, trial.values, None, parent=trial.fit)]
+    strayed = strayed_from_start(task, trial.values)
+    for factor in (1.0, FAR_OFF, 1.0 / FAR_OFF) if strayed else ():
+        back = {n: _inside(f, factor * f.start) for f in strayed for n in f.names}
+        values = trial.values | back
+        begun.append(fitted(task, trial.candidates, values, trial.fit.z, parent=trial.fit))
+    left = halving(task, begun, LAST_RUNG)
+    return ranked([trial, *(_to_its_end(task, t, carried) for t in left)])[0]
+
+
+def has_rough_starts(task: Task) -> bool:
+    """Whether runs may begin at several places, in a gap or at rest: the misfit is rough then."""
+    return any(u.contact is not None or u.instead for run in task.train for u in run.unknowns)
+
+
+def strayed_from_start(task: Task, values: Mapping[str, float]) -> list[FreeParameter]:
+    """Declared parameters further from where they started than a start may be off."""
+    return [
+        f
+        for f in task.free
+        if f.start > 0.0 and not f.start / FAR_OFF <= values[f.name] <= FAR_OFF * f.start
+    ]
+
+
+def _inside(free: FreeParameter, value: float) -> float:
+    return float(np.clip(value, free.lower, free.upper))
+
+
+def _to_its_end(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+    """The trial fitted with derivatives where the motion is smooth, with finite differences where
+    friction makes it a staircase, in turn.
+    """
+    for _ in range(CYCLES):
+        smooth = continued(task, trial, POLISH, executor=task.executor)
+        if leaves_white_noise(smooth, carried):
+            return smooth
+        trial = continued(task, unbiased(smooth), POLISH, ROUGH, WIDE_STEP, task.executor)
+        if is_alike(trial, smooth):
+            break
+    return trial
+
+
+def sharpened(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+    """A polished trial fitted on with sharp simulations, where little but noise is left."""
+    if trial.fit.failed or not leaves_white_noise(trial, carried):
+        return trial
+    trial = continued(task, trial, POLISH, SHARP, executor=task.executor)
+    return continued(task, unbiased(trial), POLISH, SHARP, STEP, task.executor)
+
+
+def expected_gain(trial: Trial, vanishing: Mapping[str, float]) -> float:
+    """The share of the squared residual with the parameters in `vanishing` at their values there
+    that those at the fit take away, predicted from the derivatives.
+    """
+    fit = trial.fit
+    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    others = [k for k, f in enumerate(fit.free) if f.name not in vanishing]
+    effect = outside(effect_of(fit, vanishing, columns)[:, None], columns[:, others])[:, 0]
+    taken = float(effect @ effect)
+    return taken / max(taken + float(residual @ residual), 1e-300)
+
+
+def forms(task: Task, candidate: Candidate) -> list[Candidate]:
+    """All forms of a candidate, a scanned frequency where it was found."""
+    starts = {f.name: f for f in candidate.free}
+    return [
+        replace(c, free=tuple(starts.get(f.name, f) for f in c.free))
+        for c in task.candidates
+        if c.key == candidate.key
+    ]
+
+
+def fullest(task: Task, candidate: Candidate) -> Candidate:
+    """The form of a candidate with the most parameters."""
+    best = max(forms(task, candidate), key=lambda c: len(c.free))
+    return best if len(best.free) > len(candidate.free) else candidate

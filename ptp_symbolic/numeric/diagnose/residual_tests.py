@@ -1,0 +1,68 @@
+"""Tests of what a model leaves over on validation runs, for every measured signal."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from ptp_symbolic.numeric.identify.constants import LAGS, TEST_ALARM
+from ptp_symbolic.numeric.identify.fit import Fit
+
+FloatArray = NDArray[np.float64]
+
+WHITE = (
+    "neighbouring residuals should not resemble each other; rounding and noise of the inputs make"
+    " them do so a little where nothing is missing, so that this test alone proves nothing"
+)
+INDEPENDENT = "what is left over should not follow {name}; where it does, the model lacks something"
+
+
+def residual_tests(fit: Fit, inputs: tuple[str, ...]) -> list[dict[str, Any]]:
+    """Per measured signal: whiteness of its residual, and independence of each of the `inputs`.
+
+    The statistic is the largest correlation over `LAGS` lags; of independent residuals it stays
+    below the threshold in 99 of 100 cases.
+    """
+    pairs = [(r, e) for r, e in fit.pairs() if len(r.time) > 4 * LAGS]
+    rows: list[dict[str, Any]] = []
+    for column, signal in enumerate(fit.runs[0].signals if pairs else ()):
+        left = [e.residual.reshape(run.measured.shape)[:, column] for run, e in pairs]
+        white, size = correlations(left, left)
+        rows.append(_row("whiteness", signal, white[1:], size, WHITE))
+        for k, name in enumerate(inputs):
+            crossed, size = correlations(left, [run.held_inputs[:, k] for run, _ in pairs])
+            meaning = INDEPENDENT.format(name=name)
+            rows.append(_row(f"independence of {name}", signal, crossed, size, meaning))
+    return rows
+
+
+def correlations(
+    first: Sequence[FloatArray], other: Sequence[FloatArray]
+) -> tuple[FloatArray, int]:
+    """Correlations [LAGS + 1] of series over runs of any lengths, and the number of samples.
+
+    Each run is scaled by itself and counts by its samples, so that the standard deviation of
+    independent series is 1 / sqrt(samples).
+    """
+    total, size = np.zeros(LAGS + 1), 0
+    for a, b in zip(first, other, strict=True):
+        a, b = a - a.mean(), b - b.mean()
+        norm = max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-300)
+        total += [a.size * float(a[k:] @ b[: b.size - k]) / norm for k in range(LAGS + 1)]
+        size += a.size
+    return total / max(size, 1), size
+
+
+def _row(name: str, signal: str, values: FloatArray, size: int, meaning: str) -> dict[str, Any]:
+    largest = float(np.max(np.abs(values)))
+    threshold = float(stats.norm.ppf(1.0 - 0.5 * TEST_ALARM / values.size) / np.sqrt(size))
+    return {
+        "name": name,
+        "signal": signal,
+        "statistic": largest,
+        "threshold": threshold,
+        "passed": largest <= threshold,
+        "meaning": meaning,
+    }

@@ -1,0 +1,181 @@
+"""What a finite amount of a candidate would change in the simulated outputs of a trial.
+
+Breakaways, gaps and delays do not show in the torque along the motion, or have no derivative where
+they vanish: their response to a finite amount, the free parameters following, tells what a refit
+could gain, and where it should start.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.linear import stacked
+from ptp_symbolic.numeric.diagnose.proposals import Proposal
+from ptp_symbolic.numeric.diagnose.signatures import brought
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, simulated
+from ptp_symbolic.numeric.identify.constants import (
+    DECLARED_AMOUNT,
+    FARTHEST,
+    MOST,
+    REACH,
+    RIDGE,
+    SHRINK,
+    SHRINKS,
+)
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
+from ptp_symbolic.numeric.identify.fit import all_values
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """Responses `table` [n, k] of a candidate, per unit of each of its `free` parameters, the
+    others at `base` (shaping values, and candidates that it brings along).
+    """
+
+    candidate: Candidate
+    free: tuple[FreeParameter, ...]
+    table: FloatArray
+    base: Mapping[str, float]
+
+    def values(self, amounts: FloatArray) -> dict[str, float]:
+        """Values of the parameters of the candidate, at `amounts` [k] from where it vanishes."""
+        found = dict(self.base)
+        for f, amount in zip(self.free, amounts, strict=True):
+            value = float(np.clip(self.candidate.vanishing[f.name] + amount, f.lower, f.upper))
+            found.update(dict.fromkeys(f.names, value))
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """A candidate added to a trial: the share of the squared residual that is predicted to be left,
+    where a refit should start, and the values that shape it.
+    """
+
+    candidate: Candidate
+    left: float
+    proposal: Proposal
+    shape: Mapping[str, float]
+
+
+def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list[Response]:
+    """Responses of `candidates` that the trial does not have, the most promising first, each in the
+    form that promises most.
+
+    A candidate that needs another brings it along.
+    """
+    have = set(trial.keys)
+    by_key = {c.key: c for c in reversed(task.candidates)}
+    wanted = [(c, shape) for c in candidates if c.key not in have for shape in c.shapes]
+    fit = trial.fit
+    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+    declared = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    most = REACH * float(np.linalg.norm(residual))
+
+    def respond(pair: tuple[Candidate, Mapping[str, float]]) -> Response | None:
+        candidate, shape = pair
+        found = response_columns(task, trial, candidate, shape, most)
+        if found is None:
+            return None
+        amounts, left = least(residual, declared, found)
+        nf = declared.shape[1]
+        phi = to_search(fit.free, fit.values) + amounts[:nf]
+        values = {**trial.values, **all_values(fit.free, phi), **found.values(amounts[nf:])}
+        added = [by_key[key] for key in candidate.brings if key not in have]
+        return Response(
+            candidate, left, Proposal((*trial.candidates, *added, candidate), values), shape
+        )
+
+    jobs = list(task.executor.map(respond, wanted))
+    best: dict[str, Response] = {}
+    for response in sorted((r for r in jobs if r is not None), key=lambda r: r.left):
+        best.setdefault(response.candidate.key, response)
+    return list(best.values())
+
+
+def response_columns(
+    task: Task, trial: Trial, candidate: Candidate, shape: Mapping[str, float], most: float
+) -> Columns | None:
+    """Responses of `candidate` at the fit of `trial`, shaped by `shape`, to amounts that change the
+    residuals by at most the norm `most`; None where nothing changes or can be simulated.
+    """
+    by_key = {c.key: c for c in reversed(task.candidates)}
+    brings = any(key not in trial.keys for key in candidate.brings)
+    base = {**(brought(candidate, by_key) if brings else {}), **shape}
+    residual = [e.residual for e in trial.fit.evaluations]
+    without = residual
+    if brings:
+        plain = simulated(task, trial.fit, base, None)
+        if any(e.failed for e in plain):
+            return None
+        without = [e.residual for e in plain]
+    found = [
+        (f, _column(task, trial, without, base, f, candidate, most)) for f in candidate.defining
+    ]
+    kept = [(f, column) for f, column in found if column is not None]
+    if not kept:
+        return None
+    table = np.column_stack([column for _, column in kept])
+    return Columns(candidate, tuple(f for f, _ in kept), table, base)
+
+
+def _column(
+    task: Task,
+    trial: Trial,
+    without: Sequence[FloatArray],
+    base: Mapping[str, float],
+    f: FreeParameter,
+    candidate: Candidate,
+    most: float,
+) -> FloatArray | None:
+    """The response [n] per unit of a defining parameter, to an amount whose response stays below
+    `most`, with a margin where the first is too large: an encoder may show a thousandth of what is
+    usual. None where nothing can be simulated or nothing changes.
+    """
+    zero = candidate.vanishing[f.name]
+    amount = f.start - zero
+    if candidate.is_declared_value:
+        amount = min(DECLARED_AMOUNT * abs(f.start), 0.5 * (f.upper - f.start))
+    for _ in range(SHRINKS):
+        values = {**base, **dict.fromkeys(f.names, zero + amount)}
+        changed = simulated(task, trial.fit, values, None)
+        if not any(e.failed for e in changed):
+            differences = [(e.residual - r)[:, None] for e, r in zip(changed, without, strict=True)]
+            change = stacked(trial.fit, differences)[:, 0]
+            size = float(np.linalg.norm(change))
+            if size == 0.0:
+                return None
+            if size <= most:
+                return change / amount
+            amount *= min(SHRINK, MOST * most / size)
+        else:
+            amount *= SHRINK
+    return None
+
+
+def least(here: FloatArray, declared: FloatArray, found: Columns) -> tuple[FloatArray, float]:
+    """Amounts of the declared search coordinates and of the candidate's parameters that make the
+    residual `here` [n] least within bounds, and the share of its square that is left.
+    """
+    zero = [found.candidate.vanishing[f.name] for f in found.free]
+    reach = np.full(declared.shape[1], FARTHEST)
+    lower = np.concatenate([-reach, [f.lower - z for f, z in zip(found.free, zero, strict=True)]])
+    upper = np.concatenate([reach, [f.upper - z for f, z in zip(found.free, zero, strict=True)]])
+    table = np.column_stack([declared, found.table])
+    size = np.maximum(np.linalg.norm(table, axis=0), 1e-300)
+    triangle = np.asarray(np.linalg.qr(np.column_stack([table / size, here]), mode="r"))
+    k = int(table.shape[1])
+    ridge = RIDGE * np.linalg.norm(triangle[:, k]) * np.eye(k)
+    solved = lsq_linear(
+        np.vstack([triangle[:, :k], ridge]),
+        -np.concatenate([triangle[:, k], np.zeros(k)]),
+        ((lower - 1e-12) * size, (upper + 1e-12) * size),
+    )
+    left = 2.0 * solved.cost / max(float(here @ here), 1e-300)
+    return solved.x / size, float(left)

@@ -1,0 +1,41 @@
+"""Every candidate by itself over a few short windows: what the motion alone does not show.
+
+Windows forget: neither a rest nor a bounce in a gap that ends a sample late leads a fit astray
+there, so that a few iterations tell how much a candidate is worth, and at which values.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_for
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, continued, fitted, ranked
+from ptp_symbolic.numeric.identify.constants import ITERATIONS
+
+
+def screened(
+    task: Task,
+    found: Proposals,
+    kept: Sequence[Candidate],
+    wanted: Sequence[Candidate],
+    values: Mapping[str, float],
+) -> list[Trial]:
+    """The set `kept` with each of the candidates `wanted`, and with what that brings along, fitted
+    to some windows of the task, the best fit first. A fit begins where the rows start the set, or
+    at `values` and the candidate's own start, whichever is better.
+    """
+    part = replace(task, train=task.windows[0]) if task.windows else task
+    have = {c.key for c in kept}
+    by_key = {c.key: c for c in reversed(task.candidates)}
+
+    def begun(candidate: Candidate) -> Trial:
+        added = [by_key[key] for key in candidate.brings if key not in have]
+        own = {name: f.start for c in (*added, candidate) for f in c.free for name in f.names}
+        whole = {**values, **own, **candidate.shapes[0]}
+        candidates = (*kept, *added, candidate)
+        starts = [whole, start_for(task, found, candidates, whole, linear=True)]
+        first = ranked([fitted(part, candidates, start, None) for start in starts])[0]
+        return continued(part, first, ITERATIONS)
+
+    fresh = [c for c in wanted if c.key not in have]
+    return [t for t in ranked(list(task.executor.map(begun, fresh))) if not t.fit.failed]

@@ -1,0 +1,222 @@
+"""What every candidate would change in the rows of the equation space.
+
+A candidate's signature is a set of columns: the rows with a finite amount of each parameter that
+switches it on, minus the rows without, at every set of values of the parameters that shape it. Its
+span holds, or nearly holds, everything that the candidate can do. A frequency is scanned.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.identify.constants import (
+    ATTENUATED,
+    BINS_PER_CYCLE,
+    CYCLES_APART,
+    DECLARED_AMOUNT,
+    LEAST_CYCLES,
+    SAME,
+    SMALL_AMOUNT,
+)
+from ptp_symbolic.numeric.identify.equation_space import EquationSpace
+from ptp_symbolic.numeric.identify.row_motion import row_motion
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Signature:
+    """What a candidate, with its frequency, changes in the rows.
+
+    `slopes` gives, for every set of shaping values and every defining parameter, the change [n] of
+    the rows per unit of the parameter; `finite` the defining parameters that show only at the whole
+    amount with which their search begins. `columns` [n, c] span all of that, orthonormal when rows
+    count by their weight.
+    """
+
+    candidate: Candidate
+    slopes: tuple[tuple[FloatArray, ...], ...]
+    finite: frozenset[str]
+    columns: FloatArray
+
+
+def signatures(
+    space: EquationSpace,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+    weight: FloatArray,
+    executor: Executor | None = None,
+) -> tuple[list[Signature], list[Candidate]]:
+    """Signatures at the parameter `values`, each row counted by its `weight` [n]; and candidates
+    that change nothing along the measured motion.
+    """
+    by_key = {c.key: c for c in reversed(candidates)}
+    own = space.own_torque(space.model.parameter_vector(dict(values)))
+    cache: dict[tuple[tuple[str, float], ...], FloatArray] = {}
+
+    def rows(changed: Mapping[str, float]) -> FloatArray:
+        key = tuple(sorted(changed.items()))
+        if key not in cache:
+            p = space.model.parameter_vector({**values, **changed})
+            cache[key] = space.rows(p, own)
+        return cache[key]
+
+    def signature(candidate: Candidate) -> Signature:
+        return _signature(candidate, brought(candidate, by_key), rows, weight)
+
+    rows({})
+    wanted = [c for c in candidates if c.locked is None]
+    run = executor.map if executor else map
+    found = list(run(signature, wanted))
+    space.forget()
+    seen = [s for s in found if s.columns.shape[1]]
+    keys = {s.candidate.key for s in seen}
+    return seen, [c for c in wanted if c.key not in keys]
+
+
+def brought(candidate: Candidate, by_key: Mapping[str, Candidate]) -> dict[str, float]:
+    """Start values of the candidates that `candidate` brings along, so that it has what to act
+    on.
+    """
+    return {name: f.start for key in candidate.brings for f in by_key[key].free for name in f.names}
+
+
+def _signature(
+    candidate: Candidate,
+    base: Mapping[str, float],
+    rows: Callable[[Mapping[str, float]], FloatArray],
+    weight: FloatArray,
+) -> Signature:
+    """Difference quotients of `rows` by every defining parameter at every set of shaping values."""
+    finite: set[str] = set()
+    slopes = []
+    for shape in candidate.shapes:
+        without, columns = rows({**base, **shape}), []
+        for f in candidate.defining:
+            zero, whole = candidate.vanishing[f.name], f.start
+            if candidate.is_declared_value:
+                whole = min(f.start * (1.0 + DECLARED_AMOUNT), 0.5 * (f.start + f.upper))
+            column = np.zeros(len(weight))
+            for amount in (zero + SMALL_AMOUNT * (whole - zero), whole):
+                changed = dict.fromkeys(f.names, amount)
+                column = (rows({**base, **shape, **changed}) - without) / (amount - zero)
+                if np.any(column):
+                    break
+                finite.add(f.name)
+            columns.append(column)
+        slopes.append(tuple(columns))
+    span = _orthonormal(np.column_stack([c for columns in slopes for c in columns]), weight)
+    return Signature(candidate, tuple(slopes), frozenset(finite), span)
+
+
+def _orthonormal(columns: FloatArray, weight: FloatArray) -> FloatArray:
+    """The span of `columns` [n, k], orthonormal when rows count by `weight`."""
+    root = np.sqrt(weight)[:, None]
+    weighted = columns * root
+    size = np.linalg.norm(weighted, axis=0)
+    weighted = weighted[:, size > 0.0] / size[size > 0.0]
+    if not weighted.shape[1]:
+        return np.zeros((len(weight), 0))
+    left, values, _ = np.linalg.svd(weighted, full_matrices=False)
+    return left[:, values > SAME * values[0]] / root
+
+
+def locked_signatures(
+    space: EquationSpace,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+    residual: FloatArray,
+    weight: FloatArray,
+) -> list[Signature]:
+    """Signatures of candidates with a frequency, at the strongest line of the weighted `residual`.
+
+    A full scan over the place (time, or the angle of the candidate's axis): all frequencies from
+    a few cycles over the whole range to those that the windows average away. What the wave moves
+    may turn with the machine: the residual is scanned as the candidate at no frequency shows it.
+    """
+    by_key = {c.key: c for c in reversed(candidates)}
+    own = space.own_torque(space.model.parameter_vector(dict(values)))
+    found = []
+
+    number = {name: k for k, name in enumerate(space.model.parameter_names)}
+
+    def rows(changed: Mapping[str, float]) -> FloatArray:
+        p = space.model.parameter_vector(dict(values))
+        for name, value in changed.items():
+            p[number[name]] = value  # beyond its bounds too: a frequency of zero
+        return space.rows(p, own)
+
+    lines: dict[str, tuple[float, float]] = {}
+    for candidate in candidates:
+        if candidate.locked is None:
+            continue
+        name, _ = candidate.locked
+        if candidate.key not in lines:
+            still = tuple({**shape, name: 0.0} for shape in candidate.shapes)
+            constant = _signature(
+                replace(candidate, shapes=still), brought(candidate, by_key), rows, weight
+            )
+            lines[candidate.key] = _strongest(space, candidate, residual, weight, constant.columns)
+        frequency, lowest = lines[candidate.key]
+        limits = next(f for f in candidate.free if f.name == name)
+        if not max(lowest, limits.lower) < frequency < limits.upper:
+            continue
+        line = replace(
+            limits,
+            start=frequency,
+            scale=CYCLES_APART * frequency,
+            lower=max(lowest, limits.lower),
+        )
+        free = tuple(line if f.name == name else f for f in candidate.free)
+        shapes = tuple({**shape, name: frequency} for shape in candidate.shapes)
+        placed = replace(candidate, free=free, shapes=shapes)
+        found.append(_signature(placed, brought(placed, by_key), rows, weight))
+    return [s for s in found if s.columns.shape[1]]
+
+
+def _strongest(
+    space: EquationSpace,
+    candidate: Candidate,
+    residual: FloatArray,
+    weight: FloatArray,
+    carriers: FloatArray,
+) -> tuple[float, float]:
+    """The frequency in Hz, or in cycles per turn, of the strongest line of the residual torques,
+    and the lowest that is a line.
+
+    `carriers` [n, m] is what the candidate does at no frequency, orthonormal when rows count by
+    `weight`: over many cycles sines and cosines on them are orthogonal too, so that the squared
+    transforms of the residual on each add up to what a wave of that frequency takes away.
+    """
+    equation, _, time = space.labels()
+    assert candidate.locked is not None
+    by_angle = candidate.locked[1] == "angle"
+    axes = space.model.module.AXES
+    own = [axes.index(candidate.axis)] if candidate.axis else list(range(len(axes)))
+    rows = np.isin(equation, own)
+    place, speed = time[rows], np.ones(int(rows.sum()))
+    if by_angle:
+        place, speed, _ = row_motion(space, own[0])
+    turn = 2.0 * np.pi if by_angle else 1.0
+    place = (place - place.min()) / turn
+    span = max(float(place.max()), 1e-12)
+    slow = float(np.quantile(np.abs(speed), 0.1)) / turn
+    limits = next(f for f in candidate.free if f.name == candidate.locked[0])
+    highest = min(ATTENUATED / max(2.0 * space.half_width * slow, 1e-12), limits.upper)
+    lowest = LEAST_CYCLES / span
+    if highest <= lowest:
+        return 0.0, 0.9 * lowest
+    width = 1.0 / (BINS_PER_CYCLE * highest)
+    bins = (place / width).astype(np.int64)
+    value = residual[rows] * weight[rows]
+    count = int(span / (width * CYCLES_APART)) + 1
+    frequency = np.fft.rfftfreq(count, width)
+    power = np.zeros(len(frequency))
+    for carrier in carriers[rows].T:
+        power += np.abs(np.fft.rfft(np.bincount(bins, weights=value * carrier), count)) ** 2
+    power[(frequency < lowest) | (frequency > highest)] = 0.0
+    return float(frequency[int(np.argmax(power))]), 0.9 * lowest

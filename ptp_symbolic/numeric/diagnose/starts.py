@@ -1,0 +1,70 @@
+"""Where refits by simulation begin: at what the rows or the outputs ask for, and beside it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.proposals import Proposals, declared_start, start_for
+from ptp_symbolic.numeric.diagnose.refits import over_windows
+from ptp_symbolic.numeric.diagnose.responses import Response
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, continued, fitted, ranked
+from ptp_symbolic.numeric.identify.constants import ITERATIONS, PARTS_OF_THE_WAY, TRIED, WIDE_STEP
+
+
+def started(task: Task, declared: Trial, found: Proposals) -> list[Trial]:
+    """The proposed sets that do best over short windows, each at the better of two starts: where
+    the windows lead, and beside the declared model.
+    """
+    part = replace(task, train=task.windows[0]) if task.windows else task
+    jobs = [
+        task.executor.submit(fitted, part, s.candidates, s.values, None, ITERATIONS)
+        for s in found.sets
+    ]
+    begun = []
+    for led in ranked([job.result() for job in jobs])[:TRIED]:
+        own = {name for c in led.candidates for name in c.names}
+        beside = declared.values | {name: led.values[name] for name in own}
+        starts = [
+            fitted(task, led.candidates, led.values, None),
+            fitted(task, led.candidates, beside, declared.fit.z, 0, declared.fit),
+        ]
+        begun.append(ranked(starts)[0])
+    return begun
+
+
+def along(task: Task, proposals: Proposals, found: Response, parent: Trial) -> list[Trial]:
+    """Refits begun where a response in the outputs leads from `parent`, and part of the way there.
+    What the motion does not show has derivatives that mislead: they are looked for at once.
+    """
+    proposal = found.proposal
+    origin = parent.values | dict(found.shape)
+    begun = []
+    for part in PARTS_OF_THE_WAY:
+        values = {n: origin[n] + part * (v - origin[n]) for n, v in proposal.values.items()}
+        begun.append(fitted(task, proposal.candidates, values, parent.fit.z, 0, parent.fit))
+    if found.candidate.key not in {c.key for c in proposals.unseen}:
+        return [ranked(begun)[0]]
+    return [continued(task, t, 1, secants=WIDE_STEP, executor=task.executor) for t in begun]
+
+
+def led(
+    task: Task, proposals: Proposals, candidates: Sequence[Candidate], values: Mapping[str, float]
+) -> list[Trial]:
+    """A set where the rows start it (what they do not show stays at `values`), and where windows
+    lead from there and from the declared start.
+    """
+    start = start_for(task, proposals, candidates, values)
+    own = {name: start[name] for c in candidates for name in c.names}
+    begun = over_windows(task, candidates, [start, declared_start(task) | own], task.executor)
+    return [*begun, fitted(task, candidates, start, None)]
+
+
+def in_place(
+    task: Task, proposals: Proposals, candidates: Sequence[Candidate], trial: Trial
+) -> list[Trial]:
+    """A set like that of `trial`, where the rows start it, and where they start its candidates
+    alone.
+    """
+    start = start_for(task, proposals, candidates, trial.values)
+    beside = trial.values | {name: start[name] for c in candidates for name in c.names}
+    return [fitted(task, candidates, values, None) for values in (start, beside)]

@@ -1,0 +1,215 @@
+"""Which sets of candidates explain the rows of the equation space: all subsets, blocks left out.
+
+Everything is linear here: the declared parameters and the signatures are columns of one regression,
+so that a subset costs the solution of a small system per fold, and effects that stand in for one
+another compete at once (all subsets: Furnival and Wilson, 1974).
+"""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.signatures import Signature
+from ptp_symbolic.numeric.identify.constants import (
+    DEVIATIONS,
+    FAR,
+    FOLDS,
+    HUBER,
+    LITTLE,
+    NOTHING,
+    REWEIGHTINGS,
+    SEED,
+    WIDTH,
+)
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.equation_fit import robust_scale
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Regression:
+    """Rows [n] that `base` [n, nb], the columns of the `declared` parameters, and the columns of
+    the signatures may take up.
+
+    `scale` [n] is the standard deviation of every row, `weight` [n] its weight in the fit, `block`
+    [n] the number of the block of time that it belongs to.
+    """
+
+    rows: FloatArray
+    declared: tuple[FreeParameter, ...]
+    base: FloatArray
+    signatures: tuple[Signature, ...]
+    equation: IntArray
+    block: IntArray
+    weight: FloatArray
+    scale: FloatArray
+
+
+def regression(
+    rows: FloatArray,
+    declared: Sequence[FreeParameter],
+    base: FloatArray,
+    found: Sequence[Signature],
+    equation: IntArray,
+    block: IntArray,
+    weight: FloatArray,
+) -> Regression:
+    """The regression with weights from the residual of the declared model."""
+    start = Regression(
+        rows,
+        tuple(declared),
+        base,
+        tuple(found),
+        equation,
+        block,
+        weight,
+        robust_scale(rows, equation),
+    )
+    return reweighted(start, ())
+
+
+def reweighted(found: Regression, candidates: Sequence[Candidate]) -> Regression:
+    """`found` with weights and scales from the residual that a set of `candidates` leaves."""
+    own = [s.columns for s in found.signatures if s.candidate in candidates]
+    columns = np.column_stack([found.base, *own])
+    weight, scale = found.weight, found.scale
+    for _ in range(REWEIGHTINGS):
+        left = found.rows - columns @ _amounts(columns, found.rows, weight)
+        scale = robust_scale(left, found.equation)
+        weight = np.minimum(1.0, HUBER * scale / np.maximum(np.abs(left), 1e-300)) / scale**2
+    return replace(found, weight=weight, scale=scale)
+
+
+def remainder(found: Regression) -> FloatArray:
+    """Rows [n] that the declared parameters leave."""
+    return found.rows - found.base @ _amounts(found.base, found.rows, found.weight)
+
+
+def _amounts(columns: FloatArray, rows: FloatArray, weight: FloatArray) -> FloatArray:
+    root = np.sqrt(weight)
+    size = np.maximum(np.linalg.norm(columns * root[:, None], axis=0), 1e-300)
+    scaled = columns * root[:, None] / size
+    return np.linalg.lstsq(scaled, rows * root, rcond=1e-6)[0] / size
+
+
+@dataclass(frozen=True, eq=False)
+class Subset:
+    """A set of candidates with the loss of every block [b] when it was left out."""
+
+    candidates: tuple[Candidate, ...]
+    losses: FloatArray
+    columns: int
+
+    @property
+    def loss(self) -> float:
+        """Sum of the losses of all blocks."""
+        return float(self.losses.sum())
+
+
+def ranked_subsets(found: Regression, largest: int) -> list[Subset]:
+    """Subsets of up to `largest` candidates, the least loss on blocks left out first.
+
+    All single candidates and pairs are compared, larger subsets among those that do best in them.
+    """
+    folds = _Folds(found)
+    entries = range(len(found.signatures))
+    every: dict[tuple[int, ...], Subset] = {(): folds.subset(())}
+    for size in (1, 2):
+        for chosen in itertools.combinations(entries, size):
+            if size <= largest and folds.is_complete(chosen):
+                every[chosen] = folds.subset(chosen)
+    for size in range(3, largest + 1):
+        smaller = sorted((k for k in every if len(k) == size - 1), key=lambda k: every[k].loss)
+        pool = list(dict.fromkeys(entry for chosen in smaller for entry in chosen))[:WIDTH]
+        for chosen in smaller[:WIDTH]:
+            for entry in pool:
+                grown = tuple(sorted({*chosen, entry}))
+                if len(grown) == size and grown not in every and folds.is_complete(grown):
+                    every[grown] = folds.subset(grown)
+    return sorted(every.values(), key=lambda s: s.loss)
+
+
+def exchanges(found: Regression, candidates: Sequence[Candidate]) -> list[tuple[Candidate, ...]]:
+    """Sets with another candidate in the place of one of `candidates` that are no worse than these
+    on blocks left out, the best first. What the rows do not show of the candidates is kept.
+    """
+    found = reweighted(found, candidates)
+    number = {(s.candidate.key, s.candidate.member): k for k, s in enumerate(found.signatures)}
+    own = [number[c.key, c.member] for c in candidates if (c.key, c.member) in number]
+    hidden = tuple(c for c in candidates if (c.key, c.member) not in number)
+    folds = _Folds(found)
+    whole = folds.subset(own)
+    sets = [
+        tuple(sorted({*own, other} - {member}))
+        for member in own
+        for other in range(len(found.signatures))
+        if other not in own
+    ]
+    every = [folds.subset(chosen) for chosen in sets if folds.is_complete(chosen)]
+    keys = frozenset(c.key for c in candidates)
+    best: dict[frozenset[str], tuple[Candidate, ...]] = {}
+    for subset in sorted(every, key=lambda s: s.loss):
+        placed = (*subset.candidates, *hidden)
+        fresh = frozenset(c.key for c in placed)
+        if fresh != keys and is_no_worse(subset, whole, DEVIATIONS, LITTLE):
+            best.setdefault(fresh, placed)
+    return list(best.values())
+
+
+class _Folds:
+    """The normal equations of every fold, for all columns at once."""
+
+    def __init__(self, found: Regression) -> None:
+        self.found = found
+        size = np.linalg.norm(found.base * np.sqrt(found.weight)[:, None], axis=0)
+        base = found.base / np.where(size > 0.0, size, 1.0)
+        self.columns = np.column_stack([base, *(s.columns for s in found.signatures)])
+        sizes = [found.base.shape[1], *(s.columns.shape[1] for s in found.signatures)]
+        ends = np.cumsum(sizes)
+        self.own = [np.arange(b - n, b) for b, n in zip(ends, sizes, strict=True)]
+        blocks, self.label = np.unique(found.block, return_inverse=True)
+        order = np.random.default_rng(SEED).permutation(len(blocks))
+        fold = order[self.label] % FOLDS
+        self.members = [np.flatnonzero(fold == k) for k in range(FOLDS)]
+        root = np.sqrt(found.weight)
+        weighted, right = self.columns * root[:, None], found.rows * root
+        matrices = [weighted[m].T @ weighted[m] for m in self.members]
+        sides = [weighted[m].T @ right[m] for m in self.members]
+        self.matrices = [sum(matrices) - m for m in matrices]
+        self.sides = [sum(sides) - s for s in sides]
+
+    def is_complete(self, chosen: Sequence[int]) -> bool:
+        """Whether no key occurs twice and everything that is brought along is there."""
+        candidates = [self.found.signatures[i].candidate for i in chosen]
+        keys = [c.key for c in candidates]
+        return len(set(keys)) == len(keys) and all(set(c.brings) <= set(keys) for c in candidates)
+
+    def subset(self, chosen: Sequence[int]) -> Subset:
+        """Losses of all blocks, each with the amounts that the other folds give."""
+        index = np.concatenate([self.own[0], *(self.own[i + 1] for i in chosen)])
+        loss = np.empty(len(self.found.rows))
+        for members, matrix, side in zip(self.members, self.matrices, self.sides, strict=True):
+            part = matrix[np.ix_(index, index)]
+            ridge = NOTHING * np.trace(part) / len(index) * np.eye(len(index))
+            amounts = np.linalg.solve(part + ridge, side[index])
+            left = self.found.rows[members] - self.columns[np.ix_(members, index)] @ amounts
+            loss[members] = np.minimum((left / self.found.scale[members]) ** 2, FAR**2)
+        losses = np.asarray(np.bincount(self.label, loss), dtype=np.float64)
+        candidates = tuple(self.found.signatures[i].candidate for i in chosen)
+        return Subset(candidates, losses, len(index))
+
+
+def is_no_worse(subset: Subset, best: Subset, deviations: float, share: float) -> bool:
+    """Whether the loss of `subset` exceeds that of `best` by less than so many standard errors of
+    the paired differences of blocks (Breiman et al., 1984, section 3.4.3), or by less than a share.
+    """
+    difference = subset.losses - best.losses
+    error = float(np.std(difference) * np.sqrt(len(difference)))
+    excess = float(difference.sum())
+    return excess <= deviations * error or excess <= share * best.loss

@@ -1,0 +1,242 @@
+"""A diagnosis as plain data: headline, errors, ranking, parameters."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ptp_symbolic.numeric.diagnose.candidates import DECLARED_VALUE, Candidate
+from ptp_symbolic.numeric.diagnose.errors import DEFINITION, error_of
+from ptp_symbolic.numeric.diagnose.findings import Search
+from ptp_symbolic.numeric.diagnose.floor import Floor
+from ptp_symbolic.numeric.diagnose.gain import Gain, gain
+from ptp_symbolic.numeric.diagnose.trial import Trial, ranked
+from ptp_symbolic.numeric.diagnose.verdict import (
+    EXPLAINED,
+    NOTHING_MISSING,
+    PARTLY,
+    UP_TO_GROUP,
+    Verdict,
+)
+from ptp_symbolic.numeric.identify.constants import SMALL_PERCENT
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.intervals import Estimate
+from ptp_symbolic.numeric.identify.repeatability import repeatability
+from ptp_symbolic.numeric.identify.run import Run
+
+SMALL = "The deviation is statistically clear but small."
+
+
+def headline(found: Verdict, errors: dict[str, Any]) -> str:
+    """What was found, in one or two sentences."""
+    before, after, floor = (
+        _worded(errors["validate"][when]["total"]) for when in ("before", "after", "noise_floor")
+    )
+    if found.word == NOTHING_MISSING:
+        return f"Nothing is missing: {before} on validation runs is the noise floor."
+    if found.word in (EXPLAINED, UP_TO_GROUP, PARTLY):
+        causes = " and ".join(cause(c, found.final) for c in found.final.candidates)
+        declared = all(c.is_declared_value for c in found.final.candidates)
+        begin = f"{causes[:1].upper()}{causes[1:]}" if declared else f"Missing: {causes}"
+        sentences = [f"{begin}; validation error {before} to {after}."]
+        sentences += [SMALL for c in found.final.candidates if _is_small(c, found.final)][:1]
+        alike = sorted({key for keys in found.confusable.values() for key in keys})
+        if alike:
+            sentences.append(f"These logs cannot tell it from: {', '.join(alike)}.")
+        if found.word == PARTLY:
+            sentences.append(f"The floor is {floor}: a remainder is left unexplained.")
+        return " ".join(sentences)
+    text = (
+        f"Something is missing that has no name here: {before} on validation runs, the floor is"
+        f" {floor}."
+    )
+    if found.closest is not None:
+        text += f" The closest candidate, not confirmed: {' + '.join(found.closest.keys)}."
+    return text
+
+
+def _worded(error: dict[str, float | None]) -> str:
+    """An error in counts, or in rad where there is no encoder."""
+    if error["rmse_counts"] is None:
+        return f"{error['rmse']:.3g} rad rms"
+    return f"{error['rmse_counts']:.3f} counts rms"
+
+
+def cause(candidate: Candidate, trial: Trial) -> str:
+    """What `candidate` says is wrong with the declared machine; of a value also by how much."""
+    if not candidate.is_declared_value:
+        return candidate.title
+    name = candidate.parameters[0]
+    meaning = {p.name: p.meaning for p in trial.fit.model.parameters}[name]
+    percent = deviation(candidate, trial)
+    written = f"{percent:+.1f}" if abs(percent) >= 10.0 else f"{percent:+.2g}"
+    return f"declared value of {name} is wrong by {written} % ({meaning})"
+
+
+def deviation(candidate: Candidate, trial: Trial) -> float:
+    """By how many percent the fit moved a declared value."""
+    (name,) = candidate.parameters
+    declared = candidate.vanishing[name]
+    return 100.0 * (trial.values[name] - declared) / abs(declared)
+
+
+def _is_small(candidate: Candidate, trial: Trial) -> bool:
+    return candidate.is_declared_value and abs(deviation(candidate, trial)) < SMALL_PERCENT
+
+
+def repeatability_table(runs: Sequence[Run], units: Mapping[str, str]) -> dict[str, Any] | None:
+    """What differs between `runs` with equal inputs, by signal; None where there are none."""
+    found = repeatability(runs)
+    if found is None:
+        return None
+    counts = found.rms / runs[0].counts
+    return {
+        "runs": [list(pair) for pair in found.names],
+        "by_signal": {
+            signal: {
+                "rmse": float(found.rms[k]),
+                "unit": units[signal],
+                "rmse_counts": _finite(counts[k]),
+            }
+            for k, signal in enumerate(runs[0].signals)
+        },
+    }
+
+
+def error_table(parts: dict[str, tuple[Fit, Fit]], floor: Floor) -> dict[str, Any]:
+    """Errors of each part ("train", "validate") by the declared model and by the final one, and of
+    the floor.
+    """
+    table: dict[str, Any] = {"definition": DEFINITION}
+    for name, (before, after) in parts.items():
+        units = before.model.units
+        table[name] = {
+            "before": error_of(before, units),
+            "after": error_of(after, units),
+            "noise_floor": error_of(after, units, floor.level),
+        }
+    return table
+
+
+def fit_table(trial: Trial, found: Sequence[Estimate]) -> dict[str, Any]:
+    """Fitted parameters with intervals, starts, bounds hit and those the data cannot identify."""
+    model = trial.fit.model
+    meanings = {p.name: p.meaning for p in model.parameters}
+    declared = {f.name: f.table for f in trial.fit.free}
+    return {
+        e.name: {
+            "value": e.value,
+            "ci95": [_finite(e.lower), _finite(e.upper)],
+            "unit": model.units[e.name],
+            "meaning": meanings[e.name],
+            "start": declared[e.name],
+            "at_bound": e.at_bound,
+            "identified": e.identified,
+            "only_with": list(e.only_with),
+        }
+        for e in found
+    }
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def added_effects(
+    verdict: Verdict, after: Trial, intervals: Mapping[str, Estimate]
+) -> list[dict[str, Any]]:
+    """The named effects of the trial `after`, with the `intervals` of their parameters."""
+    units = after.fit.model.units
+    gains = {step.candidate.key: step.gain for step in verdict.members}
+    return [
+        {
+            "effect": c.id,
+            "title": cause(c, after),
+            "axis": c.axis,
+            "parameters": {name: _value(intervals[name], units[name]) for name in c.parameters},
+            "gain": gain_table(gains[c.key]),
+            "confusable_with": list(verdict.confusable[c.key]),
+            "separating_experiment": c.separating_experiment,
+        }
+        for c in after.candidates
+    ]
+
+
+def _value(estimate: Estimate, unit: str) -> dict[str, Any]:
+    interval = [estimate.lower, estimate.upper]
+    return {"value": estimate.value, "ci95": interval, "unit": unit}
+
+
+def gain_table(earned: Gain) -> dict[str, Any]:
+    """A predictive gain: the share of the loss on blocks left out, with its 95 % interval."""
+    return {"share": earned.share, "ci95": [earned.lower, earned.upper]}
+
+
+def ranking(
+    search: Search, found: Verdict, candidates: Sequence[Candidate]
+) -> list[dict[str, Any]]:
+    """Every set that was fitted, the best first: its error on the training runs, what it gains over
+    the declared model in prediction, and why it was accepted or not; then the candidates that were
+    compared along the measured motion alone.
+    """
+    rivals = [r.trial for r in found.rivals]
+    trials = [t for t in (found.final, *rivals, search.chosen, *search.others) if t.candidates]
+    best = [t for t in ranked(trials) if np.isfinite(t.fit.cost)]
+    kept: dict[tuple[str, ...], Trial] = {}
+    for trial in best:
+        kept.setdefault(trial.keys, trial)
+    rows = [_row(search, found, trial) for trial in kept.values()]
+    tried = {key for trial in kept.values() for key in trial.keys}
+    for candidate in {c.key: c for c in candidates}.values():
+        if candidate.key not in tried:
+            rows.append(_unfitted(candidate))
+    return rows
+
+
+def _row(search: Search, found: Verdict, trial: Trial) -> dict[str, Any]:
+    units = trial.fit.model.units
+    earned = gain(trial, search.declared)
+    error = error_of(trial.fit, units)["total"]
+    axes = {c.axis for c in trial.candidates}
+    return {
+        "effect": " + ".join(c.id for c in trial.candidates),
+        "axis": axes.pop() if len(axes) == 1 else None,
+        "gain": gain_table(earned),
+        "train_error_after": error["rmse"]
+        if error["rmse_counts"] is None
+        else error["rmse_counts"],
+        "parameters": {
+            f.name: {"value": trial.values[f.name], "unit": units[f.name]}
+            for c in trial.candidates
+            for f in c.free
+        },
+        "accepted": bool(found.final.candidates) and trial.keys == found.final.keys,
+        "why": _why(search, found, trial),
+    }
+
+
+def _unfitted(candidate: Candidate) -> dict[str, Any]:
+    return {
+        "effect": candidate.id,
+        "axis": candidate.axis,
+        "gain": None,
+        "train_error_after": None,
+        "parameters": {},
+        "accepted": False,
+        "why": "compared along the measured motion, where other sets did better",
+    }
+
+
+def _why(search: Search, found: Verdict, trial: Trial) -> str:
+    if found.final.candidates and trial.keys == found.final.keys:
+        return "every effect in it gains clearly, and none outside would add to it"
+    if any(trial.keys == rival.trial.keys for rival in found.rivals):
+        return "predicts as well as the accepted set"
+    refused = [f"{key} {why}" for key, why in found.refused.items() if key in trial.keys]
+    if refused:
+        return "; ".join(refused)
+    if set(found.final.keys) < set(trial.keys):
+        return "what it adds to the accepted set gains too little"
+    if any(c.id.startswith(DECLARED_VALUE) for c in trial.candidates):
+        return "a changed declared value explains less than the best"
+    return "predicts worse than the best"

@@ -1,0 +1,256 @@
+"""A trial: the declared model with a set of candidates, fitted to the training runs by
+simulation.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.identify.constants import BEND, GAIN, LITTLE, ROUGH, WIDE_STEP
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
+from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
+from ptp_symbolic.numeric.identify.least_squares import weighted_median
+from ptp_symbolic.numeric.identify.run import Run, sizes
+from ptp_symbolic.numeric.runtime.model import Model
+
+FloatArray = NDArray[np.float64]
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What stays the same through a diagnosis.
+
+    `whole` are the training runs as they were logged, `train` the same or their windows, `windows`
+    some short and all longer ones, `validate` the runs that only the report sees. `free` are the
+    declared free parameters, `fixed` the values of all others, every candidate switched off.
+    `input_noise` is the declared noise of every input (None: as the logs show it), `declared_noise`
+    names the outputs whose noise is declared, and `resolution` is the noise of the finest angle in
+    rad.
+    """
+
+    model: Model
+    whole: tuple[Run, ...]
+    train: tuple[Run, ...]
+    windows: tuple[tuple[Run, ...], ...]
+    validate: tuple[Run, ...]
+    free: tuple[FreeParameter, ...]
+    fixed: Mapping[str, float]
+    candidates: tuple[Candidate, ...]
+    executor: Executor
+    progress: Progress
+    input_noise: tuple[float | None, ...]
+    declared_noise: frozenset[str]
+    resolution: float
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A set of candidates and the fit with their parameters free."""
+
+    candidates: tuple[Candidate, ...]
+    fit: Fit
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of the candidates, sorted."""
+        return tuple(sorted(c.key for c in self.candidates))
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Values of all parameters of the model."""
+        return dict(self.fit.values)
+
+
+def freed(
+    task: Task, candidates: Sequence[Candidate], values: Mapping[str, float]
+) -> tuple[FreeParameter, ...]:
+    """The declared free parameters and those of `candidates`, started at `values`."""
+    every = (*task.free, *(f for c in candidates for f in c.free))
+    return tuple(restarted(f, values[f.name]) for f in every)
+
+
+def restarted(free: FreeParameter, value: float) -> FreeParameter:
+    """The parameter started at `value`; its scale stays where the value is next to nothing."""
+    inside = float(np.clip(value, free.lower, free.upper))
+    if free.logarithmic:
+        return replace(free, start=max(inside, free.lower))
+    return replace(free, start=inside, scale=max(abs(inside), free.scale))
+
+
+def fitted(
+    task: Task,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+    z: Sequence[FloatArray] | None,
+    iterations: int = 0,
+    parent: Fit | None = None,
+    share: float = ROUGH,
+    secants: float | None = None,
+    executor: Executor | None = None,
+) -> Trial:
+    """Fit from `values` (all parameters of the model) and the starts `z` of the runs.
+
+    `secants` is the step of the differences that replace derivatives which mislead; those that
+    misled the parent are known to mislead.
+    """
+    free = freed(task, candidates, values)
+    names = {name for f in free for name in f.names}
+    fixed = {name: value for name, value in task.fixed.items() if name not in names}
+    effort = Effort(iterations, GAIN * share, accuracy(task, share), secants=secants)
+    known = None if secants is None else _inherited(parent, free)
+    fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known)
+    return Trial(tuple(candidates), fit)
+
+
+def _inherited(parent: Fit | None, free: Sequence[FreeParameter]) -> list[tuple[int, int]] | None:
+    """The derivatives (run, column) that misled the parent, as columns of `free`; None: not
+    known.
+    """
+    if parent is None or parent.misleading is None:
+        return None
+    own = {f.name: k for k, f in enumerate(free)}
+    names = [f.name for f in parent.free]
+    found = [(run, own[names[c]]) for run, c in parent.misleading if names[c] in own]
+    fresh = [k for name, k in own.items() if name not in names]
+    return found + [(run, k) for run in range(len(parent.runs)) for k in fresh]
+
+
+def accuracy(task: Task, share: float) -> Tolerance:
+    """Tolerance that keeps angles good to a `share` of their noise: a coarser one, where more is
+    left, makes a misfit jump wherever friction lets go a sample later.
+    """
+    return Tolerance.for_resolution(task.resolution, share)
+
+
+def continued(
+    task: Task,
+    trial: Trial,
+    iterations: int,
+    share: float = ROUGH,
+    secants: float | None = None,
+    executor: Executor | None = None,
+) -> Trial:
+    """Fit a trial on from where it ended; a worse end is not taken."""
+    new = fitted(
+        task,
+        trial.candidates,
+        trial.values,
+        trial.fit.z,
+        iterations,
+        trial.fit,
+        share,
+        secants,
+        executor,
+    )
+    if new.fit.misleading is None and trial.fit.misleading is not None:
+        new = replace(new, fit=replace(new.fit, misleading=trial.fit.misleading))
+    before, after = misfits([trial, new])
+    return trial if new.fit.failed or after > before else new
+
+
+def simulated(
+    task: Task, fit: Fit, values: Mapping[str, float], executor: Executor | None
+) -> list[Evaluation]:
+    """All runs of `fit` with `values` in place of its own, without derivatives."""
+    p, none = task.model.parameter_vector({**fit.values, **values}), np.zeros(0, dtype=np.int64)
+    tolerance = accuracy(task, ROUGH)
+
+    def one(pair: tuple[Run, FloatArray]) -> Evaluation:
+        return evaluate(task.model, pair[0], p, pair[1], none, False, tolerance)
+
+    run = executor.map if executor else map
+    return list(run(one, zip(fit.runs, fit.z, strict=True)))
+
+
+def mean_squares(evaluations: Sequence[Evaluation], runs: Sequence[Run]) -> FloatArray:
+    """Mean square [runs, signals] of the weighted residuals; infinite where a simulation failed."""
+    rows = []
+    for e, run in zip(evaluations, runs, strict=True):
+        table = e.residual.reshape(run.measured.shape)
+        failed = e.failed is not None or not np.all(np.isfinite(table))
+        rows.append(np.full(len(run.signals), np.inf) if failed else np.mean(table**2, axis=0))
+    return np.array(rows)
+
+
+def misfits(trials: Sequence[Trial]) -> list[float]:
+    """One number per trial to rank them by: n log(mean square), summed over the signals, so that no
+    signal outweighs another by its unit (likelihood with unknown variances: Bard, 1974, 4.9).
+
+    Runs or windows far worse than usual count only linearly; "usual" is that of the best trial.
+    """
+    squares = [mean_squares(t.fit.evaluations, t.fit.runs) for t in trials]
+    size = sizes(trials[0].fit.runs)
+    usual = np.min([weighted_median(s, size) for s in squares], axis=0)
+    result = []
+    for square in squares:
+        if not np.all(np.isfinite(square)):
+            result.append(np.inf)
+            continue
+        bounded = huber(square, BEND**2 * np.maximum(usual, 1.0))
+        mean = size @ bounded / size.sum()
+        result.append(float(size.sum() * np.sum(np.log(np.maximum(mean, 1e-300)))))
+    return result
+
+
+def huber(square: FloatArray, bend: FloatArray) -> FloatArray:
+    """Squares that grow only linearly with their root beyond `bend` (itself a square)."""
+    return np.where(square <= bend, square, 2.0 * np.sqrt(bend * square) - bend)
+
+
+def ranked(trials: Sequence[Trial]) -> list[Trial]:
+    """Trials, the best fit first; of equal sets the best alone."""
+    if not trials:
+        return []
+    cost = misfits(trials)
+    order = sorted(range(len(trials)), key=lambda k: cost[k])
+    best: dict[tuple[tuple[str, int], ...], Trial] = {}
+    for k in order:
+        members = tuple(sorted((c.key, c.member) for c in trials[k].candidates))
+        best.setdefault(members, trials[k])
+    return list(best.values())
+
+
+def is_near(trial: Trial, others: Sequence[Trial]) -> bool:
+    """Whether a trial leaves at most e times the mean square of the best of others."""
+    cost = misfits([trial, *others])
+    return cost[0] - min(cost) <= sum(run.size for run in trial.fit.runs)
+
+
+def is_alike(trial: Trial, other: Trial) -> bool:
+    """Whether two trials of one set leave the same, so that they end in one place."""
+    cost = misfits([trial, other])
+    return abs(cost[0] - cost[1]) < LITTLE * sum(run.size for run in trial.fit.runs)
+
+
+def halving(
+    task: Task,
+    trials: Sequence[Trial],
+    rungs: Sequence[tuple[int, int]],
+    seen: list[Trial] | None = None,
+) -> list[Trial]:
+    """Successive halving (Jamieson and Talwalkar, 2016): every rung gives the trials that are left
+    so many iterations, side by side, and keeps so many of them; the others end up in `seen`.
+    """
+    left = list(trials)
+    for iterations, kept in rungs:
+        go_on = [
+            task.executor.submit(
+                continued,
+                task,
+                trial,
+                iterations,
+                secants=None if trial.fit.misleading is None else WIDE_STEP,
+            )
+            for trial in left
+        ]
+        left = [t for t in ranked([job.result() for job in go_on]) if np.isfinite(t.fit.cost)]
+        if seen is not None:
+            seen += left[kept:]
+        left = left[:kept]
+    return left

@@ -1,0 +1,273 @@
+"""The verdict: which effects are confirmed, which cannot be told apart, and what is left."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, at_bound, why_unconfirmed
+from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
+from ptp_symbolic.numeric.diagnose.floor import Floor, carried_noise, floor_of, leaves_noise_alone
+from ptp_symbolic.numeric.diagnose.gain import Gain, compared, gain
+from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
+from ptp_symbolic.numeric.diagnose.refits import forms
+from ptp_symbolic.numeric.diagnose.search import Seeker
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, accuracy, huber, mean_squares, ranked
+from ptp_symbolic.numeric.identify.constants import (
+    BEND,
+    BIGGEST,
+    GAIN,
+    HELD_OUT_ABOVE,
+    MATERIAL,
+    MOST,
+    POLISH,
+    ROUGH,
+    SHARP,
+)
+from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters, unblinded
+from ptp_symbolic.numeric.identify.least_squares import weighted_median
+from ptp_symbolic.numeric.identify.run import sizes
+
+NOTHING_MISSING = "nothing_missing"
+EXPLAINED = "explained"
+UP_TO_GROUP = "explained_up_to_group"
+PARTLY = "partly_explained"
+UNEXPLAINED = "unexplained"
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """What the logs say.
+
+    `final` is the declared model with what is confirmed, `members` what each of its effects gains,
+    `confusable` the keys that may stand in the place of each; `closest` the best set where nothing
+    is confirmed. `refused` tells why candidates that gained were not named. `floor` is that of
+    `final`; `before` and `after` are the validation runs by the declared and by the final model.
+    """
+
+    word: str
+    final: Trial
+    members: tuple[Step, ...]
+    confusable: Mapping[str, tuple[str, ...]]
+    rivals: tuple[Rival, ...]
+    closest: Trial | None
+    refused: Mapping[str, str]
+    floor: Floor
+    before: Fit
+    after: Fit
+    held_out: Gain | None
+
+    @property
+    def leaves_more(self) -> bool:
+        """Whether more than noise is left."""
+        return self.word in (PARTLY, UNEXPLAINED)
+
+
+def decide(found: Search) -> Verdict:
+    """Confirm the chosen set, find what it cannot be told from, and judge the validation runs."""
+    task = found.task
+    refused: dict[str, str] = {}
+    seeker = Seeker(task, found.declared, found.proposals, found.carried)
+    trial, steps, fit = _confirmed(seeker, found.chosen, list(found.members), refused)
+    alike: list[Rival] = []
+    while trial.candidates:
+        alike = rivals(seeker, trial, (*found.others, *seeker.others), fit)
+        better = overtaking(trial, alike)
+        if better is not None:
+            seeker.others.append(trial)
+            trial, steps, fit = _confirmed(
+                seeker, *_shortened(seeker, seeker.restarted(better)), refused
+            )
+            alike = []
+            continue
+        trial, steps, alike = _simplest(seeker, trial, steps, alike)
+        floor = floor_of(task, trial, seeker.carried)
+        step = doubtful(trial, steps, confusable(trial, alike), floor)
+        if step is None:
+            break
+        refused[step.candidate.key] = "others predict as well, and more than noise is left"
+        trial, steps, fit = _confirmed(seeker, *_shortened(seeker, step.without), refused)
+        alike = []
+    task.progress("simulating the validation runs")
+    before = held_out_fit(task, found.declared)
+    after = held_out_fit(task, trial) if trial.candidates else before
+    held_out = held_out_gain(after, before) if trial.candidates else None
+    closest = None if trial.candidates else _closest(found)
+    if held_out is not None and is_taken_back(held_out):
+        for key in trial.keys:
+            refused[key] = "takes away too little of the error of the validation runs"
+        closest, trial, steps, after, held_out, alike = trial, found.declared, [], before, None, []
+    floor = floor_of(task, trial, carried_noise(task, trial.fit))
+    named = confusable(trial, alike)
+    word = word_of(trial, named, floor, replace(floor, carried=carried_noise(task, after)), after)
+    if word == NOTHING_MISSING:
+        closest = None
+    return Verdict(
+        word,
+        trial,
+        tuple(steps),
+        named,
+        tuple(alike),
+        closest,
+        refused,
+        floor,
+        before,
+        after,
+        held_out,
+    )
+
+
+def is_taken_back(held_out: Gain) -> bool:
+    """Whether the validation runs do not bear out what the training runs named."""
+    return held_out.share < MATERIAL
+
+
+def _confirmed(
+    seeker: Seeker, trial: Trial, steps: list[Step], refused: dict[str, str]
+) -> tuple[Trial, list[Step], Fit]:
+    """What is left of a trial when all that cannot be confirmed is taken out, noted in `refused`
+    with the reason; its steps, and its fit with derivatives that are not blind.
+    """
+    fit = unblinded(trial.fit, seeker.task.executor)
+    while trial.candidates:
+        simpler = _off_bounds(seeker, trial, fit)
+        weakness = _weakness(seeker, trial, steps, fit) if simpler is None else None
+        if simpler is not None:
+            trial, steps = _shortened(seeker, simpler)
+        elif weakness is not None:
+            step, reason = weakness
+            refused[step.candidate.key] = reason
+            trial, steps = _shortened(seeker, step.without)
+        else:
+            break
+        fit = unblinded(trial.fit, seeker.task.executor)
+    return trial, steps, fit
+
+
+def _shortened(seeker: Seeker, trial: Trial) -> tuple[Trial, list[Step]]:
+    """A trial that lacks something now, fitted sharply, and what its candidates gain."""
+    trial = seeker.sharpened(trial)
+    return trial, [seeker.step(trial, c) for c in trial.candidates]
+
+
+def doubtful(
+    trial: Trial, steps: Sequence[Step], named: Mapping[str, tuple[str, ...]], floor: Floor
+) -> Step | None:
+    """A declared value in whose place others may stand (`named`), where more than noise is left;
+    None if there is none. It is known, after all: that it is wrong is the answer only where nothing
+    else is.
+    """
+    if leaves_noise_alone(trial, floor):
+        return None
+    known = [s for s in steps if s.candidate.is_declared_value]
+    return next((s for s in known if named[s.candidate.key]), None)
+
+
+def _simplest(
+    seeker: Seeker, chosen: Trial, steps: list[Step], alike: list[Rival]
+) -> tuple[Trial, list[Step], list[Rival]]:
+    """Of one effect and what cannot be told from it, the one with the fewest parameters, if
+    that is confirmed too.
+    """
+    best = min(alike, key=lambda r: len(r.trial.fit.free), default=None)
+    if len(steps) != 1 or best is None or len(best.trial.fit.free) >= len(chosen.fit.free):
+        return chosen, steps, alike
+    if len(best.trial.candidates) != 1:
+        return chosen, steps, alike
+    (candidate,) = best.trial.candidates
+    fit = unblinded(best.trial.fit, seeker.task.executor)
+    step = step_of(best.trial, candidate, steps[0].without)
+    if _weakness(seeker, best.trial, [step], fit) is not None:
+        return chosen, steps, alike
+    others = [chosen, *(r.trial for r in alike if r is not best)]
+    return best.trial, [step], [Rival(other, gain(best.trial, other)) for other in others]
+
+
+def _off_bounds(seeker: Seeker, trial: Trial, fit: Fit) -> Trial | None:
+    """The trial with a candidate in the fullest form that lacks a parameter which ends at its
+    bound; None where none does, or where no form lacks it.
+    """
+    for candidate in trial.candidates:
+        bound = at_bound(fit, candidate)
+        kept = {f.name for f in candidate.free if f.name != bound}
+        lacking = [f for f in forms(seeker.task, candidate) if {p.name for p in f.free} <= kept]
+        if bound is not None and lacking:
+            fullest = max(lacking, key=lambda form: len(form.free))
+            return seeker.simplified(seeker.in_form(trial, candidate, fullest))
+    return None
+
+
+def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tuple[Step, str] | None:
+    """The candidate of a trial that is confirmed least, and why not; None where all are."""
+    task = seeker.task
+    weakest = min(steps, key=lambda s: s.gain.share)
+    if not seeker.is_needed(weakest):
+        return weakest, _too_little(weakest.gain)
+    for step in steps:
+        reason = why_unconfirmed(task, trial, fit, step.candidate)
+        if reason is not None:
+            return step, reason
+    if not answers_to_inputs(task, trial):
+        return weakest, "with it the model no longer answers to its inputs"
+    quiet = leaves_noise_alone(trial, floor_of(task, trial, seeker.carried))
+    if weakest.gain.share < MOST and not quiet:
+        share = f"{100.0 * weakest.gain.share:.0f} %"
+        return weakest, f"takes away {share} of the error, too little where more than noise is left"
+    return None
+
+
+def _too_little(earned: Gain) -> str:
+    """Why a gain earns no name."""
+    if earned.share <= 0.0:
+        return "predicts blocks that were left out no better"
+    share = f"{100.0 * earned.share:.0f} %"
+    if earned.share < MATERIAL:
+        return f"takes away only {share} of the error"
+    return f"takes away {share} of the error, which may be chance"
+
+
+def _closest(found: Search) -> Trial | None:
+    """The best trial with any candidate."""
+    trials = [t for t in (found.chosen, *found.others) if t.candidates]
+    best = ranked([found.declared, *trials])
+    return next((t for t in best if t.candidates and np.isfinite(t.fit.cost)), None)
+
+
+def word_of(
+    trial: Trial, named: Mapping[str, tuple[str, ...]], floor: Floor, held_out: Floor, after: Fit
+) -> str:
+    """The word for a confirmed set; `held_out` is the floor of the validation runs."""
+    quiet = leaves_noise_alone(trial, floor) and _is_quiet(after, held_out)
+    if not trial.candidates:
+        return NOTHING_MISSING if quiet else UNEXPLAINED
+    if not quiet:
+        return PARTLY
+    return UP_TO_GROUP if any(named.values()) else EXPLAINED
+
+
+def _is_quiet(after: Fit, floor: Floor) -> bool:
+    """Whether validation runs show no more than noise; the median of the samples counts, for a run
+    that sticks at another sample than it did is off by counts.
+    """
+    squares = mean_squares(after.evaluations, after.runs)
+    size = sizes(after.runs)
+    held_out = np.sqrt(weighted_median(squares, size))
+    return bool(np.all(held_out <= HELD_OUT_ABOVE * floor.most))
+
+
+def held_out_fit(task: Task, trial: Trial) -> Fit:
+    """The validation runs by the model of a trial, nothing but their starts fitted."""
+    effort = Effort(POLISH, GAIN * ROUGH, accuracy(task, SHARP))
+    return fit_parameters(task.model, task.validate, (), trial.values, None, effort, task.executor)
+
+
+def held_out_gain(after: Fit, before: Fit) -> Gain:
+    """The share of the mean square error of validation runs or windows that is taken away; those
+    far worse than usual count linearly.
+    """
+    size = sizes(after.runs)
+    squares = [mean_squares(fit.evaluations, fit.runs) for fit in (after, before)]
+    usual = np.min([weighted_median(s, size) for s in squares], axis=0)
+    bend = BEND**2 * np.maximum(usual, 1.0)
+    losses = [size * huber(np.minimum(s, BIGGEST), bend).sum(axis=1) for s in squares]
+    return compared(losses[0], losses[1])

@@ -1,0 +1,265 @@
+"""The equations of a model along a measured motion, sample by sample, without simulating it.
+
+The joint angles are measured; what is behind a gap follows them: the torque that a joint lacks is
+what its shaft transmits, its sign tells the face that is touched, and the twist follows from the
+shaft's own law. Winding currents, temperatures and other states of effects are integrated along.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from ptp_symbolic.numeric.identify.constants import QUOTIENT
+from ptp_symbolic.numeric.simulation.kernels.calls import call
+
+
+class Motion(NamedTuple):
+    """A measured motion: time [k] in s; angle, rate and acceleration of the joints [k, na]; inputs
+    [k, nu] averaged over the cell of each sample; measured further states [k, e], nan where a state
+    is not measured.
+    """
+
+    time: Any
+    angle: Any
+    rate: Any
+    acceleration: Any
+    inputs: Any
+    measured: Any
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _fill(layout, motion, k, x, m, resting):
+    """State and friction modes at sample k, gear outputs turning with their joints."""
+    na = len(layout.angle)
+    x[:] = 0.0
+    m[:] = 0.0
+    for a in range(na):
+        x[layout.angle[a]] = motion.angle[k, a]
+        x[layout.rate[a]] = motion.rate[k, a]
+        x[layout.states + a] = motion.acceleration[k, a]
+        if layout.gear_rate[a] >= 0:
+            x[layout.gear_angle[a]] = motion.angle[k, a]
+            x[layout.gear_rate[a]] = motion.rate[k, a]
+            x[layout.states + layout.gear_row[a]] = motion.acceleration[k, a]
+    for f in range(len(layout.friction_axis)):
+        rate = motion.rate[k, layout.friction_axis[f]]
+        m[f] = 0.0 if abs(rate) < resting[layout.friction_axis[f]] else np.sign(rate)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def gear_ahead(addresses, layout, motion, p, resting, given):
+    """How far [k, na] in rad every gear output is ahead of its joint, and the face [k, na] (-1, 0,
+    1) that it touches: the `given` one, or where that is 0 the one on which the joint must rest.
+    """
+    n, na = motion.angle.shape
+    ahead, face = np.zeros((n, na)), np.zeros((n, na))
+    frictions = len(layout.friction_axis)
+    x, m = np.zeros(layout.states + layout.rows), np.zeros(layout.modes)
+    r = np.zeros(layout.rows + len(layout.further))
+    contacts = (layout.modes - frictions) // 2
+    g = np.zeros(3 * frictions + 4 * contacts)
+    for k in range(n):
+        _fill(layout, motion, k, x, m, resting)
+        for e in range(len(layout.further)):
+            value = motion.measured[k, e]
+            x[layout.further[e]] = 0.0 if np.isnan(value) else value
+        call(addresses[0], motion.time[k], x, motion.inputs[k], p, m, r)
+        for a in range(na):
+            c = layout.contact[a]
+            if c < 0:
+                continue
+            side = given[k, a]
+            if side == 0.0:
+                side = 1.0 if r[a] > 0.0 else -1.0
+            face[k, a] = side
+            at = 3 * frictions + 4 * c
+            torque = at + 2 if side > 0.0 else at + 3
+            m[frictions + 2 * c] = side
+            call(addresses[1], motion.time[k], x, motion.inputs[k], p, m, g)
+            if layout.rigid[a] > 0:
+                ahead[k, a] = side * g[at + 1] - g[at]
+                continue
+            first = g[torque]
+            x[layout.gear_angle[a]] += QUOTIENT
+            call(addresses[1], motion.time[k], x, motion.inputs[k], p, m, g)
+            ahead[k, a] = (r[a] - first) * QUOTIENT / (g[torque] - first)
+            x[layout.gear_angle[a]] = motion.angle[k, a]
+    return ahead, face
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def further_states(addresses, layout, motion, p, resting, acts, shown, late):
+    """The further states [k, e] integrated along the motion, at the samples and averaged over the
+    cells around them, and by how much those that are `shown` [e] settle elsewhere at another rate
+    [k, e, na]; `late` [k - 1, parts, nu] holds the inputs between the samples, an even number of
+    parts. Each state is taken as linear in itself over a part of a sample; one that does not act
+    (`acts` [e]) on anything stays at zero.
+    """
+    n, na = motion.angle.shape
+    count, frictions, parts = len(layout.further), len(layout.friction_axis), late.shape[1]
+    found, mean = np.zeros((n, count)), np.zeros((n, count))
+    by_rate, halves, decay = np.zeros((n, count, na)), np.zeros((2, count)), np.zeros(count)
+    x, m = np.zeros(layout.states + layout.rows), np.zeros(layout.modes)
+    r = np.zeros(layout.rows + count)
+    previous = np.ones(frictions)
+    for k in range(n - 1):
+        _fill(layout, motion, k, x, m, resting)
+        for e in range(count):
+            friction = layout.zero_at_rest[e]
+            if friction >= 0 and m[friction] == 0.0 and previous[friction] != 0.0:
+                found[k, e] = 0.0
+            x[layout.further[e]] = found[k, e]
+        previous[:] = m[:frictions]
+        _find_decays(addresses, layout, motion.time[k], x, late[k, 0], p, m, r, acts, decay)
+        step = (motion.time[k + 1] - motion.time[k]) / parts
+        halves[:] = 0.0
+        for s in range(parts):
+            share = (s + 0.5) / parts
+            _move(layout, motion, k, share, x)
+            time = motion.time[k] + (s + 0.5) * step
+            for e in range(count):
+                if not acts[e]:
+                    continue
+                at = layout.further[e]
+                call(addresses[0], time, x, late[k, s], p, m, r)
+                z, change = decay[e] * step, step * r[layout.rows + e]
+                growth = np.expm1(z) / z if abs(z) > 1e-6 else 1.0 + 0.5 * z
+                bend = (growth - 1.0) / z if abs(z) > 1e-4 else 0.5 + z / 6.0
+                halves[0 if 2 * s < parts else 1, e] += (x[at] + bend * change) / parts
+                x[at] += growth * change
+        for e in range(count):
+            found[k + 1, e] = x[layout.further[e]]
+            mean[k, e] += halves[0, e]
+            mean[k + 1, e] += halves[1, e]
+            if shown[e] and decay[e] != 0.0:
+                _settle(addresses, layout, motion.time[k], x, late[k, 0], p, m, r, by_rate[k])
+                by_rate[k, e] /= -decay[e]
+    if n > 1:
+        mean[0] += 0.5 * found[0]
+        mean[n - 1] += 0.5 * found[n - 1]
+    return found, mean, by_rate
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _move(layout, motion, k, share, x):
+    """Joints between samples k and k + 1, gear outputs with them."""
+    for a in range(len(layout.angle)):
+        angle = (1.0 - share) * motion.angle[k, a] + share * motion.angle[k + 1, a]
+        rate = (1.0 - share) * motion.rate[k, a] + share * motion.rate[k + 1, a]
+        x[layout.angle[a]], x[layout.rate[a]] = angle, rate
+        if layout.gear_rate[a] >= 0:
+            x[layout.gear_angle[a]], x[layout.gear_rate[a]] = angle, rate
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _find_decays(addresses, layout, time, x, u, p, m, r, acts, decay):
+    """Derivative [e] of the rate of every further state by itself."""
+    call(addresses[0], time, x, u, p, m, r)
+    for e in range(len(layout.further)):
+        decay[e] = -r[layout.rows + e]
+    for e in range(len(layout.further)):
+        if acts[e]:
+            at = layout.further[e]
+            by = 1e-6 * max(abs(x[at]), 1.0)
+            x[at] += by
+            call(addresses[0], time, x, u, p, m, r)
+            x[at] -= by
+            decay[e] = (decay[e] + r[layout.rows + e]) / by
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _settle(addresses, layout, time, x, u, p, m, r, by_rate):
+    """Derivative [e, na] of the rates of further states by the rates of the joints."""
+    count = len(layout.further)
+    call(addresses[0], time, x, u, p, m, r)
+    for e in range(count):
+        for a in range(len(layout.angle)):
+            by_rate[e, a] = -r[layout.rows + e] / QUOTIENT
+    for a in range(len(layout.angle)):
+        behind = layout.gear_rate[a]
+        x[layout.rate[a]] += QUOTIENT
+        if behind >= 0:
+            x[behind] += QUOTIENT
+        call(addresses[0], time, x, u, p, m, r)
+        x[layout.rate[a]] -= QUOTIENT
+        if behind >= 0:
+            x[behind] -= QUOTIENT
+        for e in range(count):
+            by_rate[e, a] += r[layout.rows + e] / QUOTIENT
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def torques_along(addresses, layout, motion, p, resting, ahead, ahead_rate, face, further):
+    """Per sample the torque [k, na] that every axis lacks without accelerations, the inertia
+    [k, na, rows] by which every acceleration adds to it, and the slopes [k, na, 2 na] by which the
+    angles and then the rates of the joints do; a gear output counts with its joint.
+    """
+    n, na = motion.angle.shape
+    frictions = len(layout.friction_axis)
+    lacking, inertia = np.zeros((n, na)), np.zeros((n, na, layout.rows))
+    slopes = np.zeros((n, na, 2 * na))
+    x, m = np.zeros(layout.states + layout.rows), np.zeros(layout.modes)
+    r = np.zeros(layout.rows + len(layout.further))
+    still = np.zeros(layout.rows + len(layout.further))
+    for k in range(n):
+        _fill(layout, motion, k, x, m, resting)
+        for a in range(na):
+            if layout.contact[a] >= 0:
+                x[layout.gear_angle[a]] += ahead[k, a]
+                x[layout.gear_rate[a]] += ahead_rate[k, a]
+                m[frictions + 2 * layout.contact[a]] = face[k, a]
+                m[frictions + 2 * layout.contact[a] + 1] = 1.0
+        for f in range(frictions):
+            m[f] = np.sign(motion.rate[k, layout.friction_axis[f]])
+        for e in range(len(layout.further)):
+            x[layout.further[e]] = further[k, e]
+        x[layout.states :] = 0.0
+        call(addresses[0], motion.time[k], x, motion.inputs[k], p, m, still)
+        for row in range(layout.rows):
+            x[layout.states + row] = 1.0
+            call(addresses[0], motion.time[k], x, motion.inputs[k], p, m, r)
+            x[layout.states + row] = 0.0
+            for a in range(na):
+                inertia[k, a, row] = r[a] - still[a]
+                if layout.gear_row[a] >= 0:
+                    inertia[k, a, row] += r[layout.gear_row[a]] - still[layout.gear_row[a]]
+        for a in range(na):
+            lacking[k, a] = still[a]
+            if layout.gear_row[a] >= 0:
+                lacking[k, a] += still[layout.gear_row[a]]
+        for j in range(2 * na):
+            axis = j % na
+            at = layout.angle[axis] if j < na else layout.rate[axis]
+            behind = layout.gear_angle[axis] if j < na else layout.gear_rate[axis]
+            x[at] += QUOTIENT
+            if behind >= 0:
+                x[behind] += QUOTIENT
+            call(addresses[0], motion.time[k], x, motion.inputs[k], p, m, r)
+            x[at] -= QUOTIENT
+            if behind >= 0:
+                x[behind] -= QUOTIENT
+            for a in range(na):
+                slopes[k, a, j] = (r[a] - still[a]) / QUOTIENT
+                if layout.gear_row[a] >= 0:
+                    row = layout.gear_row[a]
+                    slopes[k, a, j] += (r[row] - still[row]) / QUOTIENT
+    return lacking, inertia, slopes
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def angles_behind_sensors(addresses, layout, shown, time, measured, inputs, p, signals, iterations):
+    """Joint angles [k, na] in rad that make the sensors show what was `measured` [k, na]; `shown`
+    [na] is the place of every angle among the `signals` outputs. Fixed-point iteration: errors of
+    sensors are small and smooth.
+    """
+    angles = measured.copy()
+    x, y = np.zeros(layout.states), np.zeros(signals)
+    for k in range(len(time)):
+        for _ in range(iterations):
+            for a in range(len(shown)):
+                x[layout.angle[a]] = angles[k, a]
+            call(addresses[2], time[k], x, inputs[k], p, y)
+            for a in range(len(shown)):
+                angles[k, a] += measured[k, a] - y[shown[a]]
+    return angles

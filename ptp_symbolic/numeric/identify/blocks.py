@@ -1,0 +1,203 @@
+"""Statistics of residuals that are correlated in time: blocks long enough to be independent.
+
+Blocks are left out in turn without a refit: near the optimum the residual is linear in the
+parameters, and the normal equations without a block give its prediction and the shift of the
+parameters at once (PRESS: Allen, 1974; the jackknife over clusters: Bell and McCaffrey, 2002).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.constants import (
+    BEND,
+    ELSEWHERE,
+    FEWEST_BLOCKS,
+    MOST_BLOCKS,
+    NOTHING,
+    RESAMPLES,
+    SEED,
+    SINGULAR,
+)
+from ptp_symbolic.numeric.identify.least_squares import weighted_median
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+def block_length(series: Sequence[FloatArray]) -> float:
+    """Samples in a block for the mean of stationary `series` of one kind (Politis and White, 2004).
+
+    The automatic rule for the circular block bootstrap, with the corrected constant of Patton,
+    Politis and White (2009): (2 G^2 / D)^(1/3) n^(1/3), lags up to where correlations are noise.
+    """
+    centred = [s - s.mean() for s in series if len(s) > 3]
+    n = sum(len(s) for s in centred)
+    variance = sum(float(s @ s) for s in centred) / max(n, 1)
+    if variance == 0.0:
+        return 1.0
+    longest = max(len(s) for s in centred)
+    most = min(longest - 1, int(np.ceil(np.sqrt(n))) + max(5, int(np.log10(n))) + 1)
+    covariance = np.array(
+        [
+            sum(float(s[k:] @ s[: len(s) - k]) for s in centred if len(s) > k) / n
+            for k in range(most + 1)
+        ]
+    )
+    correlation = covariance / covariance[0]
+    bandwidth = 2 * _last_correlated(correlation, n)
+    lags = np.arange(1, min(bandwidth, most) + 1)
+    taper = np.clip(2.0 * (1.0 - lags / max(bandwidth, 1)), 0.0, 1.0)
+    slope = 2.0 * float(np.sum(taper * lags * covariance[lags]))
+    spectrum = covariance[0] + 2.0 * float(np.sum(taper * covariance[lags]))
+    if spectrum <= 0.0:
+        return 1.0
+    length = (2.0 * slope**2 / (4.0 / 3.0 * spectrum**2)) ** (1.0 / 3.0) * n ** (1.0 / 3.0)
+    return float(np.clip(length, 1.0, longest))
+
+
+def _last_correlated(correlation: FloatArray, n: int) -> int:
+    """The lag after which several correlations in a row are no larger than those of noise."""
+    noise = 2.0 * np.sqrt(np.log10(n) / n)
+    quiet = max(5, int(np.sqrt(np.log10(n))))
+    for lag in range(1, len(correlation) - quiet):
+        if np.all(np.abs(correlation[lag : lag + quiet]) < noise):
+            return max(lag - 1, 1)
+    return len(correlation) - 1
+
+
+def block_labels(sizes: Sequence[int], length: float) -> list[IntArray]:
+    """Number of the block of every sample, per run of `sizes` samples; blocks of about `length`
+    samples, all of one run equally long, about FEWEST_BLOCKS to MOST_BLOCKS in all.
+    """
+    longest, shortest = sum(sizes) / FEWEST_BLOCKS, sum(sizes) / MOST_BLOCKS
+    length = max(min(max(length, shortest), longest), 1.0)
+    labels, first = [], 0
+    for size in sizes:
+        count = max(1, round(size / length))
+        labels.append(first + np.arange(size) * count // max(size, 1))
+        first += count
+    return labels
+
+
+def long_blocks(
+    sizes: Sequence[int], length: float, jacobian: FloatArray, signals: int
+) -> IntArray:
+    """Number of the block of every row of `jacobian` [n * signals, nf], runs of `sizes` samples cut
+    into blocks that are as long as can be.
+
+    With few blocks Student's distribution is right whatever the correlation within them, and wider
+    by little (Ibragimov and Mueller, 2010). FEWEST_BLOCKS, or twice as many as often as needed
+    until all but any one of them still see every direction, but none shorter than `length`.
+    """
+    inverse_root = _inverse_root(jacobian)
+    longest = sum(sizes) / FEWEST_BLOCKS
+    while True:
+        label = np.repeat(np.concatenate(block_labels(sizes, longest)), signals)
+        parts = [jacobian[label == block] @ inverse_root for block in range(int(label.max()) + 1)]
+        share = max((float(np.linalg.norm(part, 2)) ** 2 for part in parts if part.size), default=0)
+        if share <= 1.0 - ELSEWHERE or longest <= max(length, 1.0):
+            return label
+        longest = max(length, 0.5 * longest)
+
+
+def _inverse_root(jacobian: FloatArray) -> FloatArray:
+    """Directions [nf, seen] in which the columns of `jacobian` are orthonormal."""
+    size = np.linalg.norm(jacobian, axis=0)
+    unit = np.where(size > 0.0, size, 1.0)
+    _, spread, directions = np.linalg.svd(jacobian / unit, full_matrices=False)
+    seen = spread**2 > NOTHING * max(float(spread[0]) ** 2 if len(spread) else 0.0, 1e-300)
+    return np.asarray(directions[seen].T / spread[seen] / unit[:, None])
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """Blocks left out in turn: predicted residuals [n] of each block by the others, and how far the
+    parameters move [b, nf] without it.
+    """
+
+    predicted: FloatArray
+    shifts: FloatArray
+
+
+def leave_blocks_out(
+    residual: FloatArray,
+    jacobian: FloatArray,
+    label: IntArray,
+    prior: float = 0.0,
+    ridge: float = 1e-10,
+) -> LeftOut:
+    """Leave every block out of a least squares fit with `residual` [n] and `jacobian` [n, nf] (by
+    the parameters) at its optimum. Directions that nothing else sees do not move; `prior` is the
+    precision with which every parameter is known without the data to be where it is.
+    """
+    blocks = int(label.max()) + 1 if len(label) else 0
+    nf = jacobian.shape[1]
+    predicted, shifts = residual.copy(), np.zeros((blocks, nf))
+    if nf == 0:
+        return LeftOut(predicted, shifts)
+    size = np.linalg.norm(jacobian, axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    scaled = jacobian / size
+    information = scaled.T @ scaled + np.diag(prior / size**2)
+    for block in range(blocks):
+        rows = np.flatnonzero(label == block)
+        own = scaled[rows]
+        rest = information - own.T @ own
+        score = own.T @ residual[rows]
+        shift = np.linalg.lstsq(rest + ridge * np.eye(nf), score, rcond=1e2 * ridge)[0]
+        predicted[rows] = residual[rows] + own @ shift
+        shifts[block] = shift / size
+    return LeftOut(predicted, shifts)
+
+
+def block_squares(residual: FloatArray, label: IntArray, signals: int) -> FloatArray:
+    """Mean square [b, signals] of every block of `residual` [n], which holds `signals` values for
+    every entry of `label` [n / signals].
+    """
+    size = np.bincount(label)
+    table = residual.reshape(-1, signals) ** 2
+    return np.column_stack([np.bincount(label, weights=c) / size for c in table.T])
+
+
+def without_outliers(
+    residual: FloatArray, jacobian: FloatArray, label: IntArray, signals: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """A fit in which blocks far worse than usual weigh less (Huber, 1964): residual [n] and
+    jacobian [n, nf] with these weights, and the one step [nf] to their optimum (Bickel, 1975).
+
+    `residual` is [n / signals, signals] in one column, `label` [n / signals] its blocks; every
+    signal has its own weight in a block.
+    """
+    squares = block_squares(residual, label, signals)
+    usual = weighted_median(squares, np.bincount(label).astype(np.float64))
+    root = np.minimum(1.0, (BEND**2 * usual / np.maximum(squares, 1e-300)) ** 0.25)
+    weight = root[label].ravel()
+    residual, jacobian = weight * residual, weight[:, None] * jacobian
+    step = np.asarray(-np.linalg.lstsq(jacobian, residual, rcond=SINGULAR)[0], dtype=np.float64)
+    return residual + jacobian @ step, jacobian, step
+
+
+def jackknife_covariance(shifts: FloatArray) -> FloatArray:
+    """Covariance [nf, nf] of parameters from their `shifts` [b, nf] without each of b blocks."""
+    b = len(shifts)
+    centred = shifts - shifts.mean(axis=0)
+    return (b - 1.0) / max(b, 1) * centred.T @ centred
+
+
+def bootstrap_share(
+    gain: FloatArray, whole: FloatArray, confidence: float
+) -> tuple[float, float, float]:
+    """The share sum(gain) / sum(whole) over blocks, and its interval of that `confidence` from
+    blocks drawn with replacement (percentiles: Efron, 1979).
+    """
+    rng = np.random.default_rng(SEED)
+    b = len(gain)
+    drawn = rng.multinomial(b, np.full(b, 1.0 / b), size=RESAMPLES)
+    below = np.maximum(drawn @ whole, 1e-300)
+    shares = (drawn @ gain) / below
+    tail = 0.5 * (1.0 - confidence)
+    low, high = np.quantile(shares, [tail, 1.0 - tail])
+    return float(gain.sum() / max(whole.sum(), 1e-300)), float(low), float(high)

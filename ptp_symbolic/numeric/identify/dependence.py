@@ -1,0 +1,70 @@
+"""Which parameters and states act on what, seen at states drawn at random."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.constants import DRAWS, SEED
+from ptp_symbolic.numeric.identify.layout import Layout
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.runtime.model import Model
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Dependence:
+    """Which parameters [np] act on what the sensors of the angles show, which on the rates of
+    further states, and which of these states [e] act on a torque or on one another.
+    """
+
+    sensing: BoolArray
+    moving: BoolArray
+    acting: BoolArray
+
+
+def dependence_of(
+    model: Model, layout: Layout, runs: Sequence[Run], p: FloatArray, varied: FloatArray
+) -> Dependence:
+    """What depends on what, seen at states drawn at random, with parameters p and with others."""
+    rng = np.random.default_rng(SEED)
+    count = len(layout.further)
+    found = Dependence(
+        np.zeros(len(p), dtype=np.bool_),
+        np.zeros(len(p), dtype=np.bool_),
+        np.zeros(count, dtype=np.bool_),
+    )
+    shown = [model.output_names.index(f"theta_{a}") for a in model.module.AXES]
+    largest = np.max([np.max(np.abs(run.held_inputs), axis=0) for run in runs], axis=0)
+    steps = np.where(varied != p, varied - p, 0.01 * p + 1e-3)
+
+    def seen(x: FloatArray, u: FloatArray, q: FloatArray, m: FloatArray) -> tuple[FloatArray, ...]:
+        r, y = np.zeros(layout.rows + count), np.zeros(len(model.output_names))
+        model.module.equation_error(0.5, x, u, q, m, r)
+        model.module.outputs(0.5, x, u, q, y)
+        return y[shown], r[layout.rows :], r
+
+    for base in (p, varied) * DRAWS:
+        x, m = (
+            rng.standard_normal(layout.states + layout.rows),
+            rng.choice([-1.0, 1.0], layout.modes),
+        )
+        u = largest * rng.choice([-1.0, 1.0], len(largest))
+        here = seen(x, u, base, m)
+        for j, step in enumerate(steps if base is p else -steps):
+            moved = base.copy()
+            moved[j] += step
+            there = seen(x, u, moved, m)
+            found.sensing[j] |= bool(np.any(there[0] != here[0]))
+            found.moving[j] |= bool(np.any(there[1] != here[1]))
+        for e, state in enumerate(layout.further):
+            moved = x.copy()
+            moved[state] += 1.0
+            other = seen(moved, u, base, m)[2] - here[2]
+            other[layout.rows + e] = 0.0
+            found.acting[e] |= bool(np.any(other))
+    found.moving[[j for j in model.input_delays if j >= 0 and count]] = True
+    return found

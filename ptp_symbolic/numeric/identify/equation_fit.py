@@ -1,0 +1,134 @@
+"""Fit parameters to the rows of the equation space: bounded, robust, nearly linear least squares.
+
+The start of every simulation: inertia, friction and the strength of most effects are found from far
+away, for their rows are linear in them (inverse dynamic identification: Gautier and Khalil, 1990).
+"""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
+
+from ptp_symbolic.numeric.identify.constants import FINITE, HUBER, MAD_TO_SIGMA, SAME, SHORT
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.equation_space import EquationSpace
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class EquationFit:
+    """Values of the free parameters (and of those tied to them), residual rows [n], their Jacobian
+    [n, nf] by the values, and the weight [n] of every row.
+    """
+
+    values: dict[str, float]
+    rows: FloatArray
+    jacobian: FloatArray
+    weight: FloatArray
+
+
+def robust_scale(rows: FloatArray, equation: IntArray) -> FloatArray:
+    """Standard deviation [n] of the rows of the same equation, by the median (Huber, 1981)."""
+    scale = np.ones(len(rows))
+    for number in np.unique(equation):
+        own = equation == number
+        scale[own] = max(MAD_TO_SIGMA * float(np.median(np.abs(rows[own]))), 1e-300)
+    return scale
+
+
+def huber_weight(rows: FloatArray, equation: IntArray) -> FloatArray:
+    """Weight [n] of every row in a least squares fit: 1 / variance, less for outliers."""
+    scale = robust_scale(rows, equation)
+    return np.minimum(1.0, HUBER * scale / np.maximum(np.abs(rows), 1e-300)) / scale**2
+
+
+def fit_equations(
+    space: EquationSpace,
+    free: Sequence[FreeParameter],
+    values: Mapping[str, float],
+    iterations: int,
+    executor: Executor | None = None,
+) -> EquationFit:
+    """Fit `free`, begun at `values` (all parameters of the model), to the rows of `space`.
+
+    A prior of one start value (or one scale) around the start of every parameter keeps those in
+    place that the rows do not see; thousands of rows, which overlap, outweigh it where they do.
+    """
+    equation, run, time = space.labels()
+    blocks = len(np.unique(np.column_stack([equation, run, time // SHORT]), axis=0))
+    overlap = len(equation) / max(blocks, 1)
+    here = {f.name: float(np.clip(values[f.name], f.lower, f.upper)) for f in free}
+    centre = np.array([f.start for f in free])
+    sigma = np.array([f.scale for f in free])
+    lower, upper = np.array([f.lower for f in free]), np.array([f.upper for f in free])
+    for iteration in range(iterations):
+        found = linearised(space, free, values, here, executor)
+        at = np.array([here[f.name] for f in free])
+        root = np.sqrt(found.weight / np.maximum(overlap, 1.0))
+        matrix = np.vstack([found.jacobian * root[:, None], np.diag(1.0 / sigma)])
+        right = -np.concatenate([found.rows * root, (at - centre) / sigma])
+        size = np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
+        triangle = np.linalg.qr(matrix / size, mode="reduced")
+        slack = 1e-12 * np.maximum(np.abs(at), sigma)
+        step = (
+            lsq_linear(
+                triangle[1],
+                triangle[0].T @ right,
+                ((lower - at - slack) * size, (upper - at + slack) * size),
+            ).x
+            / size
+        )
+        new = np.clip(at + step, lower, upper)
+        here = {f.name: float(v) for f, v in zip(free, new, strict=True)}
+        moved = np.max(np.abs(new - at) / np.maximum(np.abs(new), 1e-3 * sigma), initial=0.0)
+        if moved < SAME or iteration == iterations - 1:
+            break
+    return linearised(space, free, values, here, executor)
+
+
+def linearised(
+    space: EquationSpace,
+    free: Sequence[FreeParameter],
+    values: Mapping[str, float],
+    here: Mapping[str, float],
+    executor: Executor | None = None,
+    own_torque: bool = False,
+) -> EquationFit:
+    """The rows and their difference quotients with `free` at the values `here`, the quotients with
+    the model's `own_torque` if asked for (see `EquationSpace.own_torque`).
+    """
+    model = space.model
+    names = list(model.parameter_names)
+    base = model.parameter_vector(dict(values))
+    owned = [[names.index(n) for n in f.names] for f in free]
+    for f, columns in zip(free, owned, strict=True):
+        base[columns] = here[f.name]
+    rows = space.rows(base)
+    own = space.own_torque(base) if own_torque else None
+    origin = rows if own is None else space.rows(base, own)
+
+    def quotient(index: int) -> FloatArray:
+        f = free[index]
+        step = FINITE * max(abs(here[f.name]), FINITE * f.scale)
+        if here[f.name] + step > f.upper:
+            step = -step
+        moved = base.copy()
+        moved[owned[index]] += step
+        return (space.rows(moved, own) - origin) / step
+
+    quotients = (executor.map if executor else map)(quotient, range(len(free)))
+    slopes: list[FloatArray] = list(quotients)
+    jacobian = np.column_stack(slopes) if slopes else np.zeros((len(rows), 0))
+    equation, _, _ = space.labels()
+    found = all_values_of(free, here)
+    return EquationFit(found, rows, jacobian, huber_weight(rows, equation))
+
+
+def all_values_of(free: Sequence[FreeParameter], here: Mapping[str, float]) -> dict[str, float]:
+    """Values of the free parameters and of those tied to them."""
+    return {name: here[f.name] for f in free for name in f.names}

@@ -1,0 +1,107 @@
+"""The rows of a run in equation space: how wide their windows are, and which of them count."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.along_motion import Motion
+from ptp_symbolic.numeric.identify.constants import (
+    CALM,
+    HALF_WIDTHS,
+    MOST_COARSE,
+    NOTHING,
+    RESTING,
+    ROWS_PER_WINDOW,
+    SAMPLES_PER_WINDOW,
+)
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.weak_form import noise_gain, weak_average
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class RunRows:
+    """The rows of a run: `grid` [g] are the samples at which torques are taken, `chosen` [c] those
+    of the grid that have a row, `kept` [c, equations] the rows that count; `face` [g, na] is the
+    face that every gear output touches.
+    """
+
+    grid: IntArray
+    chosen: IntArray
+    kept: BoolArray
+    face: FloatArray
+
+
+def half_width_of(
+    runs: Sequence[Run], columns: Sequence[int], noise: FloatArray, period: float
+) -> float:
+    """The shortest window in which noise hardly shows beside what accelerates the joints."""
+    for half_width in HALF_WIDTHS:
+        if 2.0 * half_width / period < MOST_COARSE:
+            continue
+        gain = noise_gain(period, half_width, 2)
+        curved = [
+            weak_average(
+                run.time,
+                np.ascontiguousarray(run.measured[:, columns]),
+                half_width,
+                2,
+                np.arange(0, len(run.time), max(1, int(half_width / period))),
+            )
+            for run in runs
+        ]
+        size = np.sqrt(np.nanmean(np.concatenate(curved) ** 2, axis=0))
+        if np.all(noise * gain <= CALM * size):
+            return half_width
+    return max(HALF_WIDTHS[-1], 0.5 * MOST_COARSE * period)
+
+
+def resting_rates(
+    counts: FloatArray, noise: FloatArray, period: float, rate_width: float
+) -> FloatArray:
+    """Rate [na] in rad/s below which a joint may be at rest, from the `counts` of its encoder (nan
+    where it has none) and the `noise` of its angle in rad, sampled every `period` s.
+    """
+    rounding = np.nan_to_num(counts) / np.sqrt(12.0)
+    samples = 2.0 * rate_width / period + 1.0
+    return np.asarray(RESTING * np.hypot(noise * np.sqrt(3.0 / samples), rounding) / rate_width)
+
+
+def every_row(run: Run, half_width: float, axes: int, equations: int) -> RunRows:
+    """The grid of a run and the samples of it that have a row, all of which count for now."""
+    period = float(np.median(np.diff(run.time)))
+    window = 2.0 * half_width / period
+    grid = np.arange(0, len(run.time), max(1, int(window / SAMPLES_PER_WINDOW)))
+    spacing = window / max(1, int(window / SAMPLES_PER_WINDOW))
+    chosen = np.arange(0, len(grid), max(1, round(spacing / ROWS_PER_WINDOW)))
+    kept = np.ones((len(chosen), equations), dtype=np.bool_)
+    return RunRows(grid, chosen, kept, np.zeros((len(grid), axes)))
+
+
+def rows_that_count(
+    rows: RunRows,
+    motion: Motion,
+    faces: Sequence[FloatArray],
+    resting: FloatArray,
+    half_width: float,
+    measured: int,
+) -> RunRows:
+    """The `rows` whose windows are whole and hold neither rest nor a change of one of the `faces`
+    [g, na], the first of which are those at the parameters; so many further states are `measured`.
+    """
+    rests = (np.abs(motion.rate) < resting).astype(np.float64)
+    changed = np.zeros_like(rests)
+    for face in faces:
+        changed[1:] = np.maximum(changed[1:], face[1:] != face[:-1])
+    both = np.column_stack([rests, changed])
+    both = weak_average(motion.time, both, half_width, 0, rows.chosen)
+    axes = rests.shape[1]
+    slides = (both[:, :axes] < NOTHING) & (both[:, axes:] < NOTHING)
+    electric = np.all(both[:, axes:] < NOTHING, axis=1)
+    kept = np.column_stack([slides, *[electric] * measured])
+    return replace(rows, kept=kept, face=faces[0])

@@ -1,0 +1,298 @@
+"""What the equations leave along the measured motion: residual torques, and residual currents.
+
+One row per chosen sample and equation: the torque in N m that an axis lacks, averaged under a test
+function (see `weak_form`), or the measured minus the integrated value of a further state. The rows
+are nearly linear in the parameters, so that far starts and many candidates cost next to nothing.
+Rows whose window holds a joint at rest or a change of the touched face are left out: there friction
+and contact are set-valued.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.identify.along_motion import (
+    further_states,
+    gear_ahead,
+    torques_along,
+)
+from ptp_symbolic.numeric.identify.constants import FINITE, LATE_PARTS, PARTS
+from ptp_symbolic.numeric.identify.dependence import dependence_of
+from ptp_symbolic.numeric.identify.equation_rows import (
+    RunRows,
+    every_row,
+    half_width_of,
+    resting_rates,
+    rows_that_count,
+)
+from ptp_symbolic.numeric.identify.layout import Layout, equation_addresses, layout_of
+from ptp_symbolic.numeric.identify.measured_motion import (
+    FurtherStates,
+    MeasuredMotion,
+    angles_of,
+    measured_motion,
+)
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.sample_averages import (
+    cell_averages,
+    grid_averages,
+    part_averages,
+)
+from ptp_symbolic.numeric.identify.weak_form import weak_average
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.delays import delays_of
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+Torques = tuple[FloatArray, FloatArray, FloatArray]  # see `torques_along`
+
+
+@dataclass(eq=False)
+class EquationSpace:
+    """Rows of the equations of `model` along the motion of `runs`, at any parameters p [np].
+
+    `half_width` of the windows and `rate_width` of the local motion in s; `resting` [na] in rad/s;
+    `measured` are the further states that a signal shows: its column, and their place in the
+    layout. `sensing` and `moving` [np] tell which parameters act on sensors and on further states,
+    `acting` [e] which of these act on a torque or on one another.
+    """
+
+    model: Model
+    runs: tuple[Run, ...]
+    layout: Layout
+    half_width: float
+    rate_width: float
+    resting: FloatArray
+    measured: tuple[tuple[int, int], ...]
+    sensing: BoolArray
+    moving: BoolArray
+    acting: BoolArray
+    rows_of: tuple[RunRows, ...] = ()
+    _motions: dict[tuple[int, bytes], MeasuredMotion] = field(default_factory=dict, repr=False)
+    _states: dict[tuple[int, bytes, int], FurtherStates] = field(default_factory=dict, repr=False)
+
+    @property
+    def equations(self) -> int:
+        """Torque of every axis, then every measured further state."""
+        return len(self.layout.angle) + len(self.measured)
+
+    @property
+    def gears(self) -> list[int]:
+        """Axes whose gear output has a row of its own."""
+        return [a for a, row in enumerate(self.layout.gear_row) if row >= 0]
+
+    def labels(self) -> tuple[IntArray, IntArray, FloatArray]:
+        """Equation, run and time in s of every row, each [n]."""
+        parts = []
+        for equation in range(self.equations):
+            for number, (run, rows) in enumerate(zip(self.runs, self.rows_of, strict=True)):
+                time = run.time[rows.grid[rows.chosen[rows.kept[:, equation]]]]
+                parts.append((np.full(len(time), equation), np.full(len(time), number), time))
+        equations, numbers, times = zip(*parts, strict=True)
+        return np.concatenate(equations), np.concatenate(numbers), np.concatenate(times)
+
+    def rows(self, p: FloatArray, own: Sequence[FloatArray] | None = None) -> FloatArray:
+        """All rows [n] at parameters p, equation by equation and run by run.
+
+        With `own`, per run what has to be added to inputs and further states (see `own_torque`),
+        the torque is the model's own instead of the measured one.
+        """
+        given = [None] * len(self.runs) if own is None else own
+        tables = [self._run_rows(k, p, o) for k, o in enumerate(given)]
+        return np.concatenate(
+            [
+                table[rows.kept[:, equation], equation]
+                for equation in range(self.equations)
+                for table, rows in zip(tables, self.rows_of, strict=True)
+            ]
+        )
+
+    def _run_rows(self, number: int, p: FloatArray, own: FloatArray | None) -> FloatArray:
+        """Rows [c, equations] of one run."""
+        run, rows = self.runs[number], self.rows_of[number]
+        along, ahead, (lacking, inertia, slopes), further = self._torques(number, p, own)
+        time, h, curvature = along.coarse.time, self.half_width, along.curvature
+        if self.gears:
+            behind = weak_average(time, ahead, h, 2, rows.chosen)[:, self.gears]
+            curvature = np.column_stack([curvature, curvature[:, self.gears] + behind])
+        torque = weak_average(time, lacking, h, 0, rows.chosen)
+        torque += np.einsum("kar,kr->ka", inertia[rows.chosen], curvature)
+        torque += np.einsum("kaj,kj->ka", slopes[rows.chosen], along.missed)
+        if not self.measured:
+            return torque
+        at, places = rows.grid[rows.chosen], [place for _, place in self.measured]
+        electric = weak_average(run.time, np.ascontiguousarray(further.left[:, places]), h, 0, at)
+        rates = along.missed[:, len(self.layout.angle) :]
+        electric -= np.einsum("kea,ka->ke", further.by_rate[at][:, places], rates)
+        return np.column_stack([torque, electric])
+
+    def _torques(
+        self, number: int, p: FloatArray, own: FloatArray | None
+    ) -> tuple[MeasuredMotion, FloatArray, Torques, FurtherStates]:
+        """Motion, lead of the gears, what `torques_along` gives on the grid, and further states."""
+        run, addresses = self.runs[number], equation_addresses(self.model)
+        rows, along = self.rows_of[number], self._motion(number, p)
+        delays, inputs = delays_of(self.model, p), len(self.model.input_names)
+        given = np.column_stack([cell_averages(run, j, d, rows.grid) for j, d in enumerate(delays)])
+        added = np.zeros((len(rows.grid), inputs + len(self.layout.further)))
+        added = added if own is None else own
+        motion = along.coarse._replace(inputs=given + added[:, :inputs])
+        ahead, face = gear_ahead(addresses, self.layout, motion, p, self.resting, rows.face)
+        further = self._further(number, p, along, added[:, :inputs])
+        acting = further.acting + added[:, inputs:]
+        rate = np.gradient(ahead, motion.time, axis=0) if self.gears else ahead
+        torques = torques_along(
+            addresses, self.layout, motion, p, self.resting, ahead, rate, face, acting
+        )
+        return along, ahead, torques, further
+
+    def _motion(self, number: int, p: FloatArray) -> MeasuredMotion:
+        """The measured motion, errors of the sensors at p taken out."""
+        key = (number, p[self.sensing].tobytes())
+        if key in self._motions:
+            return self._motions[key]
+        run, rows, further = self.runs[number], self.rows_of[number], len(self.layout.further)
+        angles = angles_of(self.model, self.layout, run, p, bool(self.sensing.any()))
+        self._motions[key] = measured_motion(
+            run, angles, further, self.measured, rows, self.half_width, self.rate_width
+        )
+        return self._motions[key]
+
+    def _further(
+        self, number: int, p: FloatArray, along: MeasuredMotion, added: FloatArray
+    ) -> FurtherStates:
+        """Further states along the motion, with what is `added` [g, nu] to the inputs."""
+        run, fine, grid = self.runs[number], along.fine, self.rows_of[number].grid
+        count = len(self.layout.further)
+        if not count:
+            return FurtherStates(
+                np.zeros((len(grid), 0)), np.zeros((len(run.time), 0)), np.zeros((0, 0, 0))
+            )
+        key = (number, p[self.moving | self.sensing].tobytes(), int(np.any(added)))
+        if key not in self._states:
+            delays = delays_of(self.model, p)
+            parts = LATE_PARTS if np.any(delays) else PARTS
+            late = np.stack([part_averages(run, j, d, parts) for j, d in enumerate(delays)], axis=2)
+            if np.any(added):
+                more = [np.interp(run.time[:-1], run.time[grid], a) for a in added.T]
+                late = late + np.column_stack(more)[:, None, :]
+            shown = np.zeros(count, dtype=np.bool_)
+            shown[[place for _, place in self.measured]] = True
+            addresses, resting = equation_addresses(self.model), self.resting
+            found, mean, by_rate = further_states(
+                addresses, self.layout, fine, p, resting, self.acting, shown, late
+            )
+            left = fine.measured - found
+            acts = grid_averages(np.where(np.isnan(left), mean, mean + left), grid)
+            self._states[key] = FurtherStates(acts, np.nan_to_num(left), by_rate)
+        return self._states[key]
+
+    def decide_rows(self, p: FloatArray, others: Sequence[FloatArray]) -> None:
+        """Decide anew which rows count, and at p which faces are touched.
+
+        A row counts where no face changes at p nor at `others`: an inertia or a friction that is
+        far from its true value would miss the changes, and between two faces no torque passes.
+        """
+        axes = len(self.layout.angle)
+        every = [every_row(run, self.half_width, axes, self.equations) for run in self.runs]
+        self.rows_of = tuple(every)
+        self.forget()
+        self.rows_of = tuple(self._that_count(k, p, others) for k in range(len(self.runs)))
+        self.forget()
+
+    def _that_count(self, number: int, p: FloatArray, others: Sequence[FloatArray]) -> RunRows:
+        """The rows of a run, those that count decided anew."""
+        rows, motion = self.rows_of[number], self._motion(number, p).coarse
+        addresses = equation_addresses(self.model)
+        faces = [
+            gear_ahead(addresses, self.layout, motion, q, self.resting, rows.face)[1]
+            for q in (p, *others)
+        ]
+        measured = len(self.measured)
+        return rows_that_count(rows, motion, faces, self.resting, self.half_width, measured)
+
+    def forget(self) -> None:
+        """Drop what is kept of motions and states: after a search over sensors or currents."""
+        self._motions.clear()
+        self._states.clear()
+
+    def own_torque(self, p: FloatArray) -> list[FloatArray]:
+        """Per run what inputs and measured further states [g, nu + e] lack for the torque of the
+        model to be its own: as a regressor the measured one carries the residual that it should
+        explain (Janot, Vandanjon and Gautier, 2014).
+        """
+        acting = self._acting(p)
+        found = []
+        for number in range(len(self.runs)):
+            along, _, (lacking, inertia, _), _ = self._torques(number, p, None)
+            acceleration = along.coarse.acceleration
+            every = np.column_stack([acceleration, acceleration[:, self.gears]])
+            torque = lacking + np.einsum("kar,kr->ka", inertia, every)
+            added = np.zeros((len(torque), acting.shape[1]))
+            for axis, row in enumerate(acting):
+                strongest = int(np.argmax(np.abs(row)))
+                if row[strongest] != 0.0:
+                    added[:, strongest] -= torque[:, axis] / row[strongest]
+            found.append(added)
+        return found
+
+    def _acting(self, p: FloatArray) -> FloatArray:
+        """Derivative [na, nu + e] of the torque that every axis lacks by inputs and measured
+        further states, seen in the middle of the first run after they were shifted for good.
+        """
+        inputs, further = len(self.model.input_names), len(self.layout.further)
+        shown = {inputs + place for _, place in self.measured}
+        none = np.zeros((len(self.rows_of[0].grid), inputs + further))
+        middle = len(none) // 2
+        here = self._torques(0, p, none)[2][0][middle]
+        result = np.zeros((len(here), inputs + further))
+        for j in range(inputs + further):
+            if j < inputs or j in shown:
+                moved = none.copy()
+                moved[:, j] = FINITE
+                result[:, j] = (self._torques(0, p, moved)[2][0][middle] - here) / FINITE
+                self._states.clear()
+        return result
+
+
+def prepare_equation_space(
+    model: Model,
+    runs: Sequence[Run],
+    p: FloatArray,
+    others: Sequence[FloatArray],
+    varied: FloatArray,
+) -> EquationSpace:
+    """The equation space of `model` over whole `runs`.
+
+    Which rows count is decided at the parameters p [np] and at `others` (see `decide_rows`);
+    `varied` are parameters that differ from p in all that may be searched, to see which of them act
+    on sensors and on further states. Raises InputError for a model with sampled states, and where
+    an axis has no angle among the signals.
+    """
+    layout = layout_of(model)
+    axes = model.module.AXES
+    for axis in axes:
+        if any(f"theta_{axis}" not in run.signals for run in runs):
+            raise InputError(f"Signal 'theta_{axis}' is not measured; torques need every angle.")
+    further = [model.state_names[i] for i in layout.further]
+    measured = tuple(
+        (column, further.index(name))
+        for column, name in enumerate(runs[0].signals)
+        if name in further
+    )
+    depends = dependence_of(model, layout, runs, p, varied)
+    columns = [runs[0].signals.index(f"theta_{axis}") for axis in axes]
+    noise = 1.0 / runs[0].weight[columns]
+    period = float(np.median(np.concatenate([np.diff(run.time) for run in runs])))
+    half_width = half_width_of(runs, columns, noise, period)
+    resting = resting_rates(runs[0].counts[columns], noise, period, 0.5 * half_width)
+    frictions = set(layout.friction_axis.tolist())
+    resting = np.where([a in frictions for a in range(len(axes))], resting, 0.0)
+    widths, acts = (half_width, 0.5 * half_width), (depends.sensing, depends.moving, depends.acting)
+    space = EquationSpace(model, tuple(runs), layout, *widths, resting, measured, *acts)
+    space.decide_rows(p, others)
+    return space

@@ -1,0 +1,204 @@
+"""Residuals of a run and their derivatives by parameters and by the unknown start."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.constants import (
+    COARSEST,
+    FINEST,
+    ROUNDING_OF_7200,
+    SENSOR_ITERATIONS,
+)
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.kernels.calls import call, output_addresses
+from ptp_symbolic.numeric.simulation.kernels.records import DONE
+from ptp_symbolic.numeric.simulation.passage import Accuracy, default_method, pass_through
+from ptp_symbolic.numeric.simulation.signals.delays import delay_columns, delayed, delays_of
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Error tolerance of the simulations that a fit runs: relative, and absolute by kind of state.
+
+    An angle in rad counts fully, a rate in rad/s a hundredth, anything else a thousandth: an error
+    of a rate or a current reaches the angle only through an integration. At the defaults the angles
+    of a geared drive are good to a hundredth of a count of 7200 per turn.
+    """
+
+    relative: float = 1e-4
+    angle: float = 1e-6
+
+    @classmethod
+    def for_resolution(cls, resolution: float, share: float) -> "Tolerance":
+        """The tolerance at which angles are good to a `share` of `resolution` in rad.
+
+        The default holds a count of 7200 per turn, less the rounding of it, to 1 %; the error of a
+        step goes with the tolerance.
+        """
+        factor = resolution / ROUNDING_OF_7200 * share / 0.01
+        factor = min(max(factor, FINEST), COARSEST)
+        return cls(1e-4 * factor, 1e-6 * factor)
+
+    def absolute(self, model: Model) -> FloatArray:
+        """Absolute tolerance of every state [n]."""
+        factors = [
+            1.0 if name.startswith("theta") else 100.0 if name.startswith("omega") else 1000.0
+            for name in model.state_names
+        ]
+        return self.angle * np.array(factors)
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """Weighted residuals [k * ny] (measured - simulated) and their Jacobians."""
+
+    residual: FloatArray
+    by_parameter: FloatArray
+    by_start: FloatArray
+    failed: str | None = None
+
+
+def simulated_signals(run: Run, evaluation: Evaluation) -> FloatArray:
+    """The measured signals [k, ny] of `run` as they were simulated."""
+    return run.measured - evaluation.residual.reshape(run.measured.shape) / run.weight
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _compare(functions, signals, time, x, s, u, p, measured, columns, picked, weight, r, j):
+    """Fill residuals r and their derivatives j; u is the held input.
+
+    `functions` [2] are the addresses of the model's outputs, so many `signals`, and of their
+    Jacobian.
+    """
+    k, n = x.shape
+    ns = s.shape[2]
+    buffer = np.zeros(signals)
+    yx, yp = np.zeros((signals, n)), np.zeros((signals, len(p)))
+    ny = len(picked)
+    for i in range(k):
+        call(functions[0], time[i], x[i], u[i], p, buffer)
+        if ns > 0:
+            call(functions[1], time[i], x[i], u[i], p, yx, yp)
+        for o in range(ny):
+            row = i * ny + o
+            r[row] = weight[o] * (measured[i, o] - buffer[picked[o]])
+            for c in range(ns):
+                total_derivative = yp[picked[o], columns[c]] if c < len(columns) else 0.0
+                for a in range(n):
+                    total_derivative += yx[picked[o], a] * s[i, a, c]
+                j[row, c] = -weight[o] * total_derivative
+
+
+def start_state(
+    model: Model, run: Run, p: FloatArray, z: FloatArray, columns: NDArray[np.int64]
+) -> tuple[FloatArray, FloatArray]:
+    """State [n] at the start of `run` for start unknowns z, and its tangents [n, np + nz]."""
+    x = run.start.copy()
+    s = np.zeros((len(x), len(columns) + len(z)))
+    u = run.held_inputs[0]
+    _put_behind_sensors(model, run, p, columns, x, s)
+    for index, (unknown, value) in enumerate(zip(run.unknowns, z, strict=True)):
+        scale = 1.0
+        if unknown.contact is not None:
+            scale, by_p = _half_gap(model, unknown.contact, x, u, p)
+            s[:, : len(columns)] += np.outer(unknown.tangent * value, by_p[columns])
+        x += unknown.tangent * value * scale
+        s[:, len(columns) + index] = unknown.tangent * scale
+    return x, s
+
+
+def _put_behind_sensors(
+    model: Model, run: Run, p: FloatArray, columns: NDArray[np.int64], x: FloatArray, s: FloatArray
+) -> None:
+    """Move the angles in the state x [n], and their tangents s by the parameters `columns`, to
+    where the sensors show what the run begins with. Errors of sensors are small and smooth.
+    """
+    n, signals = len(x), len(model.output_names)
+    y, yx, yp = np.zeros(signals), np.zeros((signals, n)), np.zeros((signals, len(p)))
+    for column, signal in enumerate(run.signals):
+        if not signal.startswith("theta_"):
+            continue
+        axis = signal.removeprefix("theta_")
+        names = [name for name in (signal, f"theta_gear_{axis}") if name in model.state_names]
+        moved, shown = [model.state_names.index(name) for name in names], run.outputs[column]
+        for _ in range(SENSOR_ITERATIONS):
+            model.module.outputs(run.time[0], x, run.held_inputs[0], p, y)
+            error = run.measured[0, column] - y[shown]
+            if error == 0.0:
+                break
+            x[moved] += error
+        if len(columns):
+            model.module.output_jacobian(run.time[0], x, run.held_inputs[0], p, yx, yp)
+            slope = yp[shown, columns] / yx[shown, moved[0]]
+            s[moved, : len(columns)] -= slope
+
+
+def _half_gap(
+    model: Model, contact: int, x: FloatArray, u: FloatArray, p: FloatArray
+) -> tuple[float, FloatArray]:
+    frictions = len(model.friction_rates)
+    count = 3 * frictions + 4 * len(model.module.CONTACT_ANGLES)
+    m, g = np.zeros(len(model.mode_names)), np.zeros(count)
+    gx, gp = np.zeros((count, len(x))), np.zeros((count, len(p)))
+    model.module.guards(0.0, x, u, p, m, g)
+    model.module.guard_jacobian(0.0, x, u, p, m, gx, gp)
+    at = 3 * frictions + 4 * contact + 1
+    return float(g[at]), gp[at]
+
+
+def evaluate(
+    model: Model,
+    run: Run,
+    p: FloatArray,
+    z: FloatArray,
+    columns: NDArray[np.int64],
+    tangents: bool,
+    tolerance: Tolerance,
+) -> Evaluation:
+    """Simulate `run` and compare. A simulation that fails says so and scores as failed."""
+    columns = columns if tangents else columns[:0]
+    x, s = start_state(model, run, p, z, columns)
+    late = delays_of(model, p)
+    table = delayed(run.inputs, late)
+    found = pass_through(
+        model,
+        default_method(model),
+        p,
+        x,
+        table,
+        True,
+        table.with_stops(run.time) if np.any(late) else run.time,
+        run.time,
+        Accuracy(tolerance.relative, tolerance.absolute(model), 1.0),
+        s if tangents else None,
+        columns,
+        delay_columns(model, columns),
+    )
+    r, j = np.zeros(run.size), np.zeros((run.size, found.s.shape[2]))
+    failed = None if found.status == DONE else f"{run.name}: stopped at {found.reached:.4f} s"
+    if failed is None:
+        _compare(
+            output_addresses(model.module),
+            len(model.output_names),
+            run.time,
+            found.x,
+            found.s,
+            run.held_inputs,
+            p,
+            run.measured,
+            columns,
+            run.outputs,
+            run.weight,
+            r,
+            j,
+        )
+        if not np.all(np.isfinite(r)):
+            failed = f"{run.name}: not finite"
+    split = len(columns)
+    return Evaluation(r, j[:, :split], j[:, split:].copy(), failed)

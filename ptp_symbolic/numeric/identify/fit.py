@@ -1,0 +1,283 @@
+"""Fit the free parameters of a model to several runs at once."""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, BLIND, STEP
+from ptp_symbolic.numeric.identify.coordinates import (
+    FreeParameter,
+    limits,
+    slopes,
+    to_search,
+    to_values,
+)
+from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
+from ptp_symbolic.numeric.identify.gap_places import gears_in_place, residual_of, with_gap_places
+from ptp_symbolic.numeric.identify.least_squares import Optimum, Problem, cost_of, minimise
+from ptp_symbolic.numeric.identify.requirements import keep_possible
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.secants import Secants, Shift
+from ptp_symbolic.numeric.runtime.model import Model
+
+FloatArray = NDArray[np.float64]
+
+
+DEFAULT_TOLERANCE = Tolerance()
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How hard to search: iterations, relative gain at which to stop, simulation tolerance, and
+    how many steps in a row may be rejected.
+
+    `secants` is the step of the differences that
+    replace derivatives which mislead (see `identify.secants`); None: none are replaced.
+    """
+
+    iterations: int = 30
+    gain: float = 1e-5
+    tolerance: Tolerance = DEFAULT_TOLERANCE
+    secants: float | None = None
+    rejections: int = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A fit: parameter `values` (all of the model), start unknowns `z`, evaluations per run."""
+
+    model: Model
+    runs: tuple[Run, ...]
+    free: tuple[FreeParameter, ...]
+    values: Mapping[str, float]
+    z: tuple[FloatArray, ...]
+    cost: float
+    evaluations: tuple[Evaluation, ...]
+    failed: str | None = None
+    tolerance: Tolerance = DEFAULT_TOLERANCE
+    misleading: tuple[Shift, ...] | None = None
+
+    def rms_counts(self) -> float:
+        """Root mean square of the residual of all encoder signals, in counts."""
+        squares = np.concatenate([run_counts(r, e) for r, e in self.pairs()])
+        return float(np.sqrt(np.mean(squares**2)))
+
+    def pairs(self) -> list[tuple[Run, Evaluation]]:
+        """Runs with their evaluations."""
+        return list(zip(self.runs, self.evaluations, strict=True))
+
+
+def run_counts(run: Run, evaluation: Evaluation) -> FloatArray:
+    """Residuals of the encoder signals of one run in counts; analog signals in units of sigma."""
+    residual = evaluation.residual.reshape(run.measured.shape)
+    in_counts = residual / run.weight / run.counts
+    encoders = np.isfinite(run.counts)
+    return (in_counts[:, encoders] if encoders.any() else residual).ravel()
+
+
+def fit_parameters(
+    model: Model,
+    runs: Sequence[Run],
+    free: Sequence[FreeParameter],
+    fixed: Mapping[str, float],
+    z: Sequence[FloatArray] | None = None,
+    effort: Effort | None = None,
+    executor: Executor | None = None,
+    misleading: Sequence[Shift] | None = None,
+) -> Fit:
+    """Fit `free` from their starts; all other parameters stay at `fixed`. Derivatives known to be
+    `misleading` from an earlier fit of the same parameters are replaced from the first step on.
+
+    With no free parameter only the start unknowns of every run are fitted, which is how runs that
+    were never fitted are judged. Places in a gap are looked for where no starts `z` are given.
+    """
+    effort = effort or Effort()
+    if not free:
+        return _fit_starts(model, runs, fixed, z, effort, executor)
+    problem = _problem(model, runs, free, fixed, effort, executor)
+    if problem.refine is not None and misleading is not None:
+        problem.refine.chosen = list(misleading)
+    phi = to_search(free, {f.name: f.start for f in free})
+    values = {**fixed, **all_values(free, phi)}
+    if z is None:
+        guesses = [run.guess for run in runs]
+        z = gears_in_place(model, runs, values, guesses, effort.tolerance, executor)
+    best = minimise(problem, phi, z, effort.iterations, effort.gain, effort.rejections)
+    values = {**fixed, **all_values(free, best.phi)}
+    return Fit(
+        model,
+        tuple(runs),
+        tuple(free),
+        values,
+        tuple(best.z),
+        best.cost,
+        tuple(best.evaluations),
+        best.failed,
+        effort.tolerance,
+        None
+        if problem.refine is None or problem.refine.chosen is None
+        else tuple(problem.refine.chosen),
+    )
+
+
+def unblinded(fit: Fit, executor: Executor | None = None) -> Fit:
+    """`fit` with differences over finite steps where derivatives at the optimum see next to nothing
+    of what such a step does: intervals of an effect that acts through breakaways need them.
+    """
+    if not fit.free or fit.failed:
+        return fit
+    effort = Effort(tolerance=fit.tolerance, secants=STEP)
+    problem = _problem(fit.model, fit.runs, fit.free, fit.values, effort, executor)
+    assert problem.refine is not None
+    phi = to_search(fit.free, fit.values)
+    here = problem.evaluate(phi, fit.z, True)
+    mended = problem.refine(phi, fit.z, here)
+    chosen = []
+    for at_point, finite in zip(here, mended, strict=True):
+        seen, size = (np.linalg.norm(e.by_parameter, axis=0) for e in (at_point, finite))
+        columns = np.where(seen < BLIND * size, finite.by_parameter, at_point.by_parameter)
+        chosen.append(replace(at_point, by_parameter=columns))
+    return replace(fit, evaluations=tuple(chosen))
+
+
+def all_values(free: Sequence[FreeParameter], phi: FloatArray) -> dict[str, float]:
+    """Values of the free parameters and of those tied to them."""
+    own = to_values(free, phi)
+    return own | {name: own[f.name] for f in free for name in f.tied}
+
+
+def all_values_at_start(free: Sequence[FreeParameter]) -> dict[str, float]:
+    """Start values of the free parameters and of those tied to them."""
+    return {name: f.start for f in free for name in f.names}
+
+
+@dataclass(frozen=True, eq=False)
+class _Simulations:
+    """All runs as functions of the search coordinates phi [nf] and the start unknowns z.
+
+    `owner` is the coordinate of every parameter in `columns`: tied ones share theirs.
+    """
+
+    model: Model
+    runs: Sequence[Run]
+    free: Sequence[FreeParameter]
+    base: FloatArray
+    columns: NDArray[np.int64]
+    owner: NDArray[np.int64]
+    tolerance: Tolerance
+    executor: Executor | None
+
+    def parameters(self, phi: FloatArray) -> FloatArray:
+        """All parameters [np]."""
+        p, names = self.base.copy(), self.model.parameter_names
+        for name, value in all_values(self.free, phi).items():
+            p[names.index(name)] = value
+        return p
+
+    def residual(self, index: int, phi: FloatArray, z: FloatArray) -> FloatArray | None:
+        """Residual of one run; None where the simulation fails."""
+        p = self.parameters(phi)
+        return residual_of(self.model, p, self.tolerance, self.runs[index], z)
+
+    def evaluate(
+        self, phi: FloatArray, z: Sequence[FloatArray], tangents: bool
+    ) -> list[Evaluation]:
+        """Evaluations of all runs, their Jacobians by phi."""
+        p = self.parameters(phi)
+        by_phi = np.zeros((len(self.columns), len(self.free)))
+        if len(self.free):
+            by_phi[np.arange(len(self.columns)), self.owner] = slopes(self.free, phi)[self.owner]
+
+        def one(pair: tuple[Run, FloatArray]) -> Evaluation:
+            run, start = pair
+            e = evaluate(self.model, run, p, start, self.columns, tangents, self.tolerance)
+            return replace(e, by_parameter=e.by_parameter @ by_phi) if tangents else e
+
+        pairs = list(zip(self.runs, z, strict=True))
+        return list(self.executor.map(one, pairs)) if self.executor else [one(a) for a in pairs]
+
+
+def _problem(
+    model: Model,
+    runs: Sequence[Run],
+    free: Sequence[FreeParameter],
+    fixed: Mapping[str, float],
+    effort: Effort,
+    executor: Executor | None,
+) -> Problem:
+    names = list(model.parameter_names)
+    owned = [(i, names.index(name)) for i, f in enumerate(free) for name in f.names]
+    owner, columns = np.array(owned, dtype=np.int64).reshape(-1, 2).T
+    simulations = _Simulations(
+        model,
+        runs,
+        free,
+        model.parameter_vector(dict(fixed)),
+        columns.copy(),
+        owner.copy(),
+        effort.tolerance,
+        executor,
+    )
+    lower, upper = limits(free)
+    return Problem(
+        simulations.evaluate,
+        lower,
+        upper,
+        [np.array([u.lower for u in run.unknowns]) for run in runs],
+        [np.array([u.upper for u in run.unknowns]) for run in runs],
+        [np.array([u.sigma for u in run.unknowns]) for run in runs],
+        np.zeros(len(free)),
+        np.zeros(len(free)),
+        None
+        if effort.secants is None
+        else Secants(simulations.residual, upper, executor, step=effort.secants),
+        keep_possible(model, free, simulations.parameters),
+    )
+
+
+def _fit_starts(
+    model: Model,
+    runs: Sequence[Run],
+    fixed: Mapping[str, float],
+    z: Sequence[FloatArray] | None,
+    effort: Effort,
+    executor: Executor | None,
+) -> Fit:
+    """Runs that share no free parameter are independent: fit the start of each by itself.
+
+    The search begins at the best of what is known, with the gear in its place, at rest and turning
+    back, and then at the next, unless nothing but rounding is left.
+    """
+    nothing = np.zeros(0)
+    simulated = partial(residual_of, model, model.parameter_vector(fixed), effort.tolerance)
+
+    def one(run: Run, known: Sequence[FloatArray]) -> Optimum:
+        problem = _problem(model, [run], (), fixed, effort, None)
+        starts = [with_gap_places(run, s, partial(simulated, run)) for s in run.guesses]
+        starts += known
+        costs = [cost_of(problem, problem.evaluate(nothing, [s], False), [s]) for s in starts]
+        found: list[Optimum] = []
+        for index in np.argsort(costs, kind="stable"):
+            begin = [starts[index]]
+            found.append(minimise(problem, nothing, begin, effort.iterations, effort.gain))
+            if found[-1].cost <= ABOVE_NOISE * run.size:
+                break
+        return min(found, key=lambda optimum: optimum.cost)
+
+    known = [[]] * len(runs) if z is None else [[start] for start in z]
+    best = list((executor.map if executor else map)(one, runs, known))
+    return Fit(
+        model,
+        tuple(runs),
+        (),
+        dict(fixed),
+        tuple(b.z[0] for b in best),
+        float(sum(b.cost for b in best)),
+        tuple(b.evaluations[0] for b in best),
+        next((b.failed for b in best if b.failed), None),
+        effort.tolerance,
+    )

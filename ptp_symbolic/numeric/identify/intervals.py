@@ -1,0 +1,144 @@
+"""Confidence intervals that allow for residuals correlated in time.
+
+The residuals of a simulation error fit are never white: what the noise of an input leaves in an
+angle may last for a whole run. The covariance is that of a jackknife over a few long blocks of
+time, the unknown starts projected out. Intervals never get narrower than those of white noise of
+the declared size.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from ptp_symbolic.numeric.identify.blocks import (
+    block_length,
+    jackknife_covariance,
+    leave_blocks_out,
+    long_blocks,
+)
+from ptp_symbolic.numeric.identify.constants import NOTHING, SAME, UNIDENTIFIED, WIDEST
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search, wrapped
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.run import by_source
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A fitted value with its 95 % interval; SI. `identified` is False where the interval is wider
+    than the value itself, or the data do not see the parameter at all: then the interval is that of
+    its bounds. `only_with` names parameters of which the data see a combination alone, such as the
+    sum of two viscous frictions in one joint.
+    """
+
+    name: str
+    value: float
+    lower: float
+    upper: float
+    at_bound: bool
+    identified: bool
+    only_with: tuple[str, ...] = ()
+
+
+def estimates(fit: Fit) -> tuple[Estimate, ...]:
+    """Values of the free parameters of `fit` with 95 % intervals."""
+    if not fit.free:
+        return ()
+    covariance, degrees, lost = covariance_of(fit)
+    reach = stats.t.ppf(0.975, degrees)
+    spreads = reach * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    units = np.abs(slopes(fit.free, to_search(fit.free, fit.values)))
+    involved = np.any(lost**2 > SAME, axis=0)
+    result = []
+    for index, free in enumerate(fit.free):
+        value = wrapped(free, fit.values[free.name])
+        partners: tuple[str, ...] = ()
+        if involved[index].any():
+            others = np.flatnonzero(involved[:, involved[index]].any(axis=1))
+            partners = tuple(fit.free[i].name for i in others if i != index)
+            spreads[index] = np.inf
+        low, high, width = _interval(free, value, float(spreads[index]), float(units[index]))
+        near = 1e-4 * max(abs(free.start), abs(value))
+        at_bound = value - free.lower <= near or free.upper - value <= near
+        seen = bool(np.isfinite(width) and width < UNIDENTIFIED)
+        result.append(Estimate(free.name, value, low, high, bool(at_bound), seen, partners))
+    return tuple(result)
+
+
+def _interval(
+    free: FreeParameter, value: float, spread: float, unit: float
+) -> tuple[float, float, float]:
+    """Ends of the interval of `spread` search coordinates about `value`, `unit` each, within the
+    bounds and one period; and its half width as a share of the value.
+    """
+    half = spread * unit if np.isfinite(spread) else np.inf
+    low, high = value - half, value + half
+    if free.logarithmic and spread < WIDEST:
+        low, high = value * np.exp(-spread), value * np.exp(spread)
+    width = spread if free.logarithmic else half / max(abs(value), 1e-300)
+    if free.period is None:
+        return float(max(low, free.lower)), float(min(high, free.upper)), width
+    ends = max(low, value - free.period / 2), min(high, value + free.period / 2)
+    return float(ends[0]), float(ends[1]), width
+
+
+def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Covariance [nf, nf] of the search coordinates, the degrees of freedom [nf] behind each, and
+    the directions [2, nf, lost] that the data do not see, in coordinates scaled by what the data
+    see of each alone, and in those of the search; it leaves these out.
+    """
+    signals = fit.runs[0].measured.shape[1]
+    residuals = [project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations]
+    columns = np.vstack([project_out(e.by_parameter, e.by_start) for e in fit.evaluations])
+    sums = [r.reshape(-1, signals).sum(axis=1) for r in residuals]
+    series = [np.concatenate([sums[k] for k in group]) for group in by_source(fit.runs)]
+    label = long_blocks([len(s) for s in series], block_length(series), columns, signals)
+    residual = np.concatenate(residuals)
+    inverse, lost = _inverse(columns.T @ columns)
+    white = inverse * max(1.0, float(np.mean(residual**2)))
+    shifts = leave_blocks_out(residual, columns, label).shifts
+    robust, degrees = jackknife_covariance(shifts), degrees_of_freedom(shifts)
+    spread = np.maximum(np.diag(robust), 1e-300)
+    wider = np.diag(white) * stats.norm.ppf(0.975) ** 2 > spread * stats.t.ppf(0.975, degrees) ** 2
+    scale = np.where(wider, np.sqrt(np.diag(white) / spread), 1.0)
+    return robust * np.outer(scale, scale), np.where(wider, np.inf, degrees), lost
+
+
+def degrees_of_freedom(shifts: FloatArray) -> FloatArray:
+    """Degrees of freedom [nf] of jackknife variances from the `shifts` [b, nf] of b blocks: b - 1
+    where all blocks shift a parameter alike, 1 where one alone does (moments of the squares, after
+    Satterthwaite, 1946; those of normal shifts have a kurtosis of 3).
+    """
+    square = shifts**2
+    fourth = np.maximum(np.sum(square**2, axis=0), 1e-300)
+    equal = 3.0 * np.sum(square, axis=0) ** 2 / fourth - 2.0
+    return np.asarray(np.clip(equal, 1.0, max(len(shifts) - 1, 1)))
+
+
+def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Inverse [nf, nf] where there is information, and the directions [2, nf, lost] without.
+
+    A parameter that the data hardly see takes part in a lost direction by little once it is scaled
+    by that, and by much as it is.
+    """
+    size = np.sqrt(np.diag(information))
+    unit = np.where(size > 0.0, size, 1.0)
+    shares, directions = np.linalg.eigh(information / np.outer(unit, unit))
+    kept = shares > NOTHING * max(shares[-1], 1e-300)
+    seen = directions[:, kept] / unit[:, None]
+    lost = directions[:, ~kept] / unit[:, None]
+    lost /= np.maximum(np.linalg.norm(lost, axis=0), 1e-300)
+    return seen / shares[kept] @ seen.T, np.stack([directions[:, ~kept], lost])
+
+
+def project_out(jacobian: FloatArray, nuisance: FloatArray) -> FloatArray:
+    """The part of `jacobian` [k, nf] orthogonal to the columns of `nuisance` [k, nz]."""
+    if nuisance.shape[1] == 0:
+        return jacobian
+    basis, triangle = np.linalg.qr(nuisance)
+    kept = np.abs(np.diag(triangle)) > 1e-10 * max(np.max(np.abs(triangle)), 1e-300)
+    basis = basis[:, kept]
+    return jacobian - basis @ (basis.T @ jacobian)

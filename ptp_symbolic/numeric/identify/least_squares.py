@@ -1,0 +1,286 @@
+"""Levenberg-Marquardt over several runs, the unknown starts eliminated run by run.
+
+Shared parameters phi meet all runs, the start unknowns z of a run meet only that run: the normal
+equations are bordered block diagonal and solved by a Schur complement (Golub and Pereyra, 1973,
+call the elimination variable projection).
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.constants import (
+    AT_BOUND,
+    BEND,
+    BIGGEST,
+    FIRST_DAMPING,
+    LARGEST_STEP,
+    MANY_RUNS,
+    NEARBY,
+)
+from ptp_symbolic.numeric.identify.evaluate import Evaluation
+from ptp_symbolic.numeric.identify.requirements import Allow
+from ptp_symbolic.numeric.identify.secants import Secants
+
+FloatArray = NDArray[np.float64]
+Evaluate = Callable[[FloatArray, Sequence[FloatArray], bool], list[Evaluation]]
+
+SHARE_TO_BOUND = -np.expm1(-LARGEST_STEP)  # of the way there in one step
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What to minimise: `evaluate(phi, z, tangents)`, bounds of phi, bounds and prior of z.
+
+    `refine`, where given, mends the derivatives from which steps are taken: those that come out are
+    always the ones at the point, which intervals need. `allow` bends steps that lead where no
+    machine is possible.
+    """
+
+    evaluate: Evaluate
+    lower: FloatArray
+    upper: FloatArray
+    start_lower: Sequence[FloatArray]
+    start_upper: Sequence[FloatArray]
+    start_sigma: Sequence[FloatArray]
+    prior_centre: FloatArray
+    prior_precision: FloatArray
+    refine: Secants | None = None
+    allow: Allow | None = None
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """Where the search ended; `cost` is the sum of squared weighted residuals and priors."""
+
+    phi: FloatArray
+    z: list[FloatArray]
+    cost: float
+    evaluations: list[Evaluation] = field(repr=False, default_factory=list)
+    failed: str | None = None
+
+
+def weighted_median(values: FloatArray, weight: FloatArray) -> FloatArray:
+    """Medians [v] of the columns of `values` [k, v], whose rows count by `weight` [k]."""
+    order = np.argsort(values, axis=0, kind="stable")
+    below = np.cumsum(weight[order], axis=0) - 0.5 * weight[order]
+    at = 0.5 * weight.sum()
+    ordered = np.take_along_axis(values, order, axis=0)
+    columns = zip(below.T, ordered.T, strict=True)
+    return np.array([np.interp(at, b, v) for b, v in columns])
+
+
+def robust_bend(evaluations: Sequence[Evaluation]) -> float:
+    """Root mean square at which a window counts half.
+
+    Infinite for a few whole runs, and while most windows are still far off.
+    """
+    if len(evaluations) < MANY_RUNS or any(e.failed for e in evaluations):
+        return np.inf
+    squares = np.array([[float(np.mean(e.residual**2))] for e in evaluations])
+    size = np.array([float(e.residual.size) for e in evaluations])
+    middle = float(np.sqrt(weighted_median(squares, size)[0]))
+    return BEND * middle if middle < NEARBY else np.inf
+
+
+def _loss(e: Evaluation, bend: float) -> float:
+    """Cauchy's loss of a window: square well below the bend, its logarithm beyond: a window that
+    began on the wrong side of a rest says nothing about the parameters (Black and Anandan, 1996).
+    """
+    square = float(e.residual @ e.residual)
+    if np.isinf(bend):
+        return square
+    return float(e.residual.size * bend**2 * np.log1p(square / e.residual.size / bend**2))
+
+
+def _share(e: Evaluation, bend: float) -> float:
+    """Weight of a window in the normal equations."""
+    return 1.0 / (1.0 + float(np.mean(e.residual**2)) / bend**2)
+
+
+def cost_of(
+    problem: Problem,
+    evaluations: Sequence[Evaluation],
+    z: Sequence[FloatArray],
+    bend: float = np.inf,
+    scale: float = 1.0,
+) -> float:
+    """Sum of squares; infinite as soon as one simulation failed."""
+    if any(e.failed for e in evaluations):
+        return np.inf
+    fit = sum(_loss(e, bend) for e in evaluations)
+    steepest = max(
+        (np.max(np.abs(j), initial=0.0) for e in evaluations for j in (e.by_parameter, e.by_start)),
+        default=0.0,
+    )
+    if not np.isfinite(fit) or not steepest < BIGGEST:
+        return np.inf
+    return fit + sum(
+        scale * float(np.sum((a / s) ** 2)) for a, s in zip(z, problem.start_sigma, strict=True)
+    )
+
+
+def minimise(
+    problem: Problem,
+    phi: FloatArray,
+    z: Sequence[FloatArray],
+    iterations: int = 30,
+    gain: float = 1e-5,
+    rejections: int = 5,
+) -> Optimum:
+    """Minimise from (phi, z) until two steps in a row gain less than the share `gain`, or until
+    `rejections` ever shorter steps in a row gain nothing.
+
+    Priors of phi and z are weighed by the mean square residual: strong while the model is far off,
+    so that declared parameters and starts do not bend to stand in for an effect, and weak at the
+    noise floor.
+    """
+    at = _Point(np.clip(phi, problem.lower, problem.upper), [a.copy() for a in z], [])
+    at = replace(at, evaluations=problem.evaluate(at.phi, at.z, True))
+    cost = cost_of(problem, at.evaluations, at.z)
+    if not np.isfinite(cost):
+        why = next((e.failed for e in at.evaluations if e.failed), "not finite")
+        return Optimum(at.phi, at.z, np.inf, at.evaluations, why)
+    damping, quiet = FIRST_DAMPING, 0
+    for _ in range(iterations):
+        mended = at
+        if problem.refine is not None:
+            mended = replace(at, evaluations=problem.refine(at.phi, at.z, at.evaluations))
+        weights = _weigh(problem, at)
+        before = cost_of(problem, at.evaluations, at.z, weights.bend, weights.scale)
+        found = _better(problem, mended, weights, damping, before, rejections)
+        if found is None:
+            cost = before
+            break
+        at, cost, damping = found
+        quiet = quiet + 1 if abs(before - cost) / before < gain else 0
+        if quiet >= 2:
+            break
+    return Optimum(at.phi, at.z, cost, at.evaluations)
+
+
+@dataclass(frozen=True)
+class _Point:
+    phi: FloatArray
+    z: list[FloatArray]
+    evaluations: list[Evaluation] = field(repr=False)
+
+
+@dataclass(frozen=True)
+class _Weights:
+    """Bend of the robust loss, precision [nf] of the prior of phi, weight of the prior of z."""
+
+    bend: float
+    prior: FloatArray
+    scale: float
+
+
+def _weigh(problem: Problem, at: _Point) -> _Weights:
+    bend = robust_bend(at.evaluations)
+    size = sum(e.residual.size for e in at.evaluations)
+    mean_square = sum(_loss(e, bend) for e in at.evaluations) / size
+    return _Weights(bend, problem.prior_precision * mean_square, max(1.0, mean_square))
+
+
+def _better(
+    problem: Problem, at: _Point, weights: _Weights, damping: float, cost: float, rejections: int
+) -> tuple[_Point, float, float] | None:
+    """The first of ever shorter steps that gains, its cost and the next damping; None if none.
+
+    After a rejection the next step is tried without derivatives: most of them are rejected too.
+    """
+    for attempt in range(rejections):
+        step, steps_z = _step(problem, at, damping, weights)
+        phi = np.clip(at.phi + step, problem.lower, problem.upper)
+        if problem.allow is not None:
+            phi = problem.allow(at.phi, phi)
+        bounds = zip(at.z, steps_z, problem.start_lower, problem.start_upper, strict=True)
+        z = [np.clip(a + b, low, high) for a, b, low, high in bounds]
+        enough = cost + _prior(problem, weights.prior, at.phi) - _prior(problem, weights.prior, phi)
+        for tangents in (True,) if attempt == 0 else (False, True):
+            trial = _Point(phi, z, problem.evaluate(phi, z, tangents))
+            after = cost_of(problem, trial.evaluations, z, weights.bend, weights.scale)
+            if not after < enough:
+                break
+        else:
+            return trial, after, max(damping / 10.0, 1e-12)
+        damping *= 10.0
+    return None
+
+
+def _prior(problem: Problem, weight: FloatArray, phi: FloatArray) -> float:
+    return float(np.sum(weight * (phi - problem.prior_centre) ** 2))
+
+
+def _step(
+    problem: Problem, at: _Point, damping: float, weights: _Weights
+) -> tuple[FloatArray, list[FloatArray]]:
+    phi, weight, scale = at.phi, weights.prior, weights.scale
+    nf = len(phi)
+    schur, right = np.diag(weight), -weight * (phi - problem.prior_centre)
+    diagonal = weight.copy()
+    blocks = []
+    for e, a, sigma, low, high in zip(
+        at.evaluations,
+        at.z,
+        problem.start_sigma,
+        problem.start_lower,
+        problem.start_upper,
+        strict=True,
+    ):
+        share = np.sqrt(_share(e, weights.bend))
+        j, k, r = share * e.by_parameter, share * e.by_start, share * e.residual
+        jj, jk, kk = j.T @ j, j.T @ k, k.T @ k
+        kk = kk + np.diag(scale / sigma**2)
+        kk = kk + damping * np.diag(np.diag(kk))
+        gr, gz = -(j.T @ r), -(k.T @ r) - scale * a / sigma**2
+        moves = ~(((a <= low) & (gz < 0)) | ((a >= high) & (gz > 0)))
+        inverse = np.zeros_like(kk)
+        inverse[np.ix_(moves, moves)] = np.linalg.inv(kk[np.ix_(moves, moves)])
+        schur += jj - jk @ inverse @ jk.T
+        right += gr - jk @ inverse @ gz
+        diagonal += np.diag(jj)
+        blocks.append((jk, inverse, gz))
+    held = ((phi <= problem.lower) & (right < 0)) | ((phi >= problem.upper) & (right > 0))
+    free = ~held & (diagonal > 0)
+    step = np.zeros(nf)
+    if free.any():
+        matrix = schur[np.ix_(free, free)] + np.diag(damping * diagonal[free])
+        down, up = _reach(phi - problem.lower), _reach(problem.upper - phi)
+        step[free] = _limited(matrix, right[free], np.sqrt(diagonal[free]), -down[free], up[free])
+    return step, [inverse @ (gz - jk.T @ step) for jk, inverse, gz in blocks]
+
+
+def _reach(distance: FloatArray) -> FloatArray:
+    """How far one step may go [nf] towards bounds at `distance` [nf].
+
+    A parameter that one step takes from its start to zero takes the others to where no step leads
+    back: the share is that of an interior point method (Coleman and Li, 1996).
+    """
+    share = np.where(distance > AT_BOUND, SHARE_TO_BOUND, 1.0)
+    return np.minimum(LARGEST_STEP, share * distance)
+
+
+def _limited(
+    matrix: FloatArray, right: FloatArray, size: FloatArray, low: FloatArray, high: FloatArray
+) -> FloatArray:
+    """Solve matrix @ step = right with low <= step <= high [nf]; `size` scales them [nf].
+
+    The one that wants furthest beyond is held there and the others solved anew: scaling all alike
+    would let a parameter on its way to zero stop the rest.
+    """
+    step, moves = np.zeros(len(right)), np.ones(len(right), dtype=np.bool_)
+    matrix, right = matrix / np.outer(size, size), right / size
+    while moves.any():
+        rest = right[moves] - matrix[np.ix_(moves, ~moves)] @ (size * step)[~moves]
+        found = np.linalg.lstsq(matrix[np.ix_(moves, moves)], rest, rcond=1e-14)[0]
+        step[moves] = found / size[moves]
+        allowed = np.clip(step, low, high)
+        worst = int(np.argmax(np.abs(step - allowed)))
+        if step[worst] == allowed[worst]:
+            break
+        step[worst] = allowed[worst]
+        moves[worst] = False
+    return step

@@ -1,0 +1,89 @@
+"""The measured motion of a run: angles without the errors of sensors, smoothed and averaged; and
+further states along it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.along_motion import Motion, angles_behind_sensors
+from ptp_symbolic.numeric.identify.constants import SENSOR_ITERATIONS
+from ptp_symbolic.numeric.identify.equation_rows import RunRows
+from ptp_symbolic.numeric.identify.layout import Layout, equation_addresses
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.weak_form import local_motion, weak_average
+from ptp_symbolic.numeric.runtime.model import Model
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredMotion:
+    """The motion of one run at all samples and on the grid, the averaged second derivatives [c, na]
+    of its angles, and by how much the averages of angles and rates [c, 2 na] differ from those of
+    the smoothed ones.
+    """
+
+    fine: Motion
+    coarse: Motion
+    curvature: FloatArray
+    missed: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class FurtherStates:
+    """Further states: what acts on the grid [g, e], measured minus integrated [k, e] at all
+    samples, and by how much they settle elsewhere at another rate [k, e, na].
+    """
+
+    acting: FloatArray
+    left: FloatArray
+    by_rate: FloatArray
+
+
+def angles_of(model: Model, layout: Layout, run: Run, p: FloatArray, errors: bool) -> FloatArray:
+    """Joint angles [k, na] that were measured; where sensors have `errors`, without those at p."""
+    axes = model.module.AXES
+    columns = [run.signals.index(f"theta_{a}") for a in axes]
+    shown = [model.output_names.index(f"theta_{a}") for a in axes]
+    found: FloatArray = angles_behind_sensors(
+        equation_addresses(model),
+        layout,
+        np.array(shown),
+        run.time,
+        np.ascontiguousarray(run.measured[:, columns]),
+        run.held_inputs,
+        p,
+        len(model.output_names),
+        SENSOR_ITERATIONS if errors else 0,
+    )
+    return found
+
+
+def measured_motion(
+    run: Run,
+    angles: FloatArray,
+    further: int,
+    measured: Sequence[tuple[int, int]],
+    rows: RunRows,
+    half_width: float,
+    rate_width: float,
+) -> MeasuredMotion:
+    """The motion of a run with joint `angles` [k, na]; of so many `further` states those that are
+    `measured`, each with its column. Widths in s of the windows and of the local motion.
+    """
+    local = local_motion(run.time, angles, rate_width)
+    seen = np.full((len(run.time), further), np.nan)
+    for column, place in measured:
+        seen[:, place] = run.measured[:, column]
+    smooth, rate, acceleration = (np.ascontiguousarray(local[:, k]) for k in range(3))
+    fine = Motion(run.time, smooth, rate, acceleration, run.held_inputs, seen)
+    coarse = Motion(*(np.ascontiguousarray(column[rows.grid]) for column in fine))
+    at = rows.grid[rows.chosen]
+    curvature = weak_average(run.time, angles, half_width, 2, at)
+    exact = [weak_average(run.time, angles, half_width, d, at) for d in (0, 1)]
+    taken = [weak_average(coarse.time, c, half_width, 0, rows.chosen) for c in coarse[1:3]]
+    missed = np.column_stack([e - s for e, s in zip(exact, taken, strict=True)])
+    return MeasuredMotion(fine, coarse, curvature, missed)

@@ -1,0 +1,101 @@
+"""Keep a search where the machine is possible: no breakaway below sliding friction, for one."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.constants import CORRECTIONS, HALVINGS, QUOTIENT
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter, limits
+from ptp_symbolic.numeric.runtime.model import Model
+
+FloatArray = NDArray[np.float64]
+Allow = Callable[[FloatArray, FloatArray], FloatArray]
+
+
+def keep_possible(
+    model: Model, free: Sequence[FreeParameter], parameters: Callable[[FloatArray], FloatArray]
+) -> Allow:
+    """Return a function that bends a step from phi to trial [nf], so that no relation that the
+    machine needs is broken: up to the boundary, then along it, and only in the coordinates that
+    the relation is about (gradient projection: Rosen, 1960).
+
+    `parameters(phi)` gives all parameters [np]. A relation broken at phi already is let be.
+    """
+    relations, bounds = [], limits(free)
+    for row, (names, _, strict) in enumerate(model.module.REQUIREMENTS):
+        about = np.array([bool({f.name, *f.tied} & set(names)) for f in free], dtype=np.bool_)
+        if about.any():
+            relations.append(_Relation(model, parameters, row, strict, about, bounds))
+
+    def allow(phi: FloatArray, trial: FloatArray) -> FloatArray:
+        for relation in relations:
+            if relation.holds(phi) and not relation.holds(trial):
+                trial = relation.bent(phi, trial)
+        return trial
+
+    return allow
+
+
+@dataclass(frozen=True, eq=False)
+class _Relation:
+    """One relation between parameters; `about` [nf] marks the coordinates that it concerns."""
+
+    model: Model
+    parameters: Callable[[FloatArray], FloatArray]
+    row: int
+    strict: bool
+    about: NDArray[np.bool_]
+    bounds: tuple[FloatArray, FloatArray]
+
+    def margin(self, phi: FloatArray) -> float:
+        found = np.zeros(len(self.model.module.REQUIREMENTS))
+        self.model.module.margins(self.parameters(phi), found)
+        return float(found[self.row])
+
+    def holds(self, phi: FloatArray) -> bool:
+        by = self.margin(phi)
+        return by > 0.0 if self.strict else by >= 0.0
+
+    def gradient(self, phi: FloatArray) -> FloatArray:
+        """Derivatives [nf] of the margin."""
+        slope = np.zeros(len(phi))
+        for i in np.flatnonzero(self.about):
+            ahead = phi.copy()
+            ahead[i] += QUOTIENT
+            slope[i] = (self.margin(ahead) - self.margin(phi)) / QUOTIENT
+        return slope
+
+    def boundary(self, phi: FloatArray, step: FloatArray) -> FloatArray:
+        """The farthest point along `step` at which the relation still holds."""
+        kept, lost = 0.0, 1.0
+        for _ in range(HALVINGS):
+            middle = 0.5 * (kept + lost)
+            kept, lost = (middle, lost) if self.holds(phi + middle * step) else (kept, middle)
+        return phi + kept * step
+
+    def at_bound(self, phi: FloatArray, step: FloatArray) -> NDArray[np.bool_]:
+        """Which coordinates [nf] a bound keeps from going the way of `step`."""
+        lower, upper = self.bounds
+        return ((phi <= lower) & (step < 0.0)) | ((phi >= upper) & (step > 0.0))
+
+    def bent(self, phi: FloatArray, trial: FloatArray) -> FloatArray:
+        """`trial` with the coordinates of the relation moved to the boundary and along it."""
+        step = np.where(self.about, trial - phi, 0.0)
+        boundary = self.boundary(phi, step)
+        rest, slope = phi + step - boundary, self.gradient(boundary)
+        rest -= _inward(slope) * min(0.0, float(slope @ rest))
+        for _ in range(CORRECTIONS):
+            there = np.clip(boundary + rest, *self.bounds)
+            if self.holds(there):
+                return np.where(self.about, there, trial)
+            by = self.margin(there)
+            inward = _inward(np.where(self.at_bound(there, slope), 0.0, slope))
+            rest = there - boundary + inward * (QUOTIENT * abs(by) - by)
+        return np.where(self.about, boundary, trial)
+
+
+def _inward(slope: FloatArray) -> FloatArray:
+    """The shortest step [nf] that gains a margin of one where its derivatives are `slope` [nf]."""
+    return slope / max(float(slope @ slope), 1e-300)

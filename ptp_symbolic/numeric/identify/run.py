@@ -1,0 +1,286 @@
+"""A run prepared for fitting: inputs as tables, measured signals with weights, unknown starts."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.identify.constants import (
+    ANYWHERE,
+    FAR,
+    LEAST_START,
+    ROUNDING,
+    START_SPAN,
+)
+from ptp_symbolic.numeric.identify.noise import white_noise
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import InputTable, stack, table
+from ptp_symbolic.platform import Platform, SignalDeclaration
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class StartUnknown:
+    """One unknown of the state at the start of a run.
+
+    `tangent` [n] is the derivative of the start by the unknown; a `contact` index says that the
+    unknown is the place in that gap, from -1 (lower face) to 1 (upper face), and beyond where the
+    shaft is wound up; `column` is the measured angle of the joint behind it. `sigma` is its prior.
+    A search begins at `guess`, and may begin at other values `instead`: at rest, or turning back.
+    """
+
+    name: str
+    tangent: FloatArray
+    lower: float
+    upper: float
+    sigma: float
+    contact: int | None = None
+    column: int | None = None
+    instead: tuple[float, ...] = ()
+    guess: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One run or window: time [k] in s, inputs, measured [k, ny] and `weight` [ny] (1/sigma).
+
+    `outputs` gives the model output of every measured column, `counts` the size of one encoder
+    count (nan for analog signals); `start` [n] is the guess of the state at the first sample.
+    """
+
+    name: str
+    time: FloatArray
+    inputs: InputTable
+    held_inputs: FloatArray
+    measured: FloatArray
+    outputs: NDArray[np.int64]
+    weight: FloatArray
+    counts: FloatArray
+    signals: tuple[str, ...]
+    start: FloatArray
+    unknowns: tuple[StartUnknown, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of residuals."""
+        return int(self.measured.size)
+
+    @property
+    def guess(self) -> FloatArray:
+        """Values of the unknowns at which a search begins."""
+        return np.array([unknown.guess for unknown in self.unknowns])
+
+    @property
+    def guesses(self) -> list[FloatArray]:
+        """The guess, and the others at which a search may begin."""
+        starts = [self.guess]
+        for index, unknown in enumerate(self.unknowns):
+            for value in unknown.instead:
+                moved = self.guess
+                moved[index] = value
+                starts.append(moved)
+        return starts
+
+
+@dataclass(frozen=True, eq=False)
+class Around:
+    """The whole log of a window: time [n] in s and measured [n, ny], and its `first` sample."""
+
+    time: FloatArray
+    measured: FloatArray
+    first: int
+
+
+def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple[Run, ...]:
+    """Match the columns of `logs` to `model` and guess the start of every run.
+
+    Raises InputError when the platform's signals do not fit the model.
+    """
+    given = [s for s in platform.signals if s.role == "input"]
+    outputs = [s for s in platform.signals if s.role == "output"]
+    for wanted, found, what in (
+        (model.input_names, {s.signal for s in given}, "input"),
+        ({s.signal for s in outputs}, set(model.output_names), "output"),
+    ):
+        missing = [name for name in wanted if name not in found]
+        if missing:
+            raise InputError(
+                f"No {what} signal '{missing[0]}' to pair with; "
+                f"the model has inputs {', '.join(model.input_names)} and outputs"
+                f" {', '.join(model.output_names)}; declare it under [signals.{missing[0]}]."
+            )
+    order = [[s.signal for s in given].index(name) for name in model.input_names]
+    counts = np.array(
+        [
+            2 * np.pi / s.counts_per_revolution if s.counts_per_revolution else np.nan
+            for s in outputs
+        ]
+    )
+    sigma = np.array(
+        [
+            _sigma(s, q, [log.outputs[:, k] for log in logs])
+            for k, (s, q) in enumerate(zip(outputs, counts, strict=True))
+        ]
+    )
+    return tuple(_prepare(model, outputs, log, log.inputs[:, order], counts, sigma) for log in logs)
+
+
+def _prepare(
+    model: Model,
+    outputs: Sequence[SignalDeclaration],
+    log: Log,
+    inputs: FloatArray,
+    counts: FloatArray,
+    sigma: FloatArray,
+) -> Run:
+    run = Run(
+        name=log.name,
+        time=np.ascontiguousarray(log.time),
+        inputs=stack([table(log.time, column, "hold") for column in inputs.T]),
+        held_inputs=np.ascontiguousarray(inputs),
+        measured=np.ascontiguousarray(log.outputs),
+        outputs=np.array([model.output_names.index(s.signal) for s in outputs], dtype=np.int64),
+        weight=1.0 / sigma,
+        counts=counts,
+        signals=tuple(s.signal for s in outputs),
+        start=np.empty(0),
+        unknowns=(),
+    )
+    return with_start(model, run)
+
+
+def _sigma(signal: SignalDeclaration, count: float, measured: Sequence[FloatArray]) -> float:
+    """Standard deviation of a signal: rounding, and the declared noise or else that in the logs."""
+    rounding = 0.0 if np.isnan(count) else count * ROUNDING
+    noise = signal.noise
+    if noise is None and rounding > 0.0:
+        seen = float(np.median([white_noise(column) for column in measured]))
+        noise = float(np.sqrt(max(seen**2 - rounding**2, 0.0)))
+    sigma = float(np.hypot(rounding, noise or 0.0))
+    if sigma == 0.0:
+        raise InputError(
+            f"Signal '{signal.signal}' has neither counts_per_revolution nor noise;"
+            f" give its noise (rms) in {signal.unit}."
+        )
+    return sigma
+
+
+def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
+    """`run` with a guess of the state at its first sample, and what is unknown of it.
+
+    A parabola through a tenth of a second gives the rate, in the middle of it where the run is a
+    window and `around` it is the rest of a log. A joint with dry friction
+    whose rate is within its noise is taken to be at rest; one that is near it may be. A moving
+    joint is driven: its gear touches the face ahead and has wound up the shaft, nobody knows by how
+    much.
+    """
+    states = list(model.state_names)
+    start = np.array(model.module.STATE_INITIAL, dtype=np.float64)
+    rubbing = {states[i] for i in model.friction_rates}
+    unknowns: list[StartUnknown] = []
+    for column, signal in enumerate(run.signals):
+        if signal not in states:
+            continue
+        axis = signal.removeprefix("theta_")
+        if axis == signal or f"omega_{axis}" not in states:
+            start[states.index(signal)] = run.measured[0, column]
+            continue
+        sigma = 1.0 / run.weight[column]
+        rate, error = _first_rate(run, column, around)
+        angles = [name for name in (signal, f"theta_gear_{axis}") if name in states]
+        rates = [name for name in (f"omega_{axis}", f"omega_gear_{axis}") if name in states]
+        start[[states.index(name) for name in angles]] = run.measured[0, column]
+        limit = 10.0 * sigma
+        unknowns.append(_unknown(states, signal, angles, limit, sigma))
+        may_rest = bool(rubbing & set(rates))
+        if may_rest and _stays(run, column):
+            continue
+        start[[states.index(name) for name in rates]] = rate
+        instead = (0.0, -rate) if may_rest and abs(rate) <= 3.0 * FAR * error else ()
+        unknowns.append(_unknown(states, rates[0], rates, ANYWHERE, error, instead))
+    for contact, (gear, joint) in enumerate(model.module.CONTACT_ANGLES):
+        tangent = np.zeros(len(states))
+        tangent[gear] = 1.0
+        rate = start[states.index(states[joint].replace("theta_", "omega_", 1))]
+        reach = ANYWHERE if around is not None or rate != 0.0 else 1.0
+        unknowns.append(
+            StartUnknown(
+                f"gap_place_{contact}",
+                tangent,
+                -reach,
+                reach,
+                reach,
+                contact,
+                run.signals.index(states[joint]) if states[joint] in run.signals else None,
+                guess=float(np.sign(rate)),
+            )
+        )
+    return replace(run, start=start, unknowns=tuple(unknowns))
+
+
+def _stays(run: Run, column: int) -> bool:
+    """Whether a signal stays within its noise at the start of a run."""
+    count = max(LEAST_START, int(np.searchsorted(run.time, run.time[0] + START_SPAN)))
+    return float(np.ptp(run.measured[:count, column])) <= 2.0 * FAR / run.weight[column]
+
+
+def _first_rate(run: Run, column: int, around: Around | None) -> tuple[float, float]:
+    """Rate at the first sample, and its standard deviation: that of the noise, and what a cubic
+    tells otherwise, for motion is no parabola.
+    """
+    if around is None:
+        time, values = run.time - run.time[0], run.measured[:, column]
+        part = slice(0, max(LEAST_START, int(np.searchsorted(time, START_SPAN))))
+    else:
+        time, values = around.time - run.time[0], around.measured[:, column]
+        half = max(LEAST_START // 2, int(np.searchsorted(time, 0.5 * START_SPAN) - around.first))
+        part = slice(max(0, around.first - half), around.first + half + 1)
+    rate, noise = _rate_over(run, column, time[part], values[part], 2)
+    other, _ = _rate_over(run, column, time[part], values[part], 3)
+    return rate, float(np.hypot(noise, other - rate))
+
+
+def _rate_over(
+    run: Run, column: int, time: FloatArray, values: FloatArray, degree: int
+) -> tuple[float, float]:
+    """Rate at time zero by a polynomial, and its standard deviation: noise as if white, rounding as
+    if it were the same in half of the samples.
+    """
+    longest = float(np.max(np.abs(time)))
+    columns = np.vander(time / longest, degree + 1, increasing=True)
+    inverse = np.linalg.pinv(columns)
+    rate = float(inverse[1] @ values) / longest
+    sigma = 1.0 / run.weight[column]
+    rounding = float(np.nan_to_num(run.counts[column])) * ROUNDING
+    white = np.sqrt(max(sigma**2 - rounding**2, 0.0)) * float(np.linalg.norm(inverse[1]))
+    return rate, float(np.hypot(white, 2.0 * rounding)) / longest
+
+
+def _unknown(
+    states: list[str],
+    name: str,
+    carried: list[str],
+    limit: float,
+    sigma: float,
+    instead: tuple[float, ...] = (),
+) -> StartUnknown:
+    tangent = np.zeros(len(states))
+    tangent[[states.index(c) for c in carried]] = 1.0
+    return StartUnknown(name, tangent, -limit, limit, sigma, instead=instead)
+
+
+def by_source(runs: Sequence[Run]) -> list[list[int]]:
+    """Indices of the runs, the windows of one run together."""
+    grouped: dict[str, list[int]] = {}
+    for index, run in enumerate(runs):
+        grouped.setdefault(run.name.partition("#")[0], []).append(index)
+    return list(grouped.values())
+
+
+def sizes(runs: Sequence[Run]) -> FloatArray:
+    """How many samples every run has [n]."""
+    return np.array([len(run.time) for run in runs], dtype=np.float64)

@@ -1,0 +1,66 @@
+"""Averages over parts of samples: of held inputs, and of values at the samples around a grid."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+def cell_averages(run: Run, column: int, delay: float, grid: IntArray) -> FloatArray:
+    """A held input [g], late by `delay` s, averaged over the cell around every sample of a grid."""
+    time = run.time[grid]
+    middle = 0.5 * (time[1:] + time[:-1])
+    edges = np.concatenate(
+        [[1.5 * time[0] - 0.5 * time[1]], middle, [1.5 * time[-1] - 0.5 * time[-2]]]
+    )
+    return _averages(run, column, edges - delay)
+
+
+def part_averages(run: Run, column: int, delay: float, parts: int) -> FloatArray:
+    """A held input, late by `delay` s, averaged over equal parts of every sample [k - 1, parts]."""
+    shares = np.arange(parts) / parts
+    edges = run.time[:-1, None] + np.diff(run.time)[:, None] * shares
+    flat = np.append(edges.ravel(), run.time[-1])
+    return _averages(run, column, flat - delay).reshape(-1, parts)
+
+
+def thinned(run: Run, period: float) -> Run:
+    """`run` with every so many samples alone that they come about every `period` s, the inputs
+    averaged in between; the run itself where less than two samples come in that time.
+    """
+    every = int(period / float(np.median(np.diff(run.time))) + 1e-6)
+    if every < 2:
+        return run
+    kept = np.arange(0, len(run.time), every)
+    time, last = run.time[kept], run.held_inputs[kept[-1:]]
+    means = [_averages(run, column, time) for column in range(run.held_inputs.shape[1])]
+    held = np.ascontiguousarray(np.vstack([np.column_stack(means), last]))
+    return replace(
+        run,
+        time=np.ascontiguousarray(time),
+        inputs=stack([table(time, column, "hold") for column in held.T]),
+        held_inputs=held,
+        measured=np.ascontiguousarray(run.measured[kept]),
+    )
+
+
+def _averages(run: Run, column: int, edges: FloatArray) -> FloatArray:
+    """Averages of a held input between neighbouring `edges`; before the first sample it is that."""
+    time, held = run.time, run.held_inputs[:, column]
+    integral = np.concatenate([[0.0], np.cumsum(held[:-1] * np.diff(time))])
+    at = np.interp(edges, time, integral)
+    at += np.where(edges < time[0], (edges - time[0]) * held[0], 0.0)
+    at += np.where(edges > time[-1], (edges - time[-1]) * held[-1], 0.0)
+    return np.diff(at) / np.diff(edges)
+
+
+def grid_averages(values: FloatArray, grid: IntArray) -> FloatArray:
+    """Averages [g, v] of `values` [k, v] over the samples nearest to every one of the grid."""
+    edges = np.concatenate([[0], (grid[1:] + grid[:-1] + 1) // 2, [len(values)]])
+    return np.add.reduceat(values, edges[:-1], axis=0) / np.diff(edges)[:, None]

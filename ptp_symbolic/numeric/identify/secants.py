@@ -1,0 +1,76 @@
+"""Derivatives over a finite step, where those at a point mislead.
+
+Inputs that are held from sample to sample let a friction break away at one sample or the next: the
+residual is then a staircase of the parameter, and its derivative sees the treads alone. Bounces in
+a gap that appear and vanish do the same. A difference over a finite step sees both.
+"""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.constants import MISLEADING, STEP
+from ptp_symbolic.numeric.identify.evaluate import Evaluation
+
+FloatArray = NDArray[np.float64]
+Shift = tuple[int, int]
+Residual = Callable[[int, FloatArray, FloatArray], FloatArray | None]
+
+
+@dataclass(eq=False)
+class Secants:
+    """Replaces misleading derivatives by phi with differences.
+
+    `residual(run, phi, z)` simulates one run (None: it failed); `upper` [nf] bounds phi. The first
+    call compares every column of every run, later ones only those that misled, `chosen`; `step` is
+    that of the differences.
+    """
+
+    residual: Residual
+    upper: FloatArray
+    executor: Executor | None = None
+    chosen: list[Shift] | None = None
+    step: float = STEP
+
+    def __call__(
+        self, phi: FloatArray, z: Sequence[FloatArray], evaluations: Sequence[Evaluation]
+    ) -> list[Evaluation]:
+        """`evaluations` at (phi, z) with their derivatives by phi mended."""
+        every = [(r, c) for r in range(len(evaluations)) for c in range(len(phi))]
+        shifts = every if self.chosen is None else self.chosen
+
+        def difference(shift: Shift) -> FloatArray:
+            run, column = shift
+            step = self.step if phi[column] + self.step <= self.upper[column] else -self.step
+            moved = phi.copy()
+            moved[column] += step
+            after = self.residual(run, moved, z[run])
+            if after is None:
+                return evaluations[run].by_parameter[:, column]
+            return (after - evaluations[run].residual) / step
+
+        run_each = self.executor.map if self.executor else map
+        columns = list(run_each(difference, shifts))
+        if self.chosen is None:
+            self.chosen = [
+                (r, c)
+                for (r, c), column in zip(shifts, columns, strict=True)
+                if _misleads(evaluations[r].by_parameter[:, c], column)
+            ]
+        return _replaced(evaluations, shifts, columns)
+
+
+def _misleads(tangent: FloatArray, secant: FloatArray) -> bool:
+    return bool(np.linalg.norm(tangent - secant) > MISLEADING * np.linalg.norm(secant))
+
+
+def _replaced(
+    evaluations: Sequence[Evaluation], shifts: Sequence[Shift], columns: Sequence[FloatArray]
+) -> list[Evaluation]:
+    jacobians = [e.by_parameter.copy() for e in evaluations]
+    for (run, column), values in zip(shifts, columns, strict=True):
+        jacobians[run][:, column] = values
+    return [replace(e, by_parameter=j) for e, j in zip(evaluations, jacobians, strict=True)]

@@ -1,0 +1,213 @@
+"""How long a run may be simulated freely: replay it with the noise of its inputs and look.
+
+A machine that forgets (a geared drive, damped by its back-EMF) is judged over whole runs. One that
+integrates its input noise, or whose errors grow (a torque-driven axis, a payload above the tilt
+axis), would be judged by that noise; it is cut into windows with starts of their own.
+"""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.constants import (
+    ALLOWED_COUNTS,
+    ALLOWED_GROWTH,
+    ALLOWED_RISE,
+    BEND,
+    LEAST_START,
+    LENGTHS,
+    MOST_CARRIED,
+    SEED,
+    SHORT,
+    START_SPAN,
+)
+from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
+from ptp_symbolic.numeric.identify.intervals import project_out
+from ptp_symbolic.numeric.identify.noise import white_noise
+from ptp_symbolic.numeric.identify.run import Around, Run, with_start
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
+
+FloatArray = NDArray[np.float64]
+
+
+def input_noise(run: Run, declared: Sequence[float | None]) -> FloatArray:
+    """Noise (rms) of every input [nu]: as declared, else as its samples show it."""
+    columns = zip(run.held_inputs.T, declared, strict=True)
+    return np.array([white_noise(column) if d is None else d for column, d in columns])
+
+
+def window_length(
+    model: Model, runs: Sequence[Run], p: FloatArray, declared_noise: Sequence[float | None]
+) -> float | None:
+    """Longest window in s over which input noise stays near the rounding of the encoder.
+
+    None where whole runs do. Where an error of the start grows tenfold, windows of 1 s at most.
+    """
+    if any(_grows(model, run, p) for run in runs):
+        lengths: tuple[float, ...] = tuple(x for x in LENGTHS if x <= SHORT)
+    else:
+        lengths = (np.inf, *LENGTHS)
+    rng = np.random.default_rng(SEED)
+    grown = [_drift(model, run, p, input_noise(run, declared_noise), rng) for run in runs]
+    durations = [float(run.time[-1] - run.time[0]) for run in runs]
+    allowed = max(ALLOWED_COUNTS, ALLOWED_RISE * _typical(grown, LENGTHS[-1]))
+    for length in lengths:
+        if _typical(grown, length) <= allowed:
+            return None if length >= max(durations) else float(length)
+    return LENGTHS[-1]
+
+
+def _typical(grown: Sequence[tuple[FloatArray, FloatArray]], length: float) -> float:
+    """Median over runs of the rms drift within `length` s of the start; infinite without runs."""
+    inside = [np.mean(drift[time <= length] ** 2) for drift, time in grown if time.size]
+    return float(np.sqrt(np.median(inside))) if inside else np.inf
+
+
+def _grows(model: Model, run: Run, p: FloatArray) -> bool:
+    """True when a small error of a starting angle grows by `ALLOWED_GROWTH` within the run."""
+    none = np.zeros(0, dtype=np.int64)
+    e = evaluate(model, run, p, run.guess, none, True, Tolerance())
+    angles = [i for i, u in enumerate(run.unknowns) if u.name.startswith("theta")]
+    if e.failed:
+        return True
+    by_angle = e.by_start[:, angles] / np.tile(run.weight, len(run.time))[:, None]
+    return bool(np.max(np.abs(by_angle), initial=0.0) > ALLOWED_GROWTH)
+
+
+def _drift(
+    model: Model, run: Run, p: FloatArray, noise: FloatArray, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray]:
+    """Difference in counts [k] between a run and its noisy replay, and the time since start."""
+    z = run.guess
+    found = _replay(model, run, p, z, noise, rng)
+    if found is None:
+        return np.zeros(0), np.zeros(0)
+    counts = in_counts(run, found[0])
+    return np.sqrt(np.mean(counts**2, axis=1)), run.time - run.time[0]
+
+
+def in_counts(run: Run, residual: FloatArray) -> FloatArray:
+    """Weighted residuals [k * ny] as counts [k, ne] of the encoder columns (all without one)."""
+    encoders = np.isfinite(run.counts)
+    table_of = residual.reshape(run.measured.shape)
+    return (table_of / run.weight / run.counts)[:, encoders] if encoders.any() else table_of
+
+
+def _replay(
+    model: Model,
+    run: Run,
+    p: FloatArray,
+    z: FloatArray,
+    noise: FloatArray,
+    rng: np.random.Generator,
+) -> tuple[FloatArray, FloatArray] | None:
+    """Change of the weighted residuals by input noise, and the Jacobian by the start of the run."""
+    shaken = run.held_inputs + noise * rng.standard_normal(run.held_inputs.shape)
+    noisy = replace(
+        run,
+        inputs=stack([table(run.time, column, "hold") for column in shaken.T]),
+        held_inputs=np.ascontiguousarray(shaken),
+    )
+    none = np.zeros(0, dtype=np.int64)
+    plain, other = (evaluate(model, r, p, z, none, True, Tolerance()) for r in (run, noisy))
+    if plain.failed or other.failed:
+        return None
+    return other.residual - plain.residual, plain.by_start
+
+
+def propagated_noise(
+    model: Model,
+    runs: Sequence[Run],
+    z: Sequence[FloatArray],
+    p: FloatArray,
+    declared_noise: Sequence[float | None],
+) -> FloatArray:
+    """What input noise leaves in the residual of a perfect model: rms [runs, ny], in units of the
+    noise of every signal (see `Run.weight`); nan where a run cannot be simulated.
+
+    Every run is replayed with noisy inputs; what its unknown start can take up is projected out.
+    """
+    rng = np.random.default_rng(SEED)
+    squares = np.full((len(runs), runs[0].measured.shape[1]), np.nan)
+    for row, (run, start) in enumerate(zip(runs, z, strict=True)):
+        found = _replay(model, run, p, start, input_noise(run, declared_noise), rng)
+        if found is not None:
+            change = project_out(found[0][:, None], found[1])[:, 0]
+            squares[row] = np.mean(change.reshape(run.measured.shape) ** 2, axis=0)
+    return np.sqrt(squares)
+
+
+def without_chaos(
+    model: Model,
+    runs: Sequence[Run],
+    z: Sequence[FloatArray],
+    left: FloatArray,
+    p: FloatArray,
+    declared_noise: Sequence[float | None],
+) -> tuple[Run, ...]:
+    """The runs, those cut into windows in which the noise of the inputs leaves more than the noise
+    of the signals and may be most of what is `left` [runs, ny]: bounces in a gap and breakaways
+    make it grow until nothing can be predicted.
+    """
+    carried = propagated_noise(model, runs, z, p, declared_noise)
+    grows = np.any((carried > MOST_CARRIED) & (left < BEND * carried), axis=1)
+    found: list[Run] = []
+    for run, chaotic in zip(runs, grows, strict=True):
+        found += split_run(model, run, SHORT) if chaotic else (run,)
+    return tuple(found)
+
+
+def cut(model: Model, runs: Sequence[Run], length: float | None) -> tuple[Run, ...]:
+    """Runs as they are, or cut into windows of about `length` s."""
+    if length is None:
+        return tuple(runs)
+    return tuple(piece for run in runs for piece in split_run(model, run, length))
+
+
+def _moving_edges(run: Run, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Shift inner edges by up to a quarter window to where every encoder moves fastest.
+
+    A window that starts near standstill may settle in the wrong branch of sticking and sliding.
+    """
+    encoders = np.flatnonzero(np.isfinite(run.counts))
+    if encoders.size == 0:
+        return edges
+    half = max(1, round(0.5 * START_SPAN / float(np.median(np.diff(run.time)))))
+    if len(run.time) <= 4 * half:
+        return edges
+    rate = np.zeros((len(run.time), encoders.size))
+    rate[half:-half] = run.measured[2 * half :, encoders] - run.measured[: -2 * half, encoders]
+    speed = np.abs(rate) / np.maximum(np.sqrt(np.mean(rate**2, axis=0)), 1e-300)
+    slowest = np.min(speed, axis=1)
+    reach = max(1, int(np.min(np.diff(edges)) // 4))
+    moved = [e - reach + int(np.argmax(slowest[e - reach : e + reach])) for e in edges[1:-1]]
+    return np.array([edges[0], *moved, edges[-1]])
+
+
+def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
+    """Cut a run into windows of about `length` s, each with a start of its own.
+
+    Neighbours share the sample between them, so that no step from sample to sample is lost.
+    """
+    duration = run.time[-1] - run.time[0]
+    pieces = max(1, min(round(duration / length), (len(run.time) - 1) // (2 * LEAST_START)))
+    if pieces == 1:
+        return (run,)
+    edges = _moving_edges(run, np.linspace(0, len(run.time) - 1, pieces + 1).astype(int))
+    windows = []
+    for number, (a, b) in enumerate(itertools.pairwise(edges)):
+        part = slice(a, b + 1)
+        piece = replace(
+            run,
+            name=f"{run.name}#{number + 1}",
+            time=np.ascontiguousarray(run.time[part]),
+            inputs=stack([table(run.time[part], c, "hold") for c in run.held_inputs[part].T]),
+            held_inputs=np.ascontiguousarray(run.held_inputs[part]),
+            measured=np.ascontiguousarray(run.measured[part]),
+        )
+        windows.append(with_start(model, piece, Around(run.time, run.measured, int(a))))
+    return tuple(windows)

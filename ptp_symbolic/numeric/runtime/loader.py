@@ -1,0 +1,61 @@
+"""Load emitted modules, committed or from a cache folder, after verifying their checksum."""
+
+import hashlib
+import importlib
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
+from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.numeric.runtime.model import Model
+
+TRAILER = "# END sha256 "
+
+
+def generated_folder() -> Path:
+    """Folder of the committed modules."""
+    return Path(next(iter(importlib.import_module("ptp_symbolic.generated").__path__)))
+
+
+def model_names() -> tuple[str, ...]:
+    """Names of the committed models."""
+    return tuple(sorted(p.stem for p in generated_folder().glob("*.py") if p.stem != "__init__"))
+
+
+def load_model(name: str) -> Model:
+    """Load a committed model by name.
+
+    Raises InputError for an unknown name or a module whose text does not fit its checksum.
+    """
+    if name not in model_names():
+        raise unknown("model", name, model_names())
+    return load_module(generated_folder() / f"{name}.py", f"ptp_symbolic.generated.{name}")
+
+
+def load_module(path: Path, import_name: str) -> Model:
+    """Load the emitted module at `path` under `import_name` (one name per module).
+
+    Raises InputError when the text of the module does not fit its checksum.
+    """
+    verify(path)
+    if import_name in sys.modules:
+        return Model(sys.modules[import_name])
+    spec = importlib.util.spec_from_file_location(import_name, path)
+    if spec is None or spec.loader is None:
+        raise InputError(f"{path} cannot be imported; regenerate it.")
+    module: ModuleType = importlib.util.module_from_spec(spec)
+    sys.modules[import_name] = module
+    spec.loader.exec_module(module)
+    return Model(module)
+
+
+def verify(path: Path) -> None:
+    """Raise InputError unless the last line of `path` is the SHA-256 of everything above it."""
+    text = path.read_text(encoding="utf-8")
+    above, found, digest = text.rpartition(TRAILER)
+    if not found or hashlib.sha256(above.encode()).hexdigest() != digest.strip():
+        raise InputError(
+            f"{path.name} does not fit its checksum: it was edited or truncated; run"
+            " 'ptp-symbolic regenerate'."
+        )

@@ -1,0 +1,265 @@
+"""An emitted model at run time: names, units, defaults and compiled functions."""
+
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ptp_symbolic.errors import InputError, unknown
+
+FloatArray = NDArray[np.float64]
+
+BOUND_SLACK = 1e-9  # relative: a search that ends on a bound may miss it by rounding
+
+
+@dataclass(frozen=True)
+class EffectInstance:
+    """An effect of a model: id, axis, its parameters, and texts for documents.
+
+    `members` are its nested versions, the simplest first: title, parameters, and pairs of a
+    parameter and the one whose value it takes. `acts_on` are keys of effects that it cannot do
+    without.
+    """
+
+    id: str
+    axis: str | None
+    parameters: tuple[str, ...]
+    members: tuple[tuple[str, tuple[str, ...], tuple[tuple[str, str], ...]], ...]
+    acts_on: tuple[str, ...]
+    title: str
+    reference: str
+    separating_experiment: str
+
+    @property
+    def key(self) -> str:
+        """Id and axis in one word, e.g. ``cable_spring@pan``."""
+        return self.id if self.axis is None else f"{self.id}@{self.axis}"
+
+
+@dataclass(frozen=True)
+class ModelParameter:
+    """A parameter of a model; see `ptp_symbolic.symbolic.parameters.Parameter` for the fields."""
+
+    name: str
+    unit: str
+    default: float
+    lower: float
+    upper: float
+    meaning: str
+    vanishes: float | None = None
+    starts: tuple[float, ...] = ()
+    period: float | None = None
+    locked_to: str | None = None
+
+
+@dataclass(frozen=True)
+class Model:
+    """The equations of one machine, compiled on first use; `declared` are its name, its title, and
+    default, lower and upper bound of every parameter where they are not those of the module.
+
+    `state_derivative(t, x, u, p, dx)` writes dx/dt in place; `rhs(t, x, u, p)` returns it. Arrays
+    are float64 in the order of `state_names` [n], `input_names` [nu] and `parameter_names` [np],
+    in the SI units of `units`. In models with friction or backlash the modes follow from the
+    state: resting friction holds as long as it can.
+    """
+
+    module: ModuleType
+    declared: tuple[str, str, Mapping[str, tuple[float, float, float]]] | None = None
+
+    @cached_property
+    def name(self) -> str:
+        """Name of the model."""
+        return str(self.module.NAME) if self.declared is None else self.declared[0]
+
+    @cached_property
+    def title(self) -> str:
+        """One line that says what the model is."""
+        return str(self.module.TITLE) if self.declared is None else self.declared[1]
+
+    @cached_property
+    def state_names(self) -> tuple[str, ...]:
+        """Names of the states."""
+        return tuple(self.module.STATE_NAMES)
+
+    @cached_property
+    def input_names(self) -> tuple[str, ...]:
+        """Names of the inputs."""
+        return tuple(self.module.INPUT_NAMES)
+
+    @cached_property
+    def output_names(self) -> tuple[str, ...]:
+        """Names of the signals that can be measured."""
+        return tuple(self.module.OUTPUT_NAMES)
+
+    @cached_property
+    def parameters(self) -> tuple[ModelParameter, ...]:
+        """The parameters with unit, default, bounds and where they vanish."""
+        search = {row[0]: row[1:] for row in self.module.SEARCH}
+        own = {} if self.declared is None else self.declared[2]
+        rows = (
+            (name, unit, *own.get(name, (default, lower, upper)), meaning, *search.get(name, ()))
+            for name, unit, default, lower, upper, meaning in self.module.PARAMETERS
+        )
+        return tuple(ModelParameter(*row) for row in rows)
+
+    @cached_property
+    def parameter_names(self) -> tuple[str, ...]:
+        """Names of the parameters."""
+        return tuple(p.name for p in self.parameters)
+
+    @cached_property
+    def defaults(self) -> dict[str, float]:
+        """Default of every parameter, SI."""
+        return {p.name: p.default for p in self.parameters}
+
+    @cached_property
+    def mode_names(self) -> tuple[str, ...]:
+        """Names of the modes: directions of friction, sides and activity of contacts."""
+        return tuple(self.module.MODE_NAMES)
+
+    @cached_property
+    def effects(self) -> tuple[EffectInstance, ...]:
+        """The effects in the equations."""
+        return tuple(EffectInstance(*row) for row in self.module.EFFECTS)
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """Unit of every state, input, output and parameter."""
+        m = self.module
+        names = (*m.STATE_NAMES, *m.INPUT_NAMES, *m.OUTPUT_NAMES, *self.parameter_names)
+        units = (
+            *m.STATE_UNITS,
+            *m.INPUT_UNITS,
+            *m.OUTPUT_UNITS,
+            *(p.unit for p in self.parameters),
+        )
+        return dict(zip(names, units, strict=True))
+
+    @cached_property
+    def friction_rates(self) -> NDArray[np.int64]:
+        """State index of the rate on which every friction acts."""
+        return np.array(self.module.FRICTION_RATES, dtype=np.int64)
+
+    @cached_property
+    def zero_at_rest(self) -> NDArray[np.int64]:
+        """Per state the friction that sets it to zero when it comes to rest, or -1."""
+        return np.array(self.module.ZERO_AT_REST, dtype=np.int64)
+
+    @cached_property
+    def contacts(self) -> NDArray[np.int64]:
+        """Per contact [c, 3]: state index of the rates at the gear output and at the joint; 0 where
+        it is sprung, 1 where rigid bodies strike, 2 where the joint is held in the gap as well.
+
+        A module whose contacts are all sprung does not list them.
+        """
+        sprung = np.zeros((len(self.module.CONTACT_ANGLES), 3), dtype=np.int64)
+        return np.asarray(vars(self.module).get("RIGID_CONTACTS", sprung))
+
+    @cached_property
+    def input_delays(self) -> NDArray[np.int64]:
+        """Per input the index of the parameter by which it is late, or -1."""
+        return np.array(self.module.INPUT_DELAYS, dtype=np.int64)
+
+    @cached_property
+    def sampler_periods(self) -> tuple[tuple[str, ...], ...]:
+        """Per sampler the parameters that its period follows from."""
+        return tuple(self.module.SAMPLERS)
+
+    @cached_property
+    def sampled(self) -> NDArray[np.int64]:
+        """Sampler and state index [r, 2] of everything that samplers set."""
+        return np.array(self.module.SAMPLED, dtype=np.int64).reshape(-1, 2)
+
+    @property
+    def moving(self) -> int:
+        """How many states move by themselves; the last ones are held and set by samplers."""
+        return len(self.state_names) - len(set(self.sampled[:, 1]))
+
+    @cached_property
+    def limits(self) -> tuple[tuple[str, str], ...]:
+        """States with limits beyond which the equations do not hold, each with its meaning."""
+        return tuple(self.module.DOMAIN)
+
+    def domain(self, p: FloatArray) -> FloatArray:
+        """Lower and upper bound [k, 2] of the states of `limits` at parameters p [np]."""
+        bounds = np.empty((len(self.limits), 2))
+        self.module.domain(p, bounds)
+        return bounds
+
+    def refuse_impossible(self, p: FloatArray, given: Collection[str] | None = None) -> None:
+        """Raise InputError when parameters p [np] break a relation that the machine needs.
+
+        With the names of those that were `given`, the message calls the others default.
+        """
+        margin = np.zeros(len(self.module.REQUIREMENTS))
+        self.module.margins(p, margin)
+        values = dict(zip(self.parameter_names, p, strict=True))
+        for (names, rule, strict), by in zip(self.module.REQUIREMENTS, margin, strict=True):
+            if not (by > 0.0 if strict else by >= 0.0):
+                said = ", ".join(
+                    f"{n} = {values[n]:g} {self.units[n]}"
+                    f"{'' if given is None or n in given else ' (default)'}"
+                    for n in names
+                )
+                raise InputError(f"Impossible {said}: {rule}.")
+
+    @cached_property
+    def state_derivative(self) -> Callable[..., None]:
+        """The jitted in-place function f(t, x, u, p, dx), for loops of your own.
+
+        Nothing is checked: all must be contiguous float64 arrays of the right length, or it reads
+        and writes beyond them. `rhs` checks.
+        """
+        return self.module.state_derivative
+
+    def rhs(self, t: float, x: ArrayLike, u: ArrayLike, p: ArrayLike) -> FloatArray:
+        """Return dx/dt [n] at time t in s, state x [n], input u [nu], parameters p [np].
+
+        Raises InputError for arrays of another shape.
+        """
+        dx = np.empty(len(self.state_names))
+        self.state_derivative(
+            float(t),
+            _vector("State x", x, self.state_names, ""),
+            _vector("Input u", u, self.input_names, ""),
+            _vector("Parameters p", p, self.parameter_names, "; parameter_vector() makes them"),
+            dx,
+        )
+        return dx
+
+    def parameter_vector(self, values: Mapping[str, float] | None = None) -> FloatArray:
+        """Return the parameters [np] in SI: defaults, replaced by `values`.
+
+        Raises InputError for a name that the model does not have and for a value that is not finite
+        or outside the bounds of its parameter.
+        """
+        values = values or {}
+        for name in values:
+            if name not in self.defaults:
+                raise unknown("parameter", name, self.parameter_names)
+        for p in self.parameters:
+            if p.name in values:
+                _refuse_out_of_bounds(p, values[p.name])
+        return np.array([values.get(n, d) for n, d in self.defaults.items()], dtype=np.float64)
+
+
+def _refuse_out_of_bounds(p: ModelParameter, value: float) -> None:
+    below, above = BOUND_SLACK * abs(p.lower), BOUND_SLACK * abs(p.upper)
+    if not p.lower - below <= value <= p.upper + above or not math.isfinite(value):
+        raise InputError(
+            f"Parameter '{p.name}' = {value:g} {p.unit} lies outside its bounds"
+            f" [{p.lower:g}, {p.upper:g}] {p.unit}; change the value."
+        )
+
+
+def _vector(what: str, given: ArrayLike, names: Sequence[str], hint: str) -> FloatArray:
+    array = np.asarray(given, dtype=np.float64)
+    if array.shape != (len(names),):
+        raise InputError(
+            f"{what} has shape {array.shape}; give [{len(names)}]: {', '.join(names)}{hint}."
+        )
+    return np.ascontiguousarray(array)

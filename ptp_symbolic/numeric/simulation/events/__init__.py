@@ -1,0 +1,1 @@
+"""Modes of friction and contact: when they end, where, and what follows."""

@@ -1,0 +1,118 @@
+"""Cross an event: settle the modes, and let the tangents jump (Aizerman and Gantmacher, 1958)."""
+
+from ptp_symbolic.numeric.simulation.events.impacts import clear_resting
+from ptp_symbolic.numeric.simulation.events.modes import settle, violation, violation_gradient
+from ptp_symbolic.numeric.simulation.events.pressed import PRESSED, derivative, fill_guards
+from ptp_symbolic.numeric.simulation.kernels.calls import call
+from ptp_symbolic.numeric.simulation.kernels.records import clear, copy, inlined, kernel
+from ptp_symbolic.numeric.simulation.outputs import note_strikes, note_switches
+from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
+
+GRAZING = 1e-9  # a guard that is only touched has no event time to differentiate
+AHEAD = 1e-7  # s
+
+
+@kernel
+def cross(equations, inputs, t, x, watch, tangents, record):
+    """Settle the modes at t, where one has ended; watch.before holds dx/dt before the event.
+
+    Returns False when the modes switch without end.
+    """
+    m, frictions, ns = watch.m, len(equations.friction_rates), tangents.table.shape[1]
+    evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)
+    copy(m, watch.m_before)
+    if ns > 0:
+        by_time = differentiate_guard(equations, inputs, t, x, watch)
+        follow_to_event(by_time, watch, tangents)
+    if not settle(equations, t, x, inputs.u, watch, tangents):
+        return False
+    note_switches(t, m, watch.m_before, frictions, equations.contacts, record)
+    note_strikes(watch, record)
+    if ns == 0:
+        return True
+    derivative(equations, t, x, inputs.u, m, watch.after)
+    for a in range(len(x)):
+        friction = equations.zero_at_rest[a]
+        if friction >= 0 and m[friction] == 0.0 and watch.m_before[friction] != 0.0:
+            clear(tangents.table[a])
+    follow_from_event(watch, tangents)
+    clear_resting(equations, m, tangents.table)
+    return True
+
+
+@inlined
+def differentiate_guard(equations, inputs, t, x, watch):
+    """Write the gradient of the guard that ended its mode; returns its derivative by time."""
+    m, p, rates = watch.m, equations.p, equations.friction_rates
+    fill_guards(equations, t, x, inputs.u, watch)
+    worst, element = -1e300, 0
+    for candidate in range(len(watch.at_end) - len(watch.limited)):
+        value = violation(candidate, x, m, watch.g, rates)
+        if value > worst:
+            worst, element = value, candidate
+    contact = element - len(rates)
+    if contact >= 0 and equations.contacts[contact, PRESSED] == 1:
+        clear(watch.by_x)  # it starts from rest without a jump
+        clear(watch.by_p)
+        return 0.0
+    call(equations.guard_jacobian, t, x, inputs.u, p, m, watch.gx, watch.gp)
+    violation_gradient(element, m, watch.g, watch.gx, watch.gp, rates, watch.by_x, watch.by_p)
+    if inputs.held:
+        return 0.0
+    evaluate_inputs(t + AHEAD, 1, *inputs.table, inputs.cursor, inputs.ahead)
+    fill_guards(equations, t, x, inputs.ahead, watch)
+    later = violation(element, x, m, watch.g, rates)
+    fill_guards(equations, t, x, inputs.u, watch)
+    return (later - violation(element, x, m, watch.g, rates)) / AHEAD
+
+
+@inlined
+def follow_to_event(by_time, watch, tangents):
+    """Add f- dt/dp to the tangents, dt/dp from the guard that ended the mode; keeps dt/dp.
+
+    Strikes act between this and `follow_from_event`, at the state where the event is.
+    """
+    s, columns, shifts = tangents.table, tangents.columns, tangents.along
+    n, ns = s.shape
+    for c in range(ns):
+        shifts[c] = 0.0
+    slope, size = by_time, abs(by_time)
+    for a in range(n):
+        slope += watch.by_x[a] * watch.before[a]
+        size += abs(watch.by_x[a] * watch.before[a])
+    if abs(slope) <= GRAZING * size:
+        return
+    for c in range(ns):
+        shift = watch.by_p[columns[c]] if c < len(columns) else 0.0
+        for a in range(n):
+            shift += watch.by_x[a] * s[a, c]
+        shift /= -slope
+        shifts[c] = shift
+        for a in range(n):
+            s[a, c] += watch.before[a] * shift
+
+
+@inlined
+def follow_from_event(watch, tangents):
+    """Take f+ dt/dp off the tangents."""
+    s = tangents.table
+    for c in range(s.shape[1]):
+        for a in range(s.shape[0]):
+            s[a, c] -= watch.after[a] * tangents.along[c]
+
+
+@kernel
+def jump_by_delay(equations, inputs, t, x, u_before, watch, tangents):
+    """Add (f- - f+) to the tangent of every delay whose held input has just changed."""
+    u, s = inputs.u, tangents.table
+    for j in range(len(u)):
+        column = tangents.delay_column[j]
+        if column < 0 or u[j] == u_before[j]:
+            continue
+        now = u[j]
+        derivative(equations, t, x, u, watch.m, watch.after)
+        u[j] = u_before[j]
+        derivative(equations, t, x, u, watch.m, watch.before)
+        u[j] = now
+        for a in range(len(x)):
+            s[a, column] += watch.before[a] - watch.after[a]

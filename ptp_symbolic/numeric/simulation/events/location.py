@@ -1,0 +1,149 @@
+"""Find the end of a mode or of the domain inside a step, and step to just past it."""
+
+from ptp_symbolic.numeric.simulation.events.domain import past_bound
+from ptp_symbolic.numeric.simulation.events.modes import largest_violation, violation
+from ptp_symbolic.numeric.simulation.events.pressed import fill_guards
+from ptp_symbolic.numeric.simulation.kernels.records import inlined, kernel, merged
+from ptp_symbolic.numeric.simulation.methods.steps import attempt, curve, fill_dense
+from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
+
+MISSES, NEAR_START = 4, 0.01
+TIME_RESOLUTION = 1e-12  # s
+LANDING = 2e-12  # s; how far past an event a step may end
+NEARLY = 0.25
+NEARBY = 1e-3  # of the way to the root: where the curve is asked how fast a mode ends
+
+
+@inlined
+def fill_violations(equations, inputs, t, x, watch, out):
+    """Write how far every element is past the end of its mode into out; returns the largest."""
+    fill_guards(equations, t, x, inputs.u, watch)
+    worst = -1e300
+    elements = len(out) - len(watch.limited)
+    for element in range(elements):
+        out[element] = violation(element, x, watch.m, watch.g, equations.friction_rates)
+        worst = max(worst, out[element])
+    for limit in range(len(watch.limited)):
+        out[elements + limit] = past_bound(limit, x, watch)
+        worst = max(worst, out[elements + limit])
+    return worst
+
+
+@kernel
+def violation_at(equations, inputs, t, x, watch):
+    """The largest violation at time t in s and state x; inputs as they are before a jump at t."""
+    if not inputs.held:
+        evaluate_inputs(t, -1, *inputs.table, inputs.cursor, inputs.u)
+    fill_guards(equations, t, x, inputs.u, watch)
+    worst = largest_violation(x, watch.m, watch.g, equations.friction_rates)
+    for limit in range(len(watch.limited)):
+        worst = max(worst, past_bound(limit, x, watch))
+    return worst
+
+
+@inlined
+def on_curve(equations, inputs, t, h, fraction, step, watch):
+    """The largest violation at a fraction of the step."""
+    curve(fraction, step, step.point)
+    return violation_at(equations, inputs, t + fraction * h, step.point, watch)
+
+
+@kernel
+def first_violation(equations, inputs, t, h, step, watch):
+    """A fraction of the step at which a mode is found to have ended; 0 if none has.
+
+    inputs.u is as at the end of the step. End and middle are looked at, and the summit of the
+    parabola through start, middle and end of every element whose summit comes near: a mode may end
+    and hold again within one step.
+    """
+    ended = fill_violations(equations, inputs, t + h, step.end, watch, watch.at_end) > 0.0
+    curve(0.5, step, step.point)
+    if not inputs.held:
+        evaluate_inputs(t + 0.5 * h, -1, *inputs.table, inputs.cursor, inputs.u)
+    if fill_violations(equations, inputs, t + 0.5 * h, step.point, watch, watch.at_middle) > 0.0:
+        return 0.5
+    for element in range(len(watch.at_end)):
+        start, end = watch.at_start[element], watch.at_end[element]
+        middle = watch.at_middle[element]
+        highest = summit(start, middle, end)
+        if highest > 0.0 and on_curve(equations, inputs, t, h, highest, step, watch) > 0.0:
+            return highest
+    return 1.0 if ended else 0.0
+
+
+@inlined
+def summit(start, middle, end):
+    """Fraction of a step where the parabola through three violations comes near zero, or 0."""
+    bend, rise = 2.0 * (start + end) - 4.0 * middle, 4.0 * middle - 3.0 * start - end
+    if not bend < 0.0 < rise < -2.0 * bend:
+        return 0.0
+    highest = -0.5 * rise / bend
+    size = abs(middle - start) + abs(end - middle)
+    return highest if start + highest * (rise + highest * bend) > -NEARLY * size else 0.0
+
+
+@kernel
+def root_on_curve(equations, inputs, t, h, high, step, watch):
+    """The fraction below `high` at which the largest violation passes zero (Illinois method)."""
+    low, below = 0.0, on_curve(equations, inputs, t, h, 0.0, step, watch)
+    above = on_curve(equations, inputs, t, h, high, step, watch)
+    side = 0
+    for _ in range(60):
+        if (high - low) * h <= TIME_RESOLUTION or above <= 0.0:
+            break
+        guess = 0.5 * (low + high)
+        if below < 0.0:
+            guess = max(low, min(high, high - above * (high - low) / (above - below)))
+        value = on_curve(equations, inputs, t, h, guess, step, watch)
+        if value > 0.0:
+            high, above = guess, value
+            below *= 0.5 if side > 0 else 1.0
+            side = 1
+        else:
+            low, below = guess, value
+            above *= 0.5 if side < 0 else 1.0
+            side = -1
+    return high
+
+
+@merged
+def locate_event(method, equations, inputs, t, h, fraction, x, step, watch):
+    """Length of the step that lands just past the first event; the attempt is left at that step.
+
+    The root on the curve is only as good as the curve: the step itself is repeated until it ends
+    past the event and no more than LANDING after it; how fast the mode ends, the curve tells too.
+    Where a few such steps end before any event, the last of them is taken: the next step begins
+    nearer and its curve is better. Only near the start of a step the search strides ahead, or no
+    progress would be made.
+    """
+    root = root_on_curve(equations, inputs, t, h, fraction, step, watch)
+    before = on_curve(equations, inputs, t, h, (1.0 - NEARBY) * root, step, watch)
+    after = on_curve(equations, inputs, t, h, root, step, watch)
+    length, rate = root * h, (after - before) / (NEARBY * root * h)
+    low, high = 0.0, h
+    last, reach, misses = -1.0, LANDING, 0
+    for _ in range(60):
+        attempt(method, equations, inputs, t, length, x, watch.m, step)
+        value = violation_at(equations, inputs, t + length, step.end, watch)
+        if last >= 0.0:
+            rate = (value - before) / (length - last) if length != last else 0.0
+        before, last = value, length
+        if not value <= 0.0:  # also when it is not a number
+            high = length
+            if high - low <= LANDING or (rate > 0.0 and value <= LANDING * rate):
+                break
+        else:
+            low, misses = length, misses + 1
+            if h - low <= TIME_RESOLUTION or (misses >= MISSES and low > NEAR_START * h):
+                break
+        ahead = LANDING if value <= 0.0 else -LANDING
+        if rate > 0.0:
+            ahead = 0.5 * LANDING - value / rate
+        if value <= 0.0 and misses >= MISSES:
+            reach = min(8.0 * reach, NEAR_START * h)
+            ahead = max(ahead, reach)
+        length += ahead
+        if not low < length < high:
+            length = 0.5 * (low + high)
+    fill_dense(method, length, x, step)
+    return length

@@ -1,0 +1,272 @@
+"""The compiled runner: adaptive steps by either method, located events, tangents through both.
+
+One runner serves every model: the emitted functions come in as typed function pointers. Steps end
+at every stop (sample of a held input, break of a profile) and where a sampler is due. A mode that
+ends inside a step is found on the step's interpolant, then by repeating the step itself until the
+landing point lies just past the event. The step length is carried over stops and events.
+"""
+
+from collections.abc import Callable
+from functools import lru_cache
+
+from numba import njit, types
+
+from ptp_symbolic.numeric.simulation.events.crossing import cross, jump_by_delay
+from ptp_symbolic.numeric.simulation.events.domain import is_finite, is_outside
+from ptp_symbolic.numeric.simulation.events.location import (
+    TIME_RESOLUTION,
+    fill_violations,
+    first_violation,
+    locate_event,
+)
+from ptp_symbolic.numeric.simulation.events.modes import settle
+from ptp_symbolic.numeric.simulation.kernels.records import (
+    CHATTERING,
+    DIVERGED,
+    DONE,
+    INSTANT,
+    INTEGERS,
+    KERNEL,
+    LARGEST_STATE,
+    LENGTH,
+    MACHINE_TYPES,
+    MATRIX,
+    OUTSIDE,
+    RECORD_TYPE,
+    SOURCES,
+    STEP_TYPE,
+    TANGENTS_TYPE,
+    TIME,
+    VECTOR,
+    WATCH_TYPE,
+    Inputs,
+    Record,
+    Step,
+    Tangents,
+    Watch,
+    copy,
+    equations_at,
+    flush,
+    merged,
+    source_stamp,
+)
+from ptp_symbolic.numeric.simulation.methods.exponential_step import (
+    PROPAGATOR,
+    Propagator,
+    reach_sample,
+)
+from ptp_symbolic.numeric.simulation.methods.step_length import is_balanced, next_length, try_step
+from ptp_symbolic.numeric.simulation.methods.steps import (
+    ROSENBROCK,
+    RUNGE_KUTTA,
+    begin,
+    end_slope,
+    push_tangents,
+)
+from ptp_symbolic.numeric.simulation.outputs import (
+    note_strikes,
+    note_switches,
+    work_done,
+    write_here,
+    write_inside,
+)
+from ptp_symbolic.numeric.simulation.sampling import (
+    SAMPLING,
+    Sampling,
+    is_due,
+    next_stop,
+    sample_at,
+)
+from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
+
+MAX_INSTANT_EVENTS = 100
+SHORTEST = 1e-11  # s
+INSTANT_STEP = 1e-10  # s
+
+_V, _M, _I = VECTOR, MATRIX, INTEGERS
+
+
+@merged
+def enter(equations, inputs, t, x, watch, tangents, record):
+    """Settle modes that the inputs from t on have ended; False when that does not end."""
+    elements = len(watch.at_end)
+    if elements == 0 or fill_violations(equations, inputs, t, x, watch, watch.at_start) <= 0.0:
+        return True
+    copy(watch.m, watch.m_before)
+    if not settle(equations, t, x, inputs.u, watch, tangents):
+        return False
+    note_switches(
+        t, watch.m, watch.m_before, len(equations.friction_rates), equations.contacts, record
+    )
+    note_strikes(watch, record)
+    fill_violations(equations, inputs, t, x, watch, watch.at_start)
+    return True
+
+
+@merged
+def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tangents, record):
+    """Take steps up to `stop`; returns a status."""
+    clock, counts = record.clock, record.counts
+    known = False
+    if is_outside(x, watch):
+        return OUTSIDE
+    while stop - clock[TIME] > TIME_RESOLUTION:
+        t = clock[TIME]
+        if not known:
+            begin(method, equations, inputs, t, x, watch.m, step)
+            known = True
+        length = next_length(stop - t, limits[1], clock)
+        if not try_step(method, equations, inputs, t, length, x, limits, atol, step, watch, record):
+            if clock[LENGTH] < SHORTEST:
+                return DIVERGED
+            continue
+        fraction = 0.0
+        if len(watch.at_end) > 0:
+            fraction = first_violation(equations, inputs, t, length, step, watch)
+        t_new = stop if length == stop - t else t + length
+        if fraction > 0.0:
+            length = locate_event(method, equations, inputs, t, length, fraction, x, step, watch)
+            t_new = t + length
+            if not is_balanced(equations, inputs, t, length, limits, step, watch, record):
+                continue
+            end_slope(method, equations, inputs, t_new, watch.m, step, watch.before)
+        if not is_finite(step.end, LARGEST_STATE):
+            return DIVERGED
+        leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record)
+        known = method == RUNGE_KUTTA
+        if known:
+            end_slope(method, equations, inputs, t_new, watch.m, step, step.slope)
+        if fraction > 0.0:
+            status = pass_event(equations, inputs, t_new, length, x, watch, tangents, record)
+            if status != DONE:
+                return status
+            known = False
+        else:
+            counts[INSTANT] = 0
+            copy(watch.at_end, watch.at_start)
+    clock[TIME] = stop
+    return DONE
+
+
+@merged
+def pass_event(equations, inputs, t, length, x, watch, tangents, record):
+    """Stop outside the domain, else cross to the next modes; returns a status."""
+    counts = record.counts
+    if is_outside(x, watch):
+        return OUTSIDE
+    counts[INSTANT] = counts[INSTANT] + 1 if length < INSTANT_STEP else 0
+    if counts[INSTANT] > MAX_INSTANT_EVENTS:
+        return CHATTERING
+    if not cross(equations, inputs, t, x, watch, tangents, record):
+        return CHATTERING
+    fill_violations(equations, inputs, t, x, watch, watch.at_start)
+    return DONE
+
+
+@merged
+def advance_by_samples(
+    method, equations, inputs, stop, x, limits, atol, step, watch, tangents, record, sampling,
+    propagator,
+):  # fmt: skip
+    """Advance to `stop`, running the samplers that come due until then and there.
+
+    The explicit method shares nothing with the exponential step: each checks the other.
+    """
+    plain = method == ROSENBROCK and len(sampling.due) > 0 and inputs.held
+    plain = plain and tangents.table.shape[1] == 0 and len(record.ledger) == 0
+    while True:
+        target = next_stop(stop, sampling)
+        if not plain or not reach_sample(
+            equations, inputs, target, x, limits, atol, step, watch, record, propagator
+        ):
+            status = advance(
+                method, equations, inputs, target, x, limits, atol, step, watch, tangents, record
+            )
+            if status != DONE:
+                return status
+        if is_due(target, sampling):
+            sample_at(equations, inputs, target, x, watch.m, tangents, sampling)
+        if target == stop:
+            return DONE
+        write_here(equations, inputs, target, x, watch.m, tangents, record)
+        copy(inputs.ahead, inputs.u)
+        if not enter(equations, inputs, target, x, watch, tangents, record):
+            return CHATTERING
+
+
+@merged
+def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record):
+    """Go to the end of an accepted step: outputs inside it, work done over it, tangents."""
+    write_inside(equations, inputs, t, length, t_new, watch.m, step, record)
+    if len(record.ledger) > 0:
+        for c in range(1, 3):
+            record.totals[c] += work_done(1.0, length, record.powers, c)
+    if tangents.table.shape[1] > 0:
+        push_tangents(method, equations, inputs, t, length, watch.m, step, tangents)
+        flush(tangents.s)
+    copy(step.end, x)
+    flush(x)
+    record.clock[TIME] = t_new
+
+
+def compiled_runner(sources: int) -> Callable[..., int]:
+    """The compiled runner, stamped with the `sources` it comes from (see `source_stamp`)."""
+
+    @njit(
+        types.int64(
+            types.int64,  # method
+            *MACHINE_TYPES,
+            _M,  # inputs: now, ahead, before [3, nu]
+            _V,  # x, changed in place
+            _V,  # stops, the first is the start
+            _V,  # rtol, largest step
+            _V,  # atol
+            STEP_TYPE,
+            WATCH_TYPE,
+            TANGENTS_TYPE,
+            RECORD_TYPE,
+            SAMPLING,
+            PROPAGATOR,
+        ),
+        cache=True,
+        **KERNEL,
+    )
+    def run(
+        method, functions, p, friction_rates, zero_at_rest, contacts, table, cursor, held, u, x,
+        stops, limits, atol, step, watch, tangents, record, sampling, propagator,
+    ):  # fmt: skip
+        """Integrate from the first to the last stop; returns a status, the rest is in `record`."""
+        record = Record(*record)
+        record.counts[SOURCES] = sources
+        equations = equations_at(functions, p, friction_rates, zero_at_rest, contacts)
+        inputs, step, watch = Inputs(table, cursor, held, u[0], u[1]), Step(*step), Watch(*watch)
+        tangents, sampling = Tangents(*tangents), Sampling(*sampling)
+        propagator = Propagator(*propagator)
+        record.clock[TIME], record.clock[LENGTH] = stops[0], limits[1]
+        if is_due(stops[0], sampling):
+            sample_at(equations, inputs, stops[0], x, watch.m, tangents, sampling)
+        evaluate_inputs(stops[0], 1, *inputs.table, inputs.cursor, inputs.u)
+        write_here(equations, inputs, stops[0], x, watch.m, tangents, record)
+        for index in range(1, len(stops)):
+            copy(inputs.u, u[2])
+            evaluate_inputs(stops[index - 1], 1, *inputs.table, inputs.cursor, inputs.u)
+            if tangents.table.shape[1] > 0 and index > 1:
+                jump_by_delay(equations, inputs, stops[index - 1], x, u[2], watch, tangents)
+            if not enter(equations, inputs, stops[index - 1], x, watch, tangents, record):
+                return CHATTERING
+            status = advance_by_samples(
+                method, equations, inputs, stops[index], x, limits, atol, step, watch, tangents,
+                record, sampling, propagator,
+            )  # fmt: skip
+            if status != DONE:
+                return status
+            write_here(equations, inputs, stops[index], x, watch.m, tangents, record)
+        return DONE
+
+    return run
+
+
+@lru_cache(maxsize=1)
+def runner() -> Callable[..., int]:
+    """The runner, compiled when it is first needed: about a minute once on a new machine."""
+    return compiled_runner(source_stamp())

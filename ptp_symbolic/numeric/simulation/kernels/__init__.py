@@ -1,0 +1,1 @@
+"""What compiled code shares: records, calls of emitted functions, small linear algebra."""

@@ -1,0 +1,156 @@
+"""Small dense systems: a product with an inverse, or triangular factors.
+
+A row with its diagonal alone, as a friction at rest has it, is never exchanged: rounding in a
+product of such rows would let the rest creep.
+"""
+
+from ptp_symbolic.numeric.simulation.kernels.lanes import LANES, load, nothing, plus_times, store
+from ptp_symbolic.numeric.simulation.kernels.records import inlined, kernel
+
+
+@inlined
+def weighted(weights, row, count, k, e):
+    """Elements e .. e + 3 of the sum of the first `count` stages k [8, w] by one row of weights."""
+    total = nothing()
+    for j in range(count):
+        total = plus_times(total, weights[row, j], load(k[j], e))
+    return total
+
+
+@inlined
+def add_stages(i, weights, scale, k, out):
+    """Add the stages k [8, w] before i with row i of their weights, times scale, to out [w]."""
+    for e in range(0, len(out), LANES):
+        store(plus_times(load(out, e), scale, weighted(weights, i, i, k, e)), out, e)
+
+
+@inlined
+def multiply(columns, vector, added, out):
+    """Write the sum of columns [m, w] weighted by the first m of vector + added into w of out.
+
+    The two are added one by one: what has just been stored singly is slow to be loaded in fours.
+    """
+    for e in range(0, columns.shape[1], LANES):
+        total = nothing()
+        for j in range(columns.shape[0]):
+            total = plus_times(total, vector[j] + added[j], load(columns[j], e))
+        store(total, out, e)
+
+
+@inlined
+def add_product(matrix, vectors, out):
+    """Add matrix [n, n or more] times vectors to out, both [n * columns] row by row."""
+    n = matrix.shape[0]
+    width = len(out) // n
+    for a in range(n):
+        for c in range(0, width, LANES):
+            total = load(out, a * width + c)
+            for b in range(n):
+                total = plus_times(total, matrix[a, b], load(vectors, b * width + c))
+            store(total, out, a * width + c)
+
+
+@inlined
+def add_sparse_product(matrix, vectors, out):
+    """Add matrix [n, n], most of whose entries are zero, times vectors [n * columns] to out."""
+    n = matrix.shape[0]
+    width = len(out) // n
+    for a in range(n):
+        for b in range(n):
+            if matrix[a, b] != 0.0:
+                add_scaled(matrix[a, b], vectors, b * width, out, a * width, width)
+
+
+@inlined
+def add_scaled(factor, source, first, target, at, count):
+    """Add factor times `count` elements of a vector from `first` on to those of another."""
+    for e in range(0, count, LANES):
+        total = plus_times(load(target, at + e), factor, load(source, first + e))
+        store(total, target, at + e)
+
+
+@inlined
+def _is_coupled(a, row):
+    """Whether a row has more than its diagonal."""
+    coupled = False
+    for j in range(a.shape[0]):
+        coupled = coupled or (j != row and a[row, j] != 0.0)
+    return coupled
+
+
+@kernel
+def invert(fx, rate, a, order, transposed):
+    """Write the inverse of rate I - fx into a [n, w] and, by columns, into transposed [n, w].
+
+    Eight products follow with every inverse: for a dozen states they cost less than
+    substitutions, which wait for one division after the other.
+    """
+    n, width = a.shape
+    for i in range(n):
+        for j in range(n):
+            a[i, j] = -fx[i, j]
+        a[i, i] += rate
+    for c in range(n):
+        pivot = c
+        if _is_coupled(a, c):
+            for i in range(c + 1, n):
+                if abs(a[i, c]) > abs(a[pivot, c]):
+                    pivot = i
+        order[c] = pivot
+        if pivot != c:
+            for j in range(n):
+                a[c, j], a[pivot, j] = a[pivot, j], a[c, j]
+        scale = 1.0 / a[c, c]
+        for e in range(0, width, LANES):
+            store(plus_times(nothing(), scale, load(a[c], e)), a[c], e)
+        for i in range(n):
+            factor = a[i, c]
+            if i != c and factor != 0.0:
+                add_scaled(-factor, a[c], 0, a[i], 0, width)
+                a[i, c] = -factor * scale  # last: four at once are slow to see a single one
+        a[c, c] = scale
+    for c in range(n - 1, -1, -1):
+        if order[c] != c:
+            for i in range(n):
+                a[i, c], a[i, order[c]] = a[i, order[c]], a[i, c]
+    for i in range(n):
+        for j in range(n):
+            transposed[j, i] = a[i, j]
+
+
+@kernel
+def factor(a, order):
+    """Replace a [n, n] by its triangular factors, rows swapped as `order` [n] records."""
+    n = a.shape[0]
+    for k in range(n):
+        pivot = k
+        if _is_coupled(a, k):
+            for i in range(k + 1, n):
+                if abs(a[i, k]) > abs(a[pivot, k]):
+                    pivot = i
+        order[k] = pivot
+        if pivot != k:
+            for j in range(n):
+                a[k, j], a[pivot, j] = a[pivot, j], a[k, j]
+        inverse = 1.0 / a[k, k]
+        for i in range(k + 1, n):
+            if a[i, k] != 0.0:
+                a[i, k] *= inverse
+                for j in range(k + 1, n):
+                    a[i, j] -= a[i, k] * a[k, j]
+
+
+@kernel
+def solve(a, order, b):
+    """Replace the right-hand side b [n] by the solution, with the factors from `factor`."""
+    n = len(b)
+    for k in range(n):
+        pivot = order[k]
+        b[k], b[pivot] = b[pivot], b[k]
+    for i in range(1, n):
+        for j in range(i):
+            b[i] -= a[i, j] * b[j]
+    for i in range(n - 1, -1, -1):
+        for j in range(i + 1, n):
+            b[i] -= a[i, j] * b[j]
+        b[i] /= a[i, i]

@@ -1,0 +1,242 @@
+"""What the compiled kernels share: their options, and the records that travel between them.
+
+Kernels allocate nothing, so that numba need not count references: counting costs more than the
+arithmetic of a step. They are inlined, so that a record costs nothing either.
+"""
+
+import hashlib
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from numba import njit, types
+
+KERNEL: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+# Inner kernels are called by kernels alone: from Python a call crashes, for there is no way in.
+INNER = KERNEL | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+kernel = njit(**INNER)
+inlined = njit(forceinline=True, **INNER)
+merged = njit(inline="always", **INNER)  # for large ones: not compiled by itself as well
+
+SMALLEST = 1e-60
+DONE, DIVERGED, CHATTERING, UNDECIDED, OUTSIDE = 0, 1, 2, 3, 4
+LARGEST_STATE = 1e12
+TIME, LENGTH = 0, 1
+OUTPUT, EVENTS, STEPS, INSTANT, SOURCES, UNBALANCED = 0, 1, 2, 3, 4, 5
+
+VECTOR, MATRIX = types.float64[::1], types.float64[:, ::1]
+CUBE, INTEGERS = types.float64[:, :, ::1], types.int64[::1]
+TABLE_OF_CONTACTS = types.int64[:, ::1]
+TABLE = types.Tuple((VECTOR, MATRIX, INTEGERS, MATRIX, INTEGERS, MATRIX, INTEGERS))
+
+
+class Equations(NamedTuple):
+    """The emitted functions of a model, its parameters p [np], and where its frictions act.
+
+    friction_rates: state index of the rate of every friction; zero_at_rest [n]: per state the
+    friction that sets it to zero when it comes to rest, or -1; contacts [c, 5]: state index of the
+    rates at the gear output and at the joint; 0 for a sprung contact, 1 for rigid bodies, 2 for
+    rigid bodies whose joint is held in the gap; 1 while such a joint is pressed, see `pressed`; 1
+    while strikes do not bounce, see `fixed_runner`.
+    """
+
+    derivative: Any
+    jacobian: Any
+    guards: Any
+    guard_jacobian: Any
+    energy: Any
+    p: Any
+    friction_rates: Any
+    zero_at_rest: Any
+    impacts: Any
+    impact_jacobian: Any
+    contacts: Any
+
+
+class Inputs(NamedTuple):
+    """Inputs as an InputTable; `held`: they change at stops only.
+
+    u [nu]: the values asked for last; ahead [nu]: values or slopes at another time.
+    """
+
+    table: Any
+    cursor: Any
+    held: Any
+    u: Any
+    ahead: Any
+
+
+class Step(NamedTuple):
+    """What is known at the start of a step, what an attempt found, and the curve between.
+
+    Rows have a width w of n rounded up to a multiple of LANES (see `lanes`), zero beyond n.
+    slope, by_time [w]: dx/dt at the start and its derivative by time alone; stage, k [8, w];
+    end [n]; dense [5, w]: the state as a polynomial in the fraction of the step; fx [n, n],
+    fu [n, nu], fp [n, np] at the start; inverse of the matrix of the implicit stages, also by
+    columns [n, w], with no tangents without the states that are held, and its row exchanges
+    `order` [n]; point, right, added [w]: scratch.
+    """
+
+    slope: Any
+    by_time: Any
+    stage: Any
+    k: Any
+    end: Any
+    dense: Any
+    fx: Any
+    fu: Any
+    fp: Any
+    inverse: Any
+    columns: Any
+    order: Any
+    point: Any
+    right: Any
+    added: Any
+
+
+class Watch(NamedTuple):
+    """Guards g, modes m and m_before, and how far every element is past the end of its mode.
+
+    at_start, at_middle, at_end [elements + limits] belong to the step, limits of the domain last;
+    gx, gp, by_x [n], by_p [np]: the derivatives of guards and of a violation; strike [c (n + 2)],
+    strike_x, strike_p: as `impacts` writes them, and their derivatives; lost [1]: energy that
+    strikes have taken; energies [2, 3]: two ledgers to compare; limited [limits]: index of every
+    state with bounds [limits, 2]; m_kept, trial [n]: modes, and dx/dt in others tried instead.
+    """
+
+    g: Any
+    m: Any
+    m_before: Any
+    at_start: Any
+    at_middle: Any
+    at_end: Any
+    gx: Any
+    gp: Any
+    by_x: Any
+    by_p: Any
+    before: Any
+    after: Any
+    strike: Any
+    strike_x: Any
+    strike_p: Any
+    lost: Any
+    energies: Any
+    limited: Any
+    bounds: Any
+    m_kept: Any
+    trial: Any
+
+
+class Tangents(NamedTuple):
+    """Derivatives of the state: first by the parameters `columns`, then by others.
+
+    s [n * ns] row by row, and the same as `table` [n, ns], ns rounded up to a multiple of LANES;
+    delay_column [nu]: per input the column of its delay, or -1; k [8, n * ns], point, right,
+    along [n * ns]: stages; fx [3, n, n], by [3, n * ns], matrix [n, n], fu, fp: the variational
+    equation along the step.
+    """
+
+    s: Any
+    table: Any
+    columns: Any
+    delay_column: Any
+    k: Any
+    point: Any
+    right: Any
+    along: Any
+    fx: Any
+    by: Any
+    matrix: Any
+    fu: Any
+    fp: Any
+
+
+class Record(NamedTuple):
+    """Output at `times` [k]: x [k, n], s [k, n, ns], ledger [k, 3] (or no rows), events [c, 3].
+
+    totals [3]: work so far; powers [4, 3]: stored energy, power in and dissipated power over the
+    step; clock [2]: time, next step length; counts [6]: outputs, events, steps, instant events, the
+    stamp of the sources that the runner was compiled from, steps whose ledger would not close.
+    """
+
+    times: Any
+    x: Any
+    s: Any
+    ledger: Any
+    events: Any
+    totals: Any
+    powers: Any
+    clock: Any
+    counts: Any
+
+
+_V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
+MACHINE_TYPES = (
+    _I,  # addresses of the emitted functions
+    _V,  # parameters
+    _I,  # state index of the rate of every friction
+    _I,  # per state the friction that zeroes it when it comes to rest, or -1
+    TABLE_OF_CONTACTS,
+    TABLE,
+    _I,  # cursor [nu]
+    types.boolean,  # inputs are held between stops
+)
+STEP_TYPE = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V, _V))
+WATCH_TYPE = types.Tuple(
+    (_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _V, _M, _I, _M, _V, _V)
+)
+TANGENTS_TYPE = types.Tuple((_V, _M, _I, _I, _M, _V, _V, _V, _C, _M, _M, _M, _M))
+RECORD_TYPE = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
+
+
+def source_stamp() -> int:
+    """A number that changes with any source of the kernels.
+
+    numba keeps a compiled function until its own file changes; a runner that holds this number
+    is compiled anew when a kernel in another file has changed.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parents[1].rglob("*.py")):
+        digest.update(path.read_bytes())
+    return int.from_bytes(digest.digest()[:7], "big")
+
+
+@inlined
+def equations_at(functions, p, friction_rates, zero_at_rest, contacts):
+    """Equations of the model whose emitted functions have the addresses `functions` [7]."""
+    derivative, jacobian, guards, guard_jacobian, energy, impacts, impact_jacobian = (
+        functions[0], functions[1], functions[2], functions[3], functions[4], functions[5],
+        functions[6],
+    )  # fmt: skip
+    return Equations(
+        derivative, jacobian, guards, guard_jacobian, energy, p, friction_rates, zero_at_rest,
+        impacts, impact_jacobian, contacts,
+    )  # fmt: skip
+
+
+@inlined
+def copy(source, target):
+    """Copy a vector."""
+    for i in range(len(target)):
+        target[i] = source[i]
+
+
+@inlined
+def clear(target):
+    """Set a vector to zero."""
+    for i in range(len(target)):
+        target[i] = 0.0
+
+
+@inlined
+def copy_matrix(source, target):
+    """Copy a matrix."""
+    for i in range(target.shape[0]):
+        for j in range(target.shape[1]):
+            target[i, j] = source[i, j]
+
+
+@inlined
+def flush(values):
+    """Set denormal numbers of a vector to zero: they slow every loop."""
+    for i in range(len(values)):
+        values[i] = values[i] if abs(values[i]) >= SMALLEST else 0.0

@@ -1,0 +1,1 @@
+"""One file per method of integration, its coefficients beside it."""

@@ -1,0 +1,184 @@
+"""The implicit method for stiff machines: Rodas5P with the emitted Jacobian, and its tangents."""
+
+from ptp_symbolic.numeric.simulation.events.pressed import derivative, hold_at_rest, jacobian
+from ptp_symbolic.numeric.simulation.kernels.lanes import LANES, load, nothing, plus_times, store
+from ptp_symbolic.numeric.simulation.kernels.linear import (
+    add_product,
+    add_scaled,
+    add_sparse_product,
+    add_stages,
+    invert,
+    multiply,
+    weighted,
+)
+from ptp_symbolic.numeric.simulation.kernels.records import copy, copy_matrix, inlined, kernel
+from ptp_symbolic.numeric.simulation.methods.drive import TIME_DIFFERENCE, fill_drive
+from ptp_symbolic.numeric.simulation.methods.rodas5p import COUPLING, GAMMA, STAGES, A, C, D, H
+from ptp_symbolic.numeric.simulation.signals.input_values import (
+    evaluate_input_slopes,
+    evaluate_inputs,
+)
+
+
+@kernel
+def begin(equations, inputs, t, x, m, step):
+    """Take slope, Jacobian and derivative by time at the start of a step."""
+    n = len(x)
+    derivative(equations, t, x, inputs.u, m, step.slope)
+    jacobian(equations, t, x, inputs.u, m, step.fx, step.fu, step.fp)
+    derivative(equations, t + TIME_DIFFERENCE, x, inputs.u, m, step.right)
+    moves = False
+    for a in range(n):
+        step.by_time[a] = 0.0
+        moves = moves or step.right[a] != step.slope[a]
+    if moves:
+        derivative(equations, t - TIME_DIFFERENCE, x, inputs.u, m, step.point)
+        for a in range(n):
+            step.by_time[a] = (step.right[a] - step.point[a]) / (2.0 * TIME_DIFFERENCE)
+    if not inputs.held:
+        evaluate_input_slopes(t, 1, *inputs.table, inputs.cursor, inputs.ahead)
+        for a in range(n):
+            for c in range(len(inputs.ahead)):
+                step.by_time[a] += step.fu[a, c] * inputs.ahead[c]
+
+
+@kernel
+def attempt(equations, inputs, t, h, x, m, step):
+    """Try a step of length h in s: fill the increments k and the end point.
+
+    States that samplers hold come last; the inverse may leave them out.
+    """
+    point, right, added = step.point, step.right, step.added
+    invert(step.fx, 1.0 / (h * GAMMA), step.inverse, step.order, step.columns)
+    for i in range(STAGES):
+        for e in range(0, len(added), LANES):
+            by_time = plus_times(nothing(), h * D[i], load(step.by_time, e))
+            store(plus_times(by_time, 1.0 / h, weighted(COUPLING, i, i, step.k, e)), added, e)
+        if i == 0:
+            copy(step.slope, right)
+        else:
+            place_stage(i, x, step.k, point)
+            if not inputs.held and i < 6:
+                side = -1 if C[i] == 1.0 else 1
+                evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
+            derivative(equations, t + C[i] * h, point, inputs.u, m, right)
+        multiply(step.columns, right, added, step.k[i])
+    for a in range(len(x)):
+        step.end[a] = point[a] + step.k[STAGES - 1, a]
+    hold_at_rest(equations, m, x, step.end)
+
+
+@inlined
+def place_stage(i, x, k, point):
+    """Write the point of stage i; the last two go on from the stage before them."""
+    if i > 5:
+        for a in range(len(x)):
+            point[a] += k[i - 1, a]
+        return
+    for e in range(0, len(point), LANES):
+        store(weighted(A, i, i, k, e), point, e)
+    for a in range(len(x)):
+        point[a] += x[a]
+
+
+@inlined
+def fill_dense(x, step):
+    """Write the interpolant of the step as a polynomial in the fraction of the step."""
+    d = step.dense
+    for e in range(0, d.shape[1], LANES):
+        first = weighted(H, 0, STAGES, step.k, e)
+        second = weighted(H, 1, STAGES, step.k, e)
+        third = weighted(H, 2, STAGES, step.k, e)
+        store(first, d[1], e)
+        store(plus_times(second, -1.0, first), d[2], e)
+        store(plus_times(third, -1.0, second), d[3], e)
+        store(plus_times(nothing(), -1.0, third), d[4], e)
+    for a in range(len(x)):
+        d[0, a] = x[a]
+        d[1, a] += step.end[a] - x[a]
+
+
+@kernel
+def push_tangents(equations, inputs, t, h, m, step, tangents):
+    """Carry the tangents over an accepted step with the same method and the same inverse.
+
+    The variational equation is linear; its coefficients are a parabola in time through start,
+    middle and end of the step, so that three Jacobians do where the stages would need sixteen.
+    With W = rate I - fx at the start, inverse(W) fx s = rate inverse(W) s - s: only the change of
+    fx over the step is ever multiplied, and it has few entries.
+    """
+    rate = 1.0 / (h * GAMMA)
+    s, point, right, along = tangents.s, tangents.point, tangents.right, tangents.along
+    fit_coefficients(equations, inputs, t, h, m, step, tangents)
+    copy(tangents.by[1], along)
+    add_sparse_product(tangents.fx[1], s, along)
+    for i in range(STAGES):
+        k = tangents.k[i]
+        if i > 5:
+            add_scaled(1.0, tangents.k[i - 1], 0, point, 0, len(s))
+        else:
+            copy(s, point)
+            add_stages(i, A, 1.0, tangents.k, point)
+        place_coefficients(C[i], tangents)
+        for e in range(0, len(s), LANES):
+            here = load(point, e)
+            driven = plus_times(load(right, e), D[i], load(along, e))
+            store(plus_times(driven, rate, here), right, e)
+            store(plus_times(nothing(), -1.0, here), k, e)
+        add_sparse_product(tangents.matrix, point, right)
+        add_stages(i, COUPLING, 1.0 / h, tangents.k, right)
+        add_product(step.inverse, right, k)
+    copy(point, s)
+    add_scaled(1.0, tangents.k[STAGES - 1], 0, s, 0, len(s))
+
+
+@inlined
+def fit_coefficients(equations, inputs, t, h, m, step, tangents):
+    """Write the parabolas of the variational equation in the fraction of the step."""
+    n = len(step.end)
+    for node in range(3):
+        time, fraction = t + 0.5 * node * h, 0.5 * node
+        for a in range(n):
+            step.point[a] = step.dense[0, a]
+            for power in range(1, 5):
+                step.point[a] += step.dense[power, a] * fraction**power
+        if not inputs.held:
+            side = -1 if node == 2 else 1
+            evaluate_inputs(time, side, *inputs.table, inputs.cursor, inputs.u)
+            evaluate_input_slopes(time, side, *inputs.table, inputs.cursor, inputs.ahead)
+        if node == 0:
+            copy_matrix(step.fu, tangents.fu)
+            copy_matrix(step.fp, tangents.fp)
+            copy_matrix(step.fx, tangents.fx[0])
+        else:
+            jacobian(
+                equations, time, step.point, inputs.u, m, tangents.fx[node], tangents.fu,
+                tangents.fp,
+            )  # fmt: skip
+        fill_drive(inputs, tangents, tangents.by[node])
+    for a in range(n):
+        parabola(tangents.fx[0, a], tangents.fx[1, a], tangents.fx[2, a])
+    parabola(tangents.by[0], tangents.by[1], tangents.by[2])
+
+
+@inlined
+def parabola(start, middle, end):
+    """Replace values at start, middle and end by coefficients in the fraction of the step."""
+    for e in range(len(start)):
+        a, b, c = start[e], middle[e], end[e]
+        middle[e] = 4.0 * b - 3.0 * a - c
+        end[e] = 2.0 * (a + c) - 4.0 * b
+
+
+@inlined
+def place_coefficients(fraction, tangents):
+    """Write the change of fx and what drives the tangents at a fraction of the step."""
+    square = fraction * fraction
+    start, first, second = tangents.by[0], tangents.by[1], tangents.by[2]
+    for e in range(0, len(start), LANES):
+        rising = plus_times(load(start, e), fraction, load(first, e))
+        store(plus_times(rising, square, load(second, e)), tangents.right, e)
+    for a in range(tangents.matrix.shape[0]):
+        first, second = tangents.fx[1, a], tangents.fx[2, a]
+        for b in range(len(first)):
+            tangents.matrix[a, b] = fraction * first[b] + square * second[b]

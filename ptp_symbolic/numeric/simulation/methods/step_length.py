@@ -1,0 +1,52 @@
+"""Try a step, and plan the next from its error; the plan is kept over stops and events."""
+
+import numpy as np
+
+from ptp_symbolic.numeric.simulation.kernels.records import LENGTH, STEPS, inlined
+from ptp_symbolic.numeric.simulation.methods.steps import attempt, error_norm, fill_dense
+from ptp_symbolic.numeric.simulation.outputs import fill_powers, ledger_error
+
+
+@inlined
+def next_length(remaining, largest, clock):
+    """Length of the next attempt: as planned, but so that equal steps reach the stop."""
+    planned = min(clock[LENGTH], largest)
+    return remaining if planned >= remaining else remaining / np.ceil(remaining / planned)
+
+
+@inlined
+def accept(error, length, clock):
+    """Plan the next step from the error of an attempt; False when it must be repeated."""
+    if not error < 1e10:
+        error = 1e10
+    if error > 1.0:
+        clock[LENGTH] = length * max(0.2, 0.9 * error**-0.2)
+        return False
+    grow = 5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2)
+    if grow > 1.0 or clock[LENGTH] <= length:
+        clock[LENGTH] = length * grow
+    return True
+
+
+@inlined
+def try_step(method, equations, inputs, t, length, x, limits, atol, step, watch, record):
+    """Try a step and plan the next; leaves its curve and powers. False when it must be repeated."""
+    record.counts[STEPS] += 1
+    attempt(method, equations, inputs, t, length, x, watch.m, step)
+    error = error_norm(method, length, x, step, limits[0], atol)
+    if error <= 1.0:
+        fill_dense(method, length, x, step)
+        if len(record.ledger) > 0:
+            fill_powers(equations, inputs, t, length, watch.m, step, record)
+            error = max(error, ledger_error(length, limits[0], record))
+    return accept(error, length, record.clock)
+
+
+@inlined
+def is_balanced(equations, inputs, t, length, limits, step, watch, record):
+    """Take the powers anew over a step that an event has shortened; False to repeat it."""
+    if len(record.ledger) == 0:
+        return True
+    fill_powers(equations, inputs, t, length, watch.m, step, record)
+    error = ledger_error(length, limits[0], record)
+    return error <= 1.0 or accept(error, length, record.clock)

@@ -1,0 +1,99 @@
+"""One step by either method, behind one face: begin, attempt, error, curve, tangents."""
+
+import math
+
+from ptp_symbolic.numeric.simulation.events.pressed import derivative
+from ptp_symbolic.numeric.simulation.kernels.records import copy, inlined, kernel, merged
+from ptp_symbolic.numeric.simulation.methods import rosenbrock, runge_kutta
+from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
+
+RUNGE_KUTTA, ROSENBROCK = 0, 1
+
+_begin_implicit = rosenbrock.begin
+_attempt_implicit, _attempt_explicit = rosenbrock.attempt, runge_kutta.attempt
+_dense_implicit, _dense_explicit = rosenbrock.fill_dense, runge_kutta.fill_dense
+_push_implicit, _push_explicit = rosenbrock.push_tangents, runge_kutta.push_tangents
+_error_explicit = runge_kutta.error_of
+LAST_EXPLICIT, LAST_IMPLICIT = runge_kutta.STAGES - 1, rosenbrock.STAGES - 1
+
+
+@inlined
+def begin(method, equations, inputs, t, x, m, step):
+    """Take what the method needs to know at the start of a step; leaves inputs.u as it is there."""
+    if not inputs.held:
+        evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)
+    if method == ROSENBROCK:
+        _begin_implicit(equations, inputs, t, x, m, step)
+    else:
+        derivative(equations, t, x, inputs.u, m, step.slope)
+
+
+@kernel
+def attempt(method, equations, inputs, t, h, x, m, step):
+    """Try a step of length h in s from x at t."""
+    if method == ROSENBROCK:
+        _attempt_implicit(equations, inputs, t, h, x, m, step)
+    else:
+        _attempt_explicit(equations, inputs, t, h, x, m, step)
+
+
+@inlined
+def error_norm(method, h, x, step, rtol, atol):
+    """Largest estimated error of an attempt over its tolerance."""
+    worst = 0.0
+    for a in range(len(x)):
+        if method == ROSENBROCK:
+            e = step.k[LAST_IMPLICIT, a]
+        else:
+            e = _error_explicit(h, a, step)
+        ratio = over_tolerance(e, x[a], step.end[a], rtol, atol[a])
+        worst = larger(worst, ratio)
+    return worst
+
+
+@inlined
+def larger(one, other):
+    """The larger of two numbers; not a number where either is none."""
+    return one if other <= one or math.isnan(one) else other
+
+
+@inlined
+def over_tolerance(error, start, end, rtol, atol):
+    """An error of a state over what is allowed between its values at both ends of a step."""
+    return abs(error) / (atol + rtol * max(abs(start), abs(end)))
+
+
+@kernel
+def fill_dense(method, h, x, step):
+    """Write the curve of an accepted attempt as a polynomial in the fraction of the step."""
+    if method == ROSENBROCK:
+        _dense_implicit(x, step)
+    else:
+        _dense_explicit(h, x, step)
+
+
+@inlined
+def curve(fraction, step, out):
+    """Write the state at a fraction of the step into out [n]."""
+    d = step.dense
+    for a in range(len(out)):
+        high = d[2, a] + fraction * (d[3, a] + fraction * d[4, a])
+        out[a] = d[0, a] + fraction * (d[1, a] + fraction * high)
+
+
+@merged
+def push_tangents(method, equations, inputs, t, h, m, step, tangents):
+    """Carry the tangents over an accepted step."""
+    if method == ROSENBROCK:
+        _push_implicit(equations, inputs, t, h, m, step, tangents)
+    else:
+        _push_explicit(equations, inputs, t, h, m, step, tangents)
+
+
+@inlined
+def end_slope(method, equations, inputs, t, m, step, out):
+    """Write dx/dt at the end of an accepted attempt in the modes before any switch."""
+    if method == ROSENBROCK:
+        derivative(equations, t, step.end, inputs.u, m, out)
+    else:
+        copy(step.k[LAST_EXPLICIT], out)

@@ -1,0 +1,213 @@
+"""Run a model through the compiled runner: room for its records, and what came out."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation import hybrid
+from ptp_symbolic.numeric.simulation.events.impacts import HELD
+from ptp_symbolic.numeric.simulation.kernels.calls import addresses
+from ptp_symbolic.numeric.simulation.kernels.lanes import padded
+from ptp_symbolic.numeric.simulation.kernels.records import (
+    EVENTS,
+    STEPS,
+    TIME,
+    Record,
+    Step,
+    Tangents,
+    Watch,
+)
+from ptp_symbolic.numeric.simulation.methods.exponential_step import new_propagator
+from ptp_symbolic.numeric.simulation.methods.rodas5p import STAGES
+from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
+from ptp_symbolic.numeric.simulation.sampling import new_sampling
+from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+FACE_WIDTH = 1e-9  # rad
+METHODS = {"runge_kutta": RUNGE_KUTTA, "rosenbrock": ROSENBROCK}
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """What a run left: status, time reached in s, state [n] there, and outputs at the times asked.
+
+    x [k, n], s [k, n, ns], ledger [k, 3] (stored, supplied, dissipated in J; no rows if not asked
+    for), events [e, 3] (time, element, mode entered), steps tried.
+    """
+
+    status: int
+    reached: float
+    state: FloatArray
+    x: FloatArray
+    s: FloatArray
+    ledger: FloatArray
+    events: FloatArray
+    steps: int
+
+
+@dataclass(frozen=True, eq=False)
+class Accuracy:
+    """Tolerances of a step, relative and absolute per state [n], and the largest step in s."""
+
+    relative: float
+    absolute: FloatArray
+    largest_step: float
+
+
+def default_method(model: Model) -> str:
+    """`runge_kutta` for rigid bodies alone, `rosenbrock` where drives, friction or contact are.
+
+    A winding or a shaft is a hundred times faster than the motion: an explicit method is held to
+    its pace, an implicit one is not.
+    """
+    bodies = {f"{kind}_{axis}" for kind in ("theta", "omega") for axis in model.module.AXES}
+    smooth = not model.mode_names and set(model.state_names) <= bodies
+    return "runge_kutta" if smooth else "rosenbrock"
+
+
+def tolerance_weights(model: Model) -> FloatArray:
+    """Weight [n] of an absolute tolerance in rad for every state.
+
+    In a geared machine an error of a rate (rad/s) counts a hundredth and any other, such as a
+    current, a thousandth: friction forgets it before it reaches an angle. Free bodies do not.
+    """
+    if default_method(model) == "runge_kutta":
+        return np.ones(len(model.state_names))
+    factors = {"theta": 1.0, "omega": 100.0}
+    return np.array([factors.get(name.partition("_")[0], 1000.0) for name in model.state_names])
+
+
+def pass_through(
+    model: Model,
+    method: str,
+    p: FloatArray,
+    x: FloatArray,
+    inputs: InputTable,
+    held: bool,
+    stops: FloatArray,
+    times: FloatArray,
+    accuracy: Accuracy,
+    s: FloatArray | None = None,
+    columns: IntArray | None = None,
+    delay_column: IntArray | None = None,
+    ledger: bool = False,
+    event_room: int = 0,
+) -> Passage:
+    """Run `model` from the first to the last of `stops`, starting at x [n] with tangents s [n, ns].
+
+    `held` says that inputs change at stops only; those that samplers alone read need not. With
+    tangents, output times must be stops. The first tangents belong to the parameters `columns`;
+    `delay_column` is per input the tangent of its delay, or -1.
+    """
+    n, nu, module = len(x), len(model.input_names), model.module
+    none = np.zeros(0, dtype=np.int64)
+    s = np.zeros((n, 0)) if s is None else s
+    tangents = new_tangents(
+        s, none if columns is None else columns,
+        np.full(nu, -1) if delay_column is None else delay_column, len(p), nu,
+    )  # fmt: skip
+    x, u, cursor = x.copy(), np.zeros((3, nu)), inputs.new_cursor()
+    watch = new_watch(model, n, p)
+    hybrid.evaluate_inputs(stops[0], 1, *inputs.arrays, cursor, u[0])
+    module.initial_modes(stops[0], x, u[0], p, watch.m)
+    refuse_start(model, x, u[0], p, watch)
+    record = new_record(times, n, s.shape[1], len(times) if ledger else 0, event_room)
+    status = hybrid.runner()(
+        METHODS[method], addresses(module), p, model.friction_rates, model.zero_at_rest,
+        contact_table(model), inputs.arrays, cursor, held or not any(module.INPUT_ACTS), u, x,
+        stops,
+        np.array([accuracy.relative, accuracy.largest_step]), accuracy.absolute,
+        tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)), tuple(watch),
+        tuple(tangents), tuple(record), tuple(new_sampling(model, p, x, stops, padded(s.shape[1]))),
+        tuple(new_propagator(len(model.mode_names), model.moving, n)),
+    )  # fmt: skip
+    return Passage(
+        status, float(record.clock[TIME]), x, record.x, record.s, record.ledger,
+        record.events[: record.counts[EVENTS]], int(record.counts[STEPS]),
+    )  # fmt: skip
+
+
+def new_record(times: FloatArray, n: int, ns: int, ledger: int, event_room: int) -> Record:
+    """Room for what a run leaves at `times` [k]: n states, ns tangents, `ledger` rows, events."""
+    z = np.zeros
+    return Record(
+        times, z((len(times), n)), z((len(times), n, ns)), z((ledger, 3)), z((event_room, 3)), z(3),
+        z((4, 3)), z(2), z(6, dtype=np.int64),
+    )  # fmt: skip
+
+
+def _step(n: int, nu: int, parameters: int, solved: int) -> Step:
+    z, width = np.zeros, padded(n)
+    return Step(
+        z(width), z(width), z((STAGES, width)), z((STAGES, width)), z(n), z((5, width)),
+        z((n, n)), z((n, nu)), z((n, parameters)), z((solved, width)), z((solved, width)),
+        z(n, dtype=np.int64), z(width), z(width), z(width),
+    )  # fmt: skip
+
+
+def contact_table(model: Model) -> IntArray:
+    """Rates and rule of every contact [c, 5], and the flags PRESSED and SETTLING, not set yet."""
+    rules = model.contacts
+    table = np.zeros((len(rules), 5), dtype=np.int64)
+    table[:, :3] = rules
+    return table
+
+
+def limited_states(model: Model) -> IntArray:
+    """Index [limits] of the state of every limit of the domain."""
+    return np.array([model.state_names.index(name) for name, _ in model.limits], np.int64)
+
+
+def new_watch(model: Model, n: int, p: FloatArray) -> Watch:
+    """Room for the guards of a machine of n states, with the bounds of its domain at p [np]."""
+    parameters = len(p)
+    frictions, modes = len(model.friction_rates), len(model.mode_names)
+    elements = frictions + (modes - frictions) // 2
+    watched = elements + len(model.limits)
+    guards, z = 3 * frictions + 4 * (elements - frictions), np.zeros
+    strikes = (elements - frictions) * (n + 2)
+    return Watch(
+        z(guards), z(modes), z(modes), z(watched), z(watched), z(watched), z((guards, n)),
+        z((guards, parameters)), z(n), z(parameters), z(n), z(n),
+        z(strikes), z((strikes, n)), z((strikes, parameters)), z(1), z((2, 3)),
+        limited_states(model), model.domain(p), z(modes), z(n),
+    )  # fmt: skip
+
+
+def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watch: Watch) -> None:
+    """Raise InputError where a start x [n] has rigid bodies in each other, or a held one moving."""
+    frictions = len(model.friction_rates)
+    if not model.contacts[:, 2].any():
+        return
+    model.module.guards(0.0, x, u, p, watch.m, watch.g)
+    for contact, (_, joint, rule) in enumerate(model.contacts):
+        separation, half_gap = watch.g[3 * frictions + 4 * contact :][:2]
+        if rule and abs(separation) > half_gap + FACE_WIDTH:
+            raise InputError(
+                f"The gear output starts {separation:.6g} rad ahead of the joint, beyond a rigid"
+                f" face at {half_gap:.6g} rad; start it within the gap."
+            )
+        if rule == HELD and not watch.m[frictions + 2 * contact + 1] and x[joint] != 0.0:
+            raise InputError(
+                f"State '{model.state_names[joint]}' starts at {x[joint]:.6g} rad/s in the gap,"
+                " where friction holds the joint; start it at rest."
+            )
+
+
+def new_tangents(
+    s: FloatArray, columns: IntArray, delay_column: IntArray, parameters: int, nu: int
+) -> Tangents:
+    """Room for the tangents s [n, ns]; see `pass_through`."""
+    (n, ns), z = (len(s), padded(s.shape[1])), np.zeros
+    table = z((n, ns))
+    table[:, : s.shape[1]] = s
+    return Tangents(
+        table.reshape(-1), table, columns, delay_column, z((STAGES, n * ns)), z(n * ns), z(n * ns),
+        z(n * ns), z((3, n, n)), z((3, n * ns)), z((n, n)), z((n, nu)), z((n, parameters)),
+    )  # fmt: skip

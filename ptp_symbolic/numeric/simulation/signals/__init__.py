@@ -1,0 +1,1 @@
+"""Inputs: profiles, columns of logs, delays."""

@@ -1,0 +1,71 @@
+"""Values and slopes of the inputs in compiled code."""
+
+import math
+
+from numba import njit
+
+from ptp_symbolic.numeric.simulation.kernels.records import KERNEL
+
+
+@njit(cache=True, **KERNEL)
+def evaluate_inputs(
+    t, side, breaks, coefficients, offsets, sines, sine_offsets, sweeps, sweep_offsets, cursor, u
+):
+    """Fill u [nu] with every signal at time t in s; side +1: value after a jump at t, -1: before.
+
+    The arrays are those of an InputTable. cursor [nu], read and written, holds the piece found
+    last, so that a walk through thousands of samples costs one comparison per call.
+    """
+    for j in range(u.shape[0]):
+        row, s = _find_piece(t, side, breaks, offsets, cursor, j)
+        c = coefficients[row]
+        value = c[0] + s * (c[1] + s * (c[2] + s * c[3]))
+        for i in range(sine_offsets[j], sine_offsets[j + 1]):
+            value += sines[i, 0] * math.sin(2.0 * math.pi * sines[i, 1] * t + sines[i, 2])
+        for i in range(sweep_offsets[j], sweep_offsets[j + 1]):
+            t0, t1 = sweeps[i, 3], sweeps[i, 4]
+            if t0 <= t < t1 or (side < 0 and t == t1):
+                rate = 0.5 * (sweeps[i, 2] - sweeps[i, 1]) / (t1 - t0)
+                turns = (sweeps[i, 1] + rate * (t - t0)) * (t - t0)
+                value += sweeps[i, 0] * math.sin(2.0 * math.pi * turns)
+        u[j] = value
+
+
+@njit(cache=True, **KERNEL)
+def evaluate_input_slopes(
+    t, side, breaks, coefficients, offsets, sines, sine_offsets, sweeps, sweep_offsets, cursor,
+    slope,
+):  # fmt: skip
+    """Fill slope [nu] with du/dt of every signal at time t in s, as `evaluate_inputs` does u."""
+    for j in range(slope.shape[0]):
+        row, s = _find_piece(t, side, breaks, offsets, cursor, j)
+        c = coefficients[row]
+        value = 0.0
+        if breaks[offsets[j] + j] <= t <= breaks[offsets[j + 1] + j]:
+            value = c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])
+        for i in range(sine_offsets[j], sine_offsets[j + 1]):
+            turn = 2.0 * math.pi * sines[i, 1]
+            value += sines[i, 0] * turn * math.cos(turn * t + sines[i, 2])
+        for i in range(sweep_offsets[j], sweep_offsets[j + 1]):
+            t0, t1 = sweeps[i, 3], sweeps[i, 4]
+            if t0 <= t < t1 or (side < 0 and t == t1):
+                rate = 0.5 * (sweeps[i, 2] - sweeps[i, 1]) / (t1 - t0)
+                turns = (sweeps[i, 1] + rate * (t - t0)) * (t - t0)
+                turn = 2.0 * math.pi * (sweeps[i, 1] + 2.0 * rate * (t - t0))
+                value += sweeps[i, 0] * turn * math.cos(2.0 * math.pi * turns)
+        slope[j] = value
+
+
+@njit(forceinline=True, **KERNEL)
+def _find_piece(t, side, breaks, offsets, cursor, j):
+    """Row of the coefficients of signal j at time t, and the time since that piece began."""
+    pieces = offsets[j + 1] - offsets[j]
+    at = offsets[j] + j
+    k = cursor[j]
+    while k < pieces and (breaks[at + k + 1] < t or (side > 0 and breaks[at + k + 1] == t)):
+        k += 1
+    while k >= 0 and (breaks[at + k] > t or (side < 0 and breaks[at + k] == t)):
+        k -= 1
+    cursor[j] = k
+    piece = min(max(k, 0), pieces - 1)
+    return offsets[j] + piece, min(max(t, breaks[at]), breaks[at + pieces]) - breaks[at + piece]

@@ -1,0 +1,1 @@
+"""The symbolic wing: from bodies and effects to equations, proved, simplified and emitted."""

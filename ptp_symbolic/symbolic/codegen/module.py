@@ -1,0 +1,267 @@
+"""Write a model as a self-contained numba module."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.codegen import dynamics
+from ptp_symbolic.symbolic.codegen.impacts import impact_expressions
+from ptp_symbolic.symbolic.codegen.kernel import MODE_ARGUMENTS, Vectors, kernel_text
+from ptp_symbolic.symbolic.codegen.metadata import metadata_text
+from ptp_symbolic.symbolic.codegen.sharing import Line, share
+from ptp_symbolic.symbolic.codegen.templates import state_derivative_text
+from ptp_symbolic.symbolic.codegen.words import words_of
+from ptp_symbolic.symbolic.derivation.differentiation import derivative
+from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.simplify.base_parameters import base_form
+
+SEAL = "# END sha256 "
+
+
+def module_text(equations: Equations) -> str:
+    """Return the source of the module that computes `equations`.
+
+    The text depends on the mathematics alone: the same bytes on every machine. It ends with the
+    SHA-256 of everything above, which the loader verifies.
+    """
+    solve = dynamics.solve_accelerations(equations)
+    vectors = Vectors(
+        tuple(map(str, equations.state_symbols)),
+        tuple(i.name for i in equations.inputs),
+        tuple(p.name for p in equations.parameters),
+        tuple(map(str, equations.mode_symbols)),
+    )
+    body = "\n\n\n".join(
+        [
+            _mode_derivative(equations, vectors),
+            _jacobian(equations, solve, vectors),
+            _guards(equations, solve, vectors),
+            _guard_jacobian(equations, solve, vectors),
+            *_impacts(equations, solve, vectors),
+            _outputs(equations, vectors),
+            _output_jacobian(equations, vectors),
+            _energy(equations, vectors),
+            _equation_error(equations, solve, vectors),
+            _domain(equations, vectors),
+            _margins(equations, vectors),
+            *_samplers(equations, vectors),
+            state_derivative_text(bool(vectors.m), any(c.rigid for c in equations.contacts)),
+        ]
+    )
+    digest = hashlib.sha256(body.encode()).hexdigest()[:16]
+    operations = _operations(equations, solve)
+    return sealed(f"{metadata_text(equations, digest, operations)}\n\n\n{body}\n")
+
+
+def sealed(text: str) -> str:
+    """`text` with its SHA-256 as the last line, in place of an earlier one."""
+    text = text.partition(SEAL)[0]
+    return f"{text}{SEAL}{hashlib.sha256(text.encode()).hexdigest()}\n"
+
+
+def _operations(equations: Equations, solve: dynamics.Solve) -> tuple[int, int]:
+    """Operations of the state derivative as derived, and as written with shared terms."""
+    derived = [expression for _, expression in solve.definitions]
+    derived += [state.derivative for state in equations.extra_states]
+    written = [expression for _, expression in _state_lines(equations)]
+    before, after = (sum(int(sp.count_ops(e)) for e in es) for es in (derived, written))
+    return before, after
+
+
+def _shared(
+    equations: Equations, definitions: Sequence[Line], outputs: Sequence[Line]
+) -> list[Line]:
+    present = [(t, e) for t, e in outputs if e != 0]
+    return share(definitions, present, words_of(equations))
+
+
+def _mode_derivative(equations: Equations, vectors: Vectors) -> str:
+    doc = "Write the time derivative of the state into dx in the modes m."
+    lines = _state_lines(equations)
+    return kernel_text("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
+
+
+def _state_lines(equations: Equations) -> list[Line]:
+    """The state derivative in base parameters, which need the fewest operations."""
+    varying = equations.varying_inertia
+    constant = equations.mass_matrix - varying
+    form = base_form(equations.rigid_equations, constant, equations.forcing)
+    regrouped = dynamics.solve_accelerations(
+        replace(equations, mass_matrix=form.mass_matrix + varying, forcing=form.forcing)
+    )
+    rates = dynamics.state_rates(equations, regrouped)
+    outputs = [(f"dx[{i}]", rate) for i, rate in enumerate(rates)]
+    named = [(str(s), e) for s, e in (*form.base_parameters, *form.shared_terms) if s != e]
+    return share((*named, *regrouped.definitions), outputs, words_of(equations))
+
+
+def _columns(
+    equations: Equations,
+) -> list[tuple[str, tuple[sp.Symbol, ...]]]:
+    parameters = tuple(sp.Symbol(p.name, real=True) for p in equations.parameters)
+    inputs = tuple(sp.Symbol(i.name, real=True) for i in equations.inputs)
+    return [("x", equations.state_symbols), ("u", inputs), ("p", parameters)]
+
+
+def _jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+    outputs: list[Line] = []
+    extra = {sp.Symbol(s.name, real=True): s.derivative for s in equations.extra_states}
+    for letter, symbols in _columns(equations):
+        for j, variable in enumerate(symbols):
+            by = dynamics.acceleration_derivative(equations, solve, variable)
+            rows = dict(zip(equations.rates, by, strict=True))
+            rows.update({s: solve.chain.derivative(e, variable) for s, e in extra.items()})
+            rate_of = zip(equations.coordinates, equations.rates, strict=True)
+            rows.update({q: sp.Integer(int(w == variable)) for q, w in rate_of})
+            for i, state in enumerate(equations.state_symbols):
+                outputs.append((f"f{letter}[{i}, {j}]", rows[state]))
+    doc = "Write the non-zero derivatives of mode_derivative by state, input and parameter."
+    lines = _shared(equations, (*solve.definitions, *solve.chain.lines), outputs)
+    return kernel_text("jacobian", f"{MODE_ARGUMENTS}, fx, fu, fp", doc, vectors, lines)
+
+
+def _guards(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+    outputs = [(f"g[{i}]", e) for i, e in enumerate(dynamics.guard_expressions(equations, solve))]
+    doc = "Write holding and breakaway torques, gap separations and contact torques into g."
+    lines = share(solve.definitions, outputs, words_of(equations)) if outputs else []
+    return kernel_text("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
+
+
+def _guard_jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+    outputs = _derivatives(equations, solve, "g", dynamics.guard_expressions(equations, solve))
+    doc = "Write the non-zero derivatives of guards by state and parameter."
+    lines = _shared(equations, (*solve.definitions, *solve.chain.lines), outputs)
+    return kernel_text("guard_jacobian", f"{MODE_ARGUMENTS}, gx, gp", doc, vectors, lines)
+
+
+def _derivatives(
+    equations: Equations, solve: dynamics.Solve, word: str, expressions: Sequence[sp.Expr]
+) -> list[Line]:
+    """Derivatives of `expressions` by state and parameter, into the arrays `word`x and `word`p."""
+    outputs: list[Line] = []
+    for letter, symbols in _columns(equations):
+        if letter == "u":
+            continue
+        for j, variable in enumerate(symbols):
+            by = dynamics.acceleration_derivative(equations, solve, variable)
+            for i, expression in enumerate(expressions):
+                value = dynamics.derivative_of(equations, solve, expression, variable, by)
+                outputs.append((f"{word}{letter}[{i}, {j}]", value))
+    return outputs
+
+
+def _impacts(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> list[str]:
+    """Two kernels where rigid bodies strike each other, none elsewhere."""
+    if not any(contact.rigid for contact in equations.contacts):
+        return []
+    expressions = impact_expressions(equations, solve)
+    definitions = (*solve.definitions, *solve.chain.lines)
+    outputs = [(f"strike[{i}]", e) for i, e in enumerate(expressions)]
+    doc = "Write what a strike changes in the state, restitution and energy, per contact."
+    lines = _shared(equations, definitions, outputs)
+    kernel = kernel_text("impacts", f"{MODE_ARGUMENTS}, strike", doc, vectors, lines)
+    outputs = _derivatives(equations, solve, "strike", expressions)
+    doc = "Write the non-zero derivatives of impacts by state and parameter."
+    lines = _shared(equations, definitions, outputs)
+    arguments = f"{MODE_ARGUMENTS}, strikex, strikep"
+    return [kernel, kernel_text("impact_jacobian", arguments, doc, vectors, lines)]
+
+
+def _outputs(equations: Equations, vectors: Vectors) -> str:
+    outputs = [(f"y[{i}]", e) for i, (_, _, e) in enumerate(equations.outputs)]
+    lines = share((), outputs, words_of(equations))
+    return kernel_text(
+        "outputs", "t, x, u, p, y", "Write the measured signals into y.", vectors, lines
+    )
+
+
+def _output_jacobian(equations: Equations, vectors: Vectors) -> str:
+    outputs = [
+        (f"y{letter}[{i}, {j}]", derivative(expression, variable))
+        for letter, symbols in _columns(equations)
+        if letter != "u"
+        for j, variable in enumerate(symbols)
+        for i, (_, _, expression) in enumerate(equations.outputs)
+    ]
+    doc = "Write the non-zero derivatives of outputs by state and parameter."
+    lines = _shared(equations, (), outputs)
+    return kernel_text("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
+
+
+def _energy(equations: Equations, vectors: Vectors) -> str:
+    ledger = equations.ledger
+    outputs = [("e[0]", ledger.stored), ("e[1]", ledger.power_in), ("e[2]", ledger.dissipated)]
+    doc = "Write stored energy in J, power in and dissipated power in W into e."
+    terms = [(str(symbol), term) for symbol, term in equations.terms]
+    lines = share(terms, outputs, words_of(equations))
+    return kernel_text("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, lines)
+
+
+def _equation_error(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+    """What a measured motion leaves of the equations of motion: M a - forcing + sliding friction.
+
+    The accelerations, which follow the states in x, are given and not solved for.
+    """
+    given = [str(acceleration) for acceleration in solve.accelerations]
+    definitions = [(name, e) for name, e in solve.definitions if name not in given]
+    torques = solve.mass * sp.Matrix(solve.accelerations) - solve.force
+    moving = {sp.Symbol(s.name, real=True): s.derivative for s in equations.extra_states}
+    others = [moving[s] for s in equations.state_symbols if s in moving]
+    outputs = [(f"r[{i}]", e) for i, e in enumerate([*torques, *others])]
+    lines = share(definitions, outputs, words_of(equations))
+    extended = replace(vectors, x=(*vectors.x, *given))
+    doc = (
+        "Write the torque that every row lacks, then rates of other states into r; x ends in accel."
+    )
+    return kernel_text("equation_error", f"{MODE_ARGUMENTS}, r", doc, extended, lines)
+
+
+def _domain(equations: Equations, vectors: Vectors) -> str:
+    outputs = [
+        (f"bounds[{k}, {side}]", bound)
+        for k, own in enumerate(equations.limits)
+        for side, bound in enumerate((own.lower, own.upper))
+    ]
+    doc = "Write lower and upper bound of the state of every row of DOMAIN into bounds."
+    return kernel_text("domain", "p, bounds", doc, vectors, share((), outputs, words_of(equations)))
+
+
+def _samplers(equations: Equations, vectors: Vectors) -> list[str]:
+    """What samplers do, and its derivatives; nothing in a machine that has none."""
+    if not equations.samplers:
+        return []
+    values = [e for s in equations.samplers for e in (s.period, s.offset, s.phase)]
+    values += [value for _, _, value in equations.updates]
+    terms = {symbol: term for s in equations.samplers for symbol, term in s.terms.items()}
+    outputs = [(f"z[{i}]", e) for i, e in enumerate(values)]
+    doc = "Write period, offset and phase of every sampler, then what SAMPLED states become into z."
+    named = [(str(symbol), term) for symbol, term in (*equations.terms, *terms.items())]
+    lines = share(named, outputs, words_of(equations))
+    for symbol, term in reversed(terms.items()):
+        values = [value.xreplace({symbol: term}) for value in values]
+    slopes = [
+        (f"z{letter}[{i}, {j}]", derivative(equations.written_out(value), variable))
+        for letter, symbols in _columns(equations)
+        for j, variable in enumerate(symbols)
+        for i, value in enumerate(values)
+    ]
+    derived = _shared(equations, (), slopes)
+    by = "Write the non-zero derivatives of sample by state, input and parameter."
+    arguments = f"{MODE_ARGUMENTS}, zx, zu, zp"
+    return [
+        kernel_text("sample", f"{MODE_ARGUMENTS}, z", doc, vectors, lines),
+        kernel_text("sample_jacobian", arguments, by, vectors, derived),
+    ]
+
+
+def _margins(equations: Equations, vectors: Vectors) -> str:
+    outputs = [
+        (f"margin[{k}]", own.holds.gts - own.holds.lts)
+        for k, own in enumerate(equations.requirements)
+    ]
+    doc = "Write by how much the parameters meet every row of REQUIREMENTS into margin."
+    return kernel_text(
+        "margins", "p, margin", doc, vectors, share((), outputs, words_of(equations))
+    )

@@ -1,0 +1,236 @@
+"""Every equation of a machine as a statement: what it is in words, its left and its right side."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.codegen.latex import (
+    latex_lines,
+    latex_of,
+    mathml_lines,
+    mathml_of,
+    plain_text_of,
+    rate_latex,
+)
+from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
+from ptp_symbolic.symbolic.effects.effect import Friction, Sampler, slide
+
+TIME = sp.Symbol("t", real=True)
+RELATIONS = {"=": ("=", "=", "="), "<=": (r"\le", "<=", "≤")}
+
+
+@dataclass(frozen=True)
+class Statement:
+    """One equation; `part` says where it belongs: "friction", "contact", "" for anything else.
+
+    `name` says in words what is on the left. `sums`: effects add to it, so that what one of them
+    adds is of interest. Statements of two machines are about the same where `key` is.
+    """
+
+    key: tuple[str, ...]
+    name: str
+    left: sp.Expr
+    right: sp.Expr
+    relation: str = "="
+    sums: bool = False
+    part: str = ""
+
+    @property
+    def left_latex(self) -> str:
+        """The left side in LaTeX; a rate of change with a dot."""
+        if isinstance(self.left, sp.Derivative):
+            return rate_latex(str(self.left.expr))
+        return latex_of(self.left)
+
+    @property
+    def latex(self) -> str:
+        """The equation in LaTeX, over several lines where it is long."""
+        return aligned(f"{self.left_latex} {RELATIONS[self.relation][0]}", self.right)
+
+    @property
+    def text(self) -> str:
+        """The equation as one line of text, names as in the emitted module."""
+        sign = RELATIONS[self.relation][1]
+        return f"{plain_text_of(self.left)} {sign} {plain_text_of(self.right)}"
+
+    @property
+    def mathml(self) -> str:
+        """The equation as MathML, a line of text for every piece that may stand on its own line."""
+        left = f"<mrow>{mathml_of(self.left)}<mo>{RELATIONS[self.relation][2]}</mo></mrow>"
+        return "\n".join([left, *mathml_lines(self.right)])
+
+
+def aligned(left: str, right: sp.Expr) -> str:
+    """LaTeX of `left` followed by the lines of `right`."""
+    first, *more = latex_lines(right)
+    if not more:
+        return f"{left} {first}"
+    rows = [f"{left}{{}}& {first}", *(f"& {line}" for line in more)]
+    return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
+
+
+def statements(equations: Equations) -> list[Statement]:
+    """All statements of a machine, those of the joints first; torques of shafts by their names."""
+    return [
+        replace(s, right=_tidy(by_name(s.right, equations, s.left)))
+        for s in _written_out(equations)
+    ]
+
+
+def by_name(expression: sp.Expr, equations: Equations, defined: sp.Expr = sp.Integer(0)) -> sp.Expr:
+    """`expression` with friction and what shafts transmit, however it is written, by its name.
+
+    The right side of what is `defined` keeps its own torque written out.
+    """
+    torques = {sliding(f): sp.expand(f.level) for f in equations.frictions}
+    torques |= {shaft_torque(c): sp.expand(c.torque) for c in equations.contacts if not c.rigid}
+    torques.pop(defined, None)
+    names: dict[sp.Expr, sp.Expr] = {}
+    for part in expression.atoms(sp.Add) if torques else ():
+        written = sp.expand(part)
+        for symbol, torque in torques.items():
+            names |= {part: symbol} if written == torque else {}
+            names |= {part: -symbol} if written == -torque else {}
+    return expression.xreplace(names)
+
+
+def _tidy(expression: sp.Expr) -> sp.Expr:
+    """A sum with the numbers of every term in front."""
+    return sp.Add(*map(sp.factor_terms, sp.Add.make_args(expression)))
+
+
+def _written_out(equations: Equations) -> list[Statement]:
+    return [
+        *_joints(equations),
+        *(s for friction in equations.frictions for s in friction_statements(friction)),
+        *(s for contact in equations.contacts for s in _contact(contact)),
+        *(
+            Statement(("term", str(symbol)), f"{symbol}, by its name in the others", symbol, term)
+            for symbol, term in equations.terms
+        ),
+        *_states(equations),
+        *(s for k, sampler in enumerate(equations.samplers) for s in _sampler(k, sampler)),
+        *_signals(equations),
+    ]
+
+
+def with_definitions(shown: Sequence[Statement], found: Sequence[Statement]) -> list[Statement]:
+    """`shown`, followed by those of `found` that say what the names in them stand for."""
+    rows, by_name = list(shown), {s.left: s for s in found if s.left.is_Symbol}
+    for row in rows:
+        for symbol in sorted(row.right.free_symbols, key=str):
+            meant = by_name.get(symbol)
+            if meant is not None and meant not in rows:
+                rows.append(meant)
+    return rows
+
+
+def sliding(friction: Friction) -> sp.Symbol:
+    """The name of a friction torque while sliding."""
+    return sp.Symbol(f"F_sliding_{place(friction.rate)}", real=True)
+
+
+def shaft_torque(contact: Contact) -> sp.Symbol:
+    """The name of what a shaft transmits while it touches a face."""
+    return sp.Symbol(f"T_shaft_{contact.axis}", real=True)
+
+
+def place(rate: sp.Symbol) -> str:
+    """Where a rate is: ``gear_pan`` of ``omega_gear_pan``."""
+    return str(rate).removeprefix("omega_")
+
+
+def _joints(equations: Equations) -> Iterator[Statement]:
+    rates = equations.rates
+    for i, rate in enumerate(rates):
+        for j in range(i, len(rates)):
+            symbol = sp.Symbol(f"M_{i + 1}_{j + 1}", real=True)
+            name = f"entry {i + 1}, {j + 1} of the mass matrix"
+            entry = equations.mass_matrix[i, j]
+            yield Statement(("mass", str(rate), str(rates[j])), name, symbol, entry, sums=True)
+    rubbing = {friction.rate: friction for friction in equations.frictions}
+    for i, rate in enumerate(rates):
+        torque = equations.forcing[i]
+        if rate in rubbing:
+            torque -= slide(rubbing[rate].axis) * sliding(rubbing[rate])
+        symbol = sp.Symbol(f"f_{place(rate)}", real=True)
+        yield Statement(("torque", str(rate)), f"the torque on {rate}", symbol, torque, sums=True)
+
+
+def friction_statements(friction: Friction) -> list[Statement]:
+    """The law of a dry friction: sliding, sticking, and where it breaks away."""
+    at, key = place(friction.rate), ("friction", str(friction.rate))
+    direction = slide(friction.axis)
+    stuck, broken = (sp.Symbol(f"F_{w}_{at}", real=True) for w in ("sticking", "breakaway"))
+    return [
+        Statement(
+            (*key, "sliding"), f"sliding: the friction torque against the motion, {direction} = ±1",
+            sliding(friction), friction.level, part="friction",
+        ),
+        Statement(
+            (*key, "sticking"), f"sticking: at {friction.rate} = 0 and {direction} = 0 friction"
+            " takes up the torque that acts, as long as", sp.Abs(stuck), broken, "<=",
+            part="friction",
+        ),
+        Statement(
+            (*key, "breakaway"), "breakaway: the torque up to which it holds against a start in"
+            f" direction {direction}", broken, friction.breakaway, part="friction",
+        ),
+    ]  # fmt: skip
+
+
+def _contact(contact: Contact) -> Iterator[Statement]:
+    axis, key = contact.axis, ("contact", contact.axis)
+    gap = sp.Symbol(f"half_gap_{axis}", real=True)
+    apart = sp.Symbol(f"separation_{axis}", real=True)
+    yield Statement((*key, "gap"), f"half of the gap in the {axis} drive", gap, contact.half_gap,
+                    part="contact")  # fmt: skip
+    yield Statement((*key, "angle"), f"the angle across the gap of {axis}", apart,
+                    contact.separation, part="contact")  # fmt: skip
+    if contact.restitution is None:
+        name = f"the torque that the shaft of {axis} transmits at a face"
+        yield Statement((*key, "torque"), name, shaft_torque(contact), contact.torque,
+                        part="contact")  # fmt: skip
+    else:
+        bounce = sp.Symbol(f"e_{axis}", real=True)
+        name = f"the coefficient of restitution of a strike in {axis}"
+        yield Statement((*key, "strike"), name, bounce, contact.restitution, part="contact")
+
+
+def _states(equations: Equations) -> Iterator[Statement]:
+    held = {symbol for _, symbol, _ in equations.updates}
+    for state in equations.extra_states:
+        symbol = sp.Symbol(state.name, real=True)
+        if symbol not in held:
+            name = f"the rate of change of {state.name} ({state.meaning})"
+            yield Statement(("state", state.name), name, rate_of(symbol), state.derivative)
+
+
+def rate_of(symbol: sp.Symbol) -> sp.Expr:
+    """The time derivative of a state, to be printed."""
+    return sp.Derivative(symbol, TIME, evaluate=False)
+
+
+def _sampler(number: int, sampler: Sampler) -> Iterator[Statement]:
+    key = ("sampler", str(number))
+    start = sp.Symbol("k", real=True) + sampler.phase
+    instants = sp.Symbol("t_k", real=True)
+    yield Statement((*key, "instants"), "the instants at which is set anew what is held between",
+                    instants, sampler.offset + start * sampler.period)  # fmt: skip
+    for symbol, term in sampler.terms.items():
+        yield Statement((*key, str(symbol)), f"{symbol}, by its name in the others", symbol, term)
+    for symbol, value in sampler.updates.items():
+        yield Statement((*key, str(symbol)), f"{symbol} from there on", symbol, value)
+
+
+def _signals(equations: Equations) -> Iterator[Statement]:
+    for given, delay in zip(equations.inputs, equations.delays, strict=True):
+        if delay is not None:
+            late = sp.Function(given.name)(TIME - delay)
+            symbol = sp.Symbol(f"{given.name}_acting", real=True)
+            yield Statement(("input", given.name), f"{given.name} as it acts", symbol, late)
+    for name, _, reading in equations.outputs:
+        if reading != sp.Symbol(name, real=True):
+            symbol = sp.Symbol(f"{name}_measured", real=True)
+            yield Statement(("output", name), f"what the sensor of {name} shows", symbol, reading)

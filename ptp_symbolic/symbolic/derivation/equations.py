@@ -1,0 +1,148 @@
+"""The equations of a machine, ready for simplification, emission and documents."""
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.effects.conditions import Limit, Requirement
+from ptp_symbolic.symbolic.effects.effect import Effect, Friction, Input, Sampler, State
+from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
+from ptp_symbolic.symbolic.parameters import Parameter
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A dead zone of `half_gap` in a shaft; beyond it a spring and damper that cannot pull.
+
+    `separation` is the angle across the gap in rad. The mode symbols ``side_<axis>`` (-1, 0, 1)
+    and ``active_<axis>`` (0, 1) tell which face is touched and whether it transmits torque.
+
+    With a coefficient of `restitution` the two bodies are rigid: they strike, and while active turn
+    as one (``torque`` is then zero: what the contact transmits follows from the motion). With
+    `holds` the joint rests in the gap.
+    """
+
+    axis: str
+    separation: sp.Expr
+    half_gap: sp.Expr
+    torque: sp.Expr
+    side: sp.Symbol
+    active: sp.Symbol
+    restitution: sp.Expr | None = None
+    holds: bool = False
+
+    @property
+    def rigid(self) -> bool:
+        """Whether bodies strike each other, without a spring between."""
+        return self.restitution is not None
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """Energy in J and powers in W: d(stored)/dt = power_in - dissipated, in every mode."""
+
+    stored: sp.Expr
+    power_in: sp.Expr
+    dissipated: sp.Expr
+
+
+@dataclass(frozen=True)
+class PlacedEffect:
+    """An effect at its place, the names of its parameters there, and the keys (``effect`` or
+    ``effect@axis``) of the effects that define what it needs.
+    """
+
+    effect: Effect
+    axis: str | None
+    parameters: tuple[str, ...]
+    acts_on: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Equations:
+    """M(q) q'' = forcing, sliding friction apart, and the states of drives and effects.
+
+    Set-valued friction and contact enter through mode symbols, so that the equations are smooth
+    in every mode. `forcing` holds everything but the friction torques. `terms` are named functions
+    in which they are written, each of those before it. `samplers` set states at instants. `delays`
+    gives for every input the time by which it is late, if it can be. The equations hold within
+    `limits`, for parameters that meet the `requirements`.
+    """
+
+    name: str
+    title: str
+    axes: tuple[str, ...]
+    coordinates: tuple[sp.Symbol, ...]
+    rates: tuple[sp.Symbol, ...]
+    mass_matrix: sp.ImmutableMatrix
+    forcing: sp.ImmutableMatrix
+    terms: tuple[tuple[sp.Symbol, sp.Expr], ...]
+    extra_states: tuple[State, ...]
+    samplers: tuple[Sampler, ...]
+    inputs: tuple[Input, ...]
+    delays: tuple[sp.Symbol | None, ...]
+    parameters: tuple[Parameter, ...]
+    frictions: tuple[Friction, ...]
+    contacts: tuple[Contact, ...]
+    outputs: tuple[tuple[str, str, sp.Expr], ...]
+    limits: tuple[Limit, ...]
+    requirements: tuple[Requirement, ...]
+    ledger: Ledger
+    effects: tuple[PlacedEffect, ...]
+    rigid: RigidConfiguration
+    rigid_equations: RigidEquations
+
+    @property
+    def state_symbols(self) -> tuple[sp.Symbol, ...]:
+        """States in the order of the emitted module: joints, drives, effects, what is held."""
+        joints = len(self.axes)
+        gears = [
+            symbol
+            for pair in zip(self.coordinates[joints:], self.rates[joints:], strict=True)
+            for symbol in pair
+        ]
+        held = {symbol for _, symbol, _ in self.updates}
+        extra = [sp.Symbol(state.name, real=True) for state in self.extra_states]
+        extra.sort(key=held.__contains__)
+        return (*self.coordinates[:joints], *self.rates[:joints], *gears, *extra)
+
+    def written_out(self, expression: sp.Expr) -> sp.Expr:
+        """Return `expression` with the named functions put in."""
+        for symbol, term in reversed(self.terms):
+            expression = expression.xreplace({symbol: term})
+        return expression
+
+    @property
+    def varying_inertia(self) -> sp.ImmutableMatrix:
+        """What drives behind a varying transmission add to the mass matrix [n, n], in kg m^2."""
+        named = {symbol for symbol, _ in self.terms}
+        return self.mass_matrix.applyfunc(
+            lambda entry: sp.Add(*(a for a in sp.Add.make_args(entry) if a.free_symbols & named))
+        )
+
+    @property
+    def updates(self) -> tuple[tuple[int, sp.Symbol, sp.Expr], ...]:
+        """What samplers set: index of the sampler, the state, its new value."""
+        return tuple(
+            (index, symbol, value)
+            for index, sampler in enumerate(self.samplers)
+            for symbol, value in sampler.updates.items()
+        )
+
+    @property
+    def motion_symbols(self) -> set[sp.Symbol]:
+        """What the motion between samples and its energy ledger depend on."""
+        ledger = self.ledger
+        found = [*self.mass_matrix, *self.forcing, *(term for _, term in self.terms)]
+        found += [e for f in self.frictions for e in (f.level, f.breakaway)]
+        found += [e for c in self.contacts for e in (c.separation, c.half_gap, c.torque)]
+        found += [s.derivative for s in self.extra_states]
+        found += [ledger.stored, ledger.power_in, ledger.dissipated]
+        return set().union(*(e.free_symbols for e in found))
+
+    @property
+    def mode_symbols(self) -> tuple[sp.Symbol, ...]:
+        """Direction of every friction, then side and activity of every contact."""
+        slides = [sp.Symbol(f"slide_{friction.axis}", real=True) for friction in self.frictions]
+        contacts = [symbol for c in self.contacts for symbol in (c.side, c.active)]
+        return (*slides, *contacts)

@@ -1,0 +1,130 @@
+"""Dry friction of the assembled machine: what it carries, and several frictions on one rate."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.symbolic.derivation.parts import Parts, slope_symbol
+from ptp_symbolic.symbolic.effects.effect import LOADS, Drive, Friction, quantity, slide
+
+ZERO = sp.Integer(0)
+FOLLOWING = ("follower_coupling", "follower_inertia", "follower_torque")
+Term = tuple[sp.Symbol, sp.Expr]
+
+
+@dataclass(frozen=True)
+class Mechanics:
+    """Mass matrix and forcing over joints and gear outputs."""
+
+    coordinates: tuple[sp.Symbol, ...]
+    rates: tuple[sp.Symbol, ...]
+    mass: sp.ImmutableMatrix
+    forcing: sp.ImmutableMatrix
+
+
+def driving_torque(drive: Drive, parts: Parts, coordinate: sp.Symbol) -> sp.Expr:
+    """Torque in N m of `drive` on its row, less what its own inertia takes where it changes."""
+    inertia, rate = parts.resolve(drive.inertia), parts.drive_rate(drive)
+    slope = sp.diff(inertia, coordinate)
+    for term in parts.terms:
+        if slope_symbol(term, coordinate) in parts.terms:
+            slope += sp.diff(inertia, term) * slope_symbol(term, coordinate)
+    return parts.resolve(drive.torque) - slope * rate**2 / 2
+
+
+def resolved_frictions(
+    parts: Parts, mechanics: Mechanics
+) -> tuple[tuple[Friction, ...], tuple[Term, ...]]:
+    """The frictions, one per rate, and as named functions the loads that some of them carry.
+
+    Raises InputError when the frictions of two coupled joints each depend on their load.
+    """
+    frictions = [
+        replace(
+            f,
+            level=parts.resolve(f.level),
+            breakaway=parts.resolve(f.breakaway),
+            terms={symbol: parts.resolve(term) for symbol, term in f.terms.items()},
+        )
+        for f in parts.frictions
+    ]
+    merged: dict[sp.Symbol, Friction] = {}
+    terms: list[Term] = []
+    for friction in frictions:
+        found = friction
+        if is_loaded(friction):
+            terms += _loads(friction, frictions, parts, mechanics)
+            found = _loaded(friction, frictions)
+        terms += found.terms.items()
+        before = merged.get(found.rate, replace(found, level=ZERO, breakaway=ZERO))
+        merged[found.rate] = replace(
+            found, level=before.level + found.level, breakaway=before.breakaway + found.breakaway
+        )
+    return tuple(merged.values()), tuple(terms)
+
+
+def _carried(friction: Friction) -> dict[sp.Symbol, sp.Symbol]:
+    """Quantities of the load of `friction`, each with the name that it keeps in the equations."""
+    names = [f"{name}_{friction.axis}" for name in LOADS]
+    return {quantity(name): sp.Symbol(name, real=True) for name in names}
+
+
+def is_loaded(friction: Friction) -> bool:
+    """Whether `friction` depends on what it carries."""
+    written = (friction.level, friction.breakaway, *friction.terms.values())
+    return any(_carried(friction).keys() & expression.free_symbols for expression in written)
+
+
+def _loaded(friction: Friction, frictions: Iterable[Friction]) -> Friction:
+    """`friction` with the load put in; other frictions on its rate are a part of the load."""
+    beside = [f for f in frictions if f.rate == friction.rate and f is not friction]
+    named, direction = _carried(friction), slide(friction.axis)
+    load = quantity(f"load_torque_{friction.axis}")
+    sliding = named[load] - direction * sum((f.level for f in beside), ZERO)
+    resting = named[load] - direction * sum((f.breakaway for f in beside), ZERO)
+    return replace(
+        friction,
+        level=friction.level.xreplace({**named, load: sliding}),
+        breakaway=friction.breakaway.xreplace({**named, load: resting}),
+        terms={s: e.xreplace({**named, load: sliding}) for s, e in friction.terms.items()},
+    )
+
+
+def _loads(
+    friction: Friction, frictions: Iterable[Friction], parts: Parts, mechanics: Mechanics
+) -> list[Term]:
+    """Torque of the drive, and torque and inertia of the rest, other joints eliminated."""
+    row, mass = mechanics.rates.index(friction.rate), mechanics.mass
+    inertia, torque, driving = mass[row, row], mechanics.forcing[row], ZERO
+    for drive in parts.drives:
+        if parts.drive_rate(drive) == friction.rate:
+            inertia -= parts.resolve(drive.inertia)
+            driving += driving_torque(drive, parts, mechanics.coordinates[row])
+    torque -= driving
+    by_rate = {f.rate: f for f in frictions}
+    beside: list[Term] = []
+    for other, rate in enumerate(mechanics.rates):
+        if other == row or mass[row, other] == 0:
+            continue
+        force, free = mechanics.forcing[other], sp.Integer(1)
+        if rate in by_rate:
+            _refuse_circle(by_rate[rate])
+            direction = slide(by_rate[rate].axis)
+            force, free = force - direction * by_rate[rate].level, direction**2
+        names = [sp.Symbol(f"{word}_{friction.axis}", real=True) for word in FOLLOWING]
+        beside += zip(names, (mass[row, other], mass[other, other], force), strict=True)
+        coupling, other_inertia, other_torque = names
+        inertia -= free * coupling**2 / other_inertia
+        torque -= free * coupling * other_torque / other_inertia
+    symbols = _carried(friction).values()
+    return [*beside, *zip(symbols, (driving, torque, inertia), strict=True)]
+
+
+def _refuse_circle(friction: Friction) -> None:
+    if is_loaded(friction):
+        raise InputError(
+            "Two coupled joints have friction that depends on the load; declare linear_actuator on"
+            " one of them, or with shaft_compliance."
+        )

@@ -1,0 +1,55 @@
+"""Equations of motion by Lagrange's equations of the second kind.
+
+The energies are written from the rotation matrices and their derivatives alone; no acceleration
+and no constraint force is ever formed.
+"""
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
+from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration, RigidEquations
+
+
+def lagrange(configuration: RigidConfiguration) -> RigidEquations:
+    """Return M q'' = f + tau of `configuration` by Lagrange's equations.
+
+    The entries stay as the energies leave them, multiplied out but not reduced. Source: Goldstein,
+    Poole and Safko, Classical Mechanics, 3rd edition 2002, Eq. 1.53.
+    """
+    coordinates = tuple(kinematics.angle(axis) for axis in configuration.axes)
+    rates = tuple(kinematics.rate(axis) for axis in configuration.axes)
+    energies = [_energies(body, configuration) for body in configuration.bodies]
+    kinetic = sp.Add(*(kinetic for kinetic, _ in energies))
+    potential = sp.Add(*(potential for _, potential in energies))
+    mass_matrix = sp.hessian(kinetic, rates)
+    forcing = []
+    for coordinate, rate in zip(coordinates, rates, strict=True):
+        momentum = sp.diff(kinetic, rate)
+        transport = (sp.diff(momentum, q) * w for q, w in zip(coordinates, rates, strict=True))
+        force = sp.diff(kinetic, coordinate) - sp.diff(potential, coordinate) - sp.Add(*transport)
+        forcing.append(sp.expand(force))
+    return RigidEquations(
+        configuration.axes,
+        coordinates,
+        rates,
+        sp.ImmutableMatrix(mass_matrix.applyfunc(sp.expand)),
+        sp.ImmutableMatrix(forcing),
+        kinetic,
+        potential,
+    )
+
+
+def _energies(body: Body, configuration: RigidConfiguration) -> tuple[sp.Expr, sp.Expr]:
+    """Kinetic and potential energy of `body` in J; the potential is zero in the origin."""
+    axes = configuration.axes
+    rotation = kinematics.rotation_to_base(axes, body.frame)
+    spin = sp.zeros(3, 3)
+    for axis in axes:
+        spin += rotation.T * rotation.diff(kinematics.angle(axis)) * kinematics.rate(axis)
+    spin = spin.applyfunc(normal_form)
+    angular = sp.Matrix([spin[2, 1], spin[0, 2], spin[1, 0]])
+    velocity = spin * body.com
+    kinetic = body.mass * velocity.dot(velocity) + angular.dot(body.inertia * angular)
+    potential = -body.mass * configuration.gravity.dot(rotation * body.com)
+    return sp.expand(kinetic / 2), sp.expand(potential)

@@ -1,0 +1,62 @@
+"""The energy ledger of a machine: what is stored, what comes in, what is lost."""
+
+from collections.abc import Iterable
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.derivation.equations import Ledger
+from ptp_symbolic.symbolic.derivation.parts import Parts
+from ptp_symbolic.symbolic.effects.effect import Contribution, Friction, slide
+from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
+
+ZERO = sp.Integer(0)
+
+
+def energy_ledger(
+    axes: Iterable[str],
+    parts: Parts,
+    frictions: Iterable[Friction],
+    shafts: Iterable[Ledger],
+    rigid: RigidEquations,
+) -> Ledger:
+    """Sum the ledgers of bodies, drives, shafts, `frictions` and effects.
+
+    A potential that depends on time (a base that moves) takes in its partial derivative by time.
+    """
+    stored, power_in, dissipated = rigid.kinetic + rigid.potential, ZERO, ZERO
+    power_in += sum(
+        (kinematics.torque(a) * kinematics.rate(a) for a in axes if a not in parts.driven), ZERO
+    )
+    for drive in parts.drives:
+        stored += drive.stored + drive.inertia * parts.drive_rate(drive) ** 2 / 2
+        power_in += drive.power_in
+        dissipated += drive.dissipated
+    for contribution, is_loss in zip(parts.contributions, parts.dissipative, strict=True):
+        stored += contribution.potential + contribution.stored
+        power = sum((torque * rate for rate, torque in contribution.torques.items()), ZERO)
+        power += _charging(contribution)
+        power_in, dissipated = (
+            (power_in, dissipated - power) if is_loss else (power_in + power, dissipated)
+        )
+    for friction in frictions:
+        dissipated += slide(friction.axis) * friction.level * friction.rate
+    for shaft in shafts:
+        stored, dissipated = stored + shaft.stored, dissipated + shaft.dissipated
+    stored = parts.resolve(stored)
+    return Ledger(
+        stored,
+        parts.resolve(power_in) + sp.diff(stored, kinematics.TIME),
+        parts.resolve(dissipated),
+    )
+
+
+def _charging(contribution: Contribution) -> sp.Expr:
+    """Power that flows into the energy of an effect's own states."""
+    return sum(
+        (
+            sp.diff(contribution.stored, sp.Symbol(state.name, real=True)) * state.derivative
+            for state in contribution.states
+        ),
+        ZERO,
+    )

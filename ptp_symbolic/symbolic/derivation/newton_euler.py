@@ -1,0 +1,101 @@
+"""Equations of motion by recursive Newton-Euler, written out with rotation matrices.
+
+One pass outwards carries spin and acceleration from the base to the tilt frame; one pass inwards
+collects the forces and moments of the bodies. The equations use no energy; the energies of the
+result are summed on the way, so that they can be compared too.
+"""
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration, RigidEquations
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """Motion of a frame whose origin rests in the crossing of the axes, in its own coordinates.
+
+    `spin` in rad/s, `spin_rate` in rad/s^2, `gravity` in m/s^2.
+    """
+
+    spin: sp.Matrix
+    spin_rate: sp.Matrix
+    gravity: sp.Matrix
+
+
+def newton_euler(configuration: RigidConfiguration) -> RigidEquations:
+    """Return M q'' = f + tau of `configuration` by Newton's and Euler's equations of each body.
+
+    The joint torques are linear in the accelerations, whose factors are the mass matrix. Source:
+    Craig, Introduction to Robotics, 3rd edition 2005, Eq. 6.45 to 6.53; the gyroscopic torque about
+    the tilt axis has the sign of erratum 5.
+    """
+    axes = configuration.axes
+    coordinates = tuple(kinematics.angle(axis) for axis in axes)
+    rates = tuple(kinematics.rate(axis) for axis in axes)
+    accelerations = [sp.Symbol(f"acceleration_{axis}", real=True) for axis in axes]
+    motions = _outward(configuration, accelerations)
+    moments = _inward(configuration, motions)
+    mass_matrix = sp.Matrix(moments).jacobian(accelerations)
+    at_rest = dict.fromkeys(accelerations, 0)
+    kinetic = potential = sp.Integer(0)
+    for body in configuration.bodies:
+        motion = motions[len(kinematics.joints_up_to(axes, body.frame))]
+        momentum = _angular_momentum(body, motion.spin)
+        velocity = motion.spin.cross(body.com)
+        kinetic += (motion.spin.dot(momentum) + body.mass * velocity.dot(velocity)) / 2
+        potential -= body.mass * motion.gravity.dot(body.com)
+    return RigidEquations(
+        axes,
+        coordinates,
+        rates,
+        sp.ImmutableMatrix(mass_matrix),
+        sp.ImmutableMatrix([-moment.xreplace(at_rest) for moment in moments]),
+        kinetic,
+        potential,
+    )
+
+
+def _outward(configuration: RigidConfiguration, accelerations: list[sp.Symbol]) -> list[_Motion]:
+    """Motion of the base and of the frame behind each joint, base first."""
+    still = sp.zeros(3, 1)
+    motions = [_Motion(still, still, sp.Matrix(configuration.gravity))]
+    for axis, acceleration in zip(configuration.axes, accelerations, strict=True):
+        before = motions[-1]
+        inwards = kinematics.joint_rotation(axis).T
+        direction = kinematics.joint_direction(axis)
+        relative = direction * kinematics.rate(axis)
+        carried = inwards * before.spin
+        spin_rate = inwards * before.spin_rate + direction * acceleration + carried.cross(relative)
+        motions.append(_Motion(carried + relative, spin_rate, inwards * before.gravity))
+    return motions
+
+
+def _inward(configuration: RigidConfiguration, motions: list[_Motion]) -> list[sp.Expr]:
+    """Moment in N m that each joint must give about its axis, base first."""
+    axes = configuration.axes
+    moments: list[sp.Expr] = []
+    transmitted = sp.zeros(3, 1)
+    for place in range(len(axes), 0, -1):
+        for body in configuration.bodies:
+            if len(kinematics.joints_up_to(axes, body.frame)) == place:
+                transmitted += _moment_about_origin(body, motions[place])
+        moments.append(kinematics.joint_direction(axes[place - 1]).dot(transmitted))
+        transmitted = kinematics.joint_rotation(axes[place - 1]) * transmitted
+    return moments[::-1]
+
+
+def _moment_about_origin(body: Body, motion: _Motion) -> sp.Matrix:
+    """Moment [3] in N m about the crossing of the axes that makes `body` follow `motion`."""
+    spin, spin_rate, arm = motion.spin, motion.spin_rate, sp.Matrix(body.com)
+    acceleration = spin_rate.cross(arm) + spin.cross(spin.cross(arm))
+    force = body.mass * (acceleration - motion.gravity)
+    euler = body.inertia * spin_rate + spin.cross(_angular_momentum(body, spin))
+    return euler + arm.cross(force)
+
+
+def _angular_momentum(body: Body, spin: sp.Matrix) -> sp.Matrix:
+    """Angular momentum [3] about the body's own centre of mass in kg m^2/s."""
+    return sp.Matrix(body.inertia * spin)

@@ -1,0 +1,150 @@
+"""What the placed effects contribute, flattened, with every named quantity resolved."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.derivation.differentiation import derivative
+from ptp_symbolic.symbolic.effects.effect import (
+    Contribution,
+    Drive,
+    Effect,
+    Friction,
+    Input,
+    Place,
+    Play,
+    Shaft,
+)
+from ptp_symbolic.symbolic.effects.effect import quantity as quantity_symbol
+from ptp_symbolic.symbolic.mechanics import kinematics
+
+GRAVITY_QUANTITIES = ("gravity_tilt", "gravity_azimuth")
+BASE_ACCELERATION = tuple(f"base_acceleration_{k}" for k in "xyz")
+PLATFORM_QUANTITIES = (*GRAVITY_QUANTITIES, *BASE_ACCELERATION)
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Contributions of all effects, which of them only dissipate, and values of quantities."""
+
+    contributions: tuple[Contribution, ...]
+    dissipative: tuple[bool, ...]
+    values: Mapping[sp.Symbol, sp.Expr]
+
+    def resolve(self, expression: sp.Expr) -> sp.Expr:
+        """Replace quantity placeholders, also inside other quantities."""
+        while True:
+            present = expression.free_symbols & self.values.keys()
+            if not present:
+                return expression
+            expression = expression.subs({symbol: self.values[symbol] for symbol in present})
+
+    @property
+    def terms(self) -> dict[sp.Symbol, sp.Expr]:
+        """Named functions of all effects, each followed by its slopes in the angles."""
+        found: dict[sp.Symbol, sp.Expr] = {}
+        for contribution in self.contributions:
+            for symbol, term in contribution.terms.items():
+                found[symbol] = self.resolve(term)
+                found.update(_slopes(symbol, found))
+        return found
+
+    @property
+    def frictions(self) -> list[Friction]:
+        """Set-valued frictions of all effects."""
+        return [f for c in self.contributions for f in c.frictions]
+
+    @property
+    def shafts(self) -> list[Shaft]:
+        """Shafts of all effects."""
+        return [s for c in self.contributions for s in c.shafts]
+
+    @property
+    def plays(self) -> list[Play]:
+        """Gaps between rigid bodies of all effects."""
+        return [p for c in self.contributions for p in c.plays]
+
+    @property
+    def split_axes(self) -> list[str]:
+        """Axes whose gear output has a coordinate of its own."""
+        found = [shaft.axis for shaft in self.shafts]
+        return found + [p.axis for p in self.plays if p.axis not in found]
+
+    @property
+    def drives(self) -> list[Drive]:
+        """Drives of all effects."""
+        return [d for c in self.contributions for d in c.drives]
+
+    @property
+    def prescribed(self) -> dict[sp.Symbol, Input]:
+        """Acceleration inputs of joint rates whose motion is prescribed."""
+        return {rate: i for c in self.contributions for rate, i in c.prescribed.items()}
+
+    @property
+    def driven(self) -> set[str]:
+        """Axes that take no torque as input: with a drive, or with a prescribed motion."""
+        moved = {str(rate).removeprefix("omega_") for rate in self.prescribed}
+        return moved | {drive.axis for drive in self.drives}
+
+    def drive_rate(self, drive: Drive) -> sp.Symbol:
+        """The rate that `drive` works on: of the gear output if it has its own, else the joint."""
+        if drive.axis in self.split_axes:
+            return kinematics.gear_rate(drive.axis)
+        return kinematics.rate(drive.axis)
+
+
+def _slopes(term: sp.Symbol, found: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
+    """Derivatives of `term` by the angles, also by way of the functions in it."""
+    slopes: dict[sp.Symbol, sp.Expr] = {}
+    for angle in (q(a) for q in (kinematics.angle, kinematics.gear_angle) for a in kinematics.AXES):
+        slope = derivative(found[term], angle)
+        for inner in sorted(found[term].free_symbols & found.keys(), key=str):
+            if slope_symbol(inner, angle) in found:
+                slope += derivative(found[term], inner) * slope_symbol(inner, angle)
+        if slope != 0:
+            slopes[slope_symbol(term, angle)] = slope
+    return slopes
+
+
+def slope_symbol(term: sp.Symbol, variable: sp.Symbol) -> sp.Symbol:
+    """Name of the derivative of the named function `term` by `variable`."""
+    return sp.Symbol(f"{term}_by_{variable}", real=True)
+
+
+def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Parts:
+    """Let every placed effect contribute, and apply all changes to the quantities."""
+    placed = list(placed)
+    contributions = tuple(effect.contribute(place) for effect, place in placed)
+    values: dict[str, sp.Expr] = {name: sp.Integer(0) for name in PLATFORM_QUANTITIES}
+    for axis in axes:
+        values[f"transmitted_torque_{axis}"] = _transmitted(axis, contributions)
+        values[f"transmission_error_{axis}"] = sp.Integer(0)
+        values[f"reading_{kinematics.angle(axis)}"] = kinematics.angle(axis)
+    for contribution in contributions:
+        values.update(contribution.quantities)
+        values.update(
+            {f"reading_{s.name}": sp.Symbol(s.name, real=True) for s in contribution.states}
+        )
+    changes = [item for c in contributions for item in c.changes.items()]
+    for name, change in changes:
+        values[name] = values[name] * change.factor
+    for name, change in changes:
+        values[name] = values[name] + change.addition
+    for name, change in changes:
+        values[name] = change.through(values[name])
+    symbols = {quantity_symbol(name): value for name, value in values.items()}
+    return Parts(contributions, tuple(effect.dissipative for effect, _ in placed), symbols)
+
+
+def _transmitted(axis: str, contributions: Iterable[Contribution]) -> sp.Expr:
+    """Torque that reaches the joint: of its shaft, else of its drive, else the torque input."""
+    contributions = list(contributions)
+    shafts = {shaft.axis for c in contributions for shaft in c.shafts}
+    if axis in shafts | {play.axis for c in contributions for play in c.plays}:
+        return quantity_symbol(f"shaft_torque_{axis}")
+    for contribution in contributions:
+        for drive in contribution.drives:
+            if drive.axis == axis:
+                return drive.torque
+    return kinematics.torque(axis)

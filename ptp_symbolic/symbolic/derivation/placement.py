@@ -1,0 +1,189 @@
+"""Place the declared effects of a platform and check its parameters against them."""
+
+from dataclasses import replace
+
+from ptp_symbolic.errors import InputError, did_you_mean, unknown
+from ptp_symbolic.platform import ParameterDeclaration, Platform, naming_file
+from ptp_symbolic.platform.units import compatible
+from ptp_symbolic.symbolic.effects import EFFECTS
+from ptp_symbolic.symbolic.effects.effect import Effect, Place
+from ptp_symbolic.symbolic.parameters import Parameter
+
+
+def find_effect(identifier: str) -> Effect:
+    """Return the effect `identifier`; raises InputError with the list of choices."""
+    for effect in EFFECTS:
+        if effect.id == identifier:
+            return effect
+    raise unknown("effect", identifier, (effect.id for effect in EFFECTS))
+
+
+def _of_kind(effect: Effect, kind: str | None) -> Effect:
+    """The `kind` of `effect`, its usual one if None; raises InputError with the list of choices."""
+    if kind is None:
+        return effect
+    kinds = {each.kind: each for each in (effect, *effect.kinds) if each.kind is not None}
+    if not kinds:
+        raise InputError(f"Effect '{effect.id}' has no kinds; remove kind = \"{kind}\".")
+    if kind not in kinds:
+        raise InputError(
+            f"Effect '{effect.id}' has no kind '{kind}'. Choose one of: {', '.join(kinds)}."
+        )
+    return kinds[kind]
+
+
+def place_effects(platform: Platform) -> list[tuple[Effect, Place]]:
+    """Return every declared effect with its place, after checking names, units and bounds.
+
+    The order is that of the catalogue, however the platform lists them: the same machine has the
+    same equations. Raises InputError, which names the file of the platform where it has one.
+    """
+    with naming_file(platform):
+        placed = _placed(platform)
+        _check_needs(placed)
+        _check_ownership(placed)
+        _check_parameters(platform, placed)
+    return placed
+
+
+def _placed(platform: Platform) -> list[tuple[Effect, Place]]:
+    order = [effect.id for effect in EFFECTS]
+    found = [(_of_kind(find_effect(d.effect), d.kind), d) for d in platform.effects]
+    found.sort(key=lambda pair: order.index(pair[0].id))
+    shafts = frozenset(d.axis for e, d in found if e.splits_axis and d.axis is not None)
+    placed = []
+    for effect, declaration in found:
+        if effect.on_axis and declaration.axis is None:
+            raise InputError(
+                f"Effect '{effect.id}' sits on an axis; add axis = \"{platform.axes[0]}\"."
+            )
+        axis = declaration.axis if effect.on_axis else None
+        placed.append((effect, Place(platform.axes, axis, declaration.site, shafts)))
+    return placed
+
+
+def declared_parameters(placed: list[tuple[Effect, Place]]) -> dict[str, Parameter]:
+    """Return the parameters of the placed effects by name."""
+    return {p.name: p for effect, place in placed for p in effect.parameters(place)}
+
+
+def undeclared_parameters(platform: Platform) -> tuple[Parameter, ...]:
+    """Parameters of the declared effects that `platform` leaves at the catalogue's default."""
+    said = {declaration.name for declaration in platform.parameters}
+    own = declared_parameters(place_effects(platform))
+    return tuple(parameter for name, parameter in own.items() if name not in said)
+
+
+def resolved_parameters(
+    platform: Platform, placed: list[tuple[Effect, Place]]
+) -> dict[str, Parameter]:
+    """Return the parameters of the placed effects, defaults and bounds as `platform` declares."""
+    declarations = {d.name: d for d in platform.parameters}
+    own = declared_parameters(placed)
+    return {name: _declared(parameter, declarations) for name, parameter in own.items()}
+
+
+def _declared(parameter: Parameter, declarations: dict[str, ParameterDeclaration]) -> Parameter:
+    declaration = declarations.get(parameter.name)
+    if declaration is None:
+        return parameter
+    source = declarations.get(declaration.same_as or "", declaration)
+    lower = parameter.lower if declaration.lower is None else declaration.lower
+    upper = parameter.upper if declaration.upper is None else declaration.upper
+    return replace(parameter, default=source.value, lower=lower, upper=upper)
+
+
+def available_quantities(placed: list[tuple[Effect, Place]]) -> set[str]:
+    """Names of the quantities that the placed effects define."""
+    return {name for effect, place in placed for name in effect.contribute(place).quantities}
+
+
+def acts_on(effect: Effect, place: Place, placed: list[tuple[Effect, Place]]) -> tuple[str, ...]:
+    """Keys of the placed effects that define a quantity which `effect` at `place` needs."""
+    needs = {need.format(axis=place.axis) for need in effect.needs}
+    return tuple(
+        other.id if there.axis is None else f"{other.id}@{there.axis}"
+        for other, there in placed
+        if needs & set(other.contribute(there).quantities)
+    )
+
+
+def effects_that_define(quantity: str, axes: tuple[str, ...]) -> list[str]:
+    """Ids of the effects that define `quantity` on a machine with these axes."""
+    return [
+        effect.id
+        for effect in EFFECTS
+        if any(
+            quantity in effect.contribute(Place(axes, axis, None, frozenset())).quantities
+            for axis in (axes if effect.on_axis else (None,))
+        )
+    ]
+
+
+def _check_needs(placed: list[tuple[Effect, Place]]) -> None:
+    available = available_quantities(placed)
+    for effect, place in placed:
+        for need in effect.needs:
+            name = need.format(axis=place.axis)
+            if name not in available:
+                bringing = " or ".join(effects_that_define(name, place.axes))
+                on_axis = "" if place.axis is None else f" on axis '{place.axis}'"
+                next_step = (
+                    f"declare {bringing}{on_axis} too, or remove it"
+                    if bringing
+                    else f"no effect does on a platform of {' and '.join(place.axes)}; remove it"
+                )
+                raise InputError(
+                    f"Effect '{effect.id}' acts on '{name}', which no declared effect"
+                    f" defines; {next_step}."
+                )
+
+
+def _check_ownership(placed: list[tuple[Effect, Place]]) -> None:
+    """Refuse what would count twice: one effect declared again, or two that share parameters."""
+    owners: dict[str, Effect] = {}
+    for effect, place in placed:
+        for parameter in effect.parameters(place):
+            other = owners.setdefault(parameter.name, effect)
+            if other is not effect:
+                raise InputError(
+                    f"Effects '{other.id}' and '{effect.id}' both describe {parameter.name};"
+                    " declare one of them."
+                )
+        again = [p for e, p in placed if e is effect and p.axis == place.axis]
+        if len(again) > 1:
+            where = "" if place.axis is None else f" on axis '{place.axis}'"
+            raise InputError(f"Effect '{effect.id}'{where} is declared twice; remove one.")
+
+
+def _check_parameters(platform: Platform, placed: list[tuple[Effect, Place]]) -> None:
+    own = declared_parameters(placed)
+    for declaration in platform.parameters:
+        parameter = own.get(declaration.name)
+        if parameter is None:
+            raise InputError(_no_owner(declaration.name, platform.axes, own))
+        if declaration.unit is not None and not compatible(declaration.unit, parameter.unit):
+            raise InputError(
+                f"Parameter '{declaration.name}' has unit '{declaration.unit}';"
+                f" give it in '{parameter.unit}'."
+            )
+        value = declaration.value
+        if not parameter.lower <= value <= parameter.upper:
+            raise InputError(
+                f"Parameter '{declaration.name}' = {value:g} {parameter.unit} lies outside its"
+                f" bounds [{parameter.lower:g}, {parameter.upper:g}] {parameter.unit};"
+                " change the value."
+            )
+
+
+def _no_owner(name: str, axes: tuple[str, ...], own: dict[str, Parameter]) -> str:
+    """What to say of a parameter that no declared effect has, though another may have it."""
+    owners = [
+        effect.id
+        for effect in EFFECTS
+        for axis in (axes if effect.on_axis else (None,))
+        if name in {p.name for p in effect.parameters(Place(axes, axis, None, frozenset()))}
+    ]
+    guess = f": it is of {' or '.join(owners)}; declare one." if owners else did_you_mean(name, own)
+    known = ", ".join(own)
+    return f"Parameter '{name}' belongs to no declared effect{guess or '.'} Known here: {known}."

@@ -1,0 +1,81 @@
+"""Joints that follow a given acceleration: their rows, and the power that their motion takes."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.symbolic.derivation.friction import Mechanics
+from ptp_symbolic.symbolic.derivation.parts import Parts
+from ptp_symbolic.symbolic.effects.effect import Friction, Input, slide
+from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
+
+ZERO = sp.Integer(0)
+
+
+def released(parts: Parts) -> Parts:
+    """`parts` without the dry friction of prescribed joints, which the motion overcomes.
+
+    Raises InputError where a motor or a shaft works on such a joint.
+    """
+    rates = parts.prescribed
+    axes = [str(rate).removeprefix("omega_") for rate in rates]
+    busy = {drive.axis for drive in parts.drives} | set(parts.split_axes)
+    for axis in axes:
+        if axis in busy:
+            raise InputError(
+                f"The motion of axis '{axis}' is prescribed, and a motor or a shaft works on it;"
+                " remove prescribed_motion, or motor and shaft."
+            )
+    kept = tuple(
+        replace(c, frictions=tuple(f for f in c.frictions if f.rate not in rates))
+        for c in parts.contributions
+    )
+    still = {slide(axis): ZERO for axis in axes}
+    return replace(parts, contributions=kept, values={**parts.values, **still})
+
+
+def reduced(
+    mechanics: Mechanics, rigid: RigidEquations, inputs: Mapping[sp.Symbol, Input]
+) -> tuple[Mechanics, RigidEquations]:
+    """Give prescribed joints the rows ``rate' = input``; what they do to others joins the forcing.
+
+    The rigid equations lose their rows too; their energies stay.
+    """
+    mass, forcing = sp.Matrix(mechanics.mass), sp.Matrix(mechanics.forcing)
+    rigid_mass, rigid_forcing = sp.Matrix(rigid.mass_matrix), sp.Matrix(rigid.forcing)
+    for rate, given in inputs.items():
+        row, acceleration = mechanics.rates.index(rate), sp.Symbol(given.name, real=True)
+        for other in range(mass.rows):
+            forcing[other] -= mass[other, row] * acceleration
+        forcing[row] = acceleration
+        rigid_forcing[row] = ZERO
+        for matrix, own in ((mass, sp.Integer(1)), (rigid_mass, ZERO)):
+            matrix[row, :] = sp.zeros(1, matrix.cols)
+            matrix[:, row] = sp.zeros(matrix.rows, 1)
+            matrix[row, row] = own
+    return (
+        replace(mechanics, mass=mass.as_immutable(), forcing=forcing.as_immutable()),
+        replace(rigid, mass_matrix=rigid_mass.as_immutable(), forcing=rigid_forcing.as_immutable()),
+    )
+
+
+def constraint_power(
+    full: Mechanics,
+    free: Mechanics,
+    frictions: Sequence[Friction],
+    inputs: Mapping[sp.Symbol, Input],
+) -> sp.Expr:
+    """Power in W of the torques that the prescribed motion takes."""
+    by_rate = {f.rate: f for f in frictions}
+    accelerations = []
+    for row, rate in enumerate(full.rates):
+        acceleration = free.forcing[row] / free.mass[row, row]
+        if rate in by_rate:
+            way = slide(by_rate[rate].axis)
+            held = way * by_rate[rate].level / free.mass[row, row]
+            acceleration = way**2 * (acceleration - held)
+        accelerations.append(acceleration)
+    torques = full.mass * sp.Matrix(accelerations) - full.forcing
+    return sum((torques[full.rates.index(rate)] * rate for rate in inputs), ZERO)

@@ -1,0 +1,70 @@
+"""The catalogue of effects: one file each, listed here in the order of the catalogue."""
+
+from ptp_symbolic.symbolic.effects.backlash import BACKLASH
+from ptp_symbolic.symbolic.effects.base_motion import BASE_MOTION
+from ptp_symbolic.symbolic.effects.base_tilt import BASE_TILT
+from ptp_symbolic.symbolic.effects.cable_spring import CABLE_SPRING
+from ptp_symbolic.symbolic.effects.cogging import COGGING
+from ptp_symbolic.symbolic.effects.constant_torque import CONSTANT_TORQUE
+from ptp_symbolic.symbolic.effects.csvs_friction import CSVS_FRICTION
+from ptp_symbolic.symbolic.effects.dc_motor import DC_MOTOR
+from ptp_symbolic.symbolic.effects.direction_dependent_friction import DIRECTION_DEPENDENT_FRICTION
+from ptp_symbolic.symbolic.effects.drive_deadband import DRIVE_DEADBAND
+from ptp_symbolic.symbolic.effects.effect import Effect
+from ptp_symbolic.symbolic.effects.encoder_eccentricity import ENCODER_ECCENTRICITY
+from ptp_symbolic.symbolic.effects.encoder_quantization import ENCODER_QUANTIZATION
+from ptp_symbolic.symbolic.effects.gear_eccentricity import GEAR_ECCENTRICITY
+from ptp_symbolic.symbolic.effects.input_delay import INPUT_DELAY
+from ptp_symbolic.symbolic.effects.linear_actuator import LINEAR_ACTUATOR
+from ptp_symbolic.symbolic.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION
+from ptp_symbolic.symbolic.effects.lugre_friction import LUGRE_FRICTION
+from ptp_symbolic.symbolic.effects.payload import PAYLOAD
+from ptp_symbolic.symbolic.effects.payload_com_offset import PAYLOAD_COM_OFFSET
+from ptp_symbolic.symbolic.effects.pid_controller import PID_CONTROLLER
+from ptp_symbolic.symbolic.effects.position_dependent_friction import POSITION_DEPENDENT_FRICTION
+from ptp_symbolic.symbolic.effects.prescribed_motion import PRESCRIBED_MOTION
+from ptp_symbolic.symbolic.effects.product_of_inertia import PRODUCT_OF_INERTIA
+from ptp_symbolic.symbolic.effects.pwm_drive import PWM_DRIVE
+from ptp_symbolic.symbolic.effects.quadratic_drag import QUADRATIC_DRAG
+from ptp_symbolic.symbolic.effects.rate_dependent_breakaway import RATE_DEPENDENT_BREAKAWAY
+from ptp_symbolic.symbolic.effects.rigid_bodies import RIGID_BODIES
+from ptp_symbolic.symbolic.effects.shaft_compliance import SHAFT_COMPLIANCE
+from ptp_symbolic.symbolic.effects.viscous_friction import VISCOUS_FRICTION
+from ptp_symbolic.symbolic.effects.voltage_offset import VOLTAGE_OFFSET
+from ptp_symbolic.symbolic.effects.voltage_saturation import VOLTAGE_SATURATION
+from ptp_symbolic.symbolic.effects.winding_heating import WINDING_HEATING
+
+EFFECTS: tuple[Effect, ...] = (
+    RIGID_BODIES,
+    PAYLOAD,
+    PAYLOAD_COM_OFFSET,
+    PRODUCT_OF_INERTIA,
+    BASE_TILT,
+    BASE_MOTION,
+    VISCOUS_FRICTION,
+    CSVS_FRICTION,
+    LUGRE_FRICTION,
+    DIRECTION_DEPENDENT_FRICTION,
+    LOAD_DEPENDENT_FRICTION,
+    POSITION_DEPENDENT_FRICTION,
+    RATE_DEPENDENT_BREAKAWAY,
+    QUADRATIC_DRAG,
+    BACKLASH,
+    SHAFT_COMPLIANCE,
+    COGGING,
+    GEAR_ECCENTRICITY,
+    DC_MOTOR,
+    LINEAR_ACTUATOR,
+    PID_CONTROLLER,
+    PWM_DRIVE,
+    PRESCRIBED_MOTION,
+    DRIVE_DEADBAND,
+    VOLTAGE_OFFSET,
+    VOLTAGE_SATURATION,
+    WINDING_HEATING,
+    CABLE_SPRING,
+    CONSTANT_TORQUE,
+    INPUT_DELAY,
+    ENCODER_ECCENTRICITY,
+    ENCODER_QUANTIZATION,
+)

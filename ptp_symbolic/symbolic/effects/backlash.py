@@ -1,0 +1,68 @@
+"""Free play between gear output and load, of four kinds.
+
+The usual one is a dead zone in the twist of a flexible shaft. The others join gear output and load
+rigidly, without a shaft between: a massless shaft has no speed of its own that could reverse, so
+restitution is a matter of rigid faces. Assumed: faces strike in no time, and dry friction, which
+is finite, does not take part in a strike.
+"""
+
+from dataclasses import replace
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place, Play
+from ptp_symbolic.symbolic.parameters import Parameter
+
+GAP = Parameter(
+    "gap_{axis}", "rad", 0.026005, 0.0, 1.0, "whole gap between the two faces",
+    vanishes=0.0, starts=(0.005, 0.02),
+)  # fmt: skip
+OPEN_GAP = replace(GAP, lower=1e-6, vanishes=None, starts=())
+RESTITUTION = Parameter(
+    "e_gap_{axis}", "1", 0.5, 0.0, 1.0, "restitution: speed apart after a strike, per speed before"
+)
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return (GAP.at_axis(place.axis),)
+
+
+def _contribute(place: Place) -> Contribution:
+    half = place.parameter("gap_{axis}") / 2
+    return Contribution(changes={f"half_gap_{place.axis}": Change(addition=half)})
+
+
+def _kind(
+    kind: str, title: str, reference: str, bounces: bool = False, holds: bool = False
+) -> Effect:
+    given = (OPEN_GAP, RESTITUTION) if bounces else (OPEN_GAP,)
+
+    def contribute(place: Place) -> Contribution:
+        half = place.parameter("gap_{axis}") / 2
+        restitution = place.parameter(RESTITUTION.name) if bounces else sp.Integer(0)
+        return Contribution(plays=(Play(place.own_axis, half, restitution, holds),))
+
+    return Effect(
+        id="backlash", kind=kind, title=title, reference=reference,
+        parameters=lambda place: place.named(given), contribute=contribute,
+        structural=True, splits_axis=True,
+    )  # fmt: skip
+
+
+BACKLASH = Effect(
+    id="backlash",
+    kind="dead_zone",
+    title="backlash",
+    reference="thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
+    parameters=_parameters,
+    contribute=_contribute,
+    needs=("half_gap_{axis}",),
+    separating_experiment="Reverse slowly with and without a known preload torque on the joint:"
+    " backlash disappears under preload, presliding does not.",
+    kinds=(
+        _kind("elastic_impact", "backlash with elastic impact", "Newton's restitution", True),
+        _kind("hysteresis_friction", "backlash, load held by friction", "thesis Eq. 2.17",
+              holds=True),
+        _kind("hysteresis_inertia", "backlash, load coasting", "thesis Eq. 2.18, erratum 29"),
+    ),
+)  # fmt: skip

@@ -1,0 +1,41 @@
+"""A base that is not level, so that gravity reaches the pan axis."""
+
+import math
+
+from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.symbolic.parameters import Parameter
+
+TILT = Parameter(
+    "beta_base", "rad", 0.0, 0.0, 1.5, "angle between the pan axis and the vertical",
+    vanishes=0.0, starts=(0.05,),
+)  # fmt: skip
+AZIMUTH = Parameter(
+    "alpha_base", "rad", 0.0, -7.0, 7.0, "pan angle at which a payload on the boresight would rest",
+    starts=(-math.pi / 2, 0.0, math.pi / 2, math.pi), period=2 * math.pi,
+)  # fmt: skip
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return (TILT, AZIMUTH)
+
+
+def _contribute(place: Place) -> Contribution:
+    return Contribution(
+        changes={
+            "gravity_tilt": Change(addition=place.parameter("beta_base")),
+            "gravity_azimuth": Change(addition=place.parameter("alpha_base")),
+        }
+    )
+
+
+BASE_TILT = Effect(
+    id="base_tilt",
+    title="base that is not level",
+    reference="gravity turned by two angles in thesis Eq. 3.8 with payload (section 3.2.2)",
+    parameters=_parameters,
+    contribute=_contribute,
+    on_axis=False,
+    needs=("payload_com_x",),
+    separating_experiment="Sweep the pan axis over a full turn (a spring keeps growing, gravity"
+    " comes back), or level the base with shims and repeat.",
+)

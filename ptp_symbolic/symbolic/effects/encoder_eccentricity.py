@@ -1,0 +1,39 @@
+"""An encoder disc off its centre: the reading leads and lags once per turn."""
+
+from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.symbolic.effects.harmonics import harmonic_members, wave
+from ptp_symbolic.symbolic.parameters import Parameter, harmonics
+
+AMPLITUDES = harmonics(
+    Parameter(
+        "e_sin_{axis}", "rad", 0.0, -0.2, 0.2,
+        "reading error of the encoder: part that goes with the sine of the joint angle",
+        vanishes=0.0, starts=(0.002,),
+    ),
+    Parameter(
+        "e_cos_{axis}", "rad", 0.0, -0.2, 0.2,
+        "reading error of the encoder: part that goes with the cosine",
+        vanishes=0.0, starts=(0.002,),
+    ),
+)  # fmt: skip
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return tuple(p.at_axis(place.axis) for pair in AMPLITUDES for p in pair)
+
+
+def _contribute(place: Place) -> Contribution:
+    error = wave(place, AMPLITUDES, place.angle)
+    return Contribution(changes={f"reading_{place.angle}": Change(addition=error)})
+
+
+ENCODER_ECCENTRICITY = Effect(
+    id="encoder_eccentricity",
+    title="encoder off its centre",
+    reference="Ellin and Dolsak (2008): eccentricity error of rotary encoders",
+    parameters=_parameters,
+    contribute=_contribute,
+    members=harmonic_members(AMPLITUDES),
+    separating_experiment="Turn slowly against a second encoder or an optical polygon: the error"
+    " depends on the angle alone, at any speed and load.",
+)

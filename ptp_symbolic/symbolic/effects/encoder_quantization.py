@@ -1,0 +1,52 @@
+"""An encoder that counts: the reading is the nearest whole count."""
+
+import sympy as sp
+from sympy.printing.precedence import PRECEDENCE
+from sympy.printing.printer import Printer
+
+from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.symbolic.parameters import Parameter
+
+PARAMETERS = (
+    Parameter(
+        "q_count_{axis}", "rad", 8.726646259971648e-4, 1e-12, 1.0, "angle of one encoder count"
+    ),
+)
+
+
+class NearestCount(sp.Function):
+    """The multiple of `count` nearest to an angle; its slope is that of the angle, 1."""
+
+    nargs = 2
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """Return 1 by the angle (what a fit needs, on average), 0 by the count."""
+        return sp.Integer(1 if argindex == 1 else 0)
+
+    def _pythoncode(self, printer: Printer) -> str:
+        angle = printer._print(self.args[0])
+        count = printer.parenthesize(self.args[1], PRECEDENCE["Func"], strict=True)
+        return f"({count} * math.floor(({angle}) / {count} + 0.5))"
+
+    def _eval_rewrite_as_floor(self, angle: sp.Expr, count: sp.Expr, **_: object) -> sp.Expr:
+        return count * sp.floor(angle / count + sp.Rational(1, 2))
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
+
+
+def _contribute(place: Place) -> Contribution:
+    count = place.parameter("q_count_{axis}")
+    counted = Change(through=lambda shown: NearestCount(shown, count))
+    return Contribution(changes={f"reading_{place.angle}": counted})
+
+
+ENCODER_QUANTIZATION = Effect(
+    id="encoder_quantization",
+    title="encoder that counts",
+    reference="thesis Table 5.7: 7200 counts per turn (1800 lines, four edges each)",
+    parameters=_parameters,
+    contribute=_contribute,
+    structural=True,
+)

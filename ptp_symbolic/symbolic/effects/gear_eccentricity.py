@@ -1,0 +1,39 @@
+"""A gear that does not run true: its output leads and lags once per turn."""
+
+from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.symbolic.effects.harmonics import harmonic_members, wave
+from ptp_symbolic.symbolic.parameters import Parameter, harmonics
+
+AMPLITUDES = harmonics(
+    Parameter(
+        "g_sin_{axis}", "rad", 0.0, -0.2, 0.2,
+        "transmission error: part that goes with the sine of the gear output's angle",
+        vanishes=0.0, starts=(0.002,),
+    ),
+    Parameter(
+        "g_cos_{axis}", "rad", 0.0, -0.2, 0.2, "transmission error: part that goes with the cosine",
+        vanishes=0.0, starts=(0.002,),
+    ),
+)  # fmt: skip
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return tuple(p.at_axis(place.axis) for pair in AMPLITUDES for p in pair)
+
+
+def _contribute(place: Place) -> Contribution:
+    error = wave(place, AMPLITUDES, place.gear_angle)
+    return Contribution(changes={f"transmission_error_{place.axis}": Change(addition=error)})
+
+
+GEAR_ECCENTRICITY = Effect(
+    id="gear_eccentricity",
+    title="gear that runs out of true",
+    reference="Smith (1999), transmission error of an eccentric wheel",
+    parameters=_parameters,
+    contribute=_contribute,
+    needs=("half_gap_{axis}",),
+    members=harmonic_members(AMPLITUDES),
+    separating_experiment="Compare an encoder on the motor with the one on the joint over a full"
+    " slow turn both ways; an encoder error shows without load as well.",
+)

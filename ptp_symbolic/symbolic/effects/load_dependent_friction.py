@@ -1,0 +1,37 @@
+"""Dry friction that grows with the torque that the gear carries."""
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.symbolic.parameters import Parameter
+
+PARAMETERS = (
+    Parameter(
+        "mu_load_{axis}", "1", 0.0, 0.0, 0.9, "dry friction per torque transmitted to the joint",
+        vanishes=0.0, starts=(0.05,),
+    ),
+)  # fmt: skip
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
+
+
+def _contribute(place: Place) -> Contribution:
+    carried = sp.Abs(place.quantity("transmitted_torque_{axis}"))
+    added = Change(addition=place.parameter("mu_load_{axis}") * carried)
+    return Contribution(
+        changes={f"{word}_torque_{place.axis}": added for word in ("coulomb", "static")}
+    )
+
+
+LOAD_DEPENDENT_FRICTION = Effect(
+    id="load_dependent_friction",
+    title="friction that grows with the load",
+    reference="Dohring, Lee and Newman (1993): load-dependent transmission friction",
+    parameters=_parameters,
+    contribute=_contribute,
+    needs=("coulomb_torque_{axis}", "static_torque_{axis}"),
+    separating_experiment="Repeat with a known weight on a known arm, lifted and lowered at the"
+    " same speeds.",
+)

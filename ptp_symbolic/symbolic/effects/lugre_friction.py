@@ -1,0 +1,56 @@
+"""LuGre friction: bristles that bend before they slip."""
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Place, State
+from ptp_symbolic.symbolic.parameters import Parameter
+
+PARAMETERS = (
+    Parameter("sigma0_{axis}", "N m/rad", 1e3, 1e-6, 1e9, "stiffness of the bristles"),
+    Parameter("sigma1_{axis}", "N m s/rad", 1.0, 0.0, 1e6, "damping of the bristles"),
+    Parameter("sigma2_{axis}", "N m s/rad", 0.1, 0.0, 1e4, "viscous friction"),
+    Parameter("F_c_{axis}", "N m", 0.24, 1e-9, 1e4, "Coulomb friction torque"),
+    Parameter("F_s_{axis}", "N m", 0.65, 1e-9, 1e4, "static friction torque"),
+    Parameter("v_s_{axis}", "rad/s", 0.016, 1e-6, 1e3, "Stribeck speed"),
+)
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
+
+
+def _contribute(place: Place) -> Contribution:
+    stiffness, damping, viscous, coulomb, static, speed = (
+        place.parameter(p.name) for p in PARAMETERS
+    )
+    rate = place.rate if place.site == "joint" else place.gear_rate
+    bend = sp.Symbol(f"bristle_{place.axis}", real=True)
+    level = coulomb + (static - coulomb) * sp.exp(-((rate / speed) ** 2))
+    bending = rate - stiffness * sp.Abs(rate) / level * bend
+    return Contribution(
+        torques={rate: -(stiffness * bend + damping * bending + viscous * rate)},
+        stored=stiffness * bend**2 / 2,
+        states=(State(str(bend), "rad", f"bend of the {place.axis} bristles", bending),),
+    )
+
+
+def passive_up_to(values: dict[str, float], axis: str) -> float:
+    """Rate in rad/s up to which the friction surely takes energy out (inf: at every rate).
+
+    Bliman and Sorine (1995): sigma1 may not exceed 4 sigma0 g(v) / |v|; the level g is at least
+    the smaller of Coulomb and static torque.
+    """
+    least = min(values[f"F_c_{axis}"], values[f"F_s_{axis}"])
+    damping = values[f"sigma1_{axis}"]
+    return 4 * values[f"sigma0_{axis}"] * least / damping if damping > 0.0 else float("inf")
+
+
+LUGRE_FRICTION = Effect(
+    id="lugre_friction",
+    title="LuGre friction",
+    reference="Canudas de Wit, Olsson, Astrom and Lischinsky (1995), Eq. 1-4",
+    parameters=_parameters,
+    contribute=_contribute,
+    structural=True,
+    separating_experiment="Swing below breakaway: bristles return elastically, dry friction stays.",
+)

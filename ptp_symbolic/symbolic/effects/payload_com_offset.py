@@ -1,0 +1,39 @@
+"""A centre of mass of the payload that lies elsewhere than declared."""
+
+from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.symbolic.parameters import Parameter
+
+SHIFTS = tuple(
+    Parameter(
+        f"dc_{k}_payload", "m", 0.0, -1.0, 1.0, f"shift of the centre of mass along {k}",
+        vanishes=0.0, starts=(0.0,),
+    )
+    for k in "xyz"
+)  # fmt: skip
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    along_axis = {"pan": "dc_z_payload", "tilt": "dc_y_payload"}.get("".join(place.axes))
+    return tuple(p for p in SHIFTS if p.name != along_axis)
+
+
+def _contribute(place: Place) -> Contribution:
+    return Contribution(
+        changes={
+            f"payload_com_{p.name[3]}": Change(addition=place.parameter(p.name))
+            for p in _parameters(place)
+        }
+    )
+
+
+PAYLOAD_COM_OFFSET = Effect(
+    id="payload_com_offset",
+    title="payload centre of mass off its declared place",
+    reference="thesis section 3.2.2 (mass imbalance)",
+    parameters=_parameters,
+    contribute=_contribute,
+    on_axis=False,
+    needs=("payload_com_x",),
+    separating_experiment="Hold each axis at several angles and read the holding torque; repeat"
+    " with the payload turned by 180 deg about the boresight.",
+)

@@ -1,0 +1,46 @@
+"""Friction that depends on the angle: a bent shaft, a bearing under uneven load."""
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.symbolic.effects.harmonics import harmonic_members, wave
+from ptp_symbolic.symbolic.parameters import Parameter, harmonics
+
+AMPLITUDES = harmonics(
+    Parameter(
+        "F_sin_{axis}", "N m", 0.0, -1e4, 1e4,
+        "part of dry friction that goes with the sine of the angle at the gear output",
+        vanishes=0.0, starts=(0.0, 0.1),
+    ),
+    Parameter(
+        "F_cos_{axis}", "N m", 0.0, -1e4, 1e4, "part of dry friction that goes with the cosine",
+        vanishes=0.0, starts=(0.1,),
+    ),
+)  # fmt: skip
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return tuple(p.at_axis(place.axis) for pair in AMPLITUDES for p in pair)
+
+
+def _contribute(place: Place) -> Contribution:
+    added = Change(
+        addition=wave(place, AMPLITUDES, place.gear_angle),
+        through=lambda torque: sp.Max(torque, 0),
+    )
+    return Contribution(
+        changes={f"{word}_torque_{place.axis}": added for word in ("coulomb", "static")}
+    )
+
+
+POSITION_DEPENDENT_FRICTION = Effect(
+    id="position_dependent_friction",
+    title="friction that depends on the angle",
+    reference="Armstrong-Helouvry (1991), section 4: friction against position",
+    parameters=_parameters,
+    contribute=_contribute,
+    needs=("coulomb_torque_{axis}", "static_torque_{axis}"),
+    members=harmonic_members(AMPLITUDES),
+    separating_experiment="Pass the same angles both ways at two speeds: gravity keeps its sign,"
+    " friction flips, an encoder error grows with the speed.",
+)

@@ -1,0 +1,39 @@
+"""Products of inertia of the tilt body: principal axes that are not the joint axes."""
+
+from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.symbolic.parameters import Parameter
+
+PARAMETERS = tuple(
+    Parameter(
+        f"J_{pair}_tilt", "kg m^2", 0.0, -1e4, 1e4,
+        f"element {pair} of the tilt body's inertia tensor (minus the integral of {pair} dm)",
+        vanishes=0.0, starts=(0.0,),
+    )
+    for pair in ("xy", "xz", "yz")
+)  # fmt: skip
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return PARAMETERS
+
+
+def _contribute(place: Place) -> Contribution:
+    return Contribution(
+        changes={
+            f"tilt_product_{p.name[2:4]}": Change(addition=place.parameter(p.name))
+            for p in PARAMETERS
+        }
+    )
+
+
+PRODUCT_OF_INERTIA = Effect(
+    id="product_of_inertia",
+    title="products of inertia of the tilt body",
+    reference="thesis Table 2.2 with erratum 27: M_pt = -J_xy sin + J_yz cos",
+    parameters=_parameters,
+    contribute=_contribute,
+    on_axis=False,
+    needs=("tilt_product_xy",),
+    separating_experiment="Accelerate one axis at several angles with the other held by its drive"
+    " and read the torque that holds it.",
+)

@@ -1,0 +1,53 @@
+"""The pan body and the tilt body, balanced, with principal axes along the joint axes."""
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Place
+from ptp_symbolic.symbolic.mechanics.bodies import Body
+from ptp_symbolic.symbolic.parameters import Parameter
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    pan = (Parameter("J_pan", "kg m^2", 5.3e-4, 1e-12, 1e4, "inertia of the pan body about z"),)
+    tilt = (
+        Parameter("J_x_tilt", "kg m^2", 4.1e-4, 1e-12, 1e4, "inertia of the tilt body about x"),
+        Parameter("J_y_tilt", "kg m^2", 6.5e-4, 1e-12, 1e4, "inertia of the tilt body about y"),
+        Parameter("J_z_tilt", "kg m^2", 2.7e-4, 1e-12, 1e4, "inertia of the tilt body about z"),
+    )
+    if place.axes == ("pan",):
+        return pan
+    if place.axes == ("tilt",):
+        return tilt[1:2]
+    return pan + tilt
+
+
+def _contribute(place: Place) -> Contribution:
+    symbol = place.parameter
+    at_axes = sp.ImmutableMatrix([0, 0, 0])
+    bodies, products = [], {}
+    if "pan" in place.axes:
+        inertia = sp.ImmutableMatrix(sp.diag(0, 0, symbol("J_pan")))
+        bodies.append(Body("pan_body", "pan", sp.Integer(0), at_axes, inertia))
+    if "tilt" in place.axes:
+        full = "pan" in place.axes
+        x, z = (symbol("J_x_tilt"), symbol("J_z_tilt")) if full else (0, 0)
+        inertia = sp.diag(x, symbol("J_y_tilt"), z)
+        if full:
+            products = {f"tilt_product_{pair}": sp.Integer(0) for pair in ("xy", "xz", "yz")}
+            for name in products:
+                i, j = ("xyz".index(letter) for letter in name[-2:])
+                inertia[i, j] = inertia[j, i] = place.quantity(name)
+        inertia = sp.ImmutableMatrix(inertia)
+        bodies.append(Body("tilt_body", "tilt", sp.Integer(0), at_axes, inertia))
+    return Contribution(quantities=products, bodies=tuple(bodies))
+
+
+RIGID_BODIES = Effect(
+    id="rigid_bodies",
+    title="pan body and tilt body",
+    reference="thesis Eq. 3.8, Table 5.1",
+    parameters=_parameters,
+    contribute=_contribute,
+    on_axis=False,
+    structural=True,
+)

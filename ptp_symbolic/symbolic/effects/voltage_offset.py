@@ -1,0 +1,32 @@
+"""A drive that puts out a voltage although it is told to put out none."""
+
+from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.symbolic.parameters import Parameter
+
+PARAMETERS = (
+    Parameter(
+        "u0_{axis}", "V", 0.0, -1e3, 1e3, "offset of the {axis} drive's voltage",
+        vanishes=0.0, starts=(-0.3, 0.3),
+    ),
+)  # fmt: skip
+
+
+def _parameters(place: Place) -> tuple[Parameter, ...]:
+    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
+
+
+def _contribute(place: Place) -> Contribution:
+    offset = place.parameter("u0_{axis}")
+    return Contribution(changes={f"motor_voltage_{place.axis}": Change(addition=offset)})
+
+
+VOLTAGE_OFFSET = Effect(
+    id="voltage_offset",
+    title="offset of the drive's voltage",
+    reference="offset of the power amplifier, in series with thesis Eq. 3.10",
+    parameters=_parameters,
+    contribute=_contribute,
+    needs=("motor_voltage_{axis}",),
+    separating_experiment="Swap the motor leads and repeat: an offset of the drive turns with"
+    " them, a torque on the joint does not; or read the open terminals at zero command.",
+)

@@ -1,0 +1,1 @@
+"""Frames, their rates, and rigid bodies."""

@@ -1,0 +1,66 @@
+"""Rigid bodies, the rigid part of a machine, and its equations of motion, as plain data."""
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.mechanics.kinematics import AXES
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid body carried by the pan or the tilt frame.
+
+    `mass` in kg; `com` [3] in m from the crossing of the axes; `inertia` [3, 3] in kg m^2 about the
+    body's own centre of mass, a tensor (products with a minus sign); both in the carrying frame.
+    """
+
+    name: str
+    frame: str
+    mass: sp.Expr
+    com: sp.ImmutableMatrix
+    inertia: sp.ImmutableMatrix
+
+    def __post_init__(self) -> None:
+        if self.frame not in AXES:
+            raise ValueError(f"Body '{self.name}': frame '{self.frame}'; choose from {AXES}.")
+        if self.com.shape != (3, 1) or self.inertia.shape != (3, 3):
+            raise ValueError(f"Body '{self.name}': com must be [3] and inertia [3, 3].")
+        if self.inertia != self.inertia.T:
+            raise ValueError(f"Body '{self.name}': the inertia tensor must be symmetric.")
+
+
+@dataclass(frozen=True)
+class RigidConfiguration:
+    """The rigid part of a machine: its axes, the bodies they carry, gravity [3] in m/s^2.
+
+    `gravity` is given in the base frame; a base that is not level tilts this vector. `axes` is
+    ('pan', 'tilt'), ('pan',) or ('tilt',).
+    """
+
+    axes: tuple[str, ...]
+    bodies: tuple[Body, ...]
+    gravity: sp.ImmutableMatrix
+
+    def __post_init__(self) -> None:
+        if not self.axes or self.axes != tuple(axis for axis in AXES if axis in self.axes):
+            raise ValueError(f"Axes {self.axes}; choose one or both of {AXES}, in this order.")
+        if self.gravity.shape != (3, 1):
+            raise ValueError("Gravity must be a vector [3].")
+
+
+@dataclass(frozen=True)
+class RigidEquations:
+    """Equations of motion M(q) q'' = f(q, q') + tau of n joints, and the energies behind them.
+
+    `mass_matrix` [n, n] in kg m^2, `forcing` [n] in N m (Coriolis, centrifugal and gravity
+    torques, without the joint torques tau), `kinetic` and `potential` in J.
+    """
+
+    axes: tuple[str, ...]
+    coordinates: tuple[sp.Symbol, ...]
+    rates: tuple[sp.Symbol, ...]
+    mass_matrix: sp.ImmutableMatrix
+    forcing: sp.ImmutableMatrix
+    kinetic: sp.Expr
+    potential: sp.Expr

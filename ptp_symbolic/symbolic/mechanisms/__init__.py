@@ -1,0 +1,1 @@
+"""Drives in closed form: a linkage, a lead screw."""

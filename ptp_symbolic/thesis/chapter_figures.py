@@ -1,0 +1,261 @@
+"""The figures of the thesis that can be recomputed, chapter by chapter."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from ptp_symbolic.thesis import contact, printed, ramp_test, responses, rigid
+from ptp_symbolic.thesis.errata_drives import hysteresis
+from ptp_symbolic.thesis.figures import BLUE, Line, ThesisFigure, panel
+from ptp_symbolic.thesis.friction import (
+    drive_values,
+    duty_and_torque,
+    estimated,
+    mean_friction,
+    steady_friction,
+)
+from ptp_symbolic.thesis.tilt_drive import simulate_tilt_drive
+
+FloatArray = NDArray[np.float64]
+
+# End in s of the curves of the rigid platform, and the part of the step in which the shaft rings.
+SHOWN = 10.0
+RINGING = (1.75, 2.25)
+
+
+def _friction_map() -> list[Line]:
+    speeds = np.linspace(0.002, 0.55, 500)
+    direct = mean_friction("positive")
+    apparent = np.array([duty_and_torque(s, direct)[1] for s in speeds])
+    lines = [
+        Line(f"PWM drive, Table 4.1, omega {sign} 0", speeds,
+             steady_friction(speeds, estimated(direction)))
+        for direction, sign in zip(printed.DIRECTIONS, "><", strict=True)
+    ]  # fmt: skip
+    lines.append(Line("DC drive, mean of Table 4.2", speeds, steady_friction(speeds, direct)))
+    return [*lines, Line("DC friction times duty at 24 V", speeds, apparent)]
+
+
+def _ramp_fit() -> list[Line]:
+    found = ramp_test.estimates("positive")[0].x
+    data = ramp_test.measured_angle(printed.TABLE_4_2["positive"][0])
+    model = ramp_test.model_angle(found, printed.APPENDIX_C_MOTOR_INERTIA)
+    return [
+        Line("data made from test 1", ramp_test.TIMES, data),
+        Line("fitted model", ramp_test.TIMES, model),
+    ]
+
+
+def _inertia_profile(axes: Axes) -> None:
+    inertia, residual = ramp_test.inertia_profile().T
+    axes.axvspan(
+        printed.APPENDIX_C_LOWER[0], printed.APPENDIX_C_UPPER[0], color="#f0d9c8",
+        label="bounds of Appendix C",
+    )  # fmt: skip
+    axes.plot(inertia, residual, color=BLUE, marker="o", markersize=3, label="residual")
+    axes.set(xlabel="J in kg m$^2$", ylabel="rms residual in counts", ylim=(0.0, 0.25))
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderpad=0.1)
+
+
+def estimation_figures() -> list[ThesisFigure]:
+    """Chapter 4: friction map, ramp fit, profile of the inertia."""
+    return [
+        ThesisFigure("fig_4_3", "Steady friction against speed (Fig. 4.3) and the PWM duty.",
+                     (panel("speed in rad/s", "friction torque in N m", _friction_map),)),
+        ThesisFigure("fig_4_6", "Ramp test of section 4.3 (Fig. 4.6).",
+                     (panel("time in s", "pan angle in rad", _ramp_fit),)),
+        ThesisFigure("fig_4_6_profile", "Ramp test: residual against the inertia that is held,"
+                     " everything else refitted (erratum 16).", (_inertia_profile,)),
+    ]  # fmt: skip
+
+
+def backlash_figures() -> list[ThesisFigure]:
+    """The hysteresis models of section 2.3.2.2."""
+
+    def loads() -> list[Line]:
+        times = np.linspace(0.0, 2.0, 40_001)
+        rules = {"Eq. 2.17": "2.17", "Eq. 2.18 as printed": "2.18",
+                 "Eq. 2.18 on the acceleration": "2.18 corrected"}  # fmt: skip
+        drive = Line("drive", times, np.sin(2.0 * np.pi * times))
+        loads = [Line(n, times, hysteresis(r, times, 0.1, 1.0)) for n, r in rules.items()]
+        return [loads[0], loads[1], loads[2], drive]
+
+    return [
+        ThesisFigure("fig_2_19", "Load behind a gap of 0.2 rad, drive angle sin(2 pi t): Eq. 2.18"
+                     " as printed is Eq. 2.17 (erratum 29).",
+                     (panel("time in s", "angle in rad", loads),)),
+    ]  # fmt: skip
+
+
+def _ideal(axis: str, start: float = 0.0) -> Callable[[], list[Line]]:
+    shown = (start <= rigid.TIMES) & (rigid.TIMES <= SHOWN)
+    return lambda: [Line(axis, rigid.TIMES[shown], getattr(rigid.ideal(), axis)[shown])]
+
+
+def _payload(axis: str) -> Callable[[], list[Line]]:
+    shown = rigid.TIMES <= SHOWN
+    return lambda: [
+        Line(
+            f"payload at {name} m", rigid.TIMES[shown], getattr(rigid.payload(offset), axis)[shown]
+        )
+        for name, offset in rigid.OFFSETS.items()
+        for torque in (getattr(rigid.payload(offset), axis),)
+    ]
+
+
+def _held() -> list[Line]:
+    runs = [(angle, rigid.held_tilt(angle)) for angle in rigid.TILT_ANGLES_DEG]
+    return [Line(f"tilt at {angle:.0f} deg", run.t, run.pan) for angle, run in runs]
+
+
+def ideal_figures() -> list[ThesisFigure]:
+    """Section 5.1."""
+    late = printed.IDEAL_MOTION["pan"].t1
+    both = panel("time in s", "torque in N m", lambda: [*_ideal("pan")(), *_ideal("tilt")()])
+    return [
+        *(
+            ThesisFigure(
+                f"fig_5_{number}",
+                f"{axis.capitalize()} torque of the ideal platform along Table 5.2 (Fig."
+                f" 5.{number}); below, the coupling after both transitions.",
+                tuple(
+                    panel("time in s", f"{axis} torque in N m", _ideal(axis, start))
+                    for start in (0.0, late)
+                ),
+            )
+            for number, axis in ((1, "pan"), (2, "tilt"))
+        ),
+        ThesisFigure("fig_5_3", "Pan and tilt torque of the ideal platform (Fig. 5.3).", (both,)),
+    ]
+
+
+def payload_figures() -> list[ThesisFigure]:
+    """Section 5.2."""
+    return [
+        *(
+            ThesisFigure(
+                f"fig_5_{number}",
+                f"{axis.capitalize()} torque with the payload along Table 5.4 (Fig. 5.{number});"
+                " Table 5.3 prints 0.01 m (erratum 18).",
+                (panel("time in s", f"{axis} torque in N m", _payload(axis)),),
+            )
+            for number, axis in ((4, "pan"), (5, "tilt"))
+        ),
+        ThesisFigure(
+            "fig_5_6", "Pan torque for two pulses of pan rate, the tilt axis held (Fig. 5.6)."
+            " Pulses and angles are chosen here; the thesis does not print them.",
+            (panel("time in s", "pan torque in N m", _held),),
+        ),
+    ]  # fmt: skip
+
+
+def tilt_figures() -> list[ThesisFigure]:
+    """Section 5.3."""
+    rows = (
+        ("fig_5_9", "Stroke speed (Fig. 5.9)", "stroke speed in mm/s", "stroke_speed", 1e3),
+        ("fig_5_10", "Actuator force (Fig. 5.10)", "actuator force in N", "force", 1.0),
+        ("fig_5_11", "Motor current (Fig. 5.11)", "motor current in A", "current", 1.0),
+        ("fig_5_12", "Tilt rate (Figs. 5.12, 5.13)", "tilt rate in deg/s", "tilt_rate",
+         float(np.degrees(1.0))),
+        ("fig_5_14", "Tilt angle (Fig. 5.14)", "tilt angle in deg", "tilt_angle",
+         float(np.degrees(1.0))),
+    )  # fmt: skip
+
+    def lines(quantity: str, factor: float) -> Callable[[], list[Line]]:
+        return lambda: [
+            Line(f"initial stroke {name} mm", (run := simulate_tilt_drive(stroke)).t,
+                 factor * getattr(run, quantity))
+            for name, stroke in printed.STROKES.items()
+        ]  # fmt: skip
+
+    return [
+        ThesisFigure(
+            name, f"{title} of the tilt drive under the 24 V trapezoid, c.g. above the axis.",
+            (panel("time in s", label, lines(quantity, factor)),),
+        )
+        for name, title, label, quantity, factor in rows
+    ]  # fmt: skip
+
+
+def friction_of(run: responses.Trajectory) -> FloatArray:
+    """Friction torque [k] in N m at the gear: Eq. 4.1 in motion, the applied torque at rest."""
+    p = drive_values()
+    gap = run["theta_gear_pan"] - run["theta_pan"]
+    beyond = np.sign(gap) * np.maximum(np.abs(gap) - p["gap_pan"] / 2.0, 0.0)
+    applied = p["K_t_pan"] * p["N_pan"] * run["i_pan"] - p["k_shaft_pan"] * beyond
+    rate = run["omega_gear_pan"]
+    sliding = steady_friction(rate, printed.TABLE_4_1["positive"])
+    return np.where(rate == 0.0, applied, sliding)
+
+
+def _angles(name: str) -> Callable[[], list[Line]]:
+    shown = {"Table 4.1": None, "DC friction": "dc_friction",
+             "no joint friction": "without_joint_friction"}  # fmt: skip
+    return lambda: [
+        Line(label, (run := responses.response(name, variant)).t, run["theta_pan"])
+        for label, variant in shown.items()
+    ]
+
+
+def _rates(name: str) -> Callable[[], list[Line]]:
+    """Rates of load and motor; of the step, the part where they differ."""
+
+    def make() -> list[Line]:
+        run = responses.response(name)
+        shown = (run.t >= RINGING[0]) & (run.t <= RINGING[1]) | (name != "step")
+        return [
+            Line("load", run.t[shown], run["omega_pan"][shown]),
+            Line("motor at the gear output", run.t[shown], run["omega_gear_pan"][shown]),
+        ]
+
+    return make
+
+
+def _friction(name: str) -> Callable[[], list[Line]]:
+    return lambda: [Line("", (run := responses.response(name)).t, friction_of(run))]
+
+
+def _ringing() -> list[Line]:
+    return [
+        Line(f"tolerance {tolerance:g}", times, 1e3 * twist)
+        for tolerance in (1e-9, 1e-4)
+        for times, twist in (contact.twist_after_step(tolerance, gap_pan=0.0),)
+    ]
+
+
+def response_figures() -> list[ThesisFigure]:
+    """Section 5.4."""
+    seconds = "time in s"
+    return [
+        *(
+            ThesisFigure(
+                f"fig_{number.replace('.', '_')}",
+                f"Pan drive, {name.replace('_', ' ')} input (Fig. {number}): angle, rates, friction"
+                " at the gear output.",
+                (
+                    panel(seconds, "pan angle in rad", _angles(name)),
+                    panel(seconds, "rate in rad/s", _rates(name)),
+                    panel(seconds, "friction in N m", _friction(name)),
+                ),
+            )
+            for name, number in responses.FIGURES.items()
+        ),
+        ThesisFigure(
+            "fig_5_15_ringing", "Shaft twist after a step of 24 V without a gap: the oscillation"
+            " does not depend on the tolerance (erratum 25).",
+            (panel(seconds, "shaft twist in mrad", _ringing),),
+        ),
+    ]  # fmt: skip
+
+
+def all_figures() -> Mapping[str, list[ThesisFigure]]:
+    """Every figure by the chapter or section it belongs to."""
+    return {
+        "Backlash (chapter 2)": backlash_figures(),
+        "Estimation (chapter 4)": estimation_figures(),
+        "Rigid platform (5.1, 5.2)": [*ideal_figures(), *payload_figures()],
+        "Tilt drive (5.3)": tilt_figures(),
+        "Pan drive (5.4)": response_figures(),
+    }

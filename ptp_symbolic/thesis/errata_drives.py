@@ -1,0 +1,158 @@
+"""Errata of the drives: screw, stroke, step, ringing, impact, hysteresis (chapters 2, 3, 5)."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.thesis import contact, printed, responses, tilt_drive
+from ptp_symbolic.thesis.friction import drive_values
+from ptp_symbolic.thesis.items import Item, erratum
+
+FloatArray = NDArray[np.float64]
+
+
+def creep_speed(shorted: bool) -> float:
+    """Stroke speed in m/s at which the screw overhauls under the load of Table 5.6."""
+    d = printed.TILT_DRIVE
+    force = d.mass * tilt_drive.GRAVITY * d.com_offset / d.moment_arm
+    torque = -tilt_drive.screw_factors()[1] * force / d.N
+    resistance = d.b_motor + (d.K_t**2 / d.R if shorted else 0.0)
+    return torque / resistance / d.N * d.lead / (2.0 * math.pi)
+
+
+def self_locking() -> Item:
+    """Erratum 10: the screw of Table 5.5 overhauls."""
+    d = printed.TILT_DRIVE
+    lead_angle = math.degrees(math.atan(d.lead / (math.pi * d.pitch_diameter)))
+    friction_angle = math.degrees(math.atan(d.screw_friction))
+    lowering = tilt_drive.screw_factors()[1]
+    simulated = tilt_drive.simulate_tilt_drive(
+        printed.STROKES["48.5"], "ahead", _no_voltage, 1.0
+    ).stroke_speed[-1]
+    expected = creep_speed(shorted=True)
+    return erratum(
+        10, "section 3.2.3.2, lead screw", "self-locking", "overhauls", "",
+        lead_angle > friction_angle and lowering < 0.0 and abs(simulated / expected + 1.0) < 0.02,
+        f"lead angle {lead_angle:.2f} deg above friction angle {friction_angle:.2f} deg; T_lower ="
+        f" {lowering:.3g} m x F < 0; creep {1e6 * creep_speed(False):.1f} um/s open circuit and"
+        f" {1e6 * expected:.2f} um/s shorted, simulated {-1e6 * simulated:.2f}",
+    )  # fmt: skip
+
+
+def _no_voltage(_: float) -> float:
+    return 0.0
+
+
+def initial_stroke() -> Item:
+    """Erratum 19: the initial stroke is given twice."""
+    angles = {
+        name: float(np.degrees(tilt_drive.deviation(s))) for name, s in printed.STROKES.items()
+    }
+    return erratum(
+        19, "Table 5.6, initial stroke", "40.5022 mm and 48.5 mm",
+        f"{angles['40.5']:.2f} deg and {angles['48.5']:.2f} deg from the perpendicular", "",
+        abs(abs(angles["40.5"]) - 7.0) < 0.05 and abs(abs(angles["48.5"]) - 0.4) < 0.05,
+        "law of cosines, Table 5.6; the two strokes are different starts, both are computed",
+    )  # fmt: skip
+
+
+def step_table() -> Item:
+    """Erratum 20: Table 5.8 is empty; the step as the text describes it."""
+    run = responses.response("step")
+    start, end = responses.STEP
+    compared_to = responses.last_end("step")
+    moving = run.t[np.abs(run["omega_gear_pan"]) > 1e-9]
+    settled = start <= moving[0] and end < moving[-1] < compared_to
+    return erratum(
+        20, "Table 5.8, step specification", "(empty)",
+        f"{printed.SUPPLY_VOLTAGE:g} V from {start:g} s to {end:g} s, compared to"
+        f" {compared_to:g} s", "", bool(settled),
+        f"from the text of 5.4.1; simulated, the drive moves from {moving[0]:.3f} to"
+        f" {moving[-1]:.3f} s, inside the time compared",
+    )  # fmt: skip
+
+
+def com_direction() -> Item:
+    """Erratum 24: for which direction of the offset the claims of section 5.3 hold."""
+    found = {}
+    for direction in tilt_drive.COM_DIRECTIONS:
+        run = tilt_drive.simulate_tilt_drive(printed.STROKES["40.5"], direction)
+        holds = abs(run.force[-1]) > 1.0 and run.tilt_angle[-1] < 0.0
+        found[direction] = tilt_drive.reverses(run)[0] and holds
+    which = ", ".join(d for d, holds in found.items() if holds)
+    return erratum(
+        24, "section 5.3, direction of the c.g. offset", "(not printed)", which, "",
+        which == "above",
+        "simulated with the c.g. above, ahead of, below and behind the axis: force first"
+        " positive, then negative, not zero at the end, tilt angle negative",
+    )  # fmt: skip
+
+
+def ringing() -> Item:
+    """Erratum 25: the oscillation after the step is physical."""
+    mode, rows = contact.contact_mode(), contact.convergence()
+    simulated = contact.ringing_frequency()
+    converges = bool(np.all(np.diff(rows[1:, 1]) < 0.0) and rows[-1, 1] < 1e-2 * rows[0, 1])
+    return erratum(
+        25, "section 5.4.1, oscillation after the step", "numerical",
+        f"contact mode, {mode.frequency:.0f} Hz, damping {mode.damping:.2f}", "",
+        converges and abs(simulated / mode.frequency - 1.0) < 0.02,
+        f"the twist is off by {rows[0, 1]:.1g} rad at tolerance {rows[0, 0]:g} and by"
+        f" {rows[-1, 1]:.1g} rad at {rows[-1, 0]:g}; the simulation rings at {simulated:.1f} Hz,"
+        f" the eigenvalues say {mode.frequency:.1f} Hz",
+    )  # fmt: skip
+
+
+def plastic_impact() -> Item:
+    """Erratum 26: the dead-zone model has no plastic impact."""
+    bare, damped = (contact.restitution(b) for b in (0.0, drive_values()["b_pan"]))
+    return erratum(
+        26, "sections 1.6 and 5.4.2, restitution of the dead-zone model", 0.0, bare, "1",
+        abs(bare - 1.0) < 1e-6 and abs(damped - 0.82) < 0.01,
+        f"simulation of one impact; {damped:.3f} with the joint's viscous friction, 0 would be"
+        " plastic",
+    )  # fmt: skip
+
+
+def hysteresis(rule: str, times: FloatArray, half_gap: float, frequency: float) -> FloatArray:
+    """Load angle [k] in rad behind a gap, the drive angle being sin(2 pi frequency t).
+
+    `rule`: "2.17" friction-driven, "2.18" as printed, "2.18 corrected": the inertia-driven load
+    leaves the face when the drive decelerates.
+    """
+    circular = 2.0 * math.pi * frequency
+    drive, rate = np.sin(circular * times), circular * np.cos(circular * times)
+    load = np.empty_like(times)
+    load[0], load_rate, step = -half_gap, 0.0, times[1] - times[0]
+    for k in range(1, len(times)):
+        lower, upper = drive[k] - half_gap, drive[k] + half_gap
+        coasting = load[k - 1] + step * load_rate
+        if rule == "2.18 corrected":
+            load[k] = min(max(coasting, lower), upper)
+            load_rate = load_rate if load[k] == coasting else rate[k]
+            continue
+        pushed = (rate[k] > 0.0 and load[k - 1] <= lower) or (
+            rate[k] < 0.0 and load[k - 1] >= upper
+        )
+        load[k] = (lower if rate[k] > 0.0 else upper) if pushed else (
+            load[k - 1] if rule == "2.17" else coasting
+        )  # fmt: skip
+        # as printed, contact lasts as long as the drive keeps its direction: it ends at rest
+        load_rate = rate[k] if pushed else (0.0 if rule == "2.17" else load_rate)
+    return load
+
+
+def contact_condition() -> Item:
+    """Erratum 29: Eq. 2.18 as printed never lets the load coast."""
+    times, half_gap = np.linspace(0.0, 2.0, 40_001), 0.1
+    friction, given, right = (
+        hysteresis(rule, times, half_gap, 1.0) for rule in ("2.17", "2.18", "2.18 corrected")
+    )
+    same, other = (float(np.max(np.abs(x - friction))) for x in (given, right))
+    return erratum(
+        29, "Eq. 2.18, contact conditions", "on the velocity", "on the acceleration", "",
+        same < 1e-2 * half_gap and other > 0.5 * half_gap,
+        f"drive angle sin(2 pi t), half gap {half_gap:g} rad: as printed the load differs from Eq."
+        f" 2.17 by at most {same:.1g} rad, with the corrected condition by {other:.2g} rad",
+    )  # fmt: skip
