@@ -18,7 +18,7 @@ from ptp_symbolic.diagnose.linear import canonical_correlation, effect_of, outsi
 from ptp_symbolic.diagnose.proposals import Proposals
 from ptp_symbolic.diagnose.refits import started_anew
 from ptp_symbolic.diagnose.responses import Columns, least, response_columns
-from ptp_symbolic.diagnose.search import Seeker
+from ptp_symbolic.diagnose.seeker import Seeker
 from ptp_symbolic.diagnose.signatures import Signature
 from ptp_symbolic.diagnose.starts import in_place
 from ptp_symbolic.diagnose.trial import Task, Trial, fitted, halving, ranked

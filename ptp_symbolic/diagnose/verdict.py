@@ -11,7 +11,7 @@ from ptp_symbolic.diagnose.floor import Floor, carried_noise, floor_of, leaves_n
 from ptp_symbolic.diagnose.gain import Gain, compared, gain
 from ptp_symbolic.diagnose.groups import Rival, confusable, overtaking, rivals
 from ptp_symbolic.diagnose.refits import forms
-from ptp_symbolic.diagnose.search import Seeker
+from ptp_symbolic.diagnose.seeker import Seeker
 from ptp_symbolic.diagnose.trial import Task, Trial, accuracy, huber, mean_squares, ranked
 from ptp_symbolic.identify.constants import (
     BEND,
