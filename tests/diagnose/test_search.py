@@ -9,7 +9,8 @@ import pytest
 from ptp_symbolic.numeric.diagnose.floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
-from ptp_symbolic.numeric.diagnose.search import Seeker
+from ptp_symbolic.numeric.diagnose.search import by_effects_alone
+from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
 from tests.diagnose.spring_table import STIFFNESS, spring_table
 
@@ -38,7 +39,7 @@ def test_a_declared_value_that_leaves_more_than_noise_gives_way_to_the_spring(
 ) -> None:
     wrong = trial(seeker, "declared_value:c_x_payload")
     assert not seeker.is_at_noise(wrong)
-    found, steps = seeker.by_effects_alone(wrong, [])
+    found, steps = by_effects_alone(seeker, wrong, [])
     assert found.keys == ("cable_spring@pan",)
     assert found.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
     assert [s.candidate.key for s in steps] == ["cable_spring@pan"]
@@ -48,12 +49,12 @@ def test_a_declared_value_beside_the_spring_is_taken_out(seeker: Seeker) -> None
     """Both leave noise alone: the set with fewer parameters is the answer."""
     larger = trial(seeker, "cable_spring@pan", "declared_value:c_x_payload")
     assert seeker.is_at_noise(larger)
-    found, _ = seeker.by_effects_alone(larger, [])
+    found, _ = by_effects_alone(seeker, larger, [])
     assert found.keys == ("cable_spring@pan",)
 
 
 def test_effects_that_leave_noise_alone_are_not_searched_again(seeker: Seeker) -> None:
     alone = trial(seeker, "cable_spring@pan")
     assert seeker.is_at_noise(alone)
-    found, _ = seeker.by_effects_alone(alone, [])
+    found, _ = by_effects_alone(seeker, alone, [])
     assert found is alone

@@ -18,7 +18,7 @@ from ptp_symbolic.numeric.diagnose.linear import canonical_correlation, effect_o
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import started_anew
 from ptp_symbolic.numeric.diagnose.responses import Columns, least, response_columns
-from ptp_symbolic.numeric.diagnose.search import Seeker
+from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.signatures import Signature
 from ptp_symbolic.numeric.diagnose.starts import in_place
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, ranked

@@ -11,7 +11,7 @@ from ptp_symbolic.numeric.diagnose.floor import Floor, carried_noise, floor_of, 
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared, gain
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
 from ptp_symbolic.numeric.diagnose.refits import forms
-from ptp_symbolic.numeric.diagnose.search import Seeker
+from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, accuracy, huber, mean_squares, ranked
 from ptp_symbolic.numeric.identify.constants import (
     BEND,

@@ -1,0 +1,234 @@
+"""The moves of a search: sets are completed, pruned, grown, exchanged and made simpler, each by
+refits in simulation.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.findings import Step, is_earned, step_of
+from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
+from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
+from ptp_symbolic.numeric.diagnose.nested import beside_declared
+from ptp_symbolic.numeric.diagnose.proposals import (
+    Proposals,
+)
+from ptp_symbolic.numeric.diagnose.refits import (
+    expected_gain,
+    forms,
+    fullest,
+    polished,
+    sharpened,
+)
+from ptp_symbolic.numeric.diagnose.responses import responses
+from ptp_symbolic.numeric.diagnose.screening import screened
+from ptp_symbolic.numeric.diagnose.starts import along, in_place, led
+from ptp_symbolic.numeric.diagnose.subsets import exchanges
+from ptp_symbolic.numeric.diagnose.trial import (
+    Task,
+    Trial,
+    fitted,
+    halving,
+    is_alike,
+    is_near,
+    ranked,
+)
+from ptp_symbolic.numeric.identify.constants import (
+    ADDED,
+    FIRST_RUNG,
+    ITERATIONS,
+    LAST_RUNG,
+    MATERIAL,
+    MOST,
+    SCREENED,
+    TRIED,
+)
+
+FloatArray = NDArray[np.float64]
+
+
+class Seeker:
+    """A search in progress; `others` collects the trials that were not chosen."""
+
+    def __init__(
+        self, task: Task, declared: Trial, proposals: Proposals, carried: FloatArray
+    ) -> None:
+        self.task, self.declared, self.proposals, self.carried = task, declared, proposals, carried
+        self.others: list[Trial] = []
+
+    def unseen(self, trial: Trial) -> list[Trial]:
+        """The trial with each candidate that the rows cannot show, begun at its response in the
+        outputs and part of the way there.
+        """
+        found = responses(self.task, trial, self.proposals.unseen)
+        return [t for r in found[:ADDED] for t in along(self.task, self.proposals, r, trial)]
+
+    def is_at_noise(self, trial: Trial) -> bool:
+        """Whether a trial leaves white noise alone."""
+        return leaves_white_noise(trial, self.carried)
+
+    def polished(self, trial: Trial) -> Trial:
+        """The trial fitted to its end."""
+        return polished(self.task, trial, self.carried)
+
+    def sharpened(self, trial: Trial) -> Trial:
+        """A polished trial fitted with sharp simulations, where only noise is left."""
+        return sharpened(self.task, trial, self.carried)
+
+    def restarted(self, trial: Trial) -> Trial:
+        """A polished trial, or a better end from where the rows start its set, and from there over
+        short windows: friction makes the misfit of whole runs a staircase.
+        """
+        if not trial.candidates or self.is_at_noise(trial):
+            return trial
+        begun = led(self.task, self.proposals, trial.candidates, trial.values)
+        left = halving(self.task, begun, LAST_RUNG)
+        fresh = [t for t in left if is_near(t, [trial]) and not is_alike(t, trial)]
+        return ranked([trial, *(self.polished(t) for t in fresh)])[0]
+
+    def completed(self, trial: Trial) -> Trial:
+        """The trial polished, each of its candidates in its fullest form: an effect is allowed all
+        that it can do before another is called.
+        """
+        full = tuple(fullest(self.task, c) for c in trial.candidates)
+        if all(a is b for a, b in zip(full, trial.candidates, strict=True)):
+            return self.polished(trial)
+        return self.polished(fitted(self.task, full, trial.values, trial.fit.z, 0, trial.fit))
+
+    def without(self, trial: Trial, candidate: Candidate) -> Trial:
+        """The trial refitted without one of its candidates, and without what needs it."""
+        kept = tuple(
+            c for c in trial.candidates if c is not candidate and candidate.key not in c.brings
+        )
+        if not kept:
+            return self.declared
+        names = {name for c in trial.candidates if c not in kept for name in c.names}
+        values = trial.values | {name: self.task.fixed[name] for name in names}
+        run = self.task.executor
+        smaller = fitted(self.task, kept, values, trial.fit.z, ITERATIONS, trial.fit, executor=run)
+        if gain(trial, smaller).share < MOST:
+            smaller = self.restarted(self.polished(smaller))
+        if ranked([smaller, self.declared])[0] is self.declared:
+            smaller = beside_declared(self.task, smaller, self.declared, self.carried)
+        self.others.append(smaller)
+        return smaller
+
+    def step(self, trial: Trial, candidate: Candidate) -> Step:
+        """What a candidate gains."""
+        return step_of(trial, candidate, self.without(trial, candidate))
+
+    def is_needed(self, step: Step) -> bool:
+        """Whether what a candidate gains is earned."""
+        return self.is_earned(step.gain, step.p_value)
+
+    def is_earned(self, earned: Gain, p: float) -> bool:
+        """Whether a gain is material, and clear over all candidates that were looked at."""
+        return is_earned(earned, p, len(self.task.candidates))
+
+    def pruned(self, trial: Trial) -> tuple[Trial, list[Step]]:
+        """Take out candidates until all that is left is needed, with its gains: of those that are
+        not needed the one without which the rest fits best, for two that act alike can each be
+        done without while the other is there. Those are refitted first that seem to gain little. A
+        set that gains little over the declared model holds no candidate that gains more.
+        """
+        while trial.candidates:
+            if gain(trial, self.declared).share < MATERIAL:
+                return self.declared, []
+            steps: list[Step] = []
+            expected = {c.key: expected_gain(trial, c.vanishing) for c in trial.candidates}
+            little = [c for c in trial.candidates if expected[c.key] < MOST]
+            for part in (little, [c for c in trial.candidates if c not in little]):
+                fresh = [self.step(trial, candidate) for candidate in part]
+                unneeded = [step.without for step in fresh if not self.is_needed(step)]
+                steps += fresh
+                if unneeded:
+                    trial = ranked(unneeded)[0]
+                    break
+            else:
+                return trial, steps
+        return trial, []
+
+    def grown(self, trial: Trial) -> Trial | None:
+        """The trial with one more candidate that gains clearly and materially; None if none does.
+
+        Where only noise is left, those are tried that the motion alone cannot show. One that
+        promises far more than all others is tried before them.
+        """
+        task = self.task
+        wanted = self.proposals.unseen if self.is_at_noise(trial) else task.candidates
+        found = [r for r in responses(task, trial, wanted) if r.left < 1.0 - MATERIAL]
+        if not found:
+            return None
+        names = " + ".join(trial.keys) or "the declared model"
+        task.progress(f"adding one of {len(found)} candidates to {names}")
+        if len(found) == 1 or found[0].left < MOST * found[1].left:
+            best = self.best_earning(along(task, self.proposals, found[0], trial), trial)
+            if best is not None:
+                return best
+        begun = [t for r in found[:ADDED] for t in along(task, self.proposals, r, trial)]
+        close = screened(task, self.proposals, trial.candidates, wanted, trial.values)
+        begun += [fitted(task, t.candidates, t.values, None) for t in close[:SCREENED]]
+        return self.best_earning(begun, trial)
+
+    def best_earning(self, begun: Sequence[Trial], trial: Trial) -> Trial | None:
+        """The best of trials that are `begun`, polished, if what it has more than `trial` gains
+        clearly and materially.
+        """
+        left = halving(self.task, begun, FIRST_RUNG, self.others)
+        if not left:
+            return None
+        best = ranked([self.polished(t) for t in left if is_near(t, left)])[0]
+        if gain(best, trial).share < MOST:
+            best = self.restarted(best)
+        have = {f.name for c in trial.candidates for f in c.free}
+        added = {n: v for c in best.candidates for n, v in c.vanishing.items() if n not in have}
+        return best if self.is_earned(gain(best, trial), p_value(best, added)) else None
+
+    def exchanged(self, trial: Trial) -> Trial | None:
+        """A set that fits better than that of the trial, with another candidate in the place of one
+        of its own; None where there is none. Those are tried that the rows find no worse.
+        """
+        if self.proposals.regression is None:
+            return None
+        sets = exchanges(self.proposals.regression, trial.candidates)[:TRIED]
+        begun = [
+            t for candidates in sets for t in in_place(self.task, self.proposals, candidates, trial)
+        ]
+        left = halving(self.task, begun, ((ITERATIONS, TRIED),), self.others)
+        found = [self.polished(t) for t in left if is_near(t, [trial])]
+        self.others += found
+        best = ranked([trial, *found])[0]
+        return None if best is trial else best
+
+    def simplified(self, trial: Trial) -> Trial:
+        """Every candidate in the simplest of its forms that loses nothing clear and material."""
+        for key in trial.keys:
+            candidate = next(c for c in trial.candidates if c.key == key)
+            simpler = sorted(
+                (c for c in forms(self.task, candidate) if len(c.free) < len(candidate.free)),
+                key=lambda c: len(c.free),
+            )
+            for form in simpler:
+                names = {f.name for f in form.free}
+                lost = {n: v for n, v in candidate.vanishing.items() if n not in names}
+                if expected_gain(trial, lost) > MOST:
+                    continue
+                smaller = self.in_form(trial, candidate, form)
+                if not self.is_earned(gain(trial, smaller), p_value(trial, lost)):
+                    trial = smaller
+                    break
+        return trial
+
+    def in_form(self, trial: Trial, candidate: Candidate, form: Candidate) -> Trial:
+        """The trial refitted with a candidate in another form."""
+        dropped = set(candidate.parameters) - set(form.parameters)
+        values = trial.values | {name: self.task.fixed[name] for name in dropped}
+        candidates = tuple(form if c is candidate else c for c in trial.candidates)
+        task = self.task
+        return self.polished(
+            fitted(
+                task, candidates, values, trial.fit.z, ITERATIONS, trial.fit, executor=task.executor
+            )
+        )
