@@ -38,21 +38,10 @@ from scipy.integrate import solve_ivp
 import ptp_symbolic
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation import passage
 from ptp_symbolic.numeric.simulation.kernels.records import DONE, KERNEL
-from ptp_symbolic.numeric.simulation.passage import (
-    Accuracy,
-    Passage,
-    pass_through,
-    tolerance_weights,
-)
-from ptp_symbolic.numeric.simulation.signals.inputs import (
-    InputSignal,
-    constant,
-    multisine,
-    ramp,
-    stack,
-    step,
-)
+from ptp_symbolic.numeric.simulation.passage import Passage, pass_through, tolerance_weights
+from ptp_symbolic.numeric.simulation.signals import inputs
 from ptp_symbolic.platform import ParameterDeclaration, read_platform
 
 Row = dict[str, Any]
@@ -63,10 +52,10 @@ WANTED = 1e-8  # rad
 TOLERANCES = (1e-6, 5e-7, 2e-7, 1e-7, 5e-8, 2e-8, 1e-8, 1e-9)
 TOLERANCES_OF_PEERS = (1e-7, 3e-8, 1e-8, 3e-9, 1e-9, 3e-10, 1e-10)
 CASES = {
-    "step": step(0.0, 24.0, 0.5),
-    "ramp": ramp(0.0, 4.0, 0.0, END),
-    "crawl": multisine([2.0], [0.15]),
-    "multisine": multisine([5.0, 4.0, 3.0], [0.3, 0.9, 2.1]),
+    "step": inputs.step(0.0, 24.0, 0.5),
+    "ramp": inputs.ramp(0.0, 4.0, 0.0, END),
+    "crawl": inputs.multisine([2.0], [0.15]),
+    "multisine": inputs.multisine([5.0, 4.0, 3.0], [0.3, 0.9, 2.1]),
 }
 SIX = ("F_c_pan", "J_pan", "gap_pan", "k_shaft_pan", "R_pan", "F_v_pan")
 
@@ -135,10 +124,10 @@ def one_trajectory() -> list[Row]:
     """10 s of the payload model, smooth, beside DOP853 on the same function."""
     model = ptp_symbolic.load("payload")
     p, u, start = model.parameter_vector(), np.zeros(2), np.array([0.0, 0.5, 1.0, 0.0])
-    table, ends = stack([constant(0.0)] * 2), np.array([0.0, END])
+    table, ends = inputs.stack([inputs.constant(0.0)] * 2), np.array([0.0, END])
 
     def run(tolerance: float) -> Passage:
-        accuracy = Accuracy(tolerance, np.full(4, tolerance), 0.5)
+        accuracy = passage.Accuracy(tolerance, np.full(4, tolerance), 0.5)
         return pass_through(model, "runge_kutta", p, start, table, True, ends, ends, accuracy)
 
     def peer(tolerance: float) -> Any:
@@ -169,13 +158,13 @@ def off(x: Any, exact: Any) -> float:
     return float(np.max(np.abs(x - exact)))
 
 
-def prepare(model: Model, signal: InputSignal) -> Callable[..., Passage]:
+def prepare(model: Model, signal: inputs.InputSignal) -> Callable[..., Passage]:
     """A function that runs a geared machine for 10 s from rest: run(tolerance, ...)."""
-    table, p, x = stack([signal]), model.parameter_vector(), np.zeros(len(model.state_names))
+    table, p, x = inputs.stack([signal]), model.parameter_vector(), np.zeros(len(model.state_names))
     stops, weights = table.with_stops(np.array([0.0, END])), 0.1 * tolerance_weights(model)
 
     def run(tolerance: float, times: Any = GRID, method: str = ROSENBROCK, **rest: Any) -> Passage:
-        accuracy = Accuracy(tolerance, tolerance * weights, 0.1)
+        accuracy = passage.Accuracy(tolerance, tolerance * weights, 0.1)
         found = pass_through(
             model, method, p, x, table, table.held, stops, times, accuracy, event_room=10_000,
             **rest,
@@ -223,10 +212,10 @@ def _peer_row(
 
 
 def prepare_peer(
-    model: Model, signal: InputSignal, method: str, ours: Callable[..., Passage]
+    model: Model, signal: inputs.InputSignal, method: str, ours: Callable[..., Passage]
 ) -> Callable[..., tuple[float, int]]:
     """A function that runs 10 s by scipy: run(tolerance) gives its largest error and its events."""
-    table, weights = stack([signal]), 0.1 * tolerance_weights(model)
+    table, weights = inputs.stack([signal]), 0.1 * tolerance_weights(model)
 
     def run(tolerance: float, compared: bool = True) -> tuple[float, int]:
         times, states, events = simulate_with_scipy(
@@ -247,7 +236,7 @@ def sampled_controller() -> list[Row]:
     fast = ParameterDeclaration("t_sample_pan", "s", 1e-3)
     kept = tuple(p for p in servo.parameters if p.name != "t_sample_pan")
     model = emission.emit(replace(servo, parameters=(*kept, fast)))
-    goal = ramp(0.0, 1.0, 0.0, 5.0)
+    goal = inputs.ramp(0.0, 1.0, 0.0, 5.0)
     run = prepare(model, goal)
     exact = run(1e-11, method="runge_kutta")
     for method in ("rosenbrock", "runge_kutta"):

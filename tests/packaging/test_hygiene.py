@@ -59,7 +59,7 @@ def test_generated_modules_silence_no_check_at_all(checkout: Path) -> None:
 def test_no_file_is_longer_than_a_person_reads_at_once(checkout: Path) -> None:
     lengths = {name: text.count("\n") for name, text in texts(checkout, ".py")}
     written = {name: n for name, n in lengths.items() if not name.startswith("generated/")}
-    effects = Path("ptp_symbolic/effects")
+    effects = Path("ptp_symbolic/symbolic/effects")
     assert {name: n for name, n in written.items() if n > LONGEST_FILE} == {}
     assert {
         name: n
