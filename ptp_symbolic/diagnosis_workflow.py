@@ -56,8 +56,6 @@ from ptp_symbolic.platform import (
 from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
 from ptp_symbolic.report.latex_text import escaped
 from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
-from ptp_symbolic.symbolic.codegen.module import module_text
-from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 Progress = Callable[[str], None]
 SCHEMA_VERSION = 1
@@ -243,7 +241,7 @@ def _write_up(
     files: dict[str, str | bytes] = {"diagnosis.json": _json(summary)}
     files["platform.toml"] = platform_text(extended)
     files["equations.tex"] = _equations_tex(equations)
-    files[f"{extended.name}.py"] = module_text(assemble(extended))
+    files[f"{extended.name}.py"] = emission.module_of(extended)
     files["report.html"] = render_diagnosis(summary, curves)
     files.update({f"curves/{name}": text for name, text in write_curves_csv(curves).items()})
     return Output(summary, files)

@@ -2,17 +2,17 @@
 
 import subprocess
 import sys
+import sysconfig
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from ptp_symbolic.atomic_files import write_text_if_changed
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.models.emission import module_of
 from ptp_symbolic.numeric.runtime.loader import generated_folder
 from ptp_symbolic.platform import Platform, platform_file, read_platform
-from ptp_symbolic.symbolic.codegen.module import module_text, sealed
-from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
-from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.codegen.module import sealed
 
 COMMITTED = {
     "ideal": "thesis-ideal",
@@ -22,6 +22,7 @@ COMMITTED = {
     "full": "thesis-full",
 }
 LINE_LENGTH = 100
+THIRD_PARTY = frozenset({"numba", "numpy", "ptp_symbolic", "ruff", "scipy", "sympy"})
 
 
 def declared_platform(source: str | Path) -> Platform:
@@ -53,29 +54,30 @@ def regenerate(models: Sequence[str] = (), check: bool = False) -> Outcome:
                 f"'{model}' is a platform, not one of the committed models"
                 f" {', '.join(COMMITTED)}; add --out FOLDER to emit its module there."
             )
-    texts = {model: module_of(read_platform(COMMITTED[model])) for model in models or COMMITTED}
+    texts = {
+        model: sealed(formatted(module_of(read_platform(COMMITTED[model]))))
+        for model in models or COMMITTED
+    }
     return _write(texts, generated_folder(), check)
 
 
 def regenerate_into(folder: Path, platforms: Sequence[Platform], check: bool = False) -> Outcome:
     """Emit a module for each of `platforms` into `folder`, named as they are.
 
-    With `check` nothing is written. Raises InputError for a machine that cannot exist, and for two
-    platforms of one name.
+    With `check` nothing is written. Raises InputError for a machine that cannot exist, for two
+    platforms of one name, and for a name that would hide another module.
     """
     names = [platform.name for platform in platforms]
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"Two platforms are called '{name}'; change the name of one.")
+        if name in sys.stdlib_module_names or name in THIRD_PARTY:
+            raise InputError(
+                f"A module called {name}.py would be imported in place of Python's own '{name}' by"
+                " whatever runs in its folder; change the name of the platform."
+            )
     texts = {platform.name: module_of(platform) for platform in platforms}
     return _write(texts, folder, check)
-
-
-def module_of(platform: Platform) -> str:
-    """Text of the module of `platform`, formatted and sealed with its checksum."""
-    equations = assemble(platform)
-    refuse_impossible(equations, platform)
-    return sealed(formatted(module_text(equations)))
 
 
 def _write(texts: Mapping[str, str], folder: Path, check: bool) -> Outcome:
@@ -91,13 +93,24 @@ def _write(texts: Mapping[str, str], folder: Path, check: bool) -> Outcome:
 
 
 def formatted(text: str) -> str:
-    """`text` as ruff formats it, whatever the configuration of the machine."""
-    command = [sys.executable, "-m", "ruff", "format", "--isolated", "--stdin-filename", "model.py"]
+    """`text` as ruff formats it, whatever the configuration of the machine.
+
+    Raises InputError where ruff is not installed beside this Python: nothing is looked for in the
+    folder one stands in.
+    """
+    program = Path(sysconfig.get_path("scripts")) / f"ruff{sysconfig.get_config_var('EXE') or ''}"
+    command = [str(program), "format", "--isolated", "--stdin-filename", "model.py"]
     command += ["--config", f"line-length={LINE_LENGTH}", "-"]
-    done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
+    try:
+        done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
+    except OSError:
+        raise InputError(
+            "The committed models are formatted by ruff, which is not installed: run"
+            " 'pip install ptp-symbolic[dev]', or add --out FOLDER to emit modules without it."
+        ) from None
     if done.returncode != 0:
         reason = done.stderr.strip().splitlines()
-        raise InputError(f"ruff could not format a module: {reason[-1] if reason else 'no ruff'}.")
+        raise InputError(f"ruff could not format a module: {reason[-1] if reason else 'no word'}.")
     return done.stdout
 
 

@@ -6,12 +6,11 @@ from ptp_symbolic.models.module_cache import emitted
 from ptp_symbolic.numeric.runtime.loader import load_module
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
+from ptp_symbolic.symbolic.codegen.module import module_text
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
-from ptp_symbolic.symbolic.derivation.placement import (
-    declared_parameters,
-    place_effects,
-)
+from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.derivation.placement import declared_parameters, place_effects
 
 
 def emit(platform: Platform) -> Model:
@@ -20,8 +19,21 @@ def emit(platform: Platform) -> Model:
     Machines that differ in their numbers alone share a module, which is compiled once. Raises
     InputError when no machine with its parameters can exist.
     """
-    equations = assemble(platform)
-    refuse_impossible(equations, platform)
+    equations = _possible(platform)
     path = emitted(equations, declared_parameters(place_effects(platform)))
     own = {p.name: (p.default, p.lower, p.upper) for p in equations.parameters}
     return replace(load_module(path, path.stem), declared=(platform.name, platform.title, own))
+
+
+def module_of(platform: Platform) -> str:
+    """Text of the module of `platform`, with its own title and parameters.
+
+    Raises InputError when no machine with its parameters can exist.
+    """
+    return module_text(_possible(platform))
+
+
+def _possible(platform: Platform) -> Equations:
+    equations = assemble(platform)
+    refuse_impossible(equations, platform)
+    return equations

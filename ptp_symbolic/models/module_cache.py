@@ -7,6 +7,7 @@ equations: what was once written is found again by the equations and the program
 import functools
 import hashlib
 import os
+import stat
 import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
@@ -27,14 +28,32 @@ DIGITS = 16  # of a SHA-256 in a name: 64 bits
 
 
 def cache_folder() -> Path:
-    """Folder of modules emitted for platforms of the user (PTP_SYMBOLIC_CACHE, else the usual)."""
+    """Folder of modules emitted for platforms of the user (PTP_SYMBOLIC_CACHE, else the usual),
+    made where it is missing.
+
+    Raises InputError for a folder in which another user may write: what lies there is run.
+    """
+    folder = _usual_folder()
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    if hasattr(os, "getuid"):
+        found = folder.stat()
+        if found.st_uid != os.getuid() or found.st_mode & stat.S_IWOTH:
+            raise InputError(
+                f"The cache folder {folder} can be written by other users, and what lies there is"
+                " run; set PTP_SYMBOLIC_CACHE to a folder of your own."
+            )
+    return folder
+
+
+def _usual_folder() -> Path:
     named = os.environ.get("PTP_SYMBOLIC_CACHE")
     if named:
         return Path(named)
     base = os.environ.get("XDG_CACHE_HOME")
     root = Path(base) if base else Path.home() / ".cache"
     if not os.access(root if root.exists() else root.parent, os.W_OK):
-        root = Path(tempfile.gettempdir())
+        owner = os.getuid() if hasattr(os, "getuid") else "user"
+        return Path(tempfile.gettempdir()) / f"ptp_symbolic-{owner}"
     return root / "ptp_symbolic"
 
 
@@ -51,7 +70,6 @@ def emitted(equations: Equations, usual: Mapping[str, Parameter]) -> Path:
         parameters=tuple(usual[p.name] for p in equations.parameters),
     )
     folder = cache_folder()
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     known = folder / f"{_digest(_program(), described(shared))}.name"
     if known.is_file():
         path = folder / known.read_text(encoding="utf-8")

@@ -1,10 +1,13 @@
 """Equations of one's own platform as a module."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from ptp_symbolic.models import committed
 from ptp_symbolic.numeric.runtime.loader import load_module
 from ptp_symbolic.platform import platform_text, read_platform
 
@@ -75,3 +78,31 @@ def test_every_command_refuses_a_platform_in_the_same_words(
         done = call(*(part.format(source) for part in command), *out)
         assert done.code == 2
         assert wanted in done.err
+
+
+@pytest.mark.parametrize("name", ["numpy", "os", "ruff"])
+def test_a_module_that_would_hide_another_is_refused(
+    call, name: str, own: Path, tmp_path: Path
+) -> None:
+    own.write_text(own.read_text().replace('"turret"', f'"{name}"'), encoding="utf-8")
+    done = call("regenerate", own, "--out", tmp_path / "modules")
+    assert done.code == 2
+    assert f"A module called {name}.py would be imported in place of" in done.err
+    assert not (tmp_path / "modules").exists()
+
+
+def test_nothing_runs_from_the_folder_one_stands_in(tmp_path: Path) -> None:
+    (tmp_path / "ruff.py").write_text("open('trap', 'w').close()\n")
+    command = [sys.executable, "-m", "ptp_symbolic", "regenerate", "ideal", "--check"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (0, "1 modules are up to date.\n"), done.stderr
+    assert not (tmp_path / "trap").exists()
+
+
+def test_without_a_formatter_the_committed_models_say_what_to_install(
+    call, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(committed.sysconfig, "get_path", lambda _: str(tmp_path))
+    done = call("regenerate", "ideal", "--check")
+    assert done.code == 2
+    assert "pip install ptp-symbolic[dev]" in done.err

@@ -4,8 +4,9 @@ import hashlib
 import importlib
 import importlib.util
 import sys
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
 
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
@@ -41,13 +42,27 @@ def load_module(path: Path, import_name: str) -> Model:
     verify(path)
     if import_name in sys.modules:
         return Model(sys.modules[import_name])
-    spec = importlib.util.spec_from_file_location(import_name, path)
-    if spec is None or spec.loader is None:
+    loader = _FromSource(import_name, str(path))
+    spec = importlib.util.spec_from_loader(import_name, loader)
+    if spec is None:
         raise InputError(f"{path} cannot be imported; regenerate it.")
     module: ModuleType = importlib.util.module_from_spec(spec)
     sys.modules[import_name] = module
-    spec.loader.exec_module(module)
+    try:
+        loader.exec_module(module)
+    except BaseException:
+        del sys.modules[import_name]
+        raise
     return Model(module)
+
+
+class _FromSource(SourceFileLoader):
+    """Runs the text whose checksum was verified: bytecode beside it may be another's."""
+
+    def get_code(self, fullname: str) -> CodeType:
+        """The code of the text, compiled anew."""
+        path = self.get_filename(fullname)
+        return self.source_to_code(self.get_data(path), path)
 
 
 def verify(path: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import module_cache
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
@@ -92,3 +93,36 @@ def test_the_description_is_the_same_in_every_process(
     )
     preset = checkout / "ptp_symbolic/platform/presets/thesis-tilt-drive.toml"
     assert len(printed_in_two_processes(script, str(preset))) == 1
+
+
+def test_a_folder_that_others_may_write_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "open"
+    folder.mkdir()
+    folder.chmod(0o777)
+    monkeypatch.setenv("PTP_SYMBOLIC_CACHE", str(folder))
+    with pytest.raises(InputError, match="can be written by other users"):
+        module_cache.cache_folder()
+
+
+def test_a_folder_of_another_user_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PTP_SYMBOLIC_CACHE", str(tmp_path / "theirs"))
+    owner = tmp_path.stat().st_uid
+    monkeypatch.setattr(module_cache.os, "getuid", lambda: owner + 1)
+    with pytest.raises(InputError, match="set PTP_SYMBOLIC_CACHE to a folder of your own"):
+        module_cache.cache_folder()
+
+
+def test_where_no_home_can_be_written_every_user_has_a_folder_of_his_own(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.delenv("PTP_SYMBOLIC_CACHE", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(module_cache.os, "access", lambda *_: False)
+    monkeypatch.setattr(module_cache.tempfile, "gettempdir", lambda: str(tmp_path))
+    folder = module_cache.cache_folder()
+    assert folder == tmp_path / f"ptp_symbolic-{module_cache.os.getuid()}"
+    assert folder.stat().st_mode & 0o777 == 0o700
