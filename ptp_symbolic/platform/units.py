@@ -104,7 +104,11 @@ def _single(name: str) -> tuple[float, dict[str, int]]:
     registry = _registry()
     if name == "hertz" or name.endswith("hertz"):
         return float(registry.get_base_units(name)[0]), {"Hz": 1}
-    if not registry._is_multiplicative(name):
+    try:
+        is_ratio = registry._is_multiplicative(name)
+    except AssertionError:  # powers of logarithmic units have names that pint itself does not know
+        is_ratio = False
+    if not is_ratio:
         raise InputError(f"Unit {name!r} has an offset or a logarithm; use 'K' or a plain ratio.")
     factor, root = registry.get_base_units(name)
     for symbol in _SYMBOLS:

@@ -117,6 +117,14 @@ def test_a_tied_parameter_takes_the_value_of_the_other() -> None:
             with_parameter(ParameterDeclaration("J_pan", "kg m^2", 1e5)),
             r"'J_pan' = 100000 kg m\^2 lies outside its bounds \[1e-12, 10000\] kg m\^2",
         ),
+        (
+            with_parameter(ParameterDeclaration("b_pan", None, 0.1, True, -5.0, 5.0)),
+            r"'b_pan' has a bound of -5 N m s/rad, which it cannot have: it lies within",
+        ),
+        (
+            with_effect("base_tilt", "pan"),
+            r"'base_tilt' is of the whole platform; remove its axis = \"pan\"\.",
+        ),
     ],
 )
 def test_refusals_say_what_is_allowed(platform: Platform, message: str) -> None:

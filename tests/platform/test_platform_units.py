@@ -83,7 +83,7 @@ def test_what_is_no_unit_is_refused_at_once(text: str) -> None:
     assert time.perf_counter() - start < 0.5
 
 
-@pytest.mark.parametrize("text", ["degC", "dB", "degF"])
+@pytest.mark.parametrize("text", ["degC", "dB", "degF", "dB^3", "dBm^2", "decade^2"])
 def test_a_unit_with_an_offset_or_a_logarithm_is_refused(text: str) -> None:
     with pytest.raises(InputError, match="has an offset or a logarithm"):
         to_si(text)

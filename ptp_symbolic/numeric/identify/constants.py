@@ -1,13 +1,13 @@
 """The named numbers of fits and search: value, unit, quantity, and where each comes from.
 
-One line each, in this form: value # unit; quantity; source. A source is a derivation (from
+One line each, in this form: value  # unit; quantity; source. A source is a derivation (from
 rounding, from a distribution, from the definition of the quantity), a requirement of the diagnosis
 that its report states, or "scaled": then nothing better than the benchmark speaks for it, and
 `python -m tests.benchmark run --scale SECTION=FACTOR` shows what hangs on those of a section. Of
-five sets of the build half (008, 011, 048, 087, 135; all right as the table is) so many are right
-with the scaled constants of a section halved, and doubled: decisions and statistics 5, 4;
-robustness 5, 4; effort 4, 4; windows and rows 3, 3; noise of a signal 5, 4; steps 4, 5; numerics 5,
-5.
+five sets of the build half (008, 011, 048, 087, 135), all right as the table is, so many are right
+with the scaled constants of a section halved / doubled: decisions and statistics 5 / 4, robustness
+5 / 4, effort 4 / 4, windows and rows 3 / 3, noise of a signal 5 / 4, steps 4 / 5, numerics 5 / 5.
+
 Decisions and statistics come first, then robustness, effort, windows and rows, numerics.
 """
 

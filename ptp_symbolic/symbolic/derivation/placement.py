@@ -57,8 +57,12 @@ def _placed(platform: Platform) -> list[tuple[Effect, Place]]:
             raise InputError(
                 f"Effect '{effect.id}' sits on an axis; add axis = \"{platform.axes[0]}\"."
             )
-        axis = declaration.axis if effect.on_axis else None
-        placed.append((effect, Place(platform.axes, axis, declaration.site, shafts)))
+        if not effect.on_axis and declaration.axis is not None:
+            raise InputError(
+                f"Effect '{effect.id}' is of the whole platform; remove its axis ="
+                f' "{declaration.axis}".'
+            )
+        placed.append((effect, Place(platform.axes, declaration.axis, declaration.site, shafts)))
     return placed
 
 
@@ -174,6 +178,14 @@ def _check_parameters(platform: Platform, placed: list[tuple[Effect, Place]]) ->
                 f" bounds [{parameter.lower:g}, {parameter.upper:g}] {parameter.unit};"
                 " change the value."
             )
+        ends = (declaration.lower, declaration.upper)
+        for end in (each for each in ends if each is not None):
+            if not parameter.lower <= end <= parameter.upper:
+                raise InputError(
+                    f"Parameter '{declaration.name}' has a bound of {end:g} {parameter.unit}, which"
+                    f" it cannot have: it lies within [{parameter.lower:g}, {parameter.upper:g}]"
+                    f" {parameter.unit}; change the bound."
+                )
 
 
 def _no_owner(name: str, axes: tuple[str, ...], own: dict[str, Parameter]) -> str:
