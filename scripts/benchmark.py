@@ -21,30 +21,28 @@ from __future__ import annotations
 
 import argparse
 import json
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
-from c_peer import compile_c, pointer
 from event_peers import simulate_with_scipy
-from numba import njit
 from rich.console import Console
 from rich.table import Table
+from right_hand_side import right_hand_side
 from scipy.integrate import solve_ivp
+from timing import Row, best
 
 import ptp_symbolic
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation import passage
-from ptp_symbolic.numeric.simulation.kernels.records import DONE, KERNEL
+from ptp_symbolic.numeric.simulation.kernels.records import DONE
 from ptp_symbolic.numeric.simulation.passage import Passage, pass_through, tolerance_weights
 from ptp_symbolic.numeric.simulation.signals import inputs
 from ptp_symbolic.platform import ParameterDeclaration, read_platform
 
-Row = dict[str, Any]
 END = 10.0  # s
 GRID, LAST = np.linspace(0.0, END, 10001), np.array([0.0, END])
 ROSENBROCK = "rosenbrock"
@@ -58,66 +56,6 @@ CASES = {
     "multisine": inputs.multisine([5.0, 4.0, 3.0], [0.3, 0.9, 2.1]),
 }
 SIX = ("F_c_pan", "J_pan", "gap_pan", "k_shaft_pan", "R_pan", "F_v_pan")
-
-
-def best(run: Callable[[], Any], repeats: int = 7) -> tuple[float, Any]:
-    """Shortest time in s of a run, and what it returned; the first, untimed run compiles."""
-    result, shortest = run(), np.inf
-    for _ in range(repeats):
-        start = time.perf_counter()
-        result = run()
-        shortest = min(shortest, time.perf_counter() - start)
-    return float(shortest), result
-
-
-@njit(**KERNEL)
-def _chained(derivative, count, x, u, p, dx):  # type: ignore[no-untyped-def]
-    for _ in range(count):
-        derivative(0.0, x, u, p, x, dx)
-        for a in range(4):
-            x[a] += 1e-9 * dx[a]
-    return x[0]
-
-
-@njit(**KERNEL)
-def _independent(derivative, count, states, u, p, dx):  # type: ignore[no-untyped-def]
-    total = 0.0
-    for i in range(count):
-        derivative(0.0, states[i % len(states)], u, p, dx, dx)
-        for a in range(4):
-            total += dx[a]
-    return total
-
-
-def right_hand_side() -> list[Row]:
-    """The payload model's right-hand side beside C."""
-    model, count = ptp_symbolic.load("payload"), 20_000
-    p, u, library = model.parameter_vector(), np.array([0.3, 1.0]), compile_c(model)
-    states = np.random.default_rng(1).standard_normal((64, 4))
-    x, dx, derivative = states[0].copy(), np.zeros(4), model.module.mode_derivative
-    times = {
-        "chained": best(lambda: _chained(derivative, count, x, u, p, dx), 500)[0],
-        "throughput": best(lambda: _independent(derivative, count, states, u, p, dx), 500)[0],
-    }
-    if library is None:
-        return [
-            {"what": f"right-hand side, {name}", "ns": t / count * 1e9, "peer": "no gcc here"}
-            for name, t in times.items()
-        ]
-    peer = {
-        "chained": lambda: library.chained(count, pointer(x), pointer(u), pointer(p)),
-        "throughput": lambda: library.independent(
-            count, len(states), pointer(states), pointer(u), pointer(p)
-        ),
-    }
-    rows = []
-    for name, t in times.items():
-        c, peer_name = best(peer[name], 500)[0], "gcc -O3 -march=native"
-        rows.append({
-            "what": f"right-hand side, {name}", "ns": t / count * 1e9, "peer": peer_name,
-            "peer ns": c / count * 1e9, "ratio": t / c,
-        })  # fmt: skip
-    return rows
 
 
 def one_trajectory() -> list[Row]:
@@ -146,11 +84,14 @@ def one_trajectory() -> list[Row]:
     (mine, found), (other, _) = best(lambda: run(ours), 50), best(lambda: peer(theirs), 3)
     return [
         {
-            "what": "trajectory, payload, 10 s", "ms": mine * 1e3,
-            "error": off(found.x[-1], exact), "peer": "scipy DOP853", "peer ms": other * 1e3,
+            "what": "trajectory, payload, 10 s",
+            "ms": mine * 1e3,
+            "error": off(found.x[-1], exact),
+            "peer": "scipy DOP853",
+            "peer ms": other * 1e3,
             "ratio": other / mine,
         }
-    ]  # fmt: skip
+    ]
 
 
 def off(x: Any, exact: Any) -> float:
@@ -166,9 +107,18 @@ def prepare(model: Model, signal: inputs.InputSignal) -> Callable[..., Passage]:
     def run(tolerance: float, times: Any = GRID, method: str = ROSENBROCK, **rest: Any) -> Passage:
         accuracy = passage.Accuracy(tolerance, tolerance * weights, 0.1)
         found = pass_through(
-            model, method, p, x, table, table.held, stops, times, accuracy, event_room=10_000,
+            model,
+            method,
+            p,
+            x,
+            table,
+            table.held,
+            stops,
+            times,
+            accuracy,
+            event_room=10_000,
             **rest,
-        )  # fmt: skip
+        )
         if found.status != DONE:
             raise RuntimeError(f"stopped at {found.reached:g} s with status {found.status}")
         return found
@@ -186,11 +136,16 @@ def drive_cases(everything: bool) -> list[Row]:
         whole, found = best(partial(run, tolerance), 30)
         final, _ = best(partial(run, tolerance, LAST), 30)
         ledger, _ = best(partial(run, tolerance, ledger=True), 30)
-        rows.append({
-            "what": f"pan_drive, {name}, {len(found.events)} events", "tolerance": tolerance,
-            "error": off(found.x[:, 0], exact), "ms": whole * 1e3, "final": final * 1e3,
-            "ledger": ledger * 1e3,
-        })  # fmt: skip
+        rows.append(
+            {
+                "what": f"pan_drive, {name}, {len(found.events)} events",
+                "tolerance": tolerance,
+                "error": off(found.x[:, 0], exact),
+                "ms": whole * 1e3,
+                "final": final * 1e3,
+                "ledger": ledger * 1e3,
+            }
+        )
         peers = ("LSODA", "Radau", "DOP853") if everything or name == "step" else ("LSODA",)
         rows += [_peer_row(model, name, method, run, final) for method in peers]
     return rows
@@ -206,9 +161,13 @@ def _peer_row(
             break
     taken, _ = best(partial(simulate, tolerance, False), 2)
     return {
-        "what": f"pan_drive, {name}, {events} events", "peer": f"scipy {method}, events",
-        "tolerance": tolerance, "error": error, "peer ms": taken * 1e3, "ratio": taken / ours,
-    }  # fmt: skip
+        "what": f"pan_drive, {name}, {events} events",
+        "peer": f"scipy {method}, events",
+        "tolerance": tolerance,
+        "error": error,
+        "peer ms": taken * 1e3,
+        "ratio": taken / ours,
+    }
 
 
 def prepare_peer(
@@ -242,11 +201,15 @@ def sampled_controller() -> list[Row]:
     for method in ("rosenbrock", "runge_kutta"):
         whole, found = best(partial(run, 1e-5, method=method))
         final, _ = best(partial(run, 1e-5, LAST, method))
-        rows.append({
-            "what": f"pan_servo at 1 kHz, {len(found.events)} events, {method}",
-            "ms": whole * 1e3, "final": final * 1e3,
-            "error": off(found.x[:, 0], exact.x[:, 0]), "tolerance": 1e-5,
-        })  # fmt: skip
+        rows.append(
+            {
+                "what": f"pan_servo at 1 kHz, {len(found.events)} events, {method}",
+                "ms": whole * 1e3,
+                "final": final * 1e3,
+                "error": off(found.x[:, 0], exact.x[:, 0]),
+                "tolerance": 1e-5,
+            }
+        )
     return rows
 
 
@@ -262,11 +225,17 @@ def sensitivities() -> list[Row]:
             bare = partial(run, tolerance, LAST)
             (alone, _), (taken, found) = best(bare), best(partial(bare, **given))
             error = np.max(np.abs(found.s[-1, 0] / exact.s[-1, 0] - 1.0))
-            rows.append({
-                "what": f"sensitivities, {name}, 6 parameters", "tolerance": tolerance,
-                "error": float(error), "ms": taken * 1e3, "peer": "the run alone",
-                "peer ms": alone * 1e3, "ratio": taken / alone,
-            })  # fmt: skip
+            rows.append(
+                {
+                    "what": f"sensitivities, {name}, 6 parameters",
+                    "tolerance": tolerance,
+                    "error": float(error),
+                    "ms": taken * 1e3,
+                    "peer": "the run alone",
+                    "peer ms": alone * 1e3,
+                    "ratio": taken / alone,
+                }
+            )
     return rows
 
 
@@ -287,9 +256,12 @@ def main() -> None:
     parser.add_argument("--all", action="store_true", help="also the slower peers")
     arguments = parser.parse_args()
     rows = [
-        *right_hand_side(), *one_trajectory(), *drive_cases(arguments.all), *sampled_controller(),
+        *right_hand_side(),
+        *one_trajectory(),
+        *drive_cases(arguments.all),
+        *sampled_controller(),
         *sensitivities(),
-    ]  # fmt: skip
+    ]
     if arguments.json:
         print(json.dumps(rows, indent=2))
     else:

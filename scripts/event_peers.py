@@ -99,9 +99,15 @@ def simulate_with_scipy(
         machine.settle(t, x)
         while t < stop:
             found = solve_ivp(
-                machine.rhs, (t, stop), x, method=method, rtol=rtol, atol=atol,
-                events=machine.events, **extra,
-            )  # fmt: skip
+                machine.rhs,
+                (t, stop),
+                x,
+                method=method,
+                rtol=rtol,
+                atol=atol,
+                events=machine.events,
+                **extra,
+            )
             times.append(found.t[1:])
             states.append(found.y[:, 1:].T)
             t, x = float(found.t[-1]), found.y[:, -1].copy()

@@ -62,9 +62,13 @@ def print_locked() -> None:
             parts = np.linspace(0.0, share, FINE + 1), np.linspace(share, 1.0, FINE + 1)[1:]
             times = (SETTLED + np.concatenate(parts)) * period
             found = simulate(
-                model, np.concatenate([[0.0], times]), {"u_pan": constant(duty * supply)},
-                {"F_c_pan": 900.0, "F_s_pan": 1000.0}, rtol=1e-11, atol=1e-12,
-            )["i_pan"][1:]  # fmt: skip
+                model,
+                np.concatenate([[0.0], times]),
+                {"u_pan": constant(duty * supply)},
+                {"F_c_pan": 900.0, "F_s_pan": 1000.0},
+                rtol=1e-11,
+                atol=1e-12,
+            )["i_pan"][1:]
             truth = closed_form(supply, low, share, p)
             mean = np.trapezoid(found, times) / period - duty * supply / p["R_pan"]
             print(

@@ -36,10 +36,15 @@ def curve(case: str, method: str) -> list[Row]:
         else:
             error, _ = peer(tolerance)
             taken, _ = best(partial(peer, tolerance, False), 1)
-        rows.append({
-            "input": case, "method": OURS.get(method, f"scipy {method}"), "tolerance": tolerance,
-            "error, rad": error, "ms": taken * 1e3,
-        })  # fmt: skip
+        rows.append(
+            {
+                "input": case,
+                "method": OURS.get(method, f"scipy {method}"),
+                "tolerance": tolerance,
+                "error, rad": error,
+                "ms": taken * 1e3,
+            }
+        )
     return rows
 
 

@@ -19,8 +19,16 @@ def commands() -> None:
 
 
 for command in (
-    regenerate, simulate, sensitivity, fit, diagnose, report, effects, models, platforms,
-):  # fmt: skip
+    regenerate,
+    simulate,
+    sensitivity,
+    fit,
+    diagnose,
+    report,
+    effects,
+    models,
+    platforms,
+):
     commands.add_command(command)
 
 

@@ -140,12 +140,9 @@ def models(as_json: bool) -> None:
 
     found = [(name, load_model(name)) for name in model_names()]
     _show(
-        [
-            {"model": n, "what": m.title, "states": ", ".join(m.state_names)}
-            for n, m in found
-        ],
+        [{"model": n, "what": m.title, "states": ", ".join(m.state_names)} for n, m in found],
         as_json,
-    )  # fmt: skip
+    )
 
 
 @click.command()

@@ -88,9 +88,13 @@ def simulate(
     refuse_unknown_signals(platform, model)
     signals, end = _signals(platform, model, inputs, duration)
     found = run(
-        model, output_times(end, every), signals, initial=_initial(model, initial), method=method,
+        model,
+        output_times(end, every),
+        signals,
+        initial=_initial(model, initial),
+        method=method,
         step=1e-4 if step is None else step,
-    )  # fmt: skip
+    )
     columns = trajectory_columns(platform, model, found, signals)
     events = [(e.time, e.element, e.mode) for e in found.events]
     files: dict[str, str | bytes] = {
@@ -133,9 +137,13 @@ def sensitivity(
     platform, model = declared_platform(source), load(source)
     signals, end = _signals(platform, model, inputs, duration)
     found = run(
-        model, output_times(end, every), signals, initial=_initial(model, initial),
-        by_parameters=by or None, by_initial=by_initial,
-    )  # fmt: skip
+        model,
+        output_times(end, every),
+        signals,
+        initial=_initial(model, initial),
+        by_parameters=by or None,
+        by_initial=by_initial,
+    )
     head = sensitivity_headings(model, found.names)
     rows = ([t, *s.ravel()] for t, s in zip(found.t, found.states, strict=True))
     write_files_atomically(out, {"sensitivity.csv": table_text(["time [s]", *head], rows)})

@@ -11,18 +11,59 @@ from ptp_symbolic.errors import InputError
 # are read without importing pint.
 _SI_UNITS = frozenset(
     (
-        "1", "rad", "rad/s", "rad/s^2", "1/rad", "rad s", "s", "1/s", "Hz", "m", "m/s", "m/s^2",
-        "kg", "kg m", "kg m^2", "N", "N m", "N m/rad", "N m/rad^2", "N m/rad^3", "N m/s",
-        "N m s", "N m s/rad", "N m s^2/rad^2", "N m/A", "V", "V/rad", "V/(rad s)", "V s/rad",
-        "A", "ohm", "ohm/K", "H", "K", "1/K", "K/W", "J", "J/K", "W",
+        "1",
+        "rad",
+        "rad/s",
+        "rad/s^2",
+        "1/rad",
+        "rad s",
+        "s",
+        "1/s",
+        "Hz",
+        "m",
+        "m/s",
+        "m/s^2",
+        "kg",
+        "kg m",
+        "kg m^2",
+        "N",
+        "N m",
+        "N m/rad",
+        "N m/rad^2",
+        "N m/rad^3",
+        "N m/s",
+        "N m s",
+        "N m s/rad",
+        "N m s^2/rad^2",
+        "N m/A",
+        "V",
+        "V/rad",
+        "V/(rad s)",
+        "V s/rad",
+        "A",
+        "ohm",
+        "ohm/K",
+        "H",
+        "K",
+        "1/K",
+        "K/W",
+        "J",
+        "J/K",
+        "W",
     )
-)  # fmt: skip
+)
 _DEGREES = {"deg": "rad", "deg/s": "rad/s", "deg/s^2": "rad/s^2"}
 
 # Symbols for single factors, tried in this order: "kWh" becomes J, not N m.
 _SYMBOLS = ("rad", "s", "m", "kg", "A", "K", "N", "V", "ohm", "H", "W", "J", "Pa", "C", "F", "T")
-_BASE_SYMBOLS = {"kilogram": "kg", "meter": "m", "second": "s", "ampere": "A", "kelvin": "K",
-                 "radian": "rad"}  # fmt: skip
+_BASE_SYMBOLS = {
+    "kilogram": "kg",
+    "meter": "m",
+    "second": "s",
+    "ampere": "A",
+    "kelvin": "K",
+    "radian": "rad",
+}
 
 # Only integer exponents and no bare numbers, so that nothing in a file can make pint compute.
 _FACTOR = r"[A-Za-zµμΩΩ°%][A-Za-z_]*+(?:\^-?[1-9])?"

@@ -83,9 +83,12 @@ potential energy give
     ]
     return text + (
         "The routes are compared symbolically (mass matrix and forcing, every entry) and at"
-        r" 10\,000 random states:" + table("lll", head, rows) + r"\par\noindent "
-        + "; ".join(claims) + "."
-    )  # fmt: skip
+        r" 10\,000 random states:"
+        + table("lll", head, rows)
+        + r"\par\noindent "
+        + "; ".join(claims)
+        + "."
+    )
 
 
 def _power(value: float) -> str:
@@ -112,10 +115,12 @@ def _results(equations: Equations) -> str:
     for words, kinds in (
         ("The functions named in these equations are", ("term",)),
         ("Drives and effects have states of their own:", ("state",)),
-        ("Held in between, and set anew at the instants $t_k$, from the values before them:",
-         ("sampler",)),
+        (
+            "Held in between, and set anew at the instants $t_k$, from the values before them:",
+            ("sampler",),
+        ),
         ("Inputs that act late, and what sensors show:", ("input", "output")),
-    ):  # fmt: skip
+    ):
         own = [s for s in found if s.key[0] in kinds]
         if own:
             parts += [words, _displayed(own)]
@@ -148,10 +153,14 @@ def _simplified(equations: Equations) -> SimplifiedEquations:
 
 def _simplification(found: SimplifiedEquations) -> str:
     rows = [
-        [escaped(s.name), str(s.operations_before), str(s.operations_after),
-         "yes" if s.proved else "no"]
+        [
+            escaped(s.name),
+            str(s.operations_before),
+            str(s.operations_after),
+            "yes" if s.proved else "no",
+        ]
         for s in found.steps
-    ]  # fmt: skip
+    ]
     head = ["step", "operations before", "after", "proved"]
     parts = [r"\section{Simplification}", table("lrrl", head, rows)]
     base = [(symbol_latex(str(s)), e) for s, e in found.base_form.base_parameters if s != e]

@@ -40,10 +40,15 @@ def symbols(equations: Equations, platform: Platform) -> str:
     """Tables of the parameters, and of states, inputs, modes and named functions."""
     declared = {d.name: d for d in platform.parameters}
     rows = [
-        [f"${symbol_latex(p.name)}$", escaped(p.meaning), unit_latex(p.unit), f"{p.default:.6g}",
-         _origin(p, declared.get(p.name))]
+        [
+            f"${symbol_latex(p.name)}$",
+            escaped(p.meaning),
+            unit_latex(p.unit),
+            f"{p.default:.6g}",
+            _origin(p, declared.get(p.name)),
+        ]
         for p in equations.parameters
-    ]  # fmt: skip
+    ]
     others = [
         [f"${symbol_latex(name)}$", meaning, unit_latex(unit), kind]
         for name, meaning, unit, kind in _variables(equations)

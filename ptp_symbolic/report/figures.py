@@ -19,8 +19,12 @@ FloatArray = NDArray[np.float64]
 MEASURED, BEFORE, AFTER, FLOOR = "#a9b1ba", "#c65d21", "#0d6a92", "#d3e4d8"
 BORDER = "#c3b8d6"
 COLOURS = {
-    "measured": MEASURED, "before": BEFORE, "after": AFTER, "floor": FLOOR, "border": BORDER,
-}  # fmt: skip
+    "measured": MEASURED,
+    "before": BEFORE,
+    "after": AFTER,
+    "floor": FLOOR,
+    "border": BORDER,
+}
 STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "ptp-symbolic",

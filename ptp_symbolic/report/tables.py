@@ -178,9 +178,15 @@ def parameter_rows(diagnosis: Record) -> list[dict[str, Any]]:
             change = 100.0 * (new["value"] - old["value"]) / abs(old["value"])
         last = new or old or {}
         rows.append(
-            {"name": name, "before": old, "after": new, "last": last, "change": change,
-             "doubts": doubts(last)}
-        )  # fmt: skip
+            {
+                "name": name,
+                "before": old,
+                "after": new,
+                "last": last,
+                "change": change,
+                "doubts": doubts(last),
+            }
+        )
     return rows
 
 

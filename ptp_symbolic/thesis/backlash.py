@@ -23,14 +23,20 @@ def items() -> list[Item]:
     step = 360.0 / printed.COUNTS_PER_REVOLUTION
     return [
         compared(
-            "appendix_a.mean", "Appendix A, average backlash gap", printed.BACKLASH_AVERAGE_DEG,
-            mean, "deg", f"mean of {count} readings",
+            "appendix_a.mean",
+            "Appendix A, average backlash gap",
+            printed.BACKLASH_AVERAGE_DEG,
+            mean,
+            "deg",
+            f"mean of {count} readings",
         ),
         unprinted("appendix_a.ci95_low", "Average gap, lower end at 95 %", low, "deg", interval),
         unprinted("appendix_a.ci95_high", "Average gap, upper end at 95 %", high, "deg", interval),
         unprinted(
-            "appendix_a.spread", "Standard deviation of the readings",
-            float(np.std(printed.BACKLASH_DEG, ddof=1)), "deg",
+            "appendix_a.spread",
+            "Standard deviation of the readings",
+            float(np.std(printed.BACKLASH_DEG, ddof=1)),
+            "deg",
             f"from the readings; one count of the encoder is {step:g} deg",
         ),
-    ]  # fmt: skip
+    ]

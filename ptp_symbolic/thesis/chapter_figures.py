@@ -30,10 +30,13 @@ def _friction_map() -> list[Line]:
     direct = mean_friction("positive")
     apparent = np.array([duty_and_torque(s, direct)[1] for s in speeds])
     lines = [
-        Line(f"PWM drive, Table 4.1, omega {sign} 0", speeds,
-             steady_friction(speeds, estimated(direction)))
+        Line(
+            f"PWM drive, Table 4.1, omega {sign} 0",
+            speeds,
+            steady_friction(speeds, estimated(direction)),
+        )
         for direction, sign in zip(printed.DIRECTIONS, "><", strict=True)
-    ]  # fmt: skip
+    ]
     lines.append(Line("DC drive, mean of Table 4.2", speeds, steady_friction(speeds, direct)))
     return [*lines, Line("DC friction times duty at 24 V", speeds, apparent)]
 
@@ -51,9 +54,11 @@ def _ramp_fit() -> list[Line]:
 def _inertia_profile(axes: Axes) -> None:
     inertia, residual = ramp_test.inertia_profile().T
     axes.axvspan(
-        printed.APPENDIX_C_LOWER[0], printed.APPENDIX_C_UPPER[0], color="#f0d9c8",
+        printed.APPENDIX_C_LOWER[0],
+        printed.APPENDIX_C_UPPER[0],
+        color="#f0d9c8",
         label="bounds of Appendix C",
-    )  # fmt: skip
+    )
     axes.plot(inertia, residual, color=BLUE, marker="o", markersize=3, label="residual")
     axes.set(xlabel="J in kg m$^2$", ylabel="rms residual in counts", ylim=(0.0, 0.25))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderpad=0.1)
@@ -62,13 +67,23 @@ def _inertia_profile(axes: Axes) -> None:
 def estimation_figures() -> list[ThesisFigure]:
     """Chapter 4: friction map, ramp fit, profile of the inertia."""
     return [
-        ThesisFigure("fig_4_3", "Steady friction against speed (Fig. 4.3) and the PWM duty.",
-                     (panel("speed in rad/s", "friction torque in N m", _friction_map),)),
-        ThesisFigure("fig_4_6", "Ramp test of section 4.3 (Fig. 4.6).",
-                     (panel("time in s", "pan angle in rad", _ramp_fit),)),
-        ThesisFigure("fig_4_6_profile", "Ramp test: residual against the inertia that is held,"
-                     " everything else refitted (erratum 16).", (_inertia_profile,)),
-    ]  # fmt: skip
+        ThesisFigure(
+            "fig_4_3",
+            "Steady friction against speed (Fig. 4.3) and the PWM duty.",
+            (panel("speed in rad/s", "friction torque in N m", _friction_map),),
+        ),
+        ThesisFigure(
+            "fig_4_6",
+            "Ramp test of section 4.3 (Fig. 4.6).",
+            (panel("time in s", "pan angle in rad", _ramp_fit),),
+        ),
+        ThesisFigure(
+            "fig_4_6_profile",
+            "Ramp test: residual against the inertia that is held,"
+            " everything else refitted (erratum 16).",
+            (_inertia_profile,),
+        ),
+    ]
 
 
 def backlash_figures() -> list[ThesisFigure]:
@@ -76,17 +91,23 @@ def backlash_figures() -> list[ThesisFigure]:
 
     def loads() -> list[Line]:
         times = np.linspace(0.0, 2.0, 40_001)
-        rules = {"Eq. 2.17": "2.17", "Eq. 2.18 as printed": "2.18",
-                 "Eq. 2.18 on the acceleration": "2.18 corrected"}  # fmt: skip
+        rules = {
+            "Eq. 2.17": "2.17",
+            "Eq. 2.18 as printed": "2.18",
+            "Eq. 2.18 on the acceleration": "2.18 corrected",
+        }
         drive = Line("drive", times, np.sin(2.0 * np.pi * times))
         loads = [Line(n, times, hysteresis(r, times, 0.1, 1.0)) for n, r in rules.items()]
         return [loads[0], loads[1], loads[2], drive]
 
     return [
-        ThesisFigure("fig_2_19", "Load behind a gap of 0.2 rad, drive angle sin(2 pi t): Eq. 2.18"
-                     " as printed is Eq. 2.17 (erratum 29).",
-                     (panel("time in s", "angle in rad", loads),)),
-    ]  # fmt: skip
+        ThesisFigure(
+            "fig_2_19",
+            "Load behind a gap of 0.2 rad, drive angle sin(2 pi t): Eq. 2.18"
+            " as printed is Eq. 2.17 (erratum 29).",
+            (panel("time in s", "angle in rad", loads),),
+        ),
+    ]
 
 
 def _ideal(axis: str, start: float = 0.0) -> Callable[[], list[Line]]:
@@ -144,11 +165,12 @@ def payload_figures() -> list[ThesisFigure]:
             for number, axis in ((4, "pan"), (5, "tilt"))
         ),
         ThesisFigure(
-            "fig_5_6", "Pan torque for two pulses of pan rate, the tilt axis held (Fig. 5.6)."
+            "fig_5_6",
+            "Pan torque for two pulses of pan rate, the tilt axis held (Fig. 5.6)."
             " Pulses and angles are chosen here; the thesis does not print them.",
             (panel("time in s", "pan torque in N m", _held),),
         ),
-    ]  # fmt: skip
+    ]
 
 
 def tilt_figures() -> list[ThesisFigure]:
@@ -157,26 +179,40 @@ def tilt_figures() -> list[ThesisFigure]:
         ("fig_5_9", "Stroke speed (Fig. 5.9)", "stroke speed in mm/s", "stroke_speed", 1e3),
         ("fig_5_10", "Actuator force (Fig. 5.10)", "actuator force in N", "force", 1.0),
         ("fig_5_11", "Motor current (Fig. 5.11)", "motor current in A", "current", 1.0),
-        ("fig_5_12", "Tilt rate (Figs. 5.12, 5.13)", "tilt rate in deg/s", "tilt_rate",
-         float(np.degrees(1.0))),
-        ("fig_5_14", "Tilt angle (Fig. 5.14)", "tilt angle in deg", "tilt_angle",
-         float(np.degrees(1.0))),
-    )  # fmt: skip
+        (
+            "fig_5_12",
+            "Tilt rate (Figs. 5.12, 5.13)",
+            "tilt rate in deg/s",
+            "tilt_rate",
+            float(np.degrees(1.0)),
+        ),
+        (
+            "fig_5_14",
+            "Tilt angle (Fig. 5.14)",
+            "tilt angle in deg",
+            "tilt_angle",
+            float(np.degrees(1.0)),
+        ),
+    )
 
     def lines(quantity: str, factor: float) -> Callable[[], list[Line]]:
         return lambda: [
-            Line(f"initial stroke {name} mm", (run := simulate_tilt_drive(stroke)).t,
-                 factor * getattr(run, quantity))
+            Line(
+                f"initial stroke {name} mm",
+                (run := simulate_tilt_drive(stroke)).t,
+                factor * getattr(run, quantity),
+            )
             for name, stroke in printed.STROKES.items()
-        ]  # fmt: skip
+        ]
 
     return [
         ThesisFigure(
-            name, f"{title} of the tilt drive under the 24 V trapezoid, c.g. above the axis.",
+            name,
+            f"{title} of the tilt drive under the 24 V trapezoid, c.g. above the axis.",
             (panel("time in s", label, lines(quantity, factor)),),
         )
         for name, title, label, quantity, factor in rows
-    ]  # fmt: skip
+    ]
 
 
 def friction_of(run: responses.Trajectory) -> FloatArray:
@@ -186,13 +222,15 @@ def friction_of(run: responses.Trajectory) -> FloatArray:
     beyond = np.sign(gap) * np.maximum(np.abs(gap) - p["gap_pan"] / 2.0, 0.0)
     applied = p["K_t_pan"] * p["N_pan"] * run["i_pan"] - p["k_shaft_pan"] * beyond
     rate = run["omega_gear_pan"]
-    sliding = steady_friction(rate, printed.TABLE_4_1["positive"])
-    return np.where(rate == 0.0, applied, sliding)
+    return np.where(rate == 0.0, applied, steady_friction(rate, printed.TABLE_4_1["positive"]))
 
 
 def _angles(name: str) -> Callable[[], list[Line]]:
-    shown = {"Table 4.1": None, "DC friction": "dc_friction",
-             "no joint friction": "without_joint_friction"}  # fmt: skip
+    shown = {
+        "Table 4.1": None,
+        "DC friction": "dc_friction",
+        "no joint friction": "without_joint_friction",
+    }
     return lambda: [
         Line(label, (run := responses.response(name, variant)).t, run["theta_pan"])
         for label, variant in shown.items()
@@ -243,11 +281,12 @@ def response_figures() -> list[ThesisFigure]:
             for name, number in responses.FIGURES.items()
         ),
         ThesisFigure(
-            "fig_5_15_ringing", "Shaft twist after a step of 24 V without a gap: the oscillation"
+            "fig_5_15_ringing",
+            "Shaft twist after a step of 24 V without a gap: the oscillation"
             " does not depend on the tolerance (erratum 25).",
             (panel(seconds, "shaft twist in mrad", _ringing),),
         ),
-    ]  # fmt: skip
+    ]
 
 
 def all_figures() -> Mapping[str, list[ThesisFigure]]:

@@ -37,10 +37,15 @@ def configuration(inertia: sp.Matrix, com: sp.Matrix) -> RigidEquations:
     """Rigid equations of a level platform whose tilt body has this inertia [3, 3] and com [3]."""
     pan_inertia = sp.diag(*sp.symbols("J_xp J_yp J_zp", positive=True))
     bodies = (
-        Body("pan", "pan", sp.Integer(0), sp.ImmutableMatrix(BALANCED),
-             sp.ImmutableMatrix(pan_inertia)),
+        Body(
+            "pan",
+            "pan",
+            sp.Integer(0),
+            sp.ImmutableMatrix(BALANCED),
+            sp.ImmutableMatrix(pan_inertia),
+        ),
         Body("tilt", "tilt", MASS, sp.ImmutableMatrix(com), sp.ImmutableMatrix(inertia)),
-    )  # fmt: skip
+    )
     gravity = sp.ImmutableMatrix([0, 0, -GRAVITY])
     return lagrange(RigidConfiguration(kinematics.AXES, bodies, gravity))
 
@@ -96,13 +101,15 @@ def table_2_2() -> list[Item]:
     axes = gravity_axes(general)
     items.append(
         same_text(
-            "table_2_2.cause", "Section 2.3.1.1: what couples the axes of an imbalanced body",
-            "gravity", "inertia" if axes == "tilt" else "gravity",
+            "table_2_2.cause",
+            "Section 2.3.1.1: what couples the axes of an imbalanced body",
+            "gravity",
+            "inertia" if axes == "tilt" else "gravity",
             f"derivative of the forcing by g, products of inertia and offset present: gravity"
             f" enters the equation of {axes} alone, the rest of the coupling holds m c^2 and J",
             27,
         )
-    )  # fmt: skip
+    )
     return items
 
 
@@ -111,8 +118,10 @@ def printed_equation_3_8() -> dict[str, sp.Expr]:
     names = "J_pan J_x_tilt J_y_tilt J_z_tilt b_pan b_tilt"
     J_zp, J_xt, J_yt, J_zt, b_p, b_t = sp.symbols(names, real=True)
     theta, pan_rate, tilt_rate = (
-        kinematics.angle("tilt"), kinematics.rate("pan"), kinematics.rate("tilt")
-    )  # fmt: skip
+        kinematics.angle("tilt"),
+        kinematics.rate("pan"),
+        kinematics.rate("tilt"),
+    )
     cos, sin = sp.cos(theta), sp.sin(theta)
     pan_entry = -b_p + 2 * J_zt * cos * sin * tilt_rate
     return {
@@ -133,9 +142,12 @@ def derived_equation_3_8() -> dict[str, sp.Expr]:
     )
     mass = equations.mass_matrix
     return {
-        "mass_pan": mass[0, 0], "mass_tilt": mass[1, 1], "mass_pan_tilt": mass[0, 1],
-        "torque_pan": sp.expand(pan), "torque_tilt": sp.expand(tilt),
-    }  # fmt: skip
+        "mass_pan": mass[0, 0],
+        "mass_tilt": mass[1, 1],
+        "mass_pan_tilt": mass[0, 1],
+        "torque_pan": sp.expand(pan),
+        "torque_tilt": sp.expand(tilt),
+    }
 
 
 def equation_3_8() -> list[Item]:
@@ -146,11 +158,16 @@ def equation_3_8() -> list[Item]:
         left = normal_form(derived[name] - printed)
         items.append(
             Item(
-                f"eq_3_8.{name}", f"Eq. 3.8, {name.replace('_', ' ')}", plain(printed),
-                plain(derived[name]), "kg m^2" if name.startswith("mass") else "N m",
-                left == 0, None, f"symbolic difference in normal form: {plain(left)}",
+                f"eq_3_8.{name}",
+                f"Eq. 3.8, {name.replace('_', ' ')}",
+                plain(printed),
+                plain(derived[name]),
+                "kg m^2" if name.startswith("mass") else "N m",
+                left == 0,
+                None,
+                f"symbolic difference in normal form: {plain(left)}",
             )
-        )  # fmt: skip
+        )
     return items
 
 
@@ -161,16 +178,20 @@ def offset_along_boresight() -> list[Item]:
     term = normal_form(equations.forcing[0]).coeff(pan_rate * tilt_rate)
     return [
         unprinted(
-            "table_2_2.offset_along_boresight", "Symmetric body, offset along the boresight alone",
-            f"{linearity(equations)}; {coupling(equations)}", "",
+            "table_2_2.offset_along_boresight",
+            "Symmetric body, offset along the boresight alone",
+            f"{linearity(equations)}; {coupling(equations)}",
+            "",
             "as for Table 2.2: M_pt vanishes for this offset, the products of rates stay",
         ),
         unprinted(
-            "table_2_2.offset_coupling", "Pan torque per product of rates, offset along boresight",
-            plain(term), "kg m^2",
+            "table_2_2.offset_coupling",
+            "Pan torque per product of rates, offset along boresight",
+            plain(term),
+            "kg m^2",
             "coefficient of omega_pan omega_tilt in the pan equation; it holds m c^2 and no g",
         ),
-    ]  # fmt: skip
+    ]
 
 
 def items() -> list[Item]:

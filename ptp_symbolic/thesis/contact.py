@@ -106,18 +106,46 @@ def items() -> list[Item]:
     mode = contact_mode()
     rows = convergence()
     return [
-        unprinted("section_5_4.contact_frequency", "Contact mode of the pan drive, frequency",
-                  mode.frequency, "Hz", "eigenvalues of the closed contact (erratum 25)"),
-        unprinted("section_5_4.contact_damping", "Contact mode of the pan drive, damping ratio",
-                  mode.damping, "1", "eigenvalues of the closed contact (erratum 25)"),
-        unprinted("section_5_4.ringing_frequency", "Ringing after the step, gap closed",
-                  ringing_frequency(), "Hz", "zero crossings of the simulated twist rate"),
-        unprinted("section_5_4.ringing_change", "Change of the ringing from tolerance 1e-6 to 1e-9",
-                  float(rows[TOLERANCES.index(1e-6), 1]), "rad",
-                  "largest difference of the twist; it shrinks with the tolerance (erratum 25)"),
-        unprinted("section_5_4.restitution", "Restitution of one impact, undamped spring alone",
-                  restitution(0.0), "1", "simulation of one impact (erratum 26)"),
-        unprinted("section_5_4.restitution_damped", "Restitution with the joint's friction",
-                  restitution(drive_values()["b_pan"]), "1",
-                  "simulation of one impact (erratum 26)"),
-    ]  # fmt: skip
+        unprinted(
+            "section_5_4.contact_frequency",
+            "Contact mode of the pan drive, frequency",
+            mode.frequency,
+            "Hz",
+            "eigenvalues of the closed contact (erratum 25)",
+        ),
+        unprinted(
+            "section_5_4.contact_damping",
+            "Contact mode of the pan drive, damping ratio",
+            mode.damping,
+            "1",
+            "eigenvalues of the closed contact (erratum 25)",
+        ),
+        unprinted(
+            "section_5_4.ringing_frequency",
+            "Ringing after the step, gap closed",
+            ringing_frequency(),
+            "Hz",
+            "zero crossings of the simulated twist rate",
+        ),
+        unprinted(
+            "section_5_4.ringing_change",
+            "Change of the ringing from tolerance 1e-6 to 1e-9",
+            float(rows[TOLERANCES.index(1e-6), 1]),
+            "rad",
+            "largest difference of the twist; it shrinks with the tolerance (erratum 25)",
+        ),
+        unprinted(
+            "section_5_4.restitution",
+            "Restitution of one impact, undamped spring alone",
+            restitution(0.0),
+            "1",
+            "simulation of one impact (erratum 26)",
+        ),
+        unprinted(
+            "section_5_4.restitution_damped",
+            "Restitution with the joint's friction",
+            restitution(drive_values()["b_pan"]),
+            "1",
+            "simulation of one impact (erratum 26)",
+        ),
+    ]

@@ -15,7 +15,7 @@ from ptp_symbolic.thesis import (
     contact,
     errata,
     friction,
-    ramp_test,
+    ramp_items,
     responses,
     rigid,
     tilt_drive,
@@ -47,7 +47,7 @@ PARTS: Mapping[str, tuple[Callable[[], list[Item]], ...]] = {
     "Configurations and equations (2.3.1, 3.1)": (configurations.items,),
     "Backlash gap (4.1)": (backlash.items,),
     "Steady friction (4.2)": (friction.items,),
-    "Ramp test (4.3)": (ramp_test.items,),
+    "Ramp test (4.3)": (ramp_items.items,),
     "Rigid platform (5.1, 5.2)": (rigid.items,),
     "Tilt drive (3.2.3.2, 5.3)": (tilt_drive.items,),
     "Pan drive (5.4)": (responses.items, contact.items),
@@ -71,8 +71,9 @@ def thesis_files(progress: Callable[[str], None] = _silent) -> dict[str, str | b
     progress("Figures")
     figures = all_figures()
     files: dict[str, str | bytes] = {
-        "thesis.json": json_text(items), "thesis.tex": latex_text(items, figures)
-    }  # fmt: skip
+        "thesis.json": json_text(items),
+        "thesis.tex": latex_text(items, figures),
+    }
     for group in figures.values():
         for figure in group:
             files.update(rendered(figure))
@@ -131,10 +132,16 @@ def _results(part: str, items: Sequence[Item]) -> str:
     checks = list(dict.fromkeys(i.check for i in listed))
     notes = {check: ascii_lowercase[k] for k, check in enumerate(checks)}
     rows = [
-        [_text(i.title) + STRUT, _value(i.printed), _value(i.computed), unit_latex(i.unit),
-         _verdict(i), notes[i.check]]
+        [
+            _text(i.title) + STRUT,
+            _value(i.printed),
+            _value(i.computed),
+            unit_latex(i.unit),
+            _verdict(i),
+            notes[i.check],
+        ]
         for i in listed
-    ]  # fmt: skip
+    ]
     head = ["result", "printed", "computed", "unit", "verdict", "note"]
     text = rf"\section{{{escaped(part)}}}" + table("L{59mm}L{22mm}L{23mm}lll", head, rows)
     lines = "".join(rf"\item[{note}] {_text(check)}" + "\n" for check, note in notes.items())
@@ -145,10 +152,12 @@ def _results(part: str, items: Sequence[Item]) -> str:
 
 def _equation_3_8(items: Sequence[Item]) -> str:
     names = {
-        "mass_pan": r"M_{\mathrm{pan}}", "mass_tilt": r"M_{\mathrm{tilt}}",
-        "mass_pan_tilt": r"M_{\mathrm{pan,tilt}}", "torque_pan": r"f_{\mathrm{pan}}",
+        "mass_pan": r"M_{\mathrm{pan}}",
+        "mass_tilt": r"M_{\mathrm{tilt}}",
+        "mass_pan_tilt": r"M_{\mathrm{pan,tilt}}",
+        "torque_pan": r"f_{\mathrm{pan}}",
         "torque_tilt": r"f_{\mathrm{tilt}}",
-    }  # fmt: skip
+    }
     equal = all(i.agrees for i in items if i.id.startswith("eq_3_8"))
     text = r"\subsection*{Eq. 3.8, term by term} " + (
         "Derived by Lagrange's equations from the platform of Table 5.1; every entry minus the"
@@ -161,17 +170,18 @@ def _equation_3_8(items: Sequence[Item]) -> str:
 def _errata(items: Sequence[Item]) -> str:
     rows = [
         [
-            str(i.erratum), _text(i.title.partition(": ")[2]), _value(i.printed),
+            str(i.erratum),
+            _text(i.title.partition(": ")[2]),
+            _value(i.printed),
             " ".join([_value(i.computed)] + [unit_latex(i.unit)] * isinstance(i.computed, float)),
-            _text(i.check) + STRUT, "settled" if i.settled else "open",
+            _text(i.check) + STRUT,
+            "settled" if i.settled else "open",
         ]
         for i in items
-    ]  # fmt: skip
+    ]
     head = ["no.", "where", "as printed", "what holds", "check", ""]
     text = r"\section{Errata} Each with the check that settles it, computed in this run."
-    return text + r"{\footnotesize " + table(
-        "rL{24mm}L{26mm}L{30mm}L{50mm}l", head, rows
-    ) + "}"  # fmt: skip
+    return text + r"{\footnotesize " + table("rL{24mm}L{26mm}L{30mm}L{50mm}l", head, rows) + "}"
 
 
 def _figures(part: str, figures: Sequence[ThesisFigure]) -> str:
@@ -223,9 +233,9 @@ def _words(text: str) -> str:
         text = text.replace(plain, f"\0{written}\0")
     pieces = text.split("\0")
     kept = [
-        piece if number % 2 else "".join(
-            escaped(c) + (r"\allowbreak{}" if c in "/()[]" else "") for c in piece
-        )
+        piece
+        if number % 2
+        else "".join(escaped(c) + (r"\allowbreak{}" if c in "/()[]" else "") for c in piece)
         for number, piece in enumerate(pieces)
-    ]  # fmt: skip
+    ]
     return "".join(kept)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from functools import cache
 
-from ptp_symbolic.thesis import errata_drives, errata_equations, errata_friction
+from ptp_symbolic.thesis import errata_drives, errata_equations, errata_friction, errata_listings
 from ptp_symbolic.thesis.items import Item
 
 ERRATA: Mapping[int, Callable[[], Item]] = {
@@ -37,8 +37,8 @@ ERRATA: Mapping[int, Callable[[], Item]] = {
     28: errata_friction.stribeck_sign,
     29: errata_drives.contact_condition,
     30: errata_equations.euler_singularity,
-    31: errata_friction.ramp_listing,
-    32: errata_friction.map_listing,
+    31: errata_listings.ramp_listing,
+    32: errata_listings.map_listing,
 }
 
 

@@ -32,12 +32,16 @@ def self_locking() -> Item:
     ).stroke_speed[-1]
     expected = creep_speed(shorted=True)
     return erratum(
-        10, "section 3.2.3.2, lead screw", "self-locking", "overhauls", "",
+        10,
+        "section 3.2.3.2, lead screw",
+        "self-locking",
+        "overhauls",
+        "",
         lead_angle > friction_angle and lowering < 0.0 and abs(simulated / expected + 1.0) < 0.02,
         f"lead angle {lead_angle:.2f} deg above friction angle {friction_angle:.2f} deg; T_lower ="
         f" {lowering:.3g} m x F < 0; creep {1e6 * creep_speed(False):.1f} um/s open circuit and"
         f" {1e6 * expected:.2f} um/s shorted, simulated {-1e6 * simulated:.2f}",
-    )  # fmt: skip
+    )
 
 
 def _no_voltage(_: float) -> float:
@@ -50,11 +54,14 @@ def initial_stroke() -> Item:
         name: float(np.degrees(tilt_drive.deviation(s))) for name, s in printed.STROKES.items()
     }
     return erratum(
-        19, "Table 5.6, initial stroke", "40.5022 mm and 48.5 mm",
-        f"{angles['40.5']:.2f} deg and {angles['48.5']:.2f} deg from the perpendicular", "",
+        19,
+        "Table 5.6, initial stroke",
+        "40.5022 mm and 48.5 mm",
+        f"{angles['40.5']:.2f} deg and {angles['48.5']:.2f} deg from the perpendicular",
+        "",
         abs(abs(angles["40.5"]) - 7.0) < 0.05 and abs(abs(angles["48.5"]) - 0.4) < 0.05,
         "law of cosines, Table 5.6; the two strokes are different starts, both are computed",
-    )  # fmt: skip
+    )
 
 
 def step_table() -> Item:
@@ -65,12 +72,16 @@ def step_table() -> Item:
     moving = run.t[np.abs(run["omega_gear_pan"]) > 1e-9]
     settled = start <= moving[0] and end < moving[-1] < compared_to
     return erratum(
-        20, "Table 5.8, step specification", "(empty)",
+        20,
+        "Table 5.8, step specification",
+        "(empty)",
         f"{printed.SUPPLY_VOLTAGE:g} V from {start:g} s to {end:g} s, compared to"
-        f" {compared_to:g} s", "", bool(settled),
+        f" {compared_to:g} s",
+        "",
+        bool(settled),
         f"from the text of 5.4.1; simulated, the drive moves from {moving[0]:.3f} to"
         f" {moving[-1]:.3f} s, inside the time compared",
-    )  # fmt: skip
+    )
 
 
 def com_direction() -> Item:
@@ -82,11 +93,15 @@ def com_direction() -> Item:
         found[direction] = tilt_drive.reverses(run)[0] and holds
     which = ", ".join(d for d, holds in found.items() if holds)
     return erratum(
-        24, "section 5.3, direction of the c.g. offset", "(not printed)", which, "",
+        24,
+        "section 5.3, direction of the c.g. offset",
+        "(not printed)",
+        which,
+        "",
         which == "above",
         "simulated with the c.g. above, ahead of, below and behind the axis: force first"
         " positive, then negative, not zero at the end, tilt angle negative",
-    )  # fmt: skip
+    )
 
 
 def ringing() -> Item:
@@ -95,24 +110,31 @@ def ringing() -> Item:
     simulated = contact.ringing_frequency()
     converges = bool(np.all(np.diff(rows[1:, 1]) < 0.0) and rows[-1, 1] < 1e-2 * rows[0, 1])
     return erratum(
-        25, "section 5.4.1, oscillation after the step", "numerical",
-        f"contact mode, {mode.frequency:.0f} Hz, damping {mode.damping:.2f}", "",
+        25,
+        "section 5.4.1, oscillation after the step",
+        "numerical",
+        f"contact mode, {mode.frequency:.0f} Hz, damping {mode.damping:.2f}",
+        "",
         converges and abs(simulated / mode.frequency - 1.0) < 0.02,
         f"the twist is off by {rows[0, 1]:.1g} rad at tolerance {rows[0, 0]:g} and by"
         f" {rows[-1, 1]:.1g} rad at {rows[-1, 0]:g}; the simulation rings at {simulated:.1f} Hz,"
         f" the eigenvalues say {mode.frequency:.1f} Hz",
-    )  # fmt: skip
+    )
 
 
 def plastic_impact() -> Item:
     """Erratum 26: the dead-zone model has no plastic impact."""
     bare, damped = (contact.restitution(b) for b in (0.0, drive_values()["b_pan"]))
     return erratum(
-        26, "sections 1.6 and 5.4.2, restitution of the dead-zone model", 0.0, bare, "1",
+        26,
+        "sections 1.6 and 5.4.2, restitution of the dead-zone model",
+        0.0,
+        bare,
+        "1",
         abs(bare - 1.0) < 1e-6 and abs(damped - 0.82) < 0.01,
         f"simulation of one impact; {damped:.3f} with the joint's viscous friction, 0 would be"
         " plastic",
-    )  # fmt: skip
+    )
 
 
 def hysteresis(rule: str, times: FloatArray, half_gap: float, frequency: float) -> FloatArray:
@@ -135,9 +157,11 @@ def hysteresis(rule: str, times: FloatArray, half_gap: float, frequency: float) 
         pushed = (rate[k] > 0.0 and load[k - 1] <= lower) or (
             rate[k] < 0.0 and load[k - 1] >= upper
         )
-        load[k] = (lower if rate[k] > 0.0 else upper) if pushed else (
-            load[k - 1] if rule == "2.17" else coasting
-        )  # fmt: skip
+        load[k] = (
+            (lower if rate[k] > 0.0 else upper)
+            if pushed
+            else (load[k - 1] if rule == "2.17" else coasting)
+        )
         # as printed, contact lasts as long as the drive keeps its direction: it ends at rest
         load_rate = rate[k] if pushed else (0.0 if rule == "2.17" else load_rate)
     return load
@@ -151,8 +175,12 @@ def contact_condition() -> Item:
     )
     same, other = (float(np.max(np.abs(x - friction))) for x in (given, right))
     return erratum(
-        29, "Eq. 2.18, contact conditions", "on the velocity", "on the acceleration", "",
+        29,
+        "Eq. 2.18, contact conditions",
+        "on the velocity",
+        "on the acceleration",
+        "",
         same < 1e-2 * half_gap and other > 0.5 * half_gap,
         f"drive angle sin(2 pi t), half gap {half_gap:g} rad: as printed the load differs from Eq."
         f" 2.17 by at most {same:.1g} rad, with the corrected condition by {other:.2g} rad",
-    )  # fmt: skip
+    )

@@ -23,10 +23,15 @@ def shaft_damping() -> Item:
     given = sp.expand(c * (rate_2 - rate_1) * twist_rate)
     settled = given == as_printed and right == sp.expand(c * twist_rate**2)
     return erratum(
-        4, "Eq. 2.15, damping term", "c (omega_2 - omega_1)", "c (omega_1 - omega_2)", "N m",
-        settled, "theta_s = theta_1 - theta_2; power taken by the printed term:"
+        4,
+        "Eq. 2.15, damping term",
+        "c (omega_2 - omega_1)",
+        "c (omega_1 - omega_2)",
+        "N m",
+        settled,
+        "theta_s = theta_1 - theta_2; power taken by the printed term:"
         f" {plain(sp.factor(given))} < 0, by the corrected one: {plain(sp.factor(right))}",
-    )  # fmt: skip
+    )
 
 
 def euler_sign() -> Item:
@@ -36,9 +41,14 @@ def euler_sign() -> Item:
     theta, rate = kinematics.angle("tilt"), kinematics.rate("pan")
     settled = normal_form(factor + sp.cos(theta) * sp.sin(theta) * rate**2) == 0
     return erratum(
-        5, "Eq. 3.7, sign before J_zt", "- +", "-", "", settled,
+        5,
+        "Eq. 3.7, sign before J_zt",
+        "- +",
+        "-",
+        "",
+        settled,
         f"derivative by J_zt of the tilt forcing derived by Newton-Euler: {plain(factor)}",
-    )  # fmt: skip
+    )
 
 
 def damping_names() -> Item:
@@ -49,10 +59,14 @@ def damping_names() -> Item:
         for force, axis, other in zip(forcing, ("pan", "tilt"), ("tilt", "pan"), strict=True)
     ]
     return erratum(
-        6, "text under Eq. 3.3, damping coefficients", "b_7, b_18", ", ".join(found), "",
+        6,
+        "text under Eq. 3.3, damping coefficients",
+        "b_7, b_18",
+        ", ".join(found),
+        "",
         found == ["b_pan", "b_tilt"],
         "damping of each axis in the derived equations; 7 and 18 number the bonds",
-    )  # fmt: skip
+    )
 
 
 def _euler_rates() -> tuple[sp.Matrix, sp.Matrix]:
@@ -83,9 +97,14 @@ def euler_rate_names() -> Item:
     derived, _ = _euler_rates()
     left = [sp.simplify(a - b) for a, b in zip(derived, lines, strict=True)]
     return erratum(
-        7, "Eq. 3.9, left sides", "theta, psi', psi'", "theta', psi', phi'", "", left == [0, 0, 0],
+        7,
+        "Eq. 3.9, left sides",
+        "theta, psi', psi'",
+        "theta', psi', phi'",
+        "",
+        left == [0, 0, 0],
         f"inverted kinematics of the rotations z, y, x minus the three right sides: {left}",
-    )  # fmt: skip
+    )
 
 
 def euler_singularity() -> Item:
@@ -98,11 +117,15 @@ def euler_singularity() -> Item:
     angle = along(times, printed.IDEAL_MOTION["tilt"]).angle
     crossing = float(times[np.argmax(angle >= np.pi / 2.0)])
     return erratum(
-        30, "Eq. 3.9, Euler rates", "used without a limit", f"singular at {crossing:.3f} s", "",
+        30,
+        "Eq. 3.9, Euler rates",
+        "used without a limit",
+        f"singular at {crossing:.3f} s",
+        "",
         bool(singular and 0.0 < crossing < 2.0),
         f"determinant of the rate matrix: {plain(determinant)}; the tilt angle of Table 5.2"
         " passes 90 deg at this time",
-    )  # fmt: skip
+    )
 
 
 def gear_torques() -> Item:
@@ -120,11 +143,15 @@ def gear_torques() -> Item:
     spring = sp.expand(k * (motor - N * load) / N**2 - shaft / N) == 0
     friction = sp.simplify(F_f / N**2 - F_f / N) != 0
     return erratum(
-        8, "Eq. 3.11, reflected torques", "(F_f + J_l theta_m'' + k_s (theta_m - N theta_l)) / N^2",
-        "(F_f + T_s) / N, J_l on the load side alone", "N m", bool(right and spring and friction),
+        8,
+        "Eq. 3.11, reflected torques",
+        "(F_f + J_l theta_m'' + k_s (theta_m - N theta_l)) / N^2",
+        "(F_f + T_s) / N, J_l on the load side alone",
+        "N m",
+        bool(right and spring and friction),
         "Lagrange's equations with the friction at the gear output: the printed spring term is"
         " T_s / N, the printed friction is not F_f / N, and the motor side holds no J_l",
-    )  # fmt: skip
+    )
 
 
 def actuator_force() -> Item:
@@ -137,20 +164,29 @@ def actuator_force() -> Item:
     ]
     missing = [float(np.sin(deviation(stroke)) ** 2) for stroke in (printed.STROKES["40.5"], 0.0)]
     return erratum(
-        9, "section 3.2.3.2, actuator force", "-tau cos(theta) / r", "-tau / (r cos(theta))", "N",
+        9,
+        "section 3.2.3.2, actuator force",
+        "-tau cos(theta) / r",
+        "-tau / (r cos(theta))",
+        "N",
         remainders[0] == 0 and remainders[1] != 0,
         "F_a v_a - tau omega = 0 for the corrected force; the printed one misses by"
         f" {100 * missing[0]:.1f} % at stroke 40.5 mm and {100 * missing[1]:.0f} % at stroke 0",
-    )  # fmt: skip
+    )
 
 
 def symmetric_row() -> Item:
     """Erratum 11: the completely symmetric, balanced configuration."""
     row = next(i for i in configurations.table_2_2() if "completely" in i.id)
     return erratum(
-        11, "Table 2.2, completely symmetric and balanced", row.printed, row.computed, "",
-        row.computed == "linear; un-coupled", row.check,
-    )  # fmt: skip
+        11,
+        "Table 2.2, completely symmetric and balanced",
+        row.printed,
+        row.computed,
+        "",
+        row.computed == "linear; un-coupled",
+        row.check,
+    )
 
 
 def coupling_rows() -> Item:
@@ -162,10 +198,14 @@ def coupling_rows() -> Item:
     general = configurations.configuration(configurations.ASYMMETRIC, configurations.OFFSET)
     axes = configurations.gravity_axes(general)
     return erratum(
-        27, "Table 2.2, asymmetric and balanced", "coupled at higher speeds; by gravity",
-        "coupled at any speed; by inertia", "", normal_form(left - wanted) == 0 and axes == "tilt",
+        27,
+        "Table 2.2, asymmetric and balanced",
+        "coupled at higher speeds; by gravity",
+        "coupled at any speed; by inertia",
+        "",
+        normal_form(left - wanted) == 0 and axes == "tilt",
         f"M_pt = {plain(left)} without any rate; gravity enters the {axes} axis alone",
-    )  # fmt: skip
+    )
 
 
 def friction_unit() -> Item:
@@ -175,9 +215,14 @@ def friction_unit() -> Item:
     torque_per_rate = registry("newton * meter / (radian / second)").dimensionality
     settled = as_printed != torque_per_rate
     return erratum(
-        17, "Table 5.1, unit of the joint friction", "kg m/(rad/s)", "N m s/rad", "", settled,
+        17,
+        "Table 5.1, unit of the joint friction",
+        "kg m/(rad/s)",
+        "N m s/rad",
+        "",
+        settled,
         f"dimensions: printed {plain(as_printed)}, torque per rate {plain(torque_per_rate)}",
-    )  # fmt: skip
+    )
 
 
 def payload_offset() -> Item:
@@ -189,11 +234,15 @@ def payload_offset() -> Item:
     # one digit, like the printed value
     offset = float(f"{np.mean(offsets):.1g}")
     return erratum(
-        18, "Table 5.3, offset of the payload", printed.PAYLOAD_OFFSET, offset, "m",
+        18,
+        "Table 5.3, offset of the payload",
+        printed.PAYLOAD_OFFSET,
+        offset,
+        "m",
         all(i.agrees for i in right) and not any(i.agrees for i in wrong) and offset == 0.1,
         f"offsets that give the reported torques: {offsets[0]:.4f} m (pan), {offsets[1]:.4f} m"
         " (tilt);"
         " inverse dynamics along Table 5.4, pan and tilt in N m:"
         f" {right[0].computed:.3g} and {right[1].computed:.3g} at 0.1 m,"
         f" {wrong[0].computed:.2g} and {wrong[1].computed:.2g} at 0.01 m",
-    )  # fmt: skip
+    )

@@ -1,7 +1,5 @@
 """Errata of friction and of its estimation (chapters 2 and 4, Appendices B and C)."""
 
-import re
-
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
@@ -32,10 +30,15 @@ def signum() -> Item:
         for name, f in (("sigmoid", lambda v: 1.0 / (1.0 + np.exp(-v))), ("signum", np.sign))
     }
     return erratum(
-        1, "Eq. 2.6, sign(v)", "sigmoid", "signum", "", power["sigmoid"] < 0.0 < power["signum"],
+        1,
+        "Eq. 2.6, sign(v)",
+        "sigmoid",
+        "signum",
+        "",
+        power["sigmoid"] < 0.0 < power["signum"],
         f"power taken at v = -1 and F_c = 1: {power['sigmoid']:.3g} with a sigmoid (energy is"
         f" created), {power['signum']:.3g} with the signum",
-    )  # fmt: skip
+    )
 
 
 def printed_branches(speed: float, applied: float) -> float:
@@ -62,37 +65,47 @@ def branches() -> Item:
     wrong, right = ([speed_after(s, kind) for s in (10.0, 20.0)] for kind in (True, False))
     settled = wrong[1] > 1.9 * wrong[0] and abs(right[1] - settles) < 1e-5
     return erratum(
-        2, "Eq. 2.10, sliding branch", "F = F_s above F_s", "sliding for v != 0, whatever F_e", "",
-        settled, f"torque {PUSH:g} N m, Table 4.1: with the printed branches the speed is"
+        2,
+        "Eq. 2.10, sliding branch",
+        "F = F_s above F_s",
+        "sliding for v != 0, whatever F_e",
+        "",
+        settled,
+        f"torque {PUSH:g} N m, Table 4.1: with the printed branches the speed is"
         f" {wrong[0]:.3g} rad/s after 10 s and {wrong[1]:.3g} after 20 s and grows for ever; with"
         f" the corrected ones it settles at {right[1]:.4g} rad/s",
-    )  # fmt: skip
+    )
 
 
 def _odd(number: int, where: str, dry: sp.Expr, viscous: sp.Expr) -> Item:
     """Friction must oppose motion: `dry` as printed is even in v and feeds energy in at v < 0."""
     v = sp.Symbol("v", real=True)
     values = {
-        sp.Symbol("F_c"): FRICTION.F_c, sp.Symbol("F_s"): FRICTION.F_s,
-        sp.Symbol("v_s"): FRICTION.v_s, sp.Symbol("F_v"): FRICTION.F_v,
-    }  # fmt: skip
+        sp.Symbol("F_c"): FRICTION.F_c,
+        sp.Symbol("F_s"): FRICTION.F_s,
+        sp.Symbol("v_s"): FRICTION.v_s,
+        sp.Symbol("F_v"): FRICTION.F_v,
+    }
     force, mended = dry + viscous, dry * sp.sign(v) + viscous
     power = [float((f * v).subs(values).subs(v, -0.01)) for f in (force, mended)]
     odd = sp.simplify(mended.subs(v, -v) + mended) == 0
     return erratum(
-        number, where, plain(force), plain(mended), "N m", odd and power[0] < 0.0 < power[1],
+        number,
+        where,
+        plain(force),
+        plain(mended),
+        "N m",
+        odd and power[0] < 0.0 < power[1],
         f"power taken at v = -0.01 rad/s, Table 4.1: {power[0]:.3g} W as printed (energy is"
         f" created), {power[1]:.3g} W with sign(v); the corrected law is odd in v",
-    )  # fmt: skip
+    )
 
 
 def csvs_sign() -> Item:
     """Erratum 3: Eq. 2.11 carries no sign(v)."""
     F_c, F_s, v_s, F_v = sp.symbols("F_c F_s v_s F_v")
     v = sp.Symbol("v", real=True)
-    return _odd(
-        3, "Eq. 2.11, dry part", F_c + (F_s - F_c) * sp.exp(-((v / v_s) ** 2)), F_v * v
-    )  # fmt: skip
+    return _odd(3, "Eq. 2.11, dry part", F_c + (F_s - F_c) * sp.exp(-((v / v_s) ** 2)), F_v * v)
 
 
 def stribeck_sign() -> Item:
@@ -101,7 +114,7 @@ def stribeck_sign() -> Item:
     v = sp.Symbol("v", real=True)
     return _odd(
         28, "Eq. 2.9, Stribeck part", (F_s - F_c) * sp.exp(-((v / v_s) ** 2)), sp.Integer(0)
-    )  # fmt: skip
+    )
 
 
 def _averages(number: int, direction: str) -> tuple[str, str, list[tuple[int, ...]]]:
@@ -117,9 +130,14 @@ def averages_forward() -> Item:
     """Erratum 12: the averages of Table 4.2 for omega > 0."""
     given, found, subsets = _averages(12, "positive")
     return erratum(
-        12, "Table 4.2, averages, omega > 0", given, found, "", subsets == [(1, 2, 3, 4)],
+        12,
+        "Table 4.2, averages, omega > 0",
+        given,
+        found,
+        "",
+        subsets == [(1, 2, 3, 4)],
         f"means of all five tests; subsets whose means give the printed four: {subsets}",
-    )  # fmt: skip
+    )
 
 
 def averages_backward() -> Item:
@@ -127,10 +145,15 @@ def averages_backward() -> Item:
     given, found, subsets = _averages(13, "negative")
     inertia = ramp_test.column(printed.TABLE_4_2["negative"], "J").mean()
     return erratum(
-        13, "Table 4.2, averages, omega < 0", given, found, "", subsets == [],
+        13,
+        "Table 4.2, averages, omega < 0",
+        given,
+        found,
+        "",
+        subsets == [],
         "means of all five tests; of the 31 subsets none gives the printed four;"
         f" J = {inertia:.4f} is right",
-    )  # fmt: skip
+    )
 
 
 def start_outside() -> Item:
@@ -144,11 +167,15 @@ def start_outside() -> Item:
         refused = True
     error = abs(estimated("negative").F_c / printed.TABLE_4_1["negative"].F_c - 1.0)
     return erratum(
-        14, "Appendix B, start of F_c, omega < 0", float(start[0]), upper[0], "N m",
+        14,
+        "Appendix B, start of F_c, omega < 0",
+        float(start[0]),
+        upper[0],
+        "N m",
         refused and start[0] > upper[0],
         "printed: start, computed: its upper bound. A bounded solver refuses the start; moved"
         f" inside, the fit still recovers F_c (relative error {error:.0e})",
-    )  # fmt: skip
+    )
 
 
 def precedence() -> Item:
@@ -160,15 +187,19 @@ def precedence() -> Item:
     test = printed.TABLE_4_2["positive"][0]
     fitted = ramp_test.fit(
         ramp_test.measured_angle(test), motor_inertia=1.0 / given - printed.INERTIA
-    )  # fmt: skip
+    )
     shift = fitted.value("v_s") / test.friction.v_s - 1.0
     return erratum(
-        15, "Appendix C, acceleration per torque", given, right, "1/(kg m^2)",
+        15,
+        "Appendix C, acceleration per torque",
+        given,
+        right,
+        "1/(kg m^2)",
         abs(motor - printed.APPENDIX_C_MOTOR_INERTIA) < 1e-12 and given > 1.15 * right,
         f"(1/Jm + Js) against 1/(Jm + Js) with Jm = 1.1e-5 x 500^2 = {motor:g}, Js = 0.05 kg m^2;"
         f" test 1 fitted as printed: v_s off by {100 * shift:.0f} %, rms {fitted.rms_counts:.2g}"
         " counts",
-    )  # fmt: skip
+    )
 
 
 def inertia_bounds() -> Item:
@@ -182,12 +213,16 @@ def inertia_bounds() -> Item:
     free, shifted = ramp_test.inertia_without_bounds()
     rise = float(np.ptp(ramp_test.inertia_profile()[:, 1]))
     return erratum(
-        16, "section 4.3 and Appendix C, J", "estimated", "held by its bounds", "",
+        16,
+        "section 4.3 and Appendix C, J",
+        "estimated",
+        "held by its bounds",
+        "",
         sum(ends) >= 8 and change < 1.0 and rise < 0.05 and abs(shifted - free) > 0.05,
         f"J ends on a bound in {sum(ends)} of {len(ends)} tests; from bound to bound the angle"
         f" changes by {change:.2g} counts; profile 0 to 0.1 kg m^2 raises the residual by"
         f" {rise:.1g} counts; Jm 2 % off moves J from {free:.3f} to {shifted:.3f} kg m^2",
-    )  # fmt: skip
+    )
 
 
 def pwm_torque() -> Item:
@@ -202,12 +237,16 @@ def pwm_torque() -> Item:
         if "ramp" in name
     ]
     return erratum(
-        21, "section 4.2.1, torque under PWM", ", ".join(f"{t:.2f}" for t in table),
-        ", ".join(f"{t:.2f}" for t in scaled), "N m", gap < 0.1,
+        21,
+        "section 4.2.1, torque under PWM",
+        ", ".join(f"{t:.2f}" for t in table),
+        ", ".join(f"{t:.2f}" for t in scaled),
+        "N m",
+        gap < 0.1,
         f"Table 4.1 beside duty x Table 4.2 at {DUTY_SPEEDS} rad/s, 24 V: within {100 * gap:.0f} %."
         " Strong evidence, not proof: against DC friction the ramp errors are"
         f" {', '.join(misses)}, in brackets what is printed",
-    )  # fmt: skip
+    )
 
 
 def gear_ratio() -> Item:
@@ -217,9 +256,14 @@ def gear_ratio() -> Item:
     without, behind = torque / p["K_t_pan"], torque / (p["K_t_pan"] * p["N_pan"])
     limit = printed.SUPPLY_VOLTAGE / p["R_pan"]
     return erratum(
-        22, "section 4.2.1, current for 7 N m", without, behind, "A", without > limit > behind,
+        22,
+        "section 4.2.1, current for 7 N m",
+        without,
+        behind,
+        "A",
+        without > limit > behind,
         f"K_t i against K_t N i; the winding lets at most {limit:.2g} A pass at 24 V",
-    )  # fmt: skip
+    )
 
 
 def counted_twice() -> Item:
@@ -231,54 +275,12 @@ def counted_twice() -> Item:
     simulated = float(run["omega_pan"][np.searchsorted(run.t, 11.0)])
     share = without / with_it - 1.0
     return erratum(
-        23, "Table 5.7, speed at 24 V with joint friction 2", with_it, without, "rad/s",
+        23,
+        "Table 5.7, speed at 24 V with joint friction 2",
+        with_it,
+        without,
+        "rad/s",
         abs(simulated - with_it) < 1e-4 and 0.01 < share < 0.025,
         f"steady speed with and without it: {100 * share:.1f} % apart; simulated {simulated:.4f}."
         " F_v was measured with the whole torque, so it holds the joint already",
-    )  # fmt: skip
-
-
-def undefined_names(listing: str) -> list[str]:
-    """Names that a listing uses and never gives a value of their own."""
-    used = {*re.findall(r"length\((\w+)\)", listing), *re.findall(r"\(:,(\w+)\)", listing)}
-    assigned = dict(re.findall(r"\b(\w+)\s*=\s*([^;=]+);", listing))
-    return sorted(n for n in used if n not in assigned or re.search(rf"\b{n}\b", assigned[n]))
-
-
-def ramp_listing() -> Item:
-    """Erratum 31: Appendix C."""
-    start, upper = printed.APPENDIX_C_START.F_v, printed.APPENDIX_C_UPPER[-1]
-    missing = undefined_names(printed.LISTING_C)
-    solver = re.findall(r"(ode\w+)\(", printed.LISTING_C)[0]
-    # the sticking branch F = u makes the acceleration zero at any speed below its limit
-    speed, applied, step = 0.8 * printed.STICKING_SPEED, 1.0, 1e-3
-    for _ in range(1000):
-        sticks = abs(speed) < printed.STICKING_SPEED and abs(applied) < printed.APPENDIX_C_LOWER[2]
-        speed += step * (applied - (applied if sticks else 0.0)) / printed.APPENDIX_C_MOTOR_INERTIA
-    frozen = speed == 0.8 * printed.STICKING_SPEED
-    return erratum(
-        31, "Appendix C, listing", f"start of Tv {start:g}, {solver}",
-        f"upper bound {upper:g}, {printed.SOLVER_IN_TEXT}", "",
-        start > upper and missing == ["J", "counter"] and solver != printed.SOLVER_IN_TEXT
-        and frozen,
-        f"bounds and names of the listing: undefined {', '.join(missing)}; sticking branch run for"
-        f" 1 s from {speed:g} rad/s: still {speed:g} rad/s, frozen instead of stopped",
-    )  # fmt: skip
-
-
-def map_listing() -> Item:
-    """Erratum 32: Appendix B."""
-    fitted = re.findall(r"(\w+)\(\w\)", printed.LISTING_B_FIT.split("x0 =")[1].split("]")[0])
-    tested = fitted[: int(re.findall(r"i = 1:(\d)", printed.LISTING_B_FILTER)[0])]
-    # counter starts at 1 and grows after every fit, so one fit fills column 1 and leaves 2
-    overrun = "j = 1:counter" in printed.LISTING_B_FILTER and "counter=counter+1" in (
-        printed.LISTING_B_FIT
     )
-    return erratum(
-        32, "Appendix B, filter and options", "four parameters, filter 1:4, GradObj",
-        f"{len(fitted)} parameters: {', '.join(fitted)}", "",
-        len(fitted) == 5 and "gamma" in tested and "Tv" not in tested and overrun
-        and "GradObj" in printed.LISTING_B_FIT,
-        f"read from the listing: the filter tests {', '.join(tested)} and skips Tv; its loop ends"
-        " one column past the last fit; lsqcurvefit takes 'Jacobian', GradObj belongs to fminunc",
-    )  # fmt: skip

@@ -18,12 +18,23 @@ Panel = Callable[[Axes], None]
 BLUE, ORANGE, GREEN, GREY = "#0d6a92", "#c65d21", "#4a8f5c", "#8a939c"
 COLOURS = (BLUE, ORANGE, GREEN, GREY)
 STYLE: dict[Any, Any] = {
-    "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 8.0,
-    "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.7,
-    "axes.grid": True, "grid.color": "#e6e9ec", "grid.linewidth": 0.7, "axes.axisbelow": True,
-    "axes.xmargin": 0.01, "lines.linewidth": 1.2, "legend.frameon": False, "legend.fontsize": 7.5,
-    "pdf.fonttype": 42, "axes.formatter.useoffset": False,
-}  # fmt: skip
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 8.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.7,
+    "axes.grid": True,
+    "grid.color": "#e6e9ec",
+    "grid.linewidth": 0.7,
+    "axes.axisbelow": True,
+    "axes.xmargin": 0.01,
+    "lines.linewidth": 1.2,
+    "legend.frameon": False,
+    "legend.fontsize": 7.5,
+    "pdf.fonttype": 42,
+    "axes.formatter.useoffset": False,
+}
 INCH = 25.4
 # in mm by the number of panels: four figures of one panel fill a page, or two of three
 PANEL_HEIGHTS = {1: 47.0, 2: 40.0, 3: 35.0}
@@ -59,9 +70,7 @@ def panel(x_label: str, y_label: str, make: Callable[[], Sequence[Line]]) -> Pan
         axes.set_ylabel(y_label)
         if len(lines) > 1:
             columns = 4 if sum(len(line.label) for line in lines) < 70 else 2
-            axes.legend(
-                ncols=columns, borderpad=0.1, loc="lower left", bbox_to_anchor=(0.0, 1.0)
-            )  # fmt: skip
+            axes.legend(ncols=columns, borderpad=0.1, loc="lower left", bbox_to_anchor=(0.0, 1.0))
 
     return draw
 

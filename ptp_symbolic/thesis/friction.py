@@ -57,7 +57,7 @@ def torque_map(friction: Friction) -> FloatArray:
             derivative, (0.0, 5.0), [speed, 0.0, 0.0], "LSODA", args=(speed,), rtol=1e-9, atol=1e-12
         ).y[1, -1]
         for speed in SPEEDS
-    ]  # fmt: skip
+    ]
     return gear_constant * np.array(ends)
 
 
@@ -74,9 +74,16 @@ def fit_map(torques: FloatArray, direction: str) -> OptimizeResult:
 
     start = np.clip(start_of(direction), lower + 1e-6, upper - 1e-6)
     return least_squares(
-        residual, start, bounds=(lower, upper), method="trf", x_scale=start,
-        xtol=1e-14, ftol=1e-14, gtol=1e-14, max_nfev=4000,
-    )  # fmt: skip
+        residual,
+        start,
+        bounds=(lower, upper),
+        method="trf",
+        x_scale=start,
+        xtol=1e-14,
+        ftol=1e-14,
+        gtol=1e-14,
+        max_nfev=4000,
+    )
 
 
 def start_of(direction: str) -> FloatArray:
@@ -123,13 +130,17 @@ def estimation_items() -> list[Item]:
     )
     return [
         compared(
-            f"table_4_1.{name}_{direction}", f"Table 4.1, {name}, omega {sign} 0",
-            getattr(printed.TABLE_4_1[direction], name), getattr(estimated(direction), name),
-            unit, check, ESTIMATION_TOLERANCE * getattr(printed.TABLE_4_1[direction], name),
+            f"table_4_1.{name}_{direction}",
+            f"Table 4.1, {name}, omega {sign} 0",
+            getattr(printed.TABLE_4_1[direction], name),
+            getattr(estimated(direction), name),
+            unit,
+            check,
+            ESTIMATION_TOLERANCE * getattr(printed.TABLE_4_1[direction], name),
         )
         for direction, sign in zip(DIRECTIONS, "><", strict=True)
         for name, unit in printed.FRICTION_UNITS.items()
-    ]  # fmt: skip
+    ]
 
 
 def duty_items() -> list[Item]:
@@ -138,13 +149,14 @@ def duty_items() -> list[Item]:
         unprinted(
             f"fig_4_3.duty_torque_at_{speed:g}",
             f"Duty times DC friction at {speed:g} rad/s",
-            duty_and_torque(speed, mean_friction("positive"))[1], "N m",
+            duty_and_torque(speed, mean_friction("positive"))[1],
+            "N m",
             "duty at 24 V x mean friction of Table 4.2, omega > 0; Table 4.1 gives"
             f" {steady_friction(np.array(speed), printed.TABLE_4_1['positive']):.3g} N m"
             " (erratum 21)",
         )
         for speed in DUTY_SPEEDS
-    ]  # fmt: skip
+    ]
 
 
 def items() -> list[Item]:

@@ -48,9 +48,16 @@ def compared(
     allowed = half_last_digit(printed) if tolerance is None else tolerance
     agrees = math.isfinite(computed) and abs(computed - printed) <= allowed * (1.0 + 1e-9)
     return Item(
-        identity, title, printed, float(computed), unit, agrees, None if agrees else erratum,
-        check, allowed,
-    )  # fmt: skip
+        identity,
+        title,
+        printed,
+        float(computed),
+        unit,
+        agrees,
+        None if agrees else erratum,
+        check,
+        allowed,
+    )
 
 
 def same_text(
@@ -63,9 +70,7 @@ def same_text(
 ) -> Item:
     """An item of two statements, which agree when they are the same."""
     agrees = printed == computed
-    return Item(
-        identity, title, printed, computed, "", agrees, None if agrees else erratum, check
-    )  # fmt: skip
+    return Item(identity, title, printed, computed, "", agrees, None if agrees else erratum, check)
 
 
 def unprinted(identity: str, title: str, computed: Value, unit: str, check: str) -> Item:
@@ -82,9 +87,17 @@ def erratum(
     """
     found = computed if settled or not isinstance(computed, str) else None
     return Item(
-        f"erratum_{number:02d}", f"Erratum {number}: {where}", printed, found, unit,
-        False if settled else None, number, check, None, bool(settled),
-    )  # fmt: skip
+        f"erratum_{number:02d}",
+        f"Erratum {number}: {where}",
+        printed,
+        found,
+        unit,
+        False if settled else None,
+        number,
+        check,
+        None,
+        bool(settled),
+    )
 
 
 def half_last_digit(printed: float) -> float:

@@ -52,9 +52,7 @@ def moving(times: FloatArray, rate: InputSignal, start: float = 0.0) -> Motion:
     pieces = [[first, 0.0, 0.0, 0.0], *rate.coefficients, [last, 0.0, 0.0, 0.0]]
     curve = PPoly(np.array(pieces).T[::-1], np.array(ends))
     whole = curve.antiderivative()
-    return Motion(
-        start + whole(times) - whole(times[0]), curve(times), curve.derivative()(times)
-    )  # fmt: skip
+    return Motion(start + whole(times) - whole(times[0]), curve(times), curve.derivative()(times))
 
 
 def at_rest(times: FloatArray, angle: float) -> Motion:
@@ -79,9 +77,7 @@ def needed_torques(
     needed = equations.mass_matrix * accelerations - equations.forcing.xreplace(torques)
     numbers = {p.name: p.default for p in equations.parameters} | dict(values or {})
     needed = needed.subs({sp.Symbol(name, real=True): value for name, value in numbers.items()})
-    arguments = [
-        *map(kinematics.angle, JOINTS), *map(kinematics.rate, JOINTS), *accelerations
-    ]  # fmt: skip
+    arguments = [*map(kinematics.angle, JOINTS), *map(kinematics.rate, JOINTS), *accelerations]
     function = sp.lambdify(arguments, list(needed), modules="numpy")
     moves = [motion[axis] for axis in JOINTS]
     pan, tilt = function(

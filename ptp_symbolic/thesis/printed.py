@@ -77,9 +77,27 @@ INERTIA = 0.050
 
 # Appendix A: readings of the backlash gap in deg, and the printed average.
 BACKLASH_DEG = (
-    1.45, 1.5, 1.6, 1.6, 1.5, 1.45, 1.45, 1.35, 1.4, 1.4,
-    1.45, 1.35, 1.5, 1.6, 1.55, 1.65, 1.45, 1.55, 1.55, 1.45,
-)  # fmt: skip
+    1.45,
+    1.5,
+    1.6,
+    1.6,
+    1.5,
+    1.45,
+    1.45,
+    1.35,
+    1.4,
+    1.4,
+    1.45,
+    1.35,
+    1.5,
+    1.6,
+    1.55,
+    1.65,
+    1.45,
+    1.55,
+    1.55,
+    1.45,
+)
 BACKLASH_AVERAGE_DEG = 1.49
 
 # Appendix B: lsqcurvefit bounds in the order Tc, Ts, Ws, gamma, Tv.
@@ -129,11 +147,15 @@ PAYLOAD_TILT_VARIATION = 5.0
 # Section 5.4: relative L2 position errors against measured series that are not printed.
 # (input, end of the comparison in s, printed error)
 REPORTED_ERRORS = (
-    ("step", 4.37, 0.0377), ("step", 12.5, 0.0378),
-    ("fast_ramp", 0.51, 0.0433), ("fast_ramp", 0.88, 0.0365),
-    ("slow_ramp", 5.12, 0.2627), ("slow_ramp", 10.57, 0.1065),
-    ("trapezoid", 2.63, 0.0305), ("trapezoid", 4.28, 0.035),
-)  # fmt: skip
+    ("step", 4.37, 0.0377),
+    ("step", 12.5, 0.0378),
+    ("fast_ramp", 0.51, 0.0433),
+    ("fast_ramp", 0.88, 0.0365),
+    ("slow_ramp", 5.12, 0.2627),
+    ("slow_ramp", 10.57, 0.1065),
+    ("trapezoid", 2.63, 0.0305),
+    ("trapezoid", 4.28, 0.035),
+)
 SUPPLY_VOLTAGE = 24.0
 COUNTS_PER_REVOLUTION = 7200
 

@@ -17,8 +17,8 @@ from ptp_symbolic.numeric.simulation.signals.inputs import ramp
 from ptp_symbolic.platform import EffectDeclaration, Platform
 from ptp_symbolic.thesis import printed
 from ptp_symbolic.thesis.friction import drive_values
-from ptp_symbolic.thesis.items import Item, compared, half_last_digit, unprinted
-from ptp_symbolic.thesis.printed import DIRECTIONS, RampTest
+from ptp_symbolic.thesis.items import half_last_digit
+from ptp_symbolic.thesis.printed import RampTest
 
 FloatArray = NDArray[np.float64]
 
@@ -26,12 +26,8 @@ FloatArray = NDArray[np.float64]
 TIMES = np.linspace(0.0, 20.0, 1_001)
 COUNT = 2.0 * np.pi / printed.COUNTS_PER_REVOLUTION
 COLUMNS = ("J", "F_s", "F_c", "v_s", "F_v")
-SIGNS = {"positive": ">", "negative": "<"}
-UNITS = {"J": "kg m^2", **printed.FRICTION_UNITS}
 PROFILE = (0.0, 0.02, 0.04, 0.049, 0.051, 0.06, 0.08, 0.1)
 MOTOR_INERTIA_ERROR = 0.02
-FRICTION_TOLERANCE = 0.02
-INERTIA_TOLERANCE = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,9 +70,15 @@ def measured_angle(test: RampTest) -> FloatArray:
 
     moving = TIMES[start < TIMES]
     run = solve_ivp(
-        derivative, (start, TIMES[-1]), [0.0, 0.0], "DOP853", moving,
-        rtol=1e-10, atol=1e-12, max_step=0.02,
-    )  # fmt: skip
+        derivative,
+        (start, TIMES[-1]),
+        [0.0, 0.0],
+        "DOP853",
+        moving,
+        rtol=1e-10,
+        atol=1e-12,
+        max_step=0.02,
+    )
     angle = np.concatenate([np.zeros(len(TIMES) - len(moving)), run.y[0]])
     return np.floor(angle / COUNT + 0.5) * COUNT
 
@@ -110,9 +112,15 @@ def fit(
     start = np.clip(start, lower, upper)
     start[1:] = np.clip(start[1:], lower[1:] + 1e-3, upper[1:] - 1e-3)
     found = least_squares(
-        lambda x: (model_angle(x, motor_inertia) - angle) / COUNT, start, bounds=(lower, upper),
-        method="trf", x_scale=np.maximum(start, 0.05), xtol=1e-8, ftol=1e-10, diff_step=1e-5,
-    )  # fmt: skip
+        lambda x: (model_angle(x, motor_inertia) - angle) / COUNT,
+        start,
+        bounds=(lower, upper),
+        method="trf",
+        x_scale=np.maximum(start, 0.05),
+        xtol=1e-8,
+        ftol=1e-10,
+        diff_step=1e-5,
+    )
     return Estimate(found.x, float(np.sqrt(np.mean(found.fun**2))))
 
 
@@ -164,9 +172,12 @@ def speed_sensitivity() -> float:
     values = {"F_c_pan": f.F_c, "F_s_pan": f.F_s, "v_s_pan": f.v_s, "F_v_pan": f.F_v}
     model = pan_model()
     found = ptp_symbolic.sensitivity(
-        model, TIMES, {"tau_pan": ramp(0.0, torque_ramp() * end, 0.0, end)},
-        values | {"J_pan": printed.APPENDIX_C_MOTOR_INERTIA + test.J}, by_parameters=["J_pan"],
-    )  # fmt: skip
+        model,
+        TIMES,
+        {"tau_pan": ramp(0.0, torque_ramp() * end, 0.0, end)},
+        values | {"J_pan": printed.APPENDIX_C_MOTOR_INERTIA + test.J},
+        by_parameters=["J_pan"],
+    )
     rate = model.state_names.index("omega_pan")
     change = np.max(np.abs(found.states[:, rate, 0])) * test.J
     return float(change / found.x[-1, rate])
@@ -195,93 +206,3 @@ def matching_subsets(direction: str) -> list[tuple[int, ...]]:
             if all(gaps):
                 found.append(tuple(k + 1 for k in chosen))
     return found
-
-
-def estimation_items() -> list[Item]:
-    """The fifty numbers of Table 4.2, estimated again."""
-    check = (
-        "the measured series are not printed: angle made by scipy from the printed row, rounded to"
-        " 7200 counts; fit of Appendix C (erratum 15 corrected); "
-    )
-    items = []
-    for direction in DIRECTIONS:
-        rows = zip(printed.TABLE_4_2[direction], estimates(direction), strict=True)
-        for number, (test, estimate) in enumerate(rows, start=1):
-            for name in COLUMNS:
-                value = float(column([test], name)[0])
-                note = "J ends on a bound" if name == "J" else "recovered within 2 %"
-                items.append(
-                    compared(
-                        f"table_4_2.{name}_{direction}_{number}",
-                        f"Table 4.2, test {number}, {name}, omega {SIGNS[direction]} 0",
-                        value, estimate.value(name), UNITS[name], check + note,
-                        FRICTION_TOLERANCE * value if name != "J" else INERTIA_TOLERANCE,
-                        16 if name == "J" else None,
-                    )
-                )  # fmt: skip
-    return items
-
-
-def average_items() -> list[Item]:
-    """The printed averages of Table 4.2 beside the means of its five tests."""
-    both = [t.J for direction in DIRECTIONS for t in printed.TABLE_4_2[direction]]
-    return [
-        compared(
-            "section_4_3.inertia", "Section 4.3, average inertia, both directions",
-            printed.INERTIA, float(np.mean(both)), "kg m^2",
-            "mean of the ten printed values; the bounds 0.049 and 0.051 make it (erratum 16)",
-            5e-4,
-        )
-    ] + [
-        compared(
-            f"table_4_2.{name}_{direction}_mean",
-            f"Table 4.2, average {name}, omega {SIGNS[direction]} 0",
-            float(column([printed.TABLE_4_2_AVERAGE[direction]], name)[0]),
-            float(column(printed.TABLE_4_2[direction], name).mean()), UNITS[name],
-            "mean of the five tests", None, {"positive": 12, "negative": 13}[direction],
-        )
-        for direction in DIRECTIONS
-        for name in COLUMNS
-    ]  # fmt: skip
-
-
-def bound_items() -> list[Item]:
-    """What the bounds of J hide: sensitivity, profile, and J without them."""
-    total = printed.APPENDIX_C_MOTOR_INERTIA + printed.INERTIA
-    free, shifted = inertia_without_bounds()
-    profile = inertia_profile()
-    return [
-        unprinted(
-            "section_4_3.inertia_share", "Share of J in the inertia that moves",
-            printed.INERTIA / total, "1", "J / (Jm + J), Jm = 2.75 kg m^2 at the gear output",
-        ),
-        unprinted(
-            "section_4_3.speed_sensitivity", "Relative change of the speed per relative one of J",
-            speed_sensitivity(), "1",
-            "forward sensitivity through the breakaway, test 1: largest over the run, relative to"
-            " the final speed; a well-determined parameter has about 1",
-        ),
-        unprinted(
-            "section_4_3.angle_between_bounds", "Change of the angle from bound to bound of J",
-            angle_change_between_bounds(), "counts",
-            "sensitivity: largest difference of two simulations, J = 0.049 and 0.051 kg m^2",
-        ),
-        unprinted(
-            "section_4_3.profile_rise", "Rise of the rms residual for J = 0 ... 0.1 kg m^2",
-            float(np.ptp(profile[:, 1])), "counts",
-            "profile: J held, everything else refitted; rounding alone leaves about 0.15 counts",
-        ),
-        unprinted(
-            "section_4_3.inertia_unbounded", "J of test 1 without its bounds", free, "kg m^2",
-            "same fit, J free; 0.0503 kg m^2 made the data",
-        ),
-        unprinted(
-            "section_4_3.inertia_motor_2_percent", "The same with Jm taken 2 % too high", shifted,
-            "kg m^2", "only Jm + J enters the equation, so J absorbs the error of Jm",
-        ),
-    ]  # fmt: skip
-
-
-def items() -> list[Item]:
-    """All items of this file."""
-    return [*estimation_items(), *average_items(), *bound_items()]

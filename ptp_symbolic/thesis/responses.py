@@ -137,17 +137,27 @@ def reported_items() -> list[Item]:
         where = f"section_5_4.{name}_{end:g}_s"
         title = f"Fig. {FIGURES[name]}, {name.replace('_', ' ')} to {end:g} s"
         items.append(
-            Item(f"{where}.measured", f"{title}, relative L2 error", value, None, "1", None, None,
-                 NOT_PRINTED)
-        )  # fmt: skip
+            Item(
+                f"{where}.measured",
+                f"{title}, relative L2 error",
+                value,
+                None,
+                "1",
+                None,
+                None,
+                NOT_PRINTED,
+            )
+        )
         items += [
             unprinted(
-                f"{where}.{variant}", f"{title}, {VARIANT_NAMES[variant]}",
-                variant_error(name, variant, end), "1",
+                f"{where}.{variant}",
+                f"{title}, {VARIANT_NAMES[variant]}",
+                variant_error(name, variant, end),
+                "1",
                 "relative L2 position error of the model against this variant, 1 ms samples",
             )
             for variant in VARIANT_NAMES
-        ]  # fmt: skip
+        ]
     return items
 
 
@@ -157,17 +167,21 @@ def angle_items() -> list[Item]:
         unprinted(
             f"section_5_4.{name}.final_angle",
             f"Fig. {FIGURES[name]}, {name.replace('_', ' ')}, angle at {last_end(name):g} s",
-            float(response(name)["theta_pan"][-1]), "rad", "simulation, thesis-pan-drive",
+            float(response(name)["theta_pan"][-1]),
+            "rad",
+            "simulation, thesis-pan-drive",
         )
         for name in INPUTS
-    ]  # fmt: skip
+    ]
     items.append(
         unprinted(
-            "section_5_4.step_backward.final_angle", "Step of -24 V, angle at 12.5 s",
-            float(step_backward()["theta_pan"][-1]), "rad",
+            "section_5_4.step_backward.final_angle",
+            "Step of -24 V, angle at 12.5 s",
+            float(step_backward()["theta_pan"][-1]),
+            "rad",
             "simulation, thesis-pan-drive, friction of Table 4.1 for omega < 0",
         )
-    )  # fmt: skip
+    )
     static, second = breakaway_of_slow_ramp()
     check = (
         "breakaway torque for which the model misses a model that starts later by 0.2627 to"
@@ -176,11 +190,21 @@ def angle_items() -> list[Item]:
     )
     return [
         *items,
-        unprinted("section_5_4.slow_ramp.breakaway", "Fig. 5.17, breakaway that explains the error",
-                  static, "N m", check),
-        unprinted("section_5_4.slow_ramp.error_then", "Fig. 5.17, error to 10.57 s that follows",
-                  second, "1", check),
-    ]  # fmt: skip
+        unprinted(
+            "section_5_4.slow_ramp.breakaway",
+            "Fig. 5.17, breakaway that explains the error",
+            static,
+            "N m",
+            check,
+        ),
+        unprinted(
+            "section_5_4.slow_ramp.error_then",
+            "Fig. 5.17, error to 10.57 s that follows",
+            second,
+            "1",
+            check,
+        ),
+    ]
 
 
 def steady_speed(values: Mapping[str, float], voltage: float) -> float:

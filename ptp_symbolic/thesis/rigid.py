@@ -59,9 +59,7 @@ def pulses() -> InputSignal:
 def held_tilt(angle_deg: float) -> Torques:
     """Torques for two pulses of pan rate, the tilt axis held at an angle in deg (Fig. 5.6)."""
     times = np.linspace(0.0, PULSE_TIMES[-1], 6_001)
-    motion = {
-        "pan": moving(times, pulses()), "tilt": at_rest(times, float(np.radians(angle_deg)))
-    }  # fmt: skip
+    motion = {"pan": moving(times, pulses()), "tilt": at_rest(times, float(np.radians(angle_deg)))}
     return needed_torques(read_platform("thesis-payload"), times, motion)
 
 
@@ -82,16 +80,22 @@ def ideal_items() -> list[Item]:
         compared(
             f"fig_5_{number}.{axis}_coupling_amplitude",
             f"Fig. 5.{number}, coupling amplitude of the {axis} torque, ideal platform",
-            printed.IDEAL_VARIATION, variation(getattr(torques, axis), TIMES), "N m", check,
+            printed.IDEAL_VARIATION,
+            variation(getattr(torques, axis), TIMES),
+            "N m",
+            check,
         )
         for number, axis in ((1, "pan"), (2, "tilt"))
     ] + [
         unprinted(
-            f"fig_5_3.{axis}_torque_peak", f"Fig. 5.3, largest {axis} torque, ideal platform",
-            float(np.max(np.abs(getattr(torques, axis)))), "N m", "inverse dynamics, Table 5.2",
+            f"fig_5_3.{axis}_torque_peak",
+            f"Fig. 5.3, largest {axis} torque, ideal platform",
+            float(np.max(np.abs(getattr(torques, axis)))),
+            "N m",
+            "inverse dynamics, Table 5.2",
         )
         for axis in JOINTS
-    ]  # fmt: skip
+    ]
 
 
 def payload_items() -> list[Item]:
@@ -113,9 +117,14 @@ def payload_items() -> list[Item]:
                 compared(
                     f"{figure}.{axis}_at_{name}_m",
                     f"Fig. {figure[4:].replace('_', '.')}, {axis} torque, payload at {name} m",
-                    value, computed, "N m", check, ROUGHLY * value, 18,
+                    value,
+                    computed,
+                    "N m",
+                    check,
+                    ROUGHLY * value,
+                    18,
                 )
-            )  # fmt: skip
+            )
     return items
 
 
@@ -137,12 +146,13 @@ def held_items() -> list[Item]:
         unprinted(
             f"fig_5_6.pan_peak_at_{angle:.0f}_deg",
             f"Fig. 5.6, largest pan torque, tilt held at {angle:.0f} deg",
-            float(np.max(np.abs(held_tilt(angle).pan))), "N m",
+            float(np.max(np.abs(held_tilt(angle).pan))),
+            "N m",
             "inverse dynamics, two pulses of 1 rad/s with cubic edges of 0.5 s (chosen here; the"
             " thesis prints neither pulses nor angles), payload at 0.1 m",
         )
         for angle in TILT_ANGLES_DEG
-    ]  # fmt: skip
+    ]
 
 
 def items() -> list[Item]:

@@ -23,8 +23,11 @@ TIMES = np.linspace(0.0, 5.0, 5_001)
 SCREW_SPEED = 1e-9
 # Where the centre of mass lies at tilt angle zero, as unit vector (x, z) of the tilt frame.
 COM_DIRECTIONS = {
-    "above": (0.0, 1.0), "ahead": (1.0, 0.0), "below": (0.0, -1.0), "behind": (-1.0, 0.0)
-}  # fmt: skip
+    "above": (0.0, 1.0),
+    "ahead": (1.0, 0.0),
+    "below": (0.0, -1.0),
+    "behind": (-1.0, 0.0),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,17 +112,29 @@ def simulate_tilt_drive(
         return [x[1], acceleration, (voltage(t) - back) / d.L]
 
     run = solve_ivp(
-        derivative, (0.0, times[-1]), [stroke, 0.0, 0.0], "Radau", times,
-        rtol=1e-8, atol=[1e-12, 1e-12, 1e-10], max_step=0.02,
-    )  # fmt: skip
+        derivative,
+        (0.0, times[-1]),
+        [stroke, 0.0, 0.0],
+        "Radau",
+        times,
+        rtol=1e-8,
+        atol=[1e-12, 1e-12, 1e-10],
+        max_step=0.02,
+    )
     if run.status != 0:
         raise InputError(f"The tilt drive stopped at {run.t[-1]:g} s: {run.message}")
     force = np.array([_acceleration(x, stroke, direction)[1] for x in run.y.T])
     s, v, i = run.y
     return TiltRun(
-        times, np.array([voltage(t) for t in times]), s, v, force, i,
-        -v / (TILT_DRIVE.moment_arm * np.cos(deviation(s))), link_angle(stroke) - link_angle(s),
-    )  # fmt: skip
+        times,
+        np.array([voltage(t) for t in times]),
+        s,
+        v,
+        force,
+        i,
+        -v / (TILT_DRIVE.moment_arm * np.cos(deviation(s))),
+        link_angle(stroke) - link_angle(s),
+    )
 
 
 def _turns(speed: float) -> float:
@@ -201,12 +216,13 @@ def run_items(name: str, stroke: float) -> list[Item]:
     return [
         unprinted(
             f"{figure}.{what}_stroke_{name}_mm",
-            f"Fig. {figure[4:].replace('_', '.')},"
-            f" {what.replace('_', ' ')}, stroke {name} mm",
-            None if value is None else float(value), unit, check,
+            f"Fig. {figure[4:].replace('_', '.')}, {what.replace('_', ' ')}, stroke {name} mm",
+            None if value is None else float(value),
+            unit,
+            check,
         )
         for figure, what, value, unit in rows
-    ]  # fmt: skip
+    ]
 
 
 def items() -> list[Item]:
@@ -223,8 +239,10 @@ def items() -> list[Item]:
             unprinted(
                 f"fig_3_13.deviation_stroke_{name}_mm",
                 f"Fig. 3.13, link from the perpendicular at stroke {name} mm",
-                float(np.degrees(deviation(stroke))), "deg", "law of cosines, Table 5.6",
+                float(np.degrees(deviation(stroke))),
+                "deg",
+                "law of cosines, Table 5.6",
             )
             for name, stroke in STROKES.items()
         ),
-    ]  # fmt: skip
+    ]

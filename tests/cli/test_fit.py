@@ -129,9 +129,12 @@ def test_a_fit_without_an_encoder_is_reported_in_rad(capsys) -> None:
 def test_a_diagnosis_prints_what_the_logs_do_not_settle(capsys) -> None:
     def fitted(value: float, identified: bool, at_bound: bool = False) -> dict[str, object]:
         return {
-            "value": value, "ci95": [0.0, 1.0], "unit": "N m", "identified": identified,
+            "value": value,
+            "ci95": [0.0, 1.0],
+            "unit": "N m",
+            "identified": identified,
             "at_bound": at_bound,
-        }  # fmt: skip
+        }
 
     parameters = {
         "b_pan": fitted(0.1, True),

@@ -95,8 +95,10 @@ def test_sensitivities_carry_units(call, tmp_path: Path) -> None:
     call("sensitivity", "--platform", "ideal", *wanted, "--out", tmp_path)
     heads = list(columns(tmp_path / "sensitivity.csv"))
     assert heads[:3] == [
-        "time [s]", "d theta_pan / d b_pan [rad/(N m s/rad)]", "d theta_pan / d theta_tilt [1]",
-    ]  # fmt: skip
+        "time [s]",
+        "d theta_pan / d b_pan [rad/(N m s/rad)]",
+        "d theta_pan / d theta_tilt [1]",
+    ]
 
 
 def test_inputs_are_written_as_they_are_held(call, tmp_path: Path) -> None:

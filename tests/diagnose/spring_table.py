@@ -96,6 +96,13 @@ def spring_table(folder: Path) -> Iterator[Task]:
     noises = {signal.signal: signal.noise for signal in platform.signals}
     with ThreadPoolExecutor(2) as executor:
         yield task_of(
-            model, train, validate, free, known, effect_keys(platform), noises, executor,
+            model,
+            train,
+            validate,
+            free,
+            known,
+            effect_keys(platform),
+            noises,
+            executor,
             lambda text: None,
-        )  # fmt: skip
+        )

@@ -29,9 +29,20 @@ def task() -> Iterator[Task]:
     fixed = {**KNOWN, **TRUTH}
     with ThreadPoolExecutor(2) as executor:
         yield Task(
-            MODEL, runs, runs, (), (), FREE, fixed, (), executor, lambda text: None,
-            (None,), frozenset(), FLOOR * COUNT,
-        )  # fmt: skip
+            MODEL,
+            runs,
+            runs,
+            (),
+            (),
+            FREE,
+            fixed,
+            (),
+            executor,
+            lambda text: None,
+            (None,),
+            frozenset(),
+            FLOOR * COUNT,
+        )
 
 
 @pytest.mark.parametrize(

@@ -21,8 +21,12 @@ PLATFORM = Platform("play", "Pan axis with play", ("pan",), 9.81, EFFECTS, (), (
 # Table 5.7; the torque constant is next to nothing, so that rotor and load move freely.
 GAP, K, J_GEAR, J_LOAD = math.radians(1.49), 5000.0, 1.1e-5 * 500.0**2, 0.05
 FREE = {
-    "J_pan": J_LOAD, "K_t_pan": 1e-9, "k_shaft_pan": K, "d_shaft_pan": 0.0, "gap_pan": GAP,
-}  # fmt: skip
+    "J_pan": J_LOAD,
+    "K_t_pan": 1e-9,
+    "k_shaft_pan": K,
+    "d_shaft_pan": 0.0,
+    "gap_pan": GAP,
+}
 FACES = {1.0: "upper", -1.0: "lower"}
 
 

@@ -2,21 +2,18 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from ptp_symbolic import sensitivity, simulate
-from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.events.impacts import RESTING_SPEED
 from ptp_symbolic.numeric.simulation.run import Trajectory
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine
-from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
-from ptp_symbolic.platform.writer import platform_text
+from ptp_symbolic.platform import EffectDeclaration, Platform
 from tests.independent.rigid_platform import accelerations, mass_matrix
 
 METHODS = ("rosenbrock", "runge_kutta")
@@ -32,10 +29,17 @@ DRY = UNDAMPED | {"F_c_pan": 0.05, "F_s_pan": 0.08, "F_v_pan": 0.01, "v_s_pan": 
 PUSHED = {**BODIES, "K_t_pan": 1e-3, "R_pan": 10.0}
 VOLTAGE = {"u_pan": multisine([6.0, 3.0], [0.7, 1.9])}
 PAYLOAD = {
-    "J_x_tilt": 0.02, "J_y_tilt": 0.03, "J_z_tilt": 0.025, "m_payload": 1.0,
-    "J_x_payload": 0.004, "J_y_payload": 0.005, "J_z_payload": 0.006,
-    "c_x_payload": 0.12, "c_y_payload": 0.09, "c_z_payload": 0.05,
-}  # fmt: skip
+    "J_x_tilt": 0.02,
+    "J_y_tilt": 0.03,
+    "J_z_tilt": 0.025,
+    "m_payload": 1.0,
+    "J_x_payload": 0.004,
+    "J_y_payload": 0.005,
+    "J_z_payload": 0.006,
+    "c_x_payload": 0.12,
+    "c_y_payload": 0.09,
+    "c_z_payload": 0.05,
+}
 
 
 def platform(kind: str | None, *more: str, site: str | None = None) -> Platform:
@@ -95,9 +99,13 @@ def test_bounces_end_at_the_limit_of_their_sum(bouncing: Model, e: float, method
     pull = torque / GEAR
     limit = math.sqrt(GAP / pull) * (1.0 + e) / (1.0 - e)
     found = simulate(
-        bouncing, 1.0, {"u_pan": constant(500.0)}, {**PUSHED, "e_gap_pan": e}, {"i_pan": 50.0},
+        bouncing,
+        1.0,
+        {"u_pan": constant(500.0)},
+        {**PUSHED, "e_gap_pan": e},
+        {"i_pan": 50.0},
         method=method,
-    )  # fmt: skip
+    )
     (rest,) = [event.time for event in found.events if "touches" in event.mode]
     assert rest == pytest.approx(limit, abs=2.0 * RESTING_SPEED / pull / (1.0 - e) + 2e-8)
     assert found.events[-1].time == rest
@@ -130,9 +138,14 @@ def test_a_coupled_platform_bounces_as_in_a_piecewise_integration() -> None:
     parameters = {**FREE, **PAYLOAD, "e_gap_pan": 0.9}
     end, x = 0.6, np.array([0.0, 0.5, -0.2, -0.4, 0.0, 0.6])
     found = simulate(
-        model, [0.0, end], None, parameters,
-        dict(zip(model.state_names[:6], x, strict=True)), rtol=1e-10, atol=1e-12,
-    )  # fmt: skip
+        model,
+        [0.0, end],
+        None,
+        parameters,
+        dict(zip(model.state_names[:6], x, strict=True)),
+        rtol=1e-10,
+        atol=1e-12,
+    )
 
     def slope(_: float, x: np.ndarray) -> np.ndarray:
         swing = accelerations(x[:2], x[2:4], np.zeros(2), parameters)
@@ -254,46 +267,16 @@ def test_tangents_through_strikes(kind: str) -> None:
         h = 1e-4 * parameters[name]
         above, below = (
             simulate(
-                model, [0.0, end], VOLTAGE, {**parameters, name: parameters[name] + s * h},
-                rtol=1e-12, atol=1e-13, method="runge_kutta",
+                model,
+                [0.0, end],
+                VOLTAGE,
+                {**parameters, name: parameters[name] + s * h},
+                rtol=1e-12,
+                atol=1e-13,
+                method="runge_kutta",
             ).x[-1, :4]
             for s in (1.0, -1.0)
-        )  # fmt: skip
+        )
         difference = (above - below) / (2.0 * h)
         size = np.abs(difference).max()
         assert found.states[-1, :4, index] == pytest.approx(difference, abs=2e-6 * size)
-
-
-def test_the_kind_is_read_and_written(tmp_path: Path) -> None:
-    given = platform("hysteresis_friction")
-    path = tmp_path / "platform.toml"
-    path.write_text(platform_text(given))
-    assert 'kind = "hysteresis_friction"' in path.read_text()
-    assert read_platform(path) == given
-    usual = emission.emit(platform(None, "shaft_compliance"))
-    assert emission.emit(platform("dead_zone", "shaft_compliance")).module is usual.module
-
-
-def test_what_does_not_go_together_is_refused(bouncing: Model) -> None:
-    choices = "dead_zone, elastic_impact, hysteresis_friction, hysteresis_inertia"
-    refused = [
-        (platform("plastic"), rf"'backlash' has no kind 'plastic'\. Choose one of: {choices}\."),
-        (platform("elastic_impact", "shaft_compliance"), "beside a shaft; remove shaft_compliance"),
-        (platform("elastic_impact", "csvs_friction", "load_dependent_friction"), "torque that it"),
-    ]
-    bare = platform("elastic_impact")
-    without_motor = tuple(e for e in bare.effects if e.effect != "dc_motor")
-    refused += [(replace(bare, effects=without_motor), "gear output without inertia; declare")]
-    motor = replace(bare.effects[1], kind="elastic_impact")
-    refused += [(replace(bare, effects=(motor,)), "'dc_motor' has no kinds; remove kind")]
-    for wrong, message in refused:
-        with pytest.raises(InputError, match=message):
-            emission.emit(wrong)
-    for method in (*METHODS, "fixed_step"):
-        with pytest.raises(InputError, match=r"starts 0\.02 rad ahead of the joint, beyond a"):
-            simulate(
-                bouncing, 1.0, parameters=FREE, initial={"theta_gear_pan": 0.02}, method=method
-            )
-    held = emission.emit(platform("hysteresis_friction"))
-    with pytest.raises(InputError, match="in the gap, where friction holds the joint"):
-        simulate(held, 1.0, parameters=FREE, initial={"omega_pan": 0.02})

@@ -50,9 +50,14 @@ def test_hanging_payload_swings_like_a_driven_pendulum() -> None:
     swing = MASS * ARM * push / total / (own**2 - driven**2)
     shake = SHAKE | {"a_base": push, "psi_base": 0.0}
     found = simulate(
-        emission.emit(platform("tilt")), np.linspace(0.0, 3.0, 31), None, body | shake,
-        {"theta_tilt": np.pi / 2}, rtol=1e-11, atol=1e-14,
-    )  # fmt: skip
+        emission.emit(platform("tilt")),
+        np.linspace(0.0, 3.0, 31),
+        None,
+        body | shake,
+        {"theta_tilt": np.pi / 2},
+        rtol=1e-11,
+        atol=1e-14,
+    )
     steady = swing * np.sin(driven * found.t + 0.4)
     free = np.sin(0.4) * np.cos(own * found.t)
     free += driven * np.cos(0.4) * np.sin(own * found.t) / own

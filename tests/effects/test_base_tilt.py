@@ -46,9 +46,12 @@ def test_pan_axis_swings_about_the_azimuth_like_a_pendulum() -> None:
     slow = np.sqrt(mass * 9.81 * arm * np.sin(beta) / (inertia + mass * arm**2))
     half_period = 2.0 * ellipk(np.sin(amplitude / 2) ** 2) / slow
     found = simulate(
-        emission.emit(platform("pan")), [0.0, half_period],
+        emission.emit(platform("pan")),
+        [0.0, half_period],
         initial={"theta_pan": alpha - amplitude},
-        parameters={"beta_base": beta, "alpha_base": alpha}, rtol=1e-11, atol=1e-12,
-    )  # fmt: skip
+        parameters={"beta_base": beta, "alpha_base": alpha},
+        rtol=1e-11,
+        atol=1e-12,
+    )
     assert found["theta_pan"][-1] == pytest.approx(alpha + amplitude, abs=1e-8)
     assert found["omega_pan"][-1] == pytest.approx(0.0, abs=1e-7)

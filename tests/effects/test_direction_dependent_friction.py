@@ -49,9 +49,13 @@ def test_breakaway_differs_by_direction(model: Model, sign: float, static: float
 def test_braking_distance_differs_by_direction(model: Model) -> None:
     """Coulomb friction of 0.3 (1 +- 0.2) N m: J w^2 / (2 F)."""
     dry = {
-        "J_pan": 0.05, "F_c_pan": 0.3, "F_s_pan": 0.3, "F_v_pan": 0.0, "a_F_c_pan": 0.2,
+        "J_pan": 0.05,
+        "F_c_pan": 0.3,
+        "F_s_pan": 0.3,
+        "F_v_pan": 0.0,
+        "a_F_c_pan": 0.2,
         "a_F_s_pan": 0.2,
-    }  # fmt: skip
+    }
     for rate, torque in ((1.0, 0.36), (-1.0, 0.24)):
         found = simulate(model, 0.3, parameters=dry, initial={"omega_pan": rate})
         assert found["theta_pan"][-1] == pytest.approx(rate * 0.05 / (2 * torque), rel=1e-8)

@@ -13,18 +13,29 @@ EFFECTS = (
     *(
         EffectDeclaration(e, "pan", None)
         for e in (
-            "viscous_friction", "dc_motor", "shaft_compliance", "backlash", "gear_eccentricity"
+            "viscous_friction",
+            "dc_motor",
+            "shaft_compliance",
+            "backlash",
+            "gear_eccentricity",
         )
     ),
-)  # fmt: skip
+)
 PLATFORM = Platform("wheel", "Pan axis with a gear out of true", ("pan",), 9.81, EFFECTS, (), ())
 # The torque constant is next to nothing, so that rotor and load move freely.
 J_GEAR, J_LOAD, K, GAP = 2.75, 0.05, 5000.0, 0.02
 SIN, COS = 0.008, -0.006
 WHEEL = {
-    "J_pan": J_LOAD, "b_pan": 0.0, "K_t_pan": 1e-9, "J_motor_pan": J_GEAR / 500.0**2,
-    "k_shaft_pan": K, "d_shaft_pan": 0.0, "gap_pan": GAP, "g_sin_pan": SIN, "g_cos_pan": COS,
-}  # fmt: skip
+    "J_pan": J_LOAD,
+    "b_pan": 0.0,
+    "K_t_pan": 1e-9,
+    "J_motor_pan": J_GEAR / 500.0**2,
+    "k_shaft_pan": K,
+    "d_shaft_pan": 0.0,
+    "gap_pan": GAP,
+    "g_sin_pan": SIN,
+    "g_cos_pan": COS,
+}
 
 
 def error(angle: float | np.ndarray) -> float | np.ndarray:
@@ -45,8 +56,10 @@ def test_a_flywheel_drags_the_joint_through_the_error_of_every_turn(
     heavy = WHEEL | {"J_motor_pan": 100.0, "b_pan": damping, "d_shaft_pan": 1.0}
     behind = sign * GAP / 2 + damping * rate / K
     start = {
-        "omega_gear_pan": rate, "omega_pan": rate * (1 + SIN), "theta_pan": COS - behind,
-    }  # fmt: skip
+        "omega_gear_pan": rate,
+        "omega_pan": rate * (1 + SIN),
+        "theta_pan": COS - behind,
+    }
     found = simulate(model, np.linspace(0.0, 16.0, 161), None, heavy, start)
     gear = found["theta_gear_pan"]
     assert gear == pytest.approx(rate * found.t, abs=1e-5)

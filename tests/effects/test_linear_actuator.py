@@ -111,9 +111,12 @@ def trajectory(model: Model, drive: TiltDrive, factor: float) -> tuple[np.ndarra
     times = np.linspace(0.0, 4.0, 81)
     volts = factor * np.array(VOLTS)
     changed = {
-        "c_x_payload": drive.c_x, "c_z_payload": drive.c_z, "f_screw_tilt": drive.f_screw,
-        "b_tilt": drive.b_joint, "s_start_tilt": drive.s_start,
-    }  # fmt: skip
+        "c_x_payload": drive.c_x,
+        "c_z_payload": drive.c_z,
+        "f_screw_tilt": drive.f_screw,
+        "b_tilt": drive.b_joint,
+        "s_start_tilt": drive.s_start,
+    }
     found = ptp_symbolic.simulate(
         model, times, {"u_tilt": table(CORNERS, volts, "linear")}, changed, rtol=1e-10, atol=1e-12
     )
@@ -189,9 +192,10 @@ def test_force_and_screw_torque_obey_eq_3_12_on_the_coupled_machine() -> None:
         at = {name: x[i] for i, name in enumerate(names)}
         x[names.index("theta_gear_pan")] = at["theta_pan"]  # in the gap: no shaft torque
         a = model.rhs(0.0, x, u, model.parameter_vector(values))
-        q, w = np.array([at["theta_pan"], at["theta_tilt"]]), np.array(
-            [at["omega_pan"], at["omega_tilt"]]
-        )  # fmt: skip
+        q, w = (
+            np.array([at["theta_pan"], at["theta_tilt"]]),
+            np.array([at["omega_pan"], at["omega_tilt"]]),
+        )
         acceleration = a[[names.index("omega_pan"), names.index("omega_tilt")]]
         free = rigid_platform.accelerations(q, w, np.zeros(2), values)
         pan, tilt = rigid_platform.mass_matrix(q, values) @ (acceleration - free)

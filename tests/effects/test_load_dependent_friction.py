@@ -15,19 +15,28 @@ BODY = EffectDeclaration("rigid_bodies", None, None)
 GEARED = tuple(
     EffectDeclaration(e, "pan", "gear" if e == "csvs_friction" else None)
     for e in (
-        "dc_motor", "shaft_compliance", "csvs_friction", "load_dependent_friction",
+        "dc_motor",
+        "shaft_compliance",
+        "csvs_friction",
+        "load_dependent_friction",
         "constant_torque",
     )
-)  # fmt: skip
+)
 RIGID = tuple(
     EffectDeclaration(e, "pan", None) for e in ("csvs_friction", "load_dependent_friction")
 )
 R, L, GAIN, SHAFT = 12.9, 6.9e-3, 0.0724 * 500.0, 5000.0
 DRY, MU, LOAD = 0.6, 0.08, 9.0
 GEAR = {
-    "J_pan": 0.05, "F_c_pan": DRY, "F_s_pan": DRY, "F_v_pan": 0.0, "mu_load_pan": MU,
-    "tau0_pan": -LOAD, "k_shaft_pan": SHAFT, "d_shaft_pan": 5.0,
-}  # fmt: skip
+    "J_pan": 0.05,
+    "F_c_pan": DRY,
+    "F_s_pan": DRY,
+    "F_v_pan": 0.0,
+    "mu_load_pan": MU,
+    "tau0_pan": -LOAD,
+    "k_shaft_pan": SHAFT,
+    "d_shaft_pan": 5.0,
+}
 SAGGED = {"theta_pan": -LOAD / SHAFT}
 
 

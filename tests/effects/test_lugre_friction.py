@@ -18,9 +18,14 @@ EFFECTS = (
 PLATFORM = Platform("bristles", "Pan axis on bristles", ("pan",), 9.81, EFFECTS, (), ())
 J, F_C, F_S, V_S, S0, S1, S2 = 0.05, 0.24, 0.65, 0.016, 1000.0, 1.0, 0.7
 BRISTLES = {
-    "J_pan": J, "F_c_pan": F_C, "F_s_pan": F_S, "v_s_pan": V_S, "sigma0_pan": S0,
-    "sigma1_pan": S1, "sigma2_pan": S2,
-}  # fmt: skip
+    "J_pan": J,
+    "F_c_pan": F_C,
+    "F_s_pan": F_S,
+    "v_s_pan": V_S,
+    "sigma0_pan": S0,
+    "sigma1_pan": S1,
+    "sigma2_pan": S2,
+}
 
 
 def curve(rate: float) -> float:

@@ -38,9 +38,7 @@ def test_shift_grows_the_inertia_after_steiner() -> None:
 def test_payload_hangs_below_the_axis(model: Model) -> None:
     """With the centre of mass at x = 0.1, z = 0.04 it points down at tilt atan2(x, -z)."""
     rest = math.atan2(ARM, -0.04)
-    found = simulate(
-        model, 1.0, parameters={"dc_z_payload": 0.04}, initial={"theta_tilt": rest}
-    )  # fmt: skip
+    found = simulate(model, 1.0, parameters={"dc_z_payload": 0.04}, initial={"theta_tilt": rest})
     assert np.ptp(found["theta_tilt"]) < 1e-12
     away = simulate(model, 0.1, parameters={"dc_z_payload": 0.04}, initial={"theta_tilt": 1.5})
     assert away["theta_tilt"][-1] > 1.5

@@ -120,9 +120,13 @@ def test_counts_and_coarse_steps_are_kept_exactly(counted: Model) -> None:
     controller = Controller(300.0, 900.0, 4.0, 1e-3, steps=128.0, count=COUNT)
     truth = exact(controller, 0.3, 300)
     found = simulate(
-        counted, np.arange(301) * 1e-3, {"setpoint_pan": step(0.3, 0.3, 1.0)},
-        {**GAINS, "J_pan": J, "t_sample_pan": 1e-3, "q_count_pan": COUNT}, rtol=1e-12, atol=1e-12,
-    )  # fmt: skip
+        counted,
+        np.arange(301) * 1e-3,
+        {"setpoint_pan": step(0.3, 0.3, 1.0)},
+        {**GAINS, "J_pan": J, "t_sample_pan": 1e-3, "q_count_pan": COUNT},
+        rtol=1e-12,
+        atol=1e-12,
+    )
     assert found["theta_pan"] == pytest.approx(truth[:, 0], abs=1e-9)
     assert found["command_pan"][:-1] == pytest.approx(controller.commands, abs=1e-12)
 
@@ -132,9 +136,13 @@ def test_fixed_steps_agree_in_second_order(model: Model) -> None:
     values, errors = {**GAINS, **FINE, "t_sample_pan": 1e-3}, []
     for h in (1e-4, 5e-5):
         found = simulate(
-            model, np.arange(201) * 1e-3, {"setpoint_pan": step(0.02, 0.02, 1.0)}, values,
-            method="fixed_step", step=h,
-        )  # fmt: skip
+            model,
+            np.arange(201) * 1e-3,
+            {"setpoint_pan": step(0.02, 0.02, 1.0)},
+            values,
+            method="fixed_step",
+            step=h,
+        )
         errors.append(np.max(np.abs(found["theta_pan"] - truth[:, 0])))
     assert errors[1] < 1e-5
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.15)

@@ -19,8 +19,13 @@ EFFECTS = (
 PLATFORM = Platform("uneven", "Pan axis with uneven friction", ("pan",), 9.81, EFFECTS, (), ())
 J, DRY, SIN, COS = 0.05, 0.3, 0.12, -0.08
 UNEVEN = {
-    "J_pan": J, "F_c_pan": DRY, "F_s_pan": DRY, "F_v_pan": 0.0, "F_sin_pan": SIN, "F_cos_pan": COS,
-}  # fmt: skip
+    "J_pan": J,
+    "F_c_pan": DRY,
+    "F_s_pan": DRY,
+    "F_v_pan": 0.0,
+    "F_sin_pan": SIN,
+    "F_cos_pan": COS,
+}
 
 
 def friction(angle: float | np.ndarray) -> float | np.ndarray:

@@ -19,9 +19,14 @@ TENSOR = np.array([[0.03, 0.004, -0.006], [0.004, 0.05, 0.007], [-0.006, 0.007, 
 BODY = {"J_pan": J_PAN} | {
     f"J_{name}_tilt": TENSOR[i, j]
     for name, i, j in (
-        ("x", 0, 0), ("y", 1, 1), ("z", 2, 2), ("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)
+        ("x", 0, 0),
+        ("y", 1, 1),
+        ("z", 2, 2),
+        ("xy", 0, 1),
+        ("xz", 0, 2),
+        ("yz", 1, 2),
     )
-}  # fmt: skip
+}
 
 
 @pytest.fixture(scope="module")

@@ -51,9 +51,14 @@ def test_ripple_of_a_locked_motor_is_that_of_the_closed_form(
         duty = (volts - low) / (U - low)
         instants = [0.0, first / F, (first + duty) / F, (first + 1) / F]
         found = simulate(
-            model, instants, {"u_pan": constant(volts)}, LOCKED, rtol=1e-11, atol=1e-12,
+            model,
+            instants,
+            {"u_pan": constant(volts)},
+            LOCKED,
+            rtol=1e-11,
+            atol=1e-12,
             method=method,
-        )  # fmt: skip
+        )
         lowest, highest = ripple(duty, low)
         assert found["i_pan"][1:] == pytest.approx([lowest, highest, lowest], abs=1e-9)
         assert found["omega_pan"][-1] == 0.0
@@ -77,10 +82,13 @@ def test_edges_come_when_the_duty_says() -> None:
 @pytest.mark.parametrize(
     ("kind", "volts", "shown"),
     [
-        ("switching", 0.0, 0.0), ("switching", 24.0, 24.0), ("switching", -30.0, -24.0),
-        ("bipolar", -24.0, -24.0), ("bipolar", 30.0, 24.0),
+        ("switching", 0.0, 0.0),
+        ("switching", 24.0, 24.0),
+        ("switching", -30.0, -24.0),
+        ("bipolar", -24.0, -24.0),
+        ("bipolar", 30.0, 24.0),
     ],
-)  # fmt: skip
+)
 def test_without_a_pulse_there_is_no_edge(kind: str, volts: float, shown: float) -> None:
     found = simulate(driven(kind), np.arange(0.0, 2e-3, 7e-6), {"u_pan": constant(volts)})
     assert np.all(found["bridge_pan"] == shown)
@@ -103,14 +111,22 @@ def test_a_turning_motor_follows_the_exact_pulses(kind: str) -> None:
             x = (expm(a * share / F) @ np.append(x, voltage))[:3]
         seen.append(x)
     found = simulate(
-        driven(kind), np.arange(51) / F, {"u_pan": table(times, volts)}, {"J_pan": J},
-        rtol=1e-12, atol=1e-12,
-    )  # fmt: skip
+        driven(kind),
+        np.arange(51) / F,
+        {"u_pan": table(times, volts)},
+        {"J_pan": J},
+        rtol=1e-12,
+        atol=1e-12,
+    )
     assert found.x[:, :3] == pytest.approx(np.array(seen), abs=1e-9)
     coarse = simulate(
-        driven(kind), np.arange(51) / F, {"u_pan": table(times, volts)}, {"J_pan": J},
-        method="fixed_step", step=2e-6,
-    )  # fmt: skip
+        driven(kind),
+        np.arange(51) / F,
+        {"u_pan": table(times, volts)},
+        {"J_pan": J},
+        method="fixed_step",
+        step=2e-6,
+    )
     assert coarse.x[:, :3] == pytest.approx(np.array(seen), abs=2e-6)
 
 

@@ -19,9 +19,13 @@ EFFECTS = (
 PLATFORM = Platform("dwell", "Pan axis that settles", ("pan",), 9.81, EFFECTS, (), ())
 J, F_C, F_S, GROWTH, SETTLING = 0.05, 0.3, 0.5, 0.25, 0.4
 SETTLES = {
-    "J_pan": J, "F_c_pan": F_C, "F_s_pan": F_S, "F_v_pan": 0.0, "a_rest_pan": GROWTH,
+    "J_pan": J,
+    "F_c_pan": F_C,
+    "F_s_pan": F_S,
+    "F_v_pan": 0.0,
+    "a_rest_pan": GROWTH,
     "t_rest_pan": SETTLING,
-}  # fmt: skip
+}
 
 
 def breakaway(rest: float) -> float:

@@ -56,9 +56,13 @@ def test_damped_swing(model: Model) -> None:
     decay = damping / (2 * reduced)
     frequency = np.sqrt(K / reduced - decay**2)
     found = simulate(
-        model, 0.1, parameters=FREE | {"d_shaft_pan": damping}, initial=START, rtol=1e-11,
+        model,
+        0.1,
+        parameters=FREE | {"d_shaft_pan": damping},
+        initial=START,
+        rtol=1e-11,
         atol=1e-13,
-    )  # fmt: skip
+    )
     wave = np.cos(frequency * found.t) + decay / frequency * np.sin(frequency * found.t)
     twist = found["theta_gear_pan"] - found["theta_pan"]
     assert twist == pytest.approx(TWIST * np.exp(-decay * found.t) * wave, abs=1e-7 * TWIST)

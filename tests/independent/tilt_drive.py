@@ -168,9 +168,16 @@ def simulate(
             x[SPEED] = 0.0
         inside = times[(times > t) & (times <= ends[0])]
         step = solve_ivp(
-            derivative, (t, ends[0]), x, "LSODA", np.unique([*inside, ends[0]]), events=over,
-            rtol=1e-11, atol=1e-13, max_step=0.01,
-        )  # fmt: skip
+            derivative,
+            (t, ends[0]),
+            x,
+            "LSODA",
+            np.unique([*inside, ends[0]]),
+            events=over,
+            rtol=1e-11,
+            atol=1e-13,
+            max_step=0.01,
+        )
         done = len(inside) if step.status == 0 else len(step.t)
         found += list(np.reshape(step.y, (3, -1)).T[:done])
         if step.status == 1:

@@ -69,8 +69,11 @@ def test_erratum_18_amplitudes_of_table_5_4(offset: float, pan: float, tilt: flo
 def test_drives_are_left_out_and_friction_opposes_the_motion() -> None:
     platform = read_platform("thesis-pan-drive")
     assert [e.effect for e in variants.torque_driven(platform).effects] == [
-        "rigid_bodies", "viscous_friction", "csvs_friction", "direction_dependent_friction",
-    ]  # fmt: skip
+        "rigid_bodies",
+        "viscous_friction",
+        "csvs_friction",
+        "direction_dependent_friction",
+    ]
     motion = ([[0.0]] * 4, [[0.5], [-0.5], [0.0], [0.0]], [[0.0], [0.0], [1.0], [0.0]])
     forward, backward, starting, resting = ptp_symbolic.inverse_dynamics(platform, motion)[:, 0]
     assert forward == pytest.approx(0.2267 + 13.5844 * 0.5 + 2.0 * 0.5)
@@ -103,9 +106,14 @@ def test_a_free_tilt_axis_on_a_driven_pan_axis() -> None:
     values = {**model.defaults, "c_y_payload": 0.04}
     times, start = np.linspace(0.0, 3.0, 1501), np.array([0.0, 0.4, 1.0, 0.0])
     found = ptp_symbolic.simulate(
-        model, times, {"alpha_pan": multisine([6.0], [0.5])}, {"c_y_payload": 0.04},
-        dict(zip(model.state_names, start, strict=True)), rtol=1e-10, atol=1e-12,
-    )  # fmt: skip
+        model,
+        times,
+        {"alpha_pan": multisine([6.0], [0.5])},
+        {"c_y_payload": 0.04},
+        dict(zip(model.state_names, start, strict=True)),
+        rtol=1e-10,
+        atol=1e-12,
+    )
 
     def derivative(t: float, x: np.ndarray) -> list[float]:
         pan = 6.0 * np.sin(np.pi * t)
@@ -115,9 +123,14 @@ def test_a_free_tilt_axis_on_a_driven_pan_axis() -> None:
 
     truth = solve_ivp(derivative, (0.0, 3.0), start, "DOP853", times[::250], rtol=1e-11, atol=1e-12)
     assert found.x[::250] == pytest.approx(truth.y.T, abs=1e-8)
-    alpha = np.array([model.rhs(t, x, np.array([6.0 * np.sin(np.pi * t), 0.0]),
-                                model.parameter_vector(values))[2:]
-                      for t, x in zip(times, found.x, strict=True)])  # fmt: skip
+    alpha = np.array(
+        [
+            model.rhs(
+                t, x, np.array([6.0 * np.sin(np.pi * t), 0.0]), model.parameter_vector(values)
+            )[2:]
+            for t, x in zip(times, found.x, strict=True)
+        ]
+    )
     torque = ptp_symbolic.inverse_dynamics(
         "payload", (found.x[:, :2], found.x[:, 2:], alpha), {"c_y_payload": 0.04}
     )
@@ -133,9 +146,14 @@ def test_a_locked_pan_axis_leaves_a_pendulum() -> None:
     model = emission.emit(driven("thesis-payload", "pan"))
     values = {**model.defaults, "b_tilt": 0.0}
     found = ptp_symbolic.simulate(
-        model, 5.0, None, {"b_tilt": 0.0}, {"theta_tilt": np.pi / 2 + 1e-3, "theta_pan": 0.7},
-        rtol=1e-10, atol=1e-13,
-    )  # fmt: skip
+        model,
+        5.0,
+        None,
+        {"b_tilt": 0.0},
+        {"theta_tilt": np.pi / 2 + 1e-3, "theta_pan": 0.7},
+        rtol=1e-10,
+        atol=1e-13,
+    )
     inertia = values["J_y_tilt"] + values["J_y_payload"] + values["m_payload"] * 0.01
     swing = np.sqrt(values["m_payload"] * 9.81 * 0.1 / inertia)
     assert found["theta_tilt"] - np.pi / 2 == pytest.approx(

@@ -49,6 +49,11 @@ def test_no_check_is_silenced_without_naming_it(pattern: re.Pattern[str], checko
     assert [name for name, text in texts(checkout, ".py") if pattern.search(text)] == []
 
 
+def test_the_formatter_has_the_last_word(checkout: Path) -> None:
+    silenced = re.compile(r"#\s*" + "fmt:")
+    assert [name for name, text in texts(checkout, ".py") if silenced.search(text)] == []
+
+
 def test_generated_modules_silence_no_check_at_all(checkout: Path) -> None:
     silenced = re.compile(r"#\s*(noqa|type:\s*ignore|fmt:|ruff:)")
     modules = [(name, text) for name, text in texts(checkout, ".py") if name[:10] == "generated/"]

@@ -69,11 +69,36 @@ def test_the_short_table_agrees_with_pint(text: str) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "", " ", "V A/", "/s", "(", ")", "m)", "NM", "furlongs per", "import os", "2 m", "m^x",
-        "m^0.5", "9^9", "9**9**9**9", "m^9^9", "((((m^9)^9)^9)^9)^9", "m" * 61, "a" * 59 + "!",
-        "__import__('os')", "m;s", "Ym^9 Em^9", "inf", "nan", "1e3 m", "m'", "\\", "x" * 10**6,
+        "",
+        " ",
+        "V A/",
+        "/s",
+        "(",
+        ")",
+        "m)",
+        "NM",
+        "furlongs per",
+        "import os",
+        "2 m",
+        "m^x",
+        "m^0.5",
+        "9^9",
+        "9**9**9**9",
+        "m^9^9",
+        "((((m^9)^9)^9)^9)^9",
+        "m" * 61,
+        "a" * 59 + "!",
+        "__import__('os')",
+        "m;s",
+        "Ym^9 Em^9",
+        "inf",
+        "nan",
+        "1e3 m",
+        "m'",
+        "\\",
+        "x" * 10**6,
     ],
-)  # fmt: skip
+)
 def test_what_is_no_unit_is_refused_at_once(text: str) -> None:
     to_si("mm")  # pint is imported
     start = time.perf_counter()

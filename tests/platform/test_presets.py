@@ -17,8 +17,14 @@ def values(platform: Platform) -> dict[str, float]:
 def test_the_presets_are_named_after_their_files() -> None:
     named = [name.removeprefix("thesis-").replace("-", "_") for name in preset_names()]
     assert named == [
-        "full", "ideal", "pan_drive", "pan_servo", "payload", "tilt_drive", "tilt_drive_stroke_48",
-    ]  # fmt: skip
+        "full",
+        "ideal",
+        "pan_drive",
+        "pan_servo",
+        "payload",
+        "tilt_drive",
+        "tilt_drive_stroke_48",
+    ]
     assert [read_platform(preset).name for preset in preset_names()] == named
 
 
@@ -66,12 +72,24 @@ def test_the_pan_drive_is_table_5_7() -> None:
 
 def test_the_tilt_drive_is_tables_5_5_and_5_6_with_either_initial_stroke() -> None:
     table = {
-        "L_tilt": 9.35e-3, "R_tilt": 17.0, "K_t_tilt": 0.044, "J_motor_tilt": 1.62e-6,
-        "b_motor_tilt": 1.1696e-4, "N_tilt": 93.0, "lead_tilt": 4e-3, "d_screw_tilt": 8e-3,
-        "f_screw_tilt": 0.15, "l_ground_tilt": 0.19755, "l_min_tilt": 0.139,
-        "r_arm_tilt": 0.0634133, "m_payload": 6.3785, "c_z_payload": 0.0876228, "b_tilt": 10.0,
-        "J_y_payload": 1.36e-2, "s_start_tilt": 0.0405022,
-    }  # fmt: skip
+        "L_tilt": 9.35e-3,
+        "R_tilt": 17.0,
+        "K_t_tilt": 0.044,
+        "J_motor_tilt": 1.62e-6,
+        "b_motor_tilt": 1.1696e-4,
+        "N_tilt": 93.0,
+        "lead_tilt": 4e-3,
+        "d_screw_tilt": 8e-3,
+        "f_screw_tilt": 0.15,
+        "l_ground_tilt": 0.19755,
+        "l_min_tilt": 0.139,
+        "r_arm_tilt": 0.0634133,
+        "m_payload": 6.3785,
+        "c_z_payload": 0.0876228,
+        "b_tilt": 10.0,
+        "J_y_payload": 1.36e-2,
+        "s_start_tilt": 0.0405022,
+    }
     for name in table:
         drive = values(read_platform("thesis-tilt-drive"))
         assert drive[name] == pytest.approx(table[name], rel=1e-12)
@@ -108,12 +126,17 @@ def test_the_field_logs_start_from_the_friction_tables() -> None:
     assert [pwm[name] for name in friction] == [known[name] for name in friction]
     # Table 4.2: J, Fs, Fc, vs, Fv; five tests with omega > 0, five with omega < 0.
     tests = [
-        (0.0503, 7.203, 5.936, 0.0427, 5.304), (0.0504, 7.511, 5.699, 0.0363, 6.523),
-        (0.05, 8.1, 6.029, 0.0492, 5.483), (0.05, 7.81, 5.89, 0.0457, 5.5),
-        (0.0506, 6.6, 5.549, 0.0138, 5.374), (0.0495, 6.504, 5.354, 0.0972, 7.601),
-        (0.0497, 8.0, 5.001, 0.0926, 6.95), (0.0498, 7.702, 4.991, 0.1096, 5.835),
-        (0.0499, 7.298, 5.372, 0.1109, 6.446), (0.0501, 7.771, 5.791, 0.066, 5.334),
-    ]  # fmt: skip
+        (0.0503, 7.203, 5.936, 0.0427, 5.304),
+        (0.0504, 7.511, 5.699, 0.0363, 6.523),
+        (0.05, 8.1, 6.029, 0.0492, 5.483),
+        (0.05, 7.81, 5.89, 0.0457, 5.5),
+        (0.0506, 6.6, 5.549, 0.0138, 5.374),
+        (0.0495, 6.504, 5.354, 0.0972, 7.601),
+        (0.0497, 8.0, 5.001, 0.0926, 6.95),
+        (0.0498, 7.702, 4.991, 0.1096, 5.835),
+        (0.0499, 7.298, 5.372, 0.1109, 6.446),
+        (0.0501, 7.771, 5.791, 0.066, 5.334),
+    ]
     means = (sum(column) / 10 for column in zip(*tests, strict=True))
     _, static, coulomb, stribeck, viscous = means
     expected = (coulomb, static, stribeck, viscous)

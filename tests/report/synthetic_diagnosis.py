@@ -34,20 +34,29 @@ def synthetic_curves(
         measured = np.round((angle + 1e-5 * generator.normal(size=samples)) / COUNT) * COUNT
         signals = {
             "theta_pan": {
-                "unit": "rad", "measured": measured, "before": angle - drift,
-                "after": angle if after else None, "counts": COUNT,
+                "unit": "rad",
+                "measured": measured,
+                "before": angle - drift,
+                "after": angle if after else None,
+                "counts": COUNT,
             }
-        }  # fmt: skip
+        }
         if current:
             amperes = 0.4 * np.cos(frequency * time)
             signals["i_pan"] = {
-                "unit": "A", "measured": amperes + 0.004 * generator.normal(size=samples),
-                "before": amperes * 1.05, "after": amperes if after else None, "counts": None,
-            }  # fmt: skip
+                "unit": "A",
+                "measured": amperes + 0.004 * generator.normal(size=samples),
+                "before": amperes * 1.05,
+                "after": amperes if after else None,
+                "counts": None,
+            }
         curves[run] = {
-            "set": set_name, "time": time, "signals": signals,
-            "angle": {"pan": angle}, "rate": {"pan": rate},
-        }  # fmt: skip
+            "set": set_name,
+            "time": time,
+            "signals": signals,
+            "angle": {"pan": angle},
+            "rate": {"pan": rate},
+        }
     return curves
 
 
@@ -116,10 +125,15 @@ EQUATION = {
 def ranking(winner: str | None, best: float) -> list[dict[str, Any]]:
     """The best fit first, as the search ranks it; by error the second one comes later."""
     tried = (
-        ("base_tilt", best, 0.9873), ("constant_torque", 22.4, 0.41), ("cable_spring", 1.89, 0.92),
-        ("direction_dependent_friction", 27.3, 0.08), ("payload_com_offset", 29.79, -0.002),
-        ("backlash", None, None), ("shaft_compliance", 29.8, None), ("viscous_friction", 9e6, None),
-    )  # fmt: skip
+        ("base_tilt", best, 0.9873),
+        ("constant_torque", 22.4, 0.41),
+        ("cable_spring", 1.89, 0.92),
+        ("direction_dependent_friction", 27.3, 0.08),
+        ("payload_com_offset", 29.79, -0.002),
+        ("backlash", None, None),
+        ("shaft_compliance", 29.8, None),
+        ("viscous_friction", 9e6, None),
+    )
     return [
         {
             "effect": effect,
@@ -147,11 +161,18 @@ def synthetic_diagnosis(verdict: str) -> dict[str, Any]:
     if verdict == "explained_up_to_group":
         added = [{**ADDED, "confusable_with": ["cable_spring@pan", "constant_torque@tilt"]}]
     parameters = {
-        "J_pan": quantity(0.0912, 0.0011, "kg m^2", start=0.1, at_bound=False, identified=True,
-                          meaning="inertia of the pan body"),
+        "J_pan": quantity(
+            0.0912,
+            0.0011,
+            "kg m^2",
+            start=0.1,
+            at_bound=False,
+            identified=True,
+            meaning="inertia of the pan body",
+        ),
         "F_s_pan": quantity(0.0, 0.02, "N m", start=0.675, at_bound=True, identified=True),
         "d_shaft_pan": quantity(3.1, math.nan, "N m s/rad", start=1.0, identified=False),
-    }  # fmt: skip
+    }
     moved = quantity(0.0999, 0.0006, "kg m^2", start=0.1, meaning="inertia of the pan body")
     new = {"J_pan": moved, **ADDED["parameters"]} if added else {}
     fit = {"before": {"parameters": parameters}, "after": {"parameters": {**parameters, **new}}}
@@ -164,10 +185,22 @@ def synthetic_diagnosis(verdict: str) -> dict[str, Any]:
         "ranking": ranking("base_tilt" if added else None, after),
         "error": errors(before, after),
         "residual_tests": [
-            {"name": "whiteness", "signal": "theta_pan", "statistic": 1.2, "threshold": 2.6,
-             "passed": True, "meaning": "the residual does not repeat itself"},
-            {"name": "independence of the angle", "signal": "theta_pan", "statistic": 9.9,
-             "threshold": 2.6, "passed": False, "meaning": "the residual depends on the angle"},
+            {
+                "name": "whiteness",
+                "signal": "theta_pan",
+                "statistic": 1.2,
+                "threshold": 2.6,
+                "passed": True,
+                "meaning": "the residual does not repeat itself",
+            },
+            {
+                "name": "independence of the angle",
+                "signal": "theta_pan",
+                "statistic": 9.9,
+                "threshold": 2.6,
+                "passed": False,
+                "meaning": "the residual depends on the angle",
+            },
         ],
         "fit": fit,
         "held_out": gain(0.975, 0.004) if added else None,
@@ -178,7 +211,7 @@ def synthetic_diagnosis(verdict: str) -> dict[str, Any]:
         "remainder": REMAINDER if verdict in ("unexplained", "partly_explained") else None,
         "equations": [EQUATION] if added else [],
         "runtime_seconds": 41.7,
-    }  # fmt: skip
+    }
 
 
 REMAINDER = {

@@ -30,8 +30,10 @@ def test_compiles_without_a_warning(name: str, tmp_path: Path) -> None:
     for _ in range(2):
         subprocess.run(
             ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape", "derivation.tex"],
-            cwd=tmp_path, capture_output=True, check=True,
-        )  # fmt: skip
+            cwd=tmp_path,
+            capture_output=True,
+            check=True,
+        )
     assert not has_warning((tmp_path / "derivation.log").read_text(encoding="latin-1"))
 
 

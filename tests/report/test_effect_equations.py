@@ -23,9 +23,12 @@ from tests.report.synthetic_diagnosis import synthetic_diagnosis
 PLATFORMS = Path(__file__).parent.parent / "platforms"
 SEARCHED = [effect.id for effect in EFFECTS if not effect.structural]
 LAWS = (
-    "csvs_friction", "direction_dependent_friction", "load_dependent_friction",
-    "position_dependent_friction", "rate_dependent_breakaway",
-)  # fmt: skip
+    "csvs_friction",
+    "direction_dependent_friction",
+    "load_dependent_friction",
+    "position_dependent_friction",
+    "rate_dependent_breakaway",
+)
 
 
 @cache
@@ -100,7 +103,9 @@ def test_equations_tex_compiles_without_a_warning(tmp_path: Path) -> None:
     (tmp_path / "equations.tex").write_text(page, encoding="utf-8")
     subprocess.run(
         ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape", "equations.tex"],
-        cwd=tmp_path, capture_output=True, check=True,
-    )  # fmt: skip
+        cwd=tmp_path,
+        capture_output=True,
+        check=True,
+    )
     log = (tmp_path / "equations.log").read_text(encoding="latin-1")
     assert not has_warning(log), [x for x in log.splitlines() if "full" in x]

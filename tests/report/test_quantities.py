@@ -14,9 +14,18 @@ def _quantity(value: float, half: float, unit: str) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(29.8123, "29.8"), (0.28912, "0.289"), (1.2e-12, "1.20 × 10⁻¹²"), (-3.0, "−3.00"),
-     (123456.0, "123456"), (0.99999, "1.00"), (0.0, "0"), (None, "–"), (math.inf, "–")],
-)  # fmt: skip
+    [
+        (29.8123, "29.8"),
+        (0.28912, "0.289"),
+        (1.2e-12, "1.20 × 10⁻¹²"),
+        (-3.0, "−3.00"),
+        (123456.0, "123456"),
+        (0.99999, "1.00"),
+        (0.0, "0"),
+        (None, "–"),
+        (math.inf, "–"),
+    ],
+)
 def test_numbers_have_three_digits(value: float | None, text: str) -> None:
     assert number(value) == text
 

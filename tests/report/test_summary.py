@@ -87,9 +87,13 @@ def _errors(counts: float | None = 0.5) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     ("share", "words", "small"),
-    [(-7e-5, "wrong by -0.007 %", True), (0.034, "wrong by +3.4 %", False),
-     (0.5, "wrong by +50.0 %", False), (0.0099, "wrong by +0.99 %", True)],
-)  # fmt: skip
+    [
+        (-7e-5, "wrong by -0.007 %", True),
+        (0.034, "wrong by +3.4 %", False),
+        (0.5, "wrong by +50.0 %", False),
+        (0.0099, "wrong by +0.99 %", True),
+    ],
+)
 def test_a_declared_value_is_wrong_by_so_many_percent(
     share: float, words: str, small: bool
 ) -> None:

@@ -21,9 +21,15 @@ def drive():
 def test_where_a_block_stops_by_closed_form(method: str) -> None:
     """Way = J omega^2 / (2 F_c): the jump of the tangents at rest makes or breaks it."""
     found = ptp_symbolic.sensitivity(
-        block(), [0.0, 5.0], None, {"k": 0.0}, {"omega_pan": 2.0}, ["J", "F_c"], ["omega_pan"],
+        block(),
+        [0.0, 5.0],
+        None,
+        {"k": 0.0},
+        {"omega_pan": 2.0},
+        ["J", "F_c"],
+        ["omega_pan"],
         method=method,
-    )  # fmt: skip
+    )
     exact = [2.0**2 / (2.0 * F_C), -J * 2.0**2 / (2.0 * F_C**2), J * 2.0 / F_C]
     assert found.states[-1, 0] == pytest.approx(exact, rel=1e-8)
     assert np.all(found.states[-1, 1] == 0.0)
@@ -34,9 +40,12 @@ def test_when_a_block_breaks_away_by_closed_form(method: str) -> None:
     """Pulled by a ramp, it starts at F_s / slope; then it moves as an oscillator does."""
     slope, t, rate = 0.4, 2.0, math.sqrt(K / J)
     found = ptp_symbolic.sensitivity(
-        block(), [0.0, t], {"tau_pan": ramp(0.0, 10.0 * slope, 0.0, 10.0)},
-        by_parameters=["F_s", "F_c"], method=method,
-    )  # fmt: skip
+        block(),
+        [0.0, t],
+        {"tau_pan": ramp(0.0, 10.0 * slope, 0.0, 10.0)},
+        by_parameters=["F_s", "F_c"],
+        method=method,
+    )
 
     def angle(breakaway: float, sliding: float) -> float:
         late = t - breakaway / slope
@@ -93,11 +102,16 @@ def test_tangents_of_the_explicit_method_stay_below_its_limit_of_stability(
     for signal in (ramp(0.0, 4.0, 0.0, 10.0), multisine([2.0], [0.15])):
         one, other = (
             ptp_symbolic.sensitivity(
-                drive, [0.0, end], {"u_pan": signal}, by_parameters=names, rtol=rtol,
-                atol=0.1 * rtol, method=method,
+                drive,
+                [0.0, end],
+                {"u_pan": signal},
+                by_parameters=names,
+                rtol=rtol,
+                atol=0.1 * rtol,
+                method=method,
             ).states[-1, 0]
             for method, rtol in (("runge_kutta", tolerance), ("rosenbrock", 1e-11))
-        )  # fmt: skip
+        )
         assert one == pytest.approx(other, rel=max(2e-6, 100.0 * tolerance))
 
 
@@ -113,11 +127,15 @@ def test_six_parameters_through_stick_slip_and_gap(drive, method: str) -> None:
         h = 3e-4 * drive.defaults[name]
         ends = [
             ptp_symbolic.simulate(
-                drive, times, inputs, {name: drive.defaults[name] + s * h}, rtol=1e-13,
+                drive,
+                times,
+                inputs,
+                {name: drive.defaults[name] + s * h},
+                rtol=1e-13,
                 atol=1e-14,
             )["theta_pan"][-1]
             for s in (-2.0, -1.0, 1.0, 2.0)
-        ]  # fmt: skip
+        ]
         difference = (ends[0] - 8.0 * ends[1] + 8.0 * ends[2] - ends[3]) / (12.0 * h)
         assert found.states[-1, 0, index] == pytest.approx(difference, rel=1e-6)
         assert loose.states[-1, 0, index] == pytest.approx(difference, rel=1e-5)
@@ -130,9 +148,15 @@ def test_both_methods_agree_over_samples_of_a_held_input(drive) -> None:
 
     def tangents(rtol: float, method: str) -> np.ndarray:
         return ptp_symbolic.sensitivity(
-            drive, time, {"u_pan": table(time, volts, "hold")}, by_parameters=["R_pan", "F_v_pan"],
-            by_initial=["theta_gear_pan"], rtol=rtol, atol=rtol / 10, method=method,
-        ).states[:, 0]  # fmt: skip
+            drive,
+            time,
+            {"u_pan": table(time, volts, "hold")},
+            by_parameters=["R_pan", "F_v_pan"],
+            by_initial=["theta_gear_pan"],
+            rtol=rtol,
+            atol=rtol / 10,
+            method=method,
+        ).states[:, 0]
 
     exact = tangents(1e-12, "runge_kutta")
     size = np.abs(exact).max(axis=0)

@@ -101,9 +101,14 @@ def test_free_flight_across_the_gap_and_elastic_impact(drive, method: str, figur
     gap, inertia, speed = drive.defaults["gap_pan"], drive.defaults["J_pan"], 0.02
     stiffness = drive.defaults["k_shaft_pan"]
     found = ptp_symbolic.simulate(
-        drive, 3.0, parameters={"b_pan": 0.0, "d_shaft_pan": 0.0}, initial={"omega_pan": speed},
-        rtol=1e-9, atol=1e-11, method=method,
-    )  # fmt: skip
+        drive,
+        3.0,
+        parameters={"b_pan": 0.0, "d_shaft_pan": 0.0},
+        initial={"omega_pan": speed},
+        rtol=1e-9,
+        atol=1e-11,
+        method=method,
+    )
     contact = math.pi * math.sqrt(inertia / stiffness)
     times = [e.time for e in found.events]
     flight = 0.5 * gap / speed
@@ -127,9 +132,14 @@ def test_a_smooth_stiff_machine_against_radau(tmp_path, figure) -> None:
     times, p = np.linspace(0.0, 2.0, 101), model.parameter_vector()
     found = ptp_symbolic.simulate(model, times, {"u_pan": multisine([12.0], [0.8])})
     truth = solve_ivp(
-        lambda t, x: model.rhs(t, x, np.array([12.0 * np.sin(1.6 * np.pi * t)]), p), (0.0, 2.0),
-        np.zeros(5), method="Radau", t_eval=times, rtol=1e-10, atol=1e-12,
-    )  # fmt: skip
+        lambda t, x: model.rhs(t, x, np.array([12.0 * np.sin(1.6 * np.pi * t)]), p),
+        (0.0, 2.0),
+        np.zeros(5),
+        method="Radau",
+        t_eval=times,
+        rtol=1e-10,
+        atol=1e-12,
+    )
     off = np.abs(found.x - truth.y.T)[:, [0, 2]].max()
     assert figure("off scipy Radau, rad", off) < 1e-8
     assert np.abs(found.x - truth.y.T).max() < 1e-6
@@ -148,8 +158,13 @@ def test_ledger_and_dissipation_with_everything_on(drive, method: str, figure) -
 @pytest.mark.parametrize("method", METHODS)
 def test_energy_is_kept_without_friction(method: str, figure) -> None:
     found = ptp_symbolic.simulate(
-        ptp_symbolic.load("payload"), 60.0, parameters={"b_pan": 0.0, "b_tilt": 0.0},
-        initial={"omega_pan": 1.0, "theta_tilt": 0.3}, rtol=1e-12, atol=1e-13, method=method,
-    )  # fmt: skip
+        ptp_symbolic.load("payload"),
+        60.0,
+        parameters={"b_pan": 0.0, "b_tilt": 0.0},
+        initial={"omega_pan": 1.0, "theta_tilt": 0.3},
+        rtol=1e-12,
+        atol=1e-13,
+        method=method,
+    )
     drift = np.ptp(found.stored) / np.abs(found.stored).max()
     assert figure("relative drift of energy over 60 s", drift) <= 1e-9

@@ -71,9 +71,12 @@ def test_a_stroke_end_that_is_only_touched_within_a_step_stops_the_run() -> None
 def test_sensitivities_stop_there_too(method: str) -> None:
     with pytest.raises(SimulationError) as stopped:
         ptp_symbolic.sensitivity(
-            MODEL, [0.0, 30.0, 60.0], {"u_tilt": constant(24.0)}, by_parameters=["R_tilt"],
+            MODEL,
+            [0.0, 30.0, 60.0],
+            {"u_tilt": constant(24.0)},
+            by_parameters=["R_tilt"],
             method=method,
-        )  # fmt: skip
+        )
     assert time_and_angle(str(stopped.value))[0] == time_and_angle(message(24.0, 60.0))[0]
 
 
@@ -84,10 +87,18 @@ def test_an_evaluation_of_a_fit_that_leaves_the_domain_has_failed() -> None:
     for volts in (2.0, 24.0):
         held = np.full((len(time), 1), volts)
         run = Run(
-            "log", time, stack([table(time, held[:, 0], "hold")]), held, np.zeros((len(time), 1)),
-            np.array([MODEL.output_names.index("theta_tilt")]), np.ones(1), np.full(1, np.nan),
-            ("theta_tilt",), np.zeros(3), (),
-        )  # fmt: skip
+            "log",
+            time,
+            stack([table(time, held[:, 0], "hold")]),
+            held,
+            np.zeros((len(time), 1)),
+            np.array([MODEL.output_names.index("theta_tilt")]),
+            np.ones(1),
+            np.full(1, np.nan),
+            ("theta_tilt",),
+            np.zeros(3),
+            (),
+        )
         ran[volts] = evaluate(
             MODEL, run, MODEL.parameter_vector(), np.zeros(0), none, True, Tolerance()
         )

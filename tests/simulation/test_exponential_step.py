@@ -69,17 +69,31 @@ def servo() -> Model:
 
 
 def passage(
-    model: Model, goal: InputSignal, method: str, tolerance: float, times: np.ndarray,
-    ledger: bool = False, parameters: dict[str, float] | None = None, start: float = 0.0,
-) -> Passage:  # fmt: skip
+    model: Model,
+    goal: InputSignal,
+    method: str,
+    tolerance: float,
+    times: np.ndarray,
+    ledger: bool = False,
+    parameters: dict[str, float] | None = None,
+    start: float = 0.0,
+) -> Passage:
     """A run from the first to the last of `times`, from rest but for the rate of the load."""
     table, weights, x = stack([goal]), tolerance_weights(model), np.zeros(len(model.state_names))
     x[1] = start
     found = pass_through(
-        model, method, model.parameter_vector(parameters), x, table, table.held,
-        table.with_stops(times[[0, -1]]), times,
-        Accuracy(tolerance, 0.1 * tolerance * weights, 0.1), ledger=ledger, event_room=500,
-    )  # fmt: skip
+        model,
+        method,
+        model.parameter_vector(parameters),
+        x,
+        table,
+        table.held,
+        table.with_stops(times[[0, -1]]),
+        times,
+        Accuracy(tolerance, 0.1 * tolerance * weights, 0.1),
+        ledger=ledger,
+        event_room=500,
+    )
     assert found.status == DONE
     return found
 
@@ -113,25 +127,39 @@ def test_a_linear_servo_moves_as_the_exponential_says(figure) -> None:
 def test_the_order_is_two_in_what_is_not_linear(figure) -> None:
     """A load flies in the gap on a hardening cable wrap; the controller does nothing."""
     names = (
-        "dc_motor", "csvs_friction", "backlash", "shaft_compliance", "cable_spring",
+        "dc_motor",
+        "csvs_friction",
+        "backlash",
+        "shaft_compliance",
+        "cable_spring",
         "pid_controller",
-    )  # fmt: skip
-    bodies, more = EffectDeclaration("rigid_bodies", None, None), (
-        EffectDeclaration(name, "pan", None) for name in names
-    )  # fmt: skip
+    )
+    bodies, more = (
+        EffectDeclaration("rigid_bodies", None, None),
+        (EffectDeclaration(name, "pan", None) for name in names),
+    )
     model = emission.emit(Platform("flight", "Flight", ("pan",), 9.81, (bodies, *more), (), ()))
     load = {"J_pan": 100.0, "gap_pan": 1.0, "k3_cable_pan": 40.0, "K_p_pan": 0.0}
     speed, end = 0.1, 24.0
     exact = solve_ivp(
-        lambda t, x: [x[1], -load["k3_cable_pan"] * x[0] ** 3 / load["J_pan"]], (0.0, end),
-        [0.0, speed], "DOP853", rtol=1e-13, atol=1e-15,
-    ).y[0, -1]  # fmt: skip
+        lambda t, x: [x[1], -load["k3_cable_pan"] * x[0] ** 3 / load["J_pan"]],
+        (0.0, end),
+        [0.0, speed],
+        "DOP853",
+        rtol=1e-13,
+        atol=1e-15,
+    ).y[0, -1]
 
     def error(period: float) -> float:
         found = passage(
-            model, constant(0.0), "rosenbrock", 1e-2, np.array([0.0, end]),
-            parameters=load | {"t_sample_pan": period}, start=speed,
-        )  # fmt: skip
+            model,
+            constant(0.0),
+            "rosenbrock",
+            1e-2,
+            np.array([0.0, end]),
+            parameters=load | {"t_sample_pan": period},
+            start=speed,
+        )
         assert found.steps == round(end / period)
         return float(abs(found.x[-1, 0] - exact))
 
@@ -153,11 +181,22 @@ def test_a_base_that_shakes_once_a_sample_is_not_overlooked(figure) -> None:
     """At every sample the base moves as at the one before."""
     period = 0.02
     model = pid.servo("payload", "base_motion")
-    given = pid.GAINS | pid.FINE | {
-        "t_sample_pan": period, "K_p_pan": 20.0, "K_i_pan": 0.0, "K_d_pan": 0.0,
-        "m_payload": 20.0, "c_x_payload": 0.5, "a_base": 20.0, "f_base": 1.0 / period,
-        "phi_base": 1.5, "psi_base": 1.5,
-    }  # fmt: skip
+    given = (
+        pid.GAINS
+        | pid.FINE
+        | {
+            "t_sample_pan": period,
+            "K_p_pan": 20.0,
+            "K_i_pan": 0.0,
+            "K_d_pan": 0.0,
+            "m_payload": 20.0,
+            "c_x_payload": 0.5,
+            "a_base": 20.0,
+            "f_base": 1.0 / period,
+            "phi_base": 1.5,
+            "psi_base": 1.5,
+        }
+    )
     times = np.linspace(0.0, 2.0, 101)
     exact, found = (
         passage(model, step(0.0, 0.1, 0.0), method, tolerance, times, parameters=given)

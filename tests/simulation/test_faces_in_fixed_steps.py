@@ -26,9 +26,14 @@ def test_bounces_come_late_by_less_the_shorter_the_step(e: float) -> None:
     after, late = times + GAP / speed / powers / 2, []
     for step in (1e-3, 1e-4):
         found = simulate(
-            model, [0.0, *after], None, {**FREE, "e_gap_pan": e}, {"omega_gear_pan": speed},
-            method="fixed_step", step=step,
-        )  # fmt: skip
+            model,
+            [0.0, *after],
+            None,
+            {**FREE, "e_gap_pan": e},
+            {"omega_gear_pan": speed},
+            method="fixed_step",
+            step=step,
+        )
         struck = [event.time for event in found.events if "bounces" in event.mode]
         late.append(np.abs(np.array(struck) - times).max())
         assert np.abs(approach(found)[1:]) == pytest.approx(speed * powers, rel=1e-12)

@@ -30,8 +30,14 @@ def run(model, times, inputs=None, size=1e-3, **rest):
 def test_order_two_in_smooth_motion(body, figure) -> None:
     rate, errors = math.sqrt(K / J), []
     for size in (2e-3, 1e-3):
-        found = run(body, [0.0, 3.0], None, size, parameters={"F_c": 0.0, "F_s": 0.0},
-                    initial={"theta_pan": 0.5, "omega_pan": 0.2})  # fmt: skip
+        found = run(
+            body,
+            [0.0, 3.0],
+            None,
+            size,
+            parameters={"F_c": 0.0, "F_s": 0.0},
+            initial={"theta_pan": 0.5, "omega_pan": 0.2},
+        )
         exact = 0.5 * math.cos(3.0 * rate) + 0.2 / rate * math.sin(3.0 * rate)
         errors.append(abs(found["theta_pan"][-1] - exact))
     assert figure("order", math.log2(errors[0] / errors[1])) == pytest.approx(2.0, abs=0.1)
@@ -102,10 +108,17 @@ def drive_of(model) -> PanDrive:
         for way, sign in (("forward", 1.0), ("backward", -1.0))
     }
     own = {
-        "L": "L_pan", "R": "R_pan", "K_t": "K_t_pan", "J_motor": "J_motor_pan", "N": "N_pan",
-        "k_shaft": "k_shaft_pan", "d_shaft": "d_shaft_pan", "gap": "gap_pan", "J_load": "J_pan",
+        "L": "L_pan",
+        "R": "R_pan",
+        "K_t": "K_t_pan",
+        "J_motor": "J_motor_pan",
+        "N": "N_pan",
+        "k_shaft": "k_shaft_pan",
+        "d_shaft": "d_shaft_pan",
+        "gap": "gap_pan",
+        "J_load": "J_pan",
         "b_load": "b_pan",
-    }  # fmt: skip
+    }
     return PanDrive(**{name: v[place] for name, place in own.items()}, **both)
 
 

@@ -30,14 +30,15 @@ MASS, PLACE = 3.0, (0.09, 0.02, -0.03)
 VISCOUS = {"pan": 0.5, "tilt": 0.3}
 DRY = {"pan": 0.6, "tilt": 0.45}
 VALUES = {
-    "J_pan": PAN_INERTIA, "m_payload": MASS,
+    "J_pan": PAN_INERTIA,
+    "m_payload": MASS,
     **{f"J_{a}_tilt": v for a, v in zip("xyz", TILT_INERTIA, strict=True)},
     **{f"J_{a}_payload": v for a, v in zip("xyz", PAYLOAD_INERTIA, strict=True)},
     **{f"c_{a}_payload": v for a, v in zip("xyz", PLACE, strict=True)},
     **{f"b_{axis}": v for axis, v in VISCOUS.items()},
     **{f"{k}_{axis}": v for axis, v in DRY.items() for k in ("F_c", "F_s")},
     **{f"F_v_{axis}": 0.0 for axis in DRY},
-}  # fmt: skip
+}
 TIMES = np.array([0.0, 0.4, 0.9, 1.4, 2.0, 2.6])
 TORQUES = {
     "pan": np.array([1.6, -1.1, 0.2, -1.8, 0.55, 0.0]),

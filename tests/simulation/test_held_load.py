@@ -122,18 +122,28 @@ def test_dry_friction_beside_the_rest(load: str, site: str) -> None:
 def test_tangents_through_the_rest(sprung: Model, method: str) -> None:
     names = ["J_pan", "gap_pan", "K_t_pan", "k1_cable_pan"]
     found = sensitivity(
-        sprung, TIMES, INPUTS, PARAMETERS, by_parameters=names, rtol=1e-10, atol=1e-11,
+        sprung,
+        TIMES,
+        INPUTS,
+        PARAMETERS,
+        by_parameters=names,
+        rtol=1e-10,
+        atol=1e-11,
         method=method,
-    )  # fmt: skip
+    )
     for index, name in enumerate(names):
         h = 1e-5 * PARAMETERS[name]
         above, below = (
             simulate(
-                sprung, TIMES, INPUTS, {**PARAMETERS, name: PARAMETERS[name] + s * h},
-                rtol=1e-12, atol=1e-13,
+                sprung,
+                TIMES,
+                INPUTS,
+                {**PARAMETERS, name: PARAMETERS[name] + s * h},
+                rtol=1e-12,
+                atol=1e-13,
             ).x[:, [0, 2]]
             for s in (1.0, -1.0)
-        )  # fmt: skip
+        )
         difference = (above - below) / (2.0 * h)
         size = np.abs(difference).max()
         assert found.states[:, [0, 2], index] == pytest.approx(difference, abs=2e-6 * size)

@@ -73,9 +73,12 @@ def test_everything_switched_on(everything, name: str, figure) -> None:
 def test_a_stribeck_peak_as_narrow_as_a_wall(method: str) -> None:
     """Friction leaps within a millionth of a radian per second, where a reversal ends a step."""
     found = ptp_symbolic.simulate(
-        ptp_symbolic.load("pan_drive"), 1.0, {"u_pan": SIGNALS["square"]}, {"v_s_pan": 1e-6},
+        ptp_symbolic.load("pan_drive"),
+        1.0,
+        {"u_pan": SIGNALS["square"]},
+        {"v_s_pan": 1e-6},
         method=method,
-    )  # fmt: skip
+    )
     assert len(found.events) > 10
     assert missing(found) <= 1e-6
 

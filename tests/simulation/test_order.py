@@ -50,10 +50,11 @@ def run(model: Model, times: Any, method: str, length: float, **rest: Any) -> Tr
 @pytest.mark.parametrize(
     ("method", "expected", "longest", "end"),
     [
-        ("rosenbrock", 5.0, 5e-3, 10.0), ("runge_kutta", 5.0, 5e-3, 10.0),
+        ("rosenbrock", 5.0, 5e-3, 10.0),
+        ("runge_kutta", 5.0, 5e-3, 10.0),
         ("fixed_step", 2.0, 1e-4, 2.0),
     ],
-)  # fmt: skip
+)
 def test_a_pendulum_of_large_swing(
     method: str, expected: float, longest: float, end: float, figure
 ) -> None:
@@ -101,9 +102,14 @@ def test_a_block_that_comes_to_rest_and_is_pulled_away_again(method: str, figure
 
     def error(length: float) -> float:
         found = run(
-            block(), [0.0, again, 2.0 * again], method, length, parameters=slow,
-            initial={"theta_pan": 0.9}, inputs={"tau_pan": step(0.0, pull, again)},
-        )  # fmt: skip
+            block(),
+            [0.0, again, 2.0 * again],
+            method,
+            length,
+            parameters=slow,
+            initial={"theta_pan": 0.9},
+            inputs={"tau_pan": step(0.0, pull, again)},
+        )
         assert [e.mode for e in found.events].count("sticks") == 2
         assert len(found.events) == swings + more + 1
         return float(np.linalg.norm(found["theta_pan"][1:] - [first, exact]))
@@ -157,9 +163,14 @@ def flying() -> Model:
 
 
 FLIGHT = {
-    "J_pan": 100.0, "gap_pan": 1.0, "k_shaft_pan": 2.0, "d_shaft_pan": 0.0, "k3_cable_pan": 4.0,
-    "F_c_pan": 5.0, "F_s_pan": 5.0,
-}  # fmt: skip
+    "J_pan": 100.0,
+    "gap_pan": 1.0,
+    "k_shaft_pan": 2.0,
+    "d_shaft_pan": 0.0,
+    "k3_cable_pan": 4.0,
+    "F_c_pan": 5.0,
+    "F_s_pan": 5.0,
+}
 
 
 def touching_times(speed: float, count: int) -> NDArray[np.float64]:
@@ -192,9 +203,13 @@ def test_a_load_that_flies_across_the_gap(flying: Model, method: str, figure) ->
 
     def error(length: float) -> float:
         found = run(
-            flying, [0.0, exact[-1] + 1.0], method, length, parameters=FLIGHT,
+            flying,
+            [0.0, exact[-1] + 1.0],
+            method,
+            length,
+            parameters=FLIGHT,
             initial={"omega_pan": speed},
-        )  # fmt: skip
+        )
         times = np.array([e.time for e in found.events if "touches" in e.mode])
         assert len(times) == count
         return float(np.linalg.norm(times - exact))

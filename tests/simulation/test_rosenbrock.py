@@ -27,16 +27,23 @@ def test_coefficients_meet_the_order_conditions() -> None:
         2: [(b @ s, 2)],
         3: [(b @ a**2, 3), (b @ beta @ s, 6)],
         4: [
-            (b @ a**3, 4), (b @ (a * (alpha @ s)), 8), (b @ beta @ a**2, 12),
+            (b @ a**3, 4),
+            (b @ (a * (alpha @ s)), 8),
+            (b @ beta @ a**2, 12),
             (b @ beta @ beta @ s, 24),
         ],
         5: [
-            (b @ a**4, 5), (b @ (a**2 * (alpha @ s)), 10), (b @ (alpha @ s) ** 2, 20),
-            (b @ (a * (alpha @ a**2)), 15), (b @ (a * (alpha @ beta @ s)), 30),
-            (b @ beta @ a**3, 20), (b @ beta @ (a * (alpha @ s)), 40),
-            (b @ beta @ beta @ a**2, 60), (b @ beta @ beta @ beta @ s, 120),
+            (b @ a**4, 5),
+            (b @ (a**2 * (alpha @ s)), 10),
+            (b @ (alpha @ s) ** 2, 20),
+            (b @ (a * (alpha @ a**2)), 15),
+            (b @ (a * (alpha @ beta @ s)), 30),
+            (b @ beta @ a**3, 20),
+            (b @ beta @ (a * (alpha @ s)), 40),
+            (b @ beta @ beta @ a**2, 60),
+            (b @ beta @ beta @ beta @ s, 120),
         ],
-    }  # fmt: skip
+    }
     for found in conditions.values():
         for value, inverse in found:
             assert value == pytest.approx(1.0 / inverse, abs=2e-13)
@@ -106,9 +113,16 @@ def test_a_pole_in_finite_time_is_reported_with_its_time() -> None:
     for method in ("rosenbrock", "runge_kutta"):
         accuracy = Accuracy(1e-8, np.full(2, 1e-8), 0.1)
         found = pass_through(
-            body, method, p, np.array(list(start.values())), stack([constant(0.0)]), True, ends,
-            ends, accuracy,
-        )  # fmt: skip
+            body,
+            method,
+            p,
+            np.array(list(start.values())),
+            stack([constant(0.0)]),
+            True,
+            ends,
+            ends,
+            accuracy,
+        )
         assert found.status == DIVERGED
         assert found.reached == pytest.approx(1.0, abs=5e-6)
         assert np.all(np.isfinite(found.state)) and np.all(np.isfinite(found.x))

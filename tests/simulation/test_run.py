@@ -39,17 +39,26 @@ def test_smooth_model_against_scipy(payload) -> None:
         return np.array([0.3 * np.sin(1.4 * np.pi * t), np.sin(0.8 * np.pi * t)])
 
     truth = solve_ivp(
-        lambda t, x: payload.rhs(t, x, torque(t), p), (0.0, 5.0), np.zeros(4), method="DOP853",
-        t_eval=times, rtol=1e-12, atol=1e-13,
-    )  # fmt: skip
+        lambda t, x: payload.rhs(t, x, torque(t), p),
+        (0.0, 5.0),
+        np.zeros(4),
+        method="DOP853",
+        t_eval=times,
+        rtol=1e-12,
+        atol=1e-13,
+    )
     assert np.abs(found.x - truth.y.T).max() < 1e-8
 
 
 def test_energy_is_kept_without_friction(payload) -> None:
     found = ptp_symbolic.simulate(
-        payload, 60.0, parameters={"b_pan": 0.0, "b_tilt": 0.0},
-        initial={"omega_pan": 1.0, "theta_tilt": 0.3}, rtol=1e-12, atol=1e-13,
-    )  # fmt: skip
+        payload,
+        60.0,
+        parameters={"b_pan": 0.0, "b_tilt": 0.0},
+        initial={"omega_pan": 1.0, "theta_tilt": 0.3},
+        rtol=1e-12,
+        atol=1e-13,
+    )
     assert np.ptp(found.stored) <= 1e-9 * np.abs(found.stored).max()
 
 

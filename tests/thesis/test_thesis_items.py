@@ -11,9 +11,10 @@ from ptp_symbolic.thesis import (
     configurations,
     contact,
     errata_drives,
-    errata_friction,
+    errata_listings,
     friction,
     printed,
+    ramp_items,
     ramp_test,
     responses,
     rigid,
@@ -137,7 +138,7 @@ def test_the_ramp_test_finds_the_friction_and_not_the_inertia() -> None:
 
 
 def test_averages_of_table_4_2() -> None:
-    items = by_id(ramp_test.average_items())
+    items = by_id(ramp_items.average_items())
     assert items["table_4_2.F_s_positive_mean"].computed == pytest.approx(37.224 / 5)
     assert items["table_4_2.v_s_negative_mean"].computed == pytest.approx(0.4763 / 5)
     assert items["table_4_2.J_negative_mean"].agrees
@@ -146,8 +147,8 @@ def test_averages_of_table_4_2() -> None:
 
 
 def test_names_a_listing_never_sets() -> None:
-    assert errata_friction.undefined_names("n = 3; for i = 1:length(n) a(:,k)=1; k=k+1;") == ["k"]
-    assert errata_friction.undefined_names("k=1; for i = 1:length(n) a(:,k)=1; k=2;") == ["n"]
+    assert errata_listings.undefined_names("n = 3; for i = 1:length(n) a(:,k)=1; k=k+1;") == ["k"]
+    assert errata_listings.undefined_names("k=1; for i = 1:length(n) a(:,k)=1; k=2;") == ["n"]
 
 
 def test_contact_against_closed_forms() -> None:
@@ -195,15 +196,15 @@ def test_the_tilt_drive_keeps_its_energy_ledger(stroke: float) -> None:
     motor = 2 * math.pi * d.N / d.lead * run.stroke_speed
     inertia = d.J_y + d.mass * d.com_offset**2
     stored = (
-        0.5 * d.J_motor * motor**2 + 0.5 * inertia * run.tilt_rate**2 + 0.5 * d.L * run.current**2
+        0.5 * d.J_motor * motor**2
+        + 0.5 * inertia * run.tilt_rate**2
+        + 0.5 * d.L * run.current**2
         + d.mass * 9.81 * d.com_offset * np.cos(run.tilt_angle)
-    )  # fmt: skip
+    )
     raising, lowering = tilt_drive.screw_factors()
     factor = np.where(run.force > 0, raising, -lowering)
     screw = factor * run.force * motor / d.N - run.force * run.stroke_speed
-    lost = (
-        d.R * run.current**2 + d.b_motor * motor**2 + d.b_joint * run.tilt_rate**2 + screw
-    )  # fmt: skip
+    lost = d.R * run.current**2 + d.b_motor * motor**2 + d.b_joint * run.tilt_rate**2 + screw
     power = run.voltage * run.current - lost
     moving = run.t <= 3.4
     work = np.concatenate([[0.0], np.cumsum((power[1:] + power[:-1]) / 2 * np.diff(run.t))])

@@ -85,10 +85,19 @@ def sensitivity(
     if chosen == EXPLICIT:
         largest_step = min(largest_step, stable_step(model, p, x))
     found = pass_through(
-        model, chosen, p, x, table, table.held, table.with_stops(t), t,
-        Accuracy(rtol, atol * tolerance_weights(model), largest_step), s, columns,
+        model,
+        chosen,
+        p,
+        x,
+        table,
+        table.held,
+        table.with_stops(t),
+        t,
+        Accuracy(rtol, atol * tolerance_weights(model), largest_step),
+        s,
+        columns,
         delay_columns(model, columns),
-    )  # fmt: skip
+    )
     refuse_failure(model, p, found.status, found.reached, found.state)
     y, signals = _measured(model, t, found.x, found.s, p, columns)
     return Sensitivities(t, found.x, y, (*wanted, *by_initial), found.s, signals)

@@ -210,9 +210,23 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         **KERNEL,
     )
     def run_fixed(
-        functions, p, friction_rates, zero_at_rest, contacts, table, cursor, held, u, x, step,
-        watch, tangents, work, record, sampling,
-    ):  # fmt: skip
+        functions,
+        p,
+        friction_rates,
+        zero_at_rest,
+        contacts,
+        table,
+        cursor,
+        held,
+        u,
+        x,
+        step,
+        watch,
+        tangents,
+        work,
+        record,
+        sampling,
+    ):
         """Integrate from the first to the last output time; inputs jump at no other time."""
         record = Record(*record)
         record.counts[SOURCES] = sources

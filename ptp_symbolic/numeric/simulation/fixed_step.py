@@ -74,19 +74,43 @@ def pass_in_steps(
         model.module.initial_modes(times[0], x, u[0], p, watch.m)
         refuse_start(model, x, u[0], p, watch)
     work = StepWork(
-        z((n, n)), z((n, nu)), z((n, len(p))), z((n, n)), z(n, np.int64), z(n), z(n), z(n),
+        z((n, n)),
+        z((n, nu)),
+        z((n, len(p))),
+        z((n, n)),
+        z(n, np.int64),
+        z(n),
+        z(n),
+        z(n),
         z((len(model.friction_rates), 2), np.int64),
-    )  # fmt: skip
+    )
     record = new_record(grid, n, 0, len(grid), event_room)
     status = fixed_runner.runner()(
-        addresses(model.module), p, model.friction_rates, model.zero_at_rest,
+        addresses(model.module),
+        p,
+        model.friction_rates,
+        model.zero_at_rest,
         contact_table(model),
-        inputs.arrays, inputs.new_cursor(), inputs.held, u, x, float(step),
-        tuple(watch), tuple(tangents), tuple(work), tuple(record),
+        inputs.arrays,
+        inputs.new_cursor(),
+        inputs.held,
+        u,
+        x,
+        float(step),
+        tuple(watch),
+        tuple(tangents),
+        tuple(work),
+        tuple(record),
         tuple(new_sampling(model, p, x, times, 0)),
-    )  # fmt: skip
+    )
     kept, counts = np.searchsorted(grid, times), record.counts
     return FixedPassage(
-        status, float(record.clock[TIME]), x, record.x[kept], record.ledger[kept],
-        record.events[: counts[EVENTS]], int(counts[STEPS]), int(counts[INSTANT]),
-    )  # fmt: skip
+        status,
+        float(record.clock[TIME]),
+        x,
+        record.x[kept],
+        record.ledger[kept],
+        record.events[: counts[EVENTS]],
+        int(counts[STEPS]),
+        int(counts[INSTANT]),
+    )

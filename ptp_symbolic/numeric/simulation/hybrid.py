@@ -46,7 +46,6 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     Watch,
     copy,
     equations_at,
-    flush,
     merged,
     source_stamp,
 )
@@ -55,20 +54,22 @@ from ptp_symbolic.numeric.simulation.methods.exponential_step import (
     Propagator,
     reach_sample,
 )
-from ptp_symbolic.numeric.simulation.methods.step_length import is_balanced, next_length, try_step
+from ptp_symbolic.numeric.simulation.methods.step_length import (
+    is_balanced,
+    leave,
+    next_length,
+    try_step,
+)
 from ptp_symbolic.numeric.simulation.methods.steps import (
     ROSENBROCK,
     RUNGE_KUTTA,
     begin,
     end_slope,
-    push_tangents,
 )
 from ptp_symbolic.numeric.simulation.outputs import (
     note_strikes,
     note_switches,
-    work_done,
     write_here,
-    write_inside,
 )
 from ptp_symbolic.numeric.simulation.sampling import (
     SAMPLING,
@@ -165,9 +166,20 @@ def pass_event(equations, inputs, t, length, x, watch, tangents, record):
 
 @merged
 def advance_by_samples(
-    method, equations, inputs, stop, x, limits, atol, step, watch, tangents, record, sampling,
+    method,
+    equations,
+    inputs,
+    stop,
+    x,
+    limits,
+    atol,
+    step,
+    watch,
+    tangents,
+    record,
+    sampling,
     propagator,
-):  # fmt: skip
+):
     """Advance to `stop`, running the samplers that come due until then and there.
 
     The explicit method shares nothing with the exponential step: each checks the other.
@@ -194,21 +206,6 @@ def advance_by_samples(
             return CHATTERING
 
 
-@merged
-def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record):
-    """Go to the end of an accepted step: outputs inside it, work done over it, tangents."""
-    write_inside(equations, inputs, t, length, t_new, watch.m, step, record)
-    if len(record.ledger) > 0:
-        for c in range(1, 3):
-            record.totals[c] += work_done(1.0, length, record.powers, c)
-    if tangents.table.shape[1] > 0:
-        push_tangents(method, equations, inputs, t, length, watch.m, step, tangents)
-        flush(tangents.s)
-    copy(step.end, x)
-    flush(x)
-    record.clock[TIME] = t_new
-
-
 def compiled_runner(sources: int) -> Callable[..., int]:
     """The compiled runner, stamped with the `sources` it comes from (see `source_stamp`)."""
 
@@ -232,9 +229,27 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         **KERNEL,
     )
     def run(
-        method, functions, p, friction_rates, zero_at_rest, contacts, table, cursor, held, u, x,
-        stops, limits, atol, step, watch, tangents, record, sampling, propagator,
-    ):  # fmt: skip
+        method,
+        functions,
+        p,
+        friction_rates,
+        zero_at_rest,
+        contacts,
+        table,
+        cursor,
+        held,
+        u,
+        x,
+        stops,
+        limits,
+        atol,
+        step,
+        watch,
+        tangents,
+        record,
+        sampling,
+        propagator,
+    ):
         """Integrate from the first to the last stop; returns a status, the rest is in `record`."""
         record = Record(*record)
         record.counts[SOURCES] = sources
@@ -255,9 +270,20 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             if not enter(equations, inputs, stops[index - 1], x, watch, tangents, record):
                 return CHATTERING
             status = advance_by_samples(
-                method, equations, inputs, stops[index], x, limits, atol, step, watch, tangents,
-                record, sampling, propagator,
-            )  # fmt: skip
+                method,
+                equations,
+                inputs,
+                stops[index],
+                x,
+                limits,
+                atol,
+                step,
+                watch,
+                tangents,
+                record,
+                sampling,
+                propagator,
+            )
             if status != DONE:
                 return status
             write_here(equations, inputs, stops[index], x, watch.m, tangents, record)

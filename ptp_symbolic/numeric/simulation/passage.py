@@ -109,9 +109,12 @@ def pass_through(
     none = np.zeros(0, dtype=np.int64)
     s = np.zeros((n, 0)) if s is None else s
     tangents = new_tangents(
-        s, none if columns is None else columns,
-        np.full(nu, -1) if delay_column is None else delay_column, len(p), nu,
-    )  # fmt: skip
+        s,
+        none if columns is None else columns,
+        np.full(nu, -1) if delay_column is None else delay_column,
+        len(p),
+        nu,
+    )
     x, u, cursor = x.copy(), np.zeros((3, nu)), inputs.new_cursor()
     watch = new_watch(model, n, p)
     hybrid.evaluate_inputs(stops[0], 1, *inputs.arrays, cursor, u[0])
@@ -119,36 +122,74 @@ def pass_through(
     refuse_start(model, x, u[0], p, watch)
     record = new_record(times, n, s.shape[1], len(times) if ledger else 0, event_room)
     status = hybrid.runner()(
-        METHODS[method], addresses(module), p, model.friction_rates, model.zero_at_rest,
-        contact_table(model), inputs.arrays, cursor, held or not any(module.INPUT_ACTS), u, x,
+        METHODS[method],
+        addresses(module),
+        p,
+        model.friction_rates,
+        model.zero_at_rest,
+        contact_table(model),
+        inputs.arrays,
+        cursor,
+        held or not any(module.INPUT_ACTS),
+        u,
+        x,
         stops,
-        np.array([accuracy.relative, accuracy.largest_step]), accuracy.absolute,
-        tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)), tuple(watch),
-        tuple(tangents), tuple(record), tuple(new_sampling(model, p, x, stops, padded(s.shape[1]))),
+        np.array([accuracy.relative, accuracy.largest_step]),
+        accuracy.absolute,
+        tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)),
+        tuple(watch),
+        tuple(tangents),
+        tuple(record),
+        tuple(new_sampling(model, p, x, stops, padded(s.shape[1]))),
         tuple(new_propagator(len(model.mode_names), model.moving, n)),
-    )  # fmt: skip
+    )
     return Passage(
-        status, float(record.clock[TIME]), x, record.x, record.s, record.ledger,
-        record.events[: record.counts[EVENTS]], int(record.counts[STEPS]),
-    )  # fmt: skip
+        status,
+        float(record.clock[TIME]),
+        x,
+        record.x,
+        record.s,
+        record.ledger,
+        record.events[: record.counts[EVENTS]],
+        int(record.counts[STEPS]),
+    )
 
 
 def new_record(times: FloatArray, n: int, ns: int, ledger: int, event_room: int) -> Record:
     """Room for what a run leaves at `times` [k]: n states, ns tangents, `ledger` rows, events."""
     z = np.zeros
     return Record(
-        times, z((len(times), n)), z((len(times), n, ns)), z((ledger, 3)), z((event_room, 3)), z(3),
-        z((4, 3)), z(2), z(6, dtype=np.int64),
-    )  # fmt: skip
+        times,
+        z((len(times), n)),
+        z((len(times), n, ns)),
+        z((ledger, 3)),
+        z((event_room, 3)),
+        z(3),
+        z((4, 3)),
+        z(2),
+        z(6, dtype=np.int64),
+    )
 
 
 def _step(n: int, nu: int, parameters: int, solved: int) -> Step:
     z, width = np.zeros, padded(n)
     return Step(
-        z(width), z(width), z((STAGES, width)), z((STAGES, width)), z(n), z((5, width)),
-        z((n, n)), z((n, nu)), z((n, parameters)), z((solved, width)), z((solved, width)),
-        z(n, dtype=np.int64), z(width), z(width), z(width),
-    )  # fmt: skip
+        z(width),
+        z(width),
+        z((STAGES, width)),
+        z((STAGES, width)),
+        z(n),
+        z((5, width)),
+        z((n, n)),
+        z((n, nu)),
+        z((n, parameters)),
+        z((solved, width)),
+        z((solved, width)),
+        z(n, dtype=np.int64),
+        z(width),
+        z(width),
+        z(width),
+    )
 
 
 def contact_table(model: Model) -> IntArray:
@@ -173,11 +214,28 @@ def new_watch(model: Model, n: int, p: FloatArray) -> Watch:
     guards, z = 3 * frictions + 4 * (elements - frictions), np.zeros
     strikes = (elements - frictions) * (n + 2)
     return Watch(
-        z(guards), z(modes), z(modes), z(watched), z(watched), z(watched), z((guards, n)),
-        z((guards, parameters)), z(n), z(parameters), z(n), z(n),
-        z(strikes), z((strikes, n)), z((strikes, parameters)), z(1), z((2, 3)),
-        limited_states(model), model.domain(p), z(modes), z(n),
-    )  # fmt: skip
+        z(guards),
+        z(modes),
+        z(modes),
+        z(watched),
+        z(watched),
+        z(watched),
+        z((guards, n)),
+        z((guards, parameters)),
+        z(n),
+        z(parameters),
+        z(n),
+        z(n),
+        z(strikes),
+        z((strikes, n)),
+        z((strikes, parameters)),
+        z(1),
+        z((2, 3)),
+        limited_states(model),
+        model.domain(p),
+        z(modes),
+        z(n),
+    )
 
 
 def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watch: Watch) -> None:
@@ -208,6 +266,17 @@ def new_tangents(
     table = z((n, ns))
     table[:, : s.shape[1]] = s
     return Tangents(
-        table.reshape(-1), table, columns, delay_column, z((STAGES, n * ns)), z(n * ns), z(n * ns),
-        z(n * ns), z((3, n, n)), z((3, n * ns)), z((n, n)), z((n, nu)), z((n, parameters)),
-    )  # fmt: skip
+        table.reshape(-1),
+        table,
+        columns,
+        delay_column,
+        z((STAGES, n * ns)),
+        z(n * ns),
+        z(n * ns),
+        z(n * ns),
+        z((3, n, n)),
+        z((3, n * ns)),
+        z((n, n)),
+        z((n, nu)),
+        z((n, parameters)),
+    )

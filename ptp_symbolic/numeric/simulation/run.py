@@ -40,11 +40,16 @@ EVENT_CAPACITY = 100_000
 AT_BOUND = 1e-6  # rad; where the equations end, steps can become too short to go on
 SLIDING = {-1.0: "slides backward", 0.0: "sticks", 1.0: "slides forward"}
 TOUCHING = {
-    -4.0: "leans on the lower face", -3.0: "bounces off the lower face",
-    -2.0: "lets go of the lower face", -1.0: "touches the lower face", 0.0: "is in the gap",
-    1.0: "touches the upper face", 2.0: "lets go of the upper face",
-    3.0: "bounces off the upper face", 4.0: "leans on the upper face",
-}  # fmt: skip
+    -4.0: "leans on the lower face",
+    -3.0: "bounces off the lower face",
+    -2.0: "lets go of the lower face",
+    -1.0: "touches the lower face",
+    0.0: "is in the gap",
+    1.0: "touches the upper face",
+    2.0: "lets go of the upper face",
+    3.0: "bounces off the upper face",
+    4.0: "leans on the upper face",
+}
 
 
 class SimulationError(InputError):
@@ -114,14 +119,29 @@ def simulate(
     else:
         accuracy = Accuracy(rtol, atol * tolerance_weights(model), largest_step)
         found = pass_through(
-            model, chosen, p, x, table, table.held, table.with_stops(t[[0, -1]]), t, accuracy,
-            ledger=True, event_room=EVENT_CAPACITY,
-        )  # fmt: skip
+            model,
+            chosen,
+            p,
+            x,
+            table,
+            table.held,
+            table.with_stops(t[[0, -1]]),
+            t,
+            accuracy,
+            ledger=True,
+            event_room=EVENT_CAPACITY,
+        )
     refuse_failure(model, p, found.status, found.reached, found.state)
     return Trajectory(
-        t, found.x, model.state_names, _named(model, found.events), found.ledger[:, 0],
-        found.ledger[:, 1], found.ledger[:, 2], found.steps,
-    )  # fmt: skip
+        t,
+        found.x,
+        model.state_names,
+        _named(model, found.events),
+        found.ledger[:, 0],
+        found.ledger[:, 1],
+        found.ledger[:, 2],
+        found.steps,
+    )
 
 
 def input_table(

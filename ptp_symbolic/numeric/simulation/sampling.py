@@ -74,16 +74,30 @@ def new_sampling(
     that there are more than MOST_SAMPLES instants.
     """
     samplers, rows, n, nu = (
-        len(model.sampler_periods), len(model.sampled), len(x), len(model.input_names),
-    )  # fmt: skip
+        len(model.sampler_periods),
+        len(model.sampled),
+        len(x),
+        len(model.input_names),
+    )
     size, real, whole = TIMING * samplers + rows, np.zeros, np.zeros(samplers, np.int64)
     functions = sampler_addresses(model.module) if samplers else np.zeros(2, np.int64)
     made = Sampling(
-        functions, np.ascontiguousarray(model.sampled[:, 0]),
-        np.ascontiguousarray(model.sampled[:, 1]), real(samplers), whole, whole.copy(), real(size),
-        real((size, n)), real((size, nu)), real((size, len(p))), real(ns), real((rows, ns)),
-        real(n), real(n), real(nu),
-    )  # fmt: skip
+        functions,
+        np.ascontiguousarray(model.sampled[:, 0]),
+        np.ascontiguousarray(model.sampled[:, 1]),
+        real(samplers),
+        whole,
+        whole.copy(),
+        real(size),
+        real((size, n)),
+        real((size, nu)),
+        real((size, len(p))),
+        real(ns),
+        real((rows, ns)),
+        real(n),
+        real(n),
+        real(nu),
+    )
     if samplers:
         model.module.sample(times[0], x, real(nu), p, real(len(model.mode_names)), made.z)
     for i, names in enumerate(model.sampler_periods):
@@ -147,9 +161,16 @@ def sample_with_tangents(equations, inputs, t, x, m, tangents, sampling):
         if not _comes(i, equations, inputs.ahead, t, x, m, sampling):
             continue
         call(
-            sampling.functions[1], t, x, inputs.ahead, equations.p, m, sampling.zx, sampling.zu,
+            sampling.functions[1],
+            t,
+            x,
+            inputs.ahead,
+            equations.p,
+            m,
+            sampling.zx,
+            sampling.zu,
             sampling.zp,
-        )  # fmt: skip
+        )
         moves = _fill_shift(i, tangents, sampling)
         if not inputs.held:
             evaluate_inputs(t, -1, *inputs.table, inputs.cursor, inputs.u)

@@ -102,9 +102,16 @@ def solve_accelerations(equations: Equations) -> Solve:
     moved = moved_inertias(mass, locks)
     inverses = _named_inverses(inverse_values(mass, moved, free), places, definitions)
     solve = Solve(
-        tuple(definitions), (ZERO,) * n, mass, force, tuple(free), tuple(inverses), chain, moved,
+        tuple(definitions),
+        (ZERO,) * n,
+        mass,
+        force,
+        tuple(free),
+        tuple(inverses),
+        chain,
+        moved,
         locks,
-    )  # fmt: skip
+    )
     accelerations = solve.solve(list(force))
     names = [sp.Symbol(f"accel_{place}", real=True) for place in places]
     lines = [(str(name), a) for name, a in zip(names, accelerations, strict=True)]

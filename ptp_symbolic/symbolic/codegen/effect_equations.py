@@ -22,8 +22,9 @@ def effect_equations(platform: Platform, effect: str, axis: str | None) -> list[
     """
     rest = tuple(e for e in platform.effects if (e.effect, e.axis) != (effect, axis))
     with_it = assemble(platform)
-    own = {n for e in with_it.effects if (e.effect.id, e.axis) == (effect, axis)
-           for n in e.parameters}  # fmt: skip
+    own = {
+        n for e in with_it.effects if (e.effect.id, e.axis) == (effect, axis) for n in e.parameters
+    }
     kept = tuple(p for p in platform.parameters if p.name not in own)
     before = {
         s.key: s for s in statements(assemble(replace(platform, effects=rest, parameters=kept)))
@@ -33,9 +34,10 @@ def effect_equations(platform: Platform, effect: str, axis: str | None) -> list[
     # a friction law is read as one, and with the torque that it acts against
     laws = {key[1] for key in changed if key[0] == "friction"}
     shown = [
-        s for s in found
+        s
+        for s in found
         if s.key in changed or (s.key[0] in ("friction", "torque") and s.key[1] in laws)
-    ]  # fmt: skip
+    ]
     rows = []
     for s in with_definitions(shown, found):
         added = _change(s, before) if s.key in changed else []
@@ -79,6 +81,10 @@ def _row(
     effect: str, title: str, latex: str, text: str, mathml: str, detail: bool = False
 ) -> dict[str, Any]:
     return {
-        "title": title, "effect": effect, "latex": latex, "text": text, "mathml": mathml,
+        "title": title,
+        "effect": effect,
+        "latex": latex,
+        "text": text,
+        "mathml": mathml,
         "detail": detail,
-    }  # fmt: skip
+    }

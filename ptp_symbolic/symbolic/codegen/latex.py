@@ -7,9 +7,24 @@ from sympy.printing.latex import LatexPrinter
 from sympy.printing.mathml import mathml
 
 GREEK = {
-    "theta", "omega", "tau", "alpha", "beta", "gamma", "delta", "epsilon", "eta", "kappa", "lambda",
-    "mu", "phi", "psi", "rho", "sigma", "zeta",
-}  # fmt: skip
+    "theta",
+    "omega",
+    "tau",
+    "alpha",
+    "beta",
+    "gamma",
+    "delta",
+    "epsilon",
+    "eta",
+    "kappa",
+    "lambda",
+    "mu",
+    "phi",
+    "psi",
+    "rho",
+    "sigma",
+    "zeta",
+}
 DERIVATIVES = {"dc": r"\Delta c", "dF": r"\Delta F"}
 LINE_WIDTH = 92
 ARGUMENT_WIDTH = 40  # of a maximum, beside what it is multiplied with

@@ -165,33 +165,50 @@ def friction_statements(friction: Friction) -> list[Statement]:
     stuck, broken = (sp.Symbol(f"F_{w}_{at}", real=True) for w in ("sticking", "breakaway"))
     return [
         Statement(
-            (*key, "sliding"), f"sliding: the friction torque against the motion, {direction} = ±1",
-            sliding(friction), friction.level, part="friction",
-        ),
-        Statement(
-            (*key, "sticking"), f"sticking: at {friction.rate} = 0 and {direction} = 0 friction"
-            " takes up the torque that acts, as long as", sp.Abs(stuck), broken, "<=",
+            (*key, "sliding"),
+            f"sliding: the friction torque against the motion, {direction} = ±1",
+            sliding(friction),
+            friction.level,
             part="friction",
         ),
         Statement(
-            (*key, "breakaway"), "breakaway: the torque up to which it holds against a start in"
-            f" direction {direction}", broken, friction.breakaway, part="friction",
+            (*key, "sticking"),
+            f"sticking: at {friction.rate} = 0 and {direction} = 0 friction"
+            " takes up the torque that acts, as long as",
+            sp.Abs(stuck),
+            broken,
+            "<=",
+            part="friction",
         ),
-    ]  # fmt: skip
+        Statement(
+            (*key, "breakaway"),
+            f"breakaway: the torque up to which it holds against a start in direction {direction}",
+            broken,
+            friction.breakaway,
+            part="friction",
+        ),
+    ]
 
 
 def _contact(contact: Contact) -> Iterator[Statement]:
     axis, key = contact.axis, ("contact", contact.axis)
     gap = sp.Symbol(f"half_gap_{axis}", real=True)
     apart = sp.Symbol(f"separation_{axis}", real=True)
-    yield Statement((*key, "gap"), f"half of the gap in the {axis} drive", gap, contact.half_gap,
-                    part="contact")  # fmt: skip
-    yield Statement((*key, "angle"), f"the angle across the gap of {axis}", apart,
-                    contact.separation, part="contact")  # fmt: skip
+    yield Statement(
+        (*key, "gap"), f"half of the gap in the {axis} drive", gap, contact.half_gap, part="contact"
+    )
+    yield Statement(
+        (*key, "angle"),
+        f"the angle across the gap of {axis}",
+        apart,
+        contact.separation,
+        part="contact",
+    )
     if contact.restitution is None:
         name = f"the torque that the shaft of {axis} transmits at a face"
-        yield Statement((*key, "torque"), name, shaft_torque(contact), contact.torque,
-                        part="contact")  # fmt: skip
+        yield Statement(
+            (*key, "torque"), name, shaft_torque(contact), contact.torque, part="contact"
+        )
     else:
         bounce = sp.Symbol(f"e_{axis}", real=True)
         name = f"the coefficient of restitution of a strike in {axis}"
@@ -216,8 +233,12 @@ def _sampler(number: int, sampler: Sampler) -> Iterator[Statement]:
     key = ("sampler", str(number))
     start = sp.Symbol("k", real=True) + sampler.phase
     instants = sp.Symbol("t_k", real=True)
-    yield Statement((*key, "instants"), "the instants at which is set anew what is held between",
-                    instants, sampler.offset + start * sampler.period)  # fmt: skip
+    yield Statement(
+        (*key, "instants"),
+        "the instants at which is set anew what is held between",
+        instants,
+        sampler.offset + start * sampler.period,
+    )
     for symbol, term in sampler.terms.items():
         yield Statement((*key, str(symbol)), f"{symbol}, by its name in the others", symbol, term)
     for symbol, value in sampler.updates.items():

@@ -14,9 +14,15 @@ from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, P
 from ptp_symbolic.symbolic.parameters import Parameter
 
 GAP = Parameter(
-    "gap_{axis}", "rad", 0.026005, 0.0, 1.0, "whole gap between the two faces",
-    vanishes=0.0, starts=(0.005, 0.02),
-)  # fmt: skip
+    "gap_{axis}",
+    "rad",
+    0.026005,
+    0.0,
+    1.0,
+    "whole gap between the two faces",
+    vanishes=0.0,
+    starts=(0.005, 0.02),
+)
 OPEN_GAP = replace(GAP, lower=1e-6, vanishes=None, starts=())
 RESTITUTION = Parameter(
     "e_gap_{axis}", "1", 0.5, 0.0, 1.0, "restitution: speed apart after a strike, per speed before"
@@ -43,10 +49,15 @@ def _kind(
         return Contribution(plays=(Play(place.own_axis, half, restitution, holds),))
 
     return Effect(
-        id="backlash", kind=kind, title=title, reference=reference,
-        parameters=lambda place: place.named(given), contribute=contribute,
-        structural=True, splits_axis=True,
-    )  # fmt: skip
+        id="backlash",
+        kind=kind,
+        title=title,
+        reference=reference,
+        parameters=lambda place: place.named(given),
+        contribute=contribute,
+        structural=True,
+        splits_axis=True,
+    )
 
 
 BACKLASH = Effect(
@@ -61,8 +72,9 @@ BACKLASH = Effect(
     " backlash disappears under preload, presliding does not.",
     kinds=(
         _kind("elastic_impact", "backlash with elastic impact", "Newton's restitution", True),
-        _kind("hysteresis_friction", "backlash, load held by friction", "thesis Eq. 2.17",
-              holds=True),
+        _kind(
+            "hysteresis_friction", "backlash, load held by friction", "thesis Eq. 2.17", holds=True
+        ),
         _kind("hysteresis_inertia", "backlash, load coasting", "thesis Eq. 2.18, erratum 29"),
     ),
-)  # fmt: skip
+)

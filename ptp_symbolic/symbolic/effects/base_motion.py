@@ -10,19 +10,37 @@ from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "a_base", "m/s^2", 0.0, 0.0, 1e3, "amplitude of the base's acceleration",
-        vanishes=0.0, starts=(0.3,),
+        "a_base",
+        "m/s^2",
+        0.0,
+        0.0,
+        1e3,
+        "amplitude of the base's acceleration",
+        vanishes=0.0,
+        starts=(0.3,),
     ),
     Parameter("f_base", "Hz", 1.0, 1e-3, 1e3, "frequency of the base's motion", locked_to="time"),
     Parameter(
-        "phi_base", "rad", 0.0, -7.0, 7.0, "phase of the base's acceleration (a sine) at time zero",
-        starts=(0.0, 2.0, -2.0), period=2 * math.pi,
+        "phi_base",
+        "rad",
+        0.0,
+        -7.0,
+        7.0,
+        "phase of the base's acceleration (a sine) at time zero",
+        starts=(0.0, 2.0, -2.0),
+        period=2 * math.pi,
     ),
     Parameter(
-        "psi_base", "rad", 0.0, -7.0, 7.0, "azimuth of the base's motion",
-        starts=(0.0, 1.6), period=2 * math.pi,
+        "psi_base",
+        "rad",
+        0.0,
+        -7.0,
+        7.0,
+        "azimuth of the base's motion",
+        starts=(0.0, 1.6),
+        period=2 * math.pi,
     ),
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

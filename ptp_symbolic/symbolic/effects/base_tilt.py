@@ -6,13 +6,25 @@ from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, P
 from ptp_symbolic.symbolic.parameters import Parameter
 
 TILT = Parameter(
-    "beta_base", "rad", 0.0, 0.0, 1.5, "angle between the pan axis and the vertical",
-    vanishes=0.0, starts=(0.05,),
-)  # fmt: skip
+    "beta_base",
+    "rad",
+    0.0,
+    0.0,
+    1.5,
+    "angle between the pan axis and the vertical",
+    vanishes=0.0,
+    starts=(0.05,),
+)
 AZIMUTH = Parameter(
-    "alpha_base", "rad", 0.0, -7.0, 7.0, "pan angle at which a payload on the boresight would rest",
-    starts=(-math.pi / 2, 0.0, math.pi / 2, math.pi), period=2 * math.pi,
-)  # fmt: skip
+    "alpha_base",
+    "rad",
+    0.0,
+    -7.0,
+    7.0,
+    "pan angle at which a payload on the boresight would rest",
+    starts=(-math.pi / 2, 0.0, math.pi / 2, math.pi),
+    period=2 * math.pi,
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

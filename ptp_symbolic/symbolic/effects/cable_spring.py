@@ -5,18 +5,35 @@ from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "k1_cable_{axis}", "N m/rad", 0.0, 0.0, 1e4, "linear stiffness of the cable wrap",
-        vanishes=0.0, starts=(0.3,),
+        "k1_cable_{axis}",
+        "N m/rad",
+        0.0,
+        0.0,
+        1e4,
+        "linear stiffness of the cable wrap",
+        vanishes=0.0,
+        starts=(0.3,),
     ),
     Parameter(
-        "k3_cable_{axis}", "N m/rad^3", 0.0, 0.0, 1e4, "cubic stiffness of the cable wrap",
-        vanishes=0.0, starts=(0.1,),
+        "k3_cable_{axis}",
+        "N m/rad^3",
+        0.0,
+        0.0,
+        1e4,
+        "cubic stiffness of the cable wrap",
+        vanishes=0.0,
+        starts=(0.1,),
     ),
     Parameter(
-        "theta0_cable_{axis}", "rad", 0.0, -7.0, 7.0, "angle at which the cable wrap is at rest",
+        "theta0_cable_{axis}",
+        "rad",
+        0.0,
+        -7.0,
+        7.0,
+        "angle at which the cable wrap is at rest",
         starts=(-0.5, 0.5),
     ),
-)  # fmt: skip
+)
 LINEAR, CUBIC, REST = (p.name for p in PARAMETERS)
 MEMBERS = (
     Member("linear spring", (LINEAR, REST)),

@@ -4,9 +4,15 @@ from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Place
 from ptp_symbolic.symbolic.parameters import Parameter
 
 TORQUE = Parameter(
-    "tau0_{axis}", "N m", 0.0, -1e4, 1e4, "constant torque on the {axis} joint",
-    vanishes=0.0, starts=(-0.3, 0.3),
-)  # fmt: skip
+    "tau0_{axis}",
+    "N m",
+    0.0,
+    -1e4,
+    1e4,
+    "constant torque on the {axis} joint",
+    vanishes=0.0,
+    starts=(-0.3, 0.3),
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

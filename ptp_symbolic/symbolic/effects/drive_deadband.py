@@ -7,10 +7,16 @@ from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "u_dead_{axis}", "V", 0.0, 0.0, 1e3, "half width of the {axis} drive's dead band",
-        vanishes=0.0, starts=(0.3,),
+        "u_dead_{axis}",
+        "V",
+        0.0,
+        0.0,
+        1e3,
+        "half width of the {axis} drive's dead band",
+        vanishes=0.0,
+        starts=(0.3,),
     ),
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

@@ -6,16 +6,26 @@ from ptp_symbolic.symbolic.parameters import Parameter, harmonics
 
 AMPLITUDES = harmonics(
     Parameter(
-        "e_sin_{axis}", "rad", 0.0, -0.2, 0.2,
+        "e_sin_{axis}",
+        "rad",
+        0.0,
+        -0.2,
+        0.2,
         "reading error of the encoder: part that goes with the sine of the joint angle",
-        vanishes=0.0, starts=(0.002,),
+        vanishes=0.0,
+        starts=(0.002,),
     ),
     Parameter(
-        "e_cos_{axis}", "rad", 0.0, -0.2, 0.2,
+        "e_cos_{axis}",
+        "rad",
+        0.0,
+        -0.2,
+        0.2,
         "reading error of the encoder: part that goes with the cosine",
-        vanishes=0.0, starts=(0.002,),
+        vanishes=0.0,
+        starts=(0.002,),
     ),
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

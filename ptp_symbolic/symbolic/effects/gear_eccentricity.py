@@ -6,15 +6,26 @@ from ptp_symbolic.symbolic.parameters import Parameter, harmonics
 
 AMPLITUDES = harmonics(
     Parameter(
-        "g_sin_{axis}", "rad", 0.0, -0.2, 0.2,
+        "g_sin_{axis}",
+        "rad",
+        0.0,
+        -0.2,
+        0.2,
         "transmission error: part that goes with the sine of the gear output's angle",
-        vanishes=0.0, starts=(0.002,),
+        vanishes=0.0,
+        starts=(0.002,),
     ),
     Parameter(
-        "g_cos_{axis}", "rad", 0.0, -0.2, 0.2, "transmission error: part that goes with the cosine",
-        vanishes=0.0, starts=(0.002,),
+        "g_cos_{axis}",
+        "rad",
+        0.0,
+        -0.2,
+        0.2,
+        "transmission error: part that goes with the cosine",
+        vanishes=0.0,
+        starts=(0.002,),
     ),
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

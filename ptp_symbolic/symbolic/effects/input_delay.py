@@ -5,10 +5,16 @@ from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "t_delay_{axis}", "s", 0.0, 0.0, 1.0, "delay of the {axis} input",
-        vanishes=0.0, starts=(0.002,),
+        "t_delay_{axis}",
+        "s",
+        0.0,
+        0.0,
+        1.0,
+        "delay of the {axis} input",
+        vanishes=0.0,
+        starts=(0.002,),
     ),
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

@@ -7,10 +7,16 @@ from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "mu_load_{axis}", "1", 0.0, 0.0, 0.9, "dry friction per torque transmitted to the joint",
-        vanishes=0.0, starts=(0.05,),
+        "mu_load_{axis}",
+        "1",
+        0.0,
+        0.0,
+        0.9,
+        "dry friction per torque transmitted to the joint",
+        vanishes=0.0,
+        starts=(0.05,),
     ),
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

@@ -5,11 +5,17 @@ from ptp_symbolic.symbolic.parameters import Parameter
 
 SHIFTS = tuple(
     Parameter(
-        f"dc_{k}_payload", "m", 0.0, -1.0, 1.0, f"shift of the centre of mass along {k}",
-        vanishes=0.0, starts=(0.0,),
+        f"dc_{k}_payload",
+        "m",
+        0.0,
+        -1.0,
+        1.0,
+        f"shift of the centre of mass along {k}",
+        vanishes=0.0,
+        starts=(0.0,),
     )
     for k in "xyz"
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

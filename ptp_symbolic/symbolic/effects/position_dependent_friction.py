@@ -8,15 +8,26 @@ from ptp_symbolic.symbolic.parameters import Parameter, harmonics
 
 AMPLITUDES = harmonics(
     Parameter(
-        "F_sin_{axis}", "N m", 0.0, -1e4, 1e4,
+        "F_sin_{axis}",
+        "N m",
+        0.0,
+        -1e4,
+        1e4,
         "part of dry friction that goes with the sine of the angle at the gear output",
-        vanishes=0.0, starts=(0.0, 0.1),
+        vanishes=0.0,
+        starts=(0.0, 0.1),
     ),
     Parameter(
-        "F_cos_{axis}", "N m", 0.0, -1e4, 1e4, "part of dry friction that goes with the cosine",
-        vanishes=0.0, starts=(0.1,),
+        "F_cos_{axis}",
+        "N m",
+        0.0,
+        -1e4,
+        1e4,
+        "part of dry friction that goes with the cosine",
+        vanishes=0.0,
+        starts=(0.1,),
     ),
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

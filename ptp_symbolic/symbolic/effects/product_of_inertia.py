@@ -5,12 +5,17 @@ from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = tuple(
     Parameter(
-        f"J_{pair}_tilt", "kg m^2", 0.0, -1e4, 1e4,
+        f"J_{pair}_tilt",
+        "kg m^2",
+        0.0,
+        -1e4,
+        1e4,
         f"element {pair} of the tilt body's inertia tensor (minus the integral of {pair} dm)",
-        vanishes=0.0, starts=(0.0,),
+        vanishes=0.0,
+        starts=(0.0,),
     )
     for pair in ("xy", "xz", "yz")
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

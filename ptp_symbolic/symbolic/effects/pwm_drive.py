@@ -57,10 +57,15 @@ def _bipolar(place: Place) -> Contribution:
 
 def _kind(kind: str, title: str, contribute: Contributing, *given: Parameter) -> Effect:
     return Effect(
-        id="pwm_drive", kind=kind, title=title, contribute=contribute, structural=True,
+        id="pwm_drive",
+        kind=kind,
+        title=title,
+        contribute=contribute,
+        structural=True,
         reference="Mohan (2003), section 7 (full bridge); LM629 data sheet; thesis section 3.2.3.1",
-        parameters=lambda place: place.named(given), needs=("drive_voltage_{axis}",),
-    )  # fmt: skip
+        parameters=lambda place: place.named(given),
+        needs=("drive_voltage_{axis}",),
+    )
 
 
 KINDS = (

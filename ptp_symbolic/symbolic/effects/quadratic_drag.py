@@ -7,10 +7,16 @@ from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "c_drag_{axis}", "N m s^2/rad^2", 0.0, 0.0, 1e4, "quadratic drag on the {axis} joint",
-        vanishes=0.0, starts=(0.3,),
+        "c_drag_{axis}",
+        "N m s^2/rad^2",
+        0.0,
+        0.0,
+        1e4,
+        "quadratic drag on the {axis} joint",
+        vanishes=0.0,
+        starts=(0.3,),
     ),
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

@@ -7,14 +7,25 @@ from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "a_rest_{axis}", "1", 0.0, 0.0, 10.0, "relative growth of breakaway per e-fold of rest",
-        vanishes=0.0, starts=(0.1,),
+        "a_rest_{axis}",
+        "1",
+        0.0,
+        0.0,
+        10.0,
+        "relative growth of breakaway per e-fold of rest",
+        vanishes=0.0,
+        starts=(0.1,),
     ),
     Parameter(
-        "t_rest_{axis}", "s", 1.0, 1e-4, 1e4, "time at rest after which breakaway grows",
+        "t_rest_{axis}",
+        "s",
+        1.0,
+        1e-4,
+        1e4,
+        "time at rest after which breakaway grows",
         starts=(0.1, 2.0),
     ),
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:
@@ -28,12 +39,14 @@ def _contribute(place: Place) -> Contribution:
         changes={f"breakaway_torque_{place.axis}": Change(1 + gain * sp.log(1 + rest / time))},
         states=(
             State(
-                str(rest), "s",
+                str(rest),
+                "s",
                 f"rest of the {place.axis} friction; while sliding, its last one",
-                1 - place.slide**2, zero_at_rest_of=place.axis,
+                1 - place.slide**2,
+                zero_at_rest_of=place.axis,
             ),
         ),
-    )  # fmt: skip
+    )
 
 
 RATE_DEPENDENT_BREAKAWAY = Effect(

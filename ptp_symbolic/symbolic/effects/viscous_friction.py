@@ -4,9 +4,15 @@ from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Place
 from ptp_symbolic.symbolic.parameters import Parameter
 
 DAMPING = Parameter(
-    "b_{axis}", "N m s/rad", 0.1, 0.0, 1e4, "viscous friction in the {axis} joint",
-    vanishes=0.0, starts=(0.1,),
-)  # fmt: skip
+    "b_{axis}",
+    "N m s/rad",
+    0.1,
+    0.0,
+    1e4,
+    "viscous friction in the {axis} joint",
+    vanishes=0.0,
+    starts=(0.1,),
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

@@ -5,10 +5,16 @@ from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "u0_{axis}", "V", 0.0, -1e3, 1e3, "offset of the {axis} drive's voltage",
-        vanishes=0.0, starts=(-0.3, 0.3),
+        "u0_{axis}",
+        "V",
+        0.0,
+        -1e3,
+        1e3,
+        "offset of the {axis} drive's voltage",
+        vanishes=0.0,
+        starts=(-0.3, 0.3),
     ),
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

@@ -7,10 +7,16 @@ from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "u_max_{axis}", "V", 1e6, 1e-3, 1e6, "largest voltage of the {axis} drive",
-        vanishes=1e6, starts=(10.0, 20.0),
+        "u_max_{axis}",
+        "V",
+        1e6,
+        1e-3,
+        1e6,
+        "largest voltage of the {axis} drive",
+        vanishes=1e6,
+        starts=(10.0, 20.0),
     ),
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:

@@ -7,14 +7,25 @@ from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
-        "k_heat_{axis}", "1/W", 0.0, 0.0, 1e3, "relative rise of resistance per watt, settled",
-        vanishes=0.0, starts=(0.05,),
+        "k_heat_{axis}",
+        "1/W",
+        0.0,
+        0.0,
+        1e3,
+        "relative rise of resistance per watt, settled",
+        vanishes=0.0,
+        starts=(0.05,),
     ),
     Parameter(
-        "t_heat_{axis}", "s", 30.0, 1e-2, 1e5, "thermal time constant of the winding",
+        "t_heat_{axis}",
+        "s",
+        30.0,
+        1e-2,
+        1e5,
+        "thermal time constant of the winding",
         starts=(5.0, 60.0),
     ),
-)  # fmt: skip
+)
 
 
 def _parameters(place: Place) -> tuple[Parameter, ...]:
@@ -30,11 +41,13 @@ def _contribute(place: Place) -> Contribution:
         changes={f"winding_resistance_{place.axis}": Change(factor=1 + heat)},
         states=(
             State(
-                str(heat), "1", f"relative rise of the {place.axis} winding's resistance",
+                str(heat),
+                "1",
+                f"relative rise of the {place.axis} winding's resistance",
                 (gain * loss - heat) / time,
             ),
         ),
-    )  # fmt: skip
+    )
 
 
 WINDING_HEATING = Effect(

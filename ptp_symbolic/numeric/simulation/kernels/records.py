@@ -204,13 +204,27 @@ def source_stamp() -> int:
 def equations_at(functions, p, friction_rates, zero_at_rest, contacts):
     """Equations of the model whose emitted functions have the addresses `functions` [7]."""
     derivative, jacobian, guards, guard_jacobian, energy, impacts, impact_jacobian = (
-        functions[0], functions[1], functions[2], functions[3], functions[4], functions[5],
+        functions[0],
+        functions[1],
+        functions[2],
+        functions[3],
+        functions[4],
+        functions[5],
         functions[6],
-    )  # fmt: skip
+    )
     return Equations(
-        derivative, jacobian, guards, guard_jacobian, energy, p, friction_rates, zero_at_rest,
-        impacts, impact_jacobian, contacts,
-    )  # fmt: skip
+        derivative,
+        jacobian,
+        guards,
+        guard_jacobian,
+        energy,
+        p,
+        friction_rates,
+        zero_at_rest,
+        impacts,
+        impact_jacobian,
+        contacts,
+    )
 
 
 @inlined

@@ -83,10 +83,12 @@ def new_propagator(modes: int, moving: int, n: int) -> Propagator:
     """Room for a machine of n states, of which the first `moving` move by themselves."""
     z = np.zeros
     return Propagator(
-        z(modes), np.array([0.0, 0.0, 0.0, 1.0]),
+        z(modes),
+        np.array([0.0, 0.0, 0.0, 1.0]),
         *(z((moving, padded(moving))) for _ in range(5)),
-        *(z((moving, moving)) for _ in range(5)), *(z(padded(n)) for _ in range(5)),
-    )  # fmt: skip
+        *(z((moving, moving)) for _ in range(5)),
+        *(z(padded(n)) for _ in range(5)),
+    )
 
 
 @merged
@@ -221,8 +223,12 @@ def take_linear_part(equations, inputs, t, x, m, step, propagator):
 def fill_propagator(h, propagator):
     """Fill the matrices of a step of h s from the linear part."""
     linear, phi0, phi1, phi2, product = (
-        propagator.linear, propagator.phi0, propagator.phi1, propagator.phi2, propagator.product,
-    )  # fmt: skip
+        propagator.linear,
+        propagator.phi0,
+        propagator.phi1,
+        propagator.phi2,
+        propagator.product,
+    )
     fill_phi_functions(linear, 0.5 * h, phi0, phi1, phi2, product)
     fill_columns(1.0, phi0, propagator.half_decay)
     fill_columns(0.5 * h, phi1, propagator.half)

@@ -152,9 +152,15 @@ def fit_coefficients(equations, inputs, t, h, m, step, tangents):
             copy_matrix(step.fx, tangents.fx[0])
         else:
             jacobian(
-                equations, time, step.point, inputs.u, m, tangents.fx[node], tangents.fu,
+                equations,
+                time,
+                step.point,
+                inputs.u,
+                m,
+                tangents.fx[node],
+                tangents.fu,
                 tangents.fp,
-            )  # fmt: skip
+            )
         fill_drive(inputs, tangents, tangents.by[node])
     for a in range(n):
         parabola(tangents.fx[0, a], tangents.fx[1, a], tangents.fx[2, a])

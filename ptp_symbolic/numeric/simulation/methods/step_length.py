@@ -2,9 +2,27 @@
 
 import numpy as np
 
-from ptp_symbolic.numeric.simulation.kernels.records import LENGTH, STEPS, inlined
-from ptp_symbolic.numeric.simulation.methods.steps import attempt, error_norm, fill_dense
-from ptp_symbolic.numeric.simulation.outputs import fill_powers, ledger_error
+from ptp_symbolic.numeric.simulation.kernels.records import (
+    LENGTH,
+    STEPS,
+    TIME,
+    copy,
+    flush,
+    inlined,
+    merged,
+)
+from ptp_symbolic.numeric.simulation.methods.steps import (
+    attempt,
+    error_norm,
+    fill_dense,
+    push_tangents,
+)
+from ptp_symbolic.numeric.simulation.outputs import (
+    fill_powers,
+    ledger_error,
+    work_done,
+    write_inside,
+)
 
 
 @inlined
@@ -50,3 +68,18 @@ def is_balanced(equations, inputs, t, length, limits, step, watch, record):
     fill_powers(equations, inputs, t, length, watch.m, step, record)
     error = ledger_error(length, limits[0], record)
     return error <= 1.0 or accept(error, length, record.clock)
+
+
+@merged
+def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record):
+    """Go to the end of an accepted step: outputs inside it, work done over it, tangents."""
+    write_inside(equations, inputs, t, length, t_new, watch.m, step, record)
+    if len(record.ledger) > 0:
+        for c in range(1, 3):
+            record.totals[c] += work_done(1.0, length, record.powers, c)
+    if tangents.table.shape[1] > 0:
+        push_tangents(method, equations, inputs, t, length, watch.m, step, tangents)
+        flush(tangents.s)
+    copy(step.end, x)
+    flush(x)
+    record.clock[TIME] = t_new

@@ -33,9 +33,18 @@ def evaluate_inputs(
 
 @njit(cache=True, **KERNEL)
 def evaluate_input_slopes(
-    t, side, breaks, coefficients, offsets, sines, sine_offsets, sweeps, sweep_offsets, cursor,
+    t,
+    side,
+    breaks,
+    coefficients,
+    offsets,
+    sines,
+    sine_offsets,
+    sweeps,
+    sweep_offsets,
+    cursor,
     slope,
-):  # fmt: skip
+):
     """Fill slope [nu] with du/dt of every signal at time t in s, as `evaluate_inputs` does u."""
     for j in range(slope.shape[0]):
         row, s = _find_piece(t, side, breaks, offsets, cursor, j)

@@ -219,9 +219,14 @@ class InputTable:
     ) -> tuple[FloatArray, FloatArray, IntArray, FloatArray, IntArray, FloatArray, IntArray]:
         """The arrays that evaluate_inputs takes after `side`, in its order."""
         return (
-            self.breaks, self.coefficients, self.offsets, self.sines, self.sine_offsets,
-            self.sweeps, self.sweep_offsets,
-        )  # fmt: skip
+            self.breaks,
+            self.coefficients,
+            self.offsets,
+            self.sines,
+            self.sine_offsets,
+            self.sweeps,
+            self.sweep_offsets,
+        )
 
     @property
     def held(self) -> bool:

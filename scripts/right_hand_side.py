@@ -1,0 +1,66 @@
+"""One evaluation of the right-hand side beside gcc's code for the same formulas."""
+
+from __future__ import annotations
+
+import numpy as np
+from c_peer import compile_c, pointer
+from numba import njit
+from timing import Row, best
+
+import ptp_symbolic
+from ptp_symbolic.numeric.simulation.kernels.records import KERNEL
+
+
+@njit(**KERNEL)
+def _chained(derivative, count, x, u, p, dx):  # type: ignore[no-untyped-def]
+    for _ in range(count):
+        derivative(0.0, x, u, p, x, dx)
+        for a in range(4):
+            x[a] += 1e-9 * dx[a]
+    return x[0]
+
+
+@njit(**KERNEL)
+def _independent(derivative, count, states, u, p, dx):  # type: ignore[no-untyped-def]
+    total = 0.0
+    for i in range(count):
+        derivative(0.0, states[i % len(states)], u, p, dx, dx)
+        for a in range(4):
+            total += dx[a]
+    return total
+
+
+def right_hand_side() -> list[Row]:
+    """The payload model's right-hand side beside C."""
+    model, count = ptp_symbolic.load("payload"), 20_000
+    p, u, library = model.parameter_vector(), np.array([0.3, 1.0]), compile_c(model)
+    states = np.random.default_rng(1).standard_normal((64, 4))
+    x, dx, derivative = states[0].copy(), np.zeros(4), model.module.mode_derivative
+    times = {
+        "chained": best(lambda: _chained(derivative, count, x, u, p, dx), 500)[0],
+        "throughput": best(lambda: _independent(derivative, count, states, u, p, dx), 500)[0],
+    }
+    if library is None:
+        return [
+            {"what": f"right-hand side, {name}", "ns": t / count * 1e9, "peer": "no gcc here"}
+            for name, t in times.items()
+        ]
+    peer = {
+        "chained": lambda: library.chained(count, pointer(x), pointer(u), pointer(p)),
+        "throughput": lambda: library.independent(
+            count, len(states), pointer(states), pointer(u), pointer(p)
+        ),
+    }
+    rows = []
+    for name, t in times.items():
+        c, peer_name = best(peer[name], 500)[0], "gcc -O3 -march=native"
+        rows.append(
+            {
+                "what": f"right-hand side, {name}",
+                "ns": t / count * 1e9,
+                "peer": peer_name,
+                "peer ns": c / count * 1e9,
+                "ratio": t / c,
+            }
+        )
+    return rows
