@@ -15,6 +15,7 @@ from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from types import FunctionType
 
+import platformdirs
 import sympy as sp
 
 from ptp_symbolic.atomic_files import write_text_if_changed
@@ -46,15 +47,18 @@ def cache_folder() -> Path:
 
 
 def _usual_folder() -> Path:
+    """PTP_SYMBOLIC_CACHE, else the usual place of caches, else one of the user's own where
+    temporary files go.
+    """
     named = os.environ.get("PTP_SYMBOLIC_CACHE")
     if named:
         return Path(named)
-    base = os.environ.get("XDG_CACHE_HOME")
-    root = Path(base) if base else Path.home() / ".cache"
-    if not os.access(root if root.exists() else root.parent, os.W_OK):
-        owner = os.getuid() if hasattr(os, "getuid") else "user"
-        return Path(tempfile.gettempdir()) / f"ptp_symbolic-{owner}"
-    return root / "ptp_symbolic"
+    usual = platformdirs.user_cache_path("ptp_symbolic", appauthor=False)
+    root = usual.parent
+    if os.access(root if root.exists() else root.parent, os.W_OK):
+        return usual
+    owner = os.getuid() if hasattr(os, "getuid") else "user"
+    return Path(tempfile.gettempdir()) / f"ptp_symbolic-{owner}"
 
 
 def emitted(equations: Equations, usual: Mapping[str, Parameter]) -> Path:

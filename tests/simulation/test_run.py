@@ -6,6 +6,7 @@ from scipy.integrate import solve_ivp
 
 import ptp_symbolic
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.simulation import run
 from ptp_symbolic.numeric.simulation.methods.tableau import ERROR, A, C
 from ptp_symbolic.numeric.simulation.signals.inputs import multisine, ramp, step
 
@@ -109,3 +110,22 @@ def test_bad_arguments_are_refused(drive) -> None:
         ptp_symbolic.simulate(drive, 1.0, parameters={"J_pan": -1.0})
     with pytest.raises(InputError, match="Duration -1 s"):
         ptp_symbolic.simulate(drive, -1.0)
+
+
+@pytest.mark.parametrize("method", ["rosenbrock", "fixed_step"])
+def test_no_event_is_dropped_where_the_room_is_small(
+    drive, method: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A motor to and fro: its friction lets go and holds, its gear crosses the gap, each time."""
+    inputs = {"u_pan": multisine([12.0], [1.0])}
+    usual = ptp_symbolic.simulate(drive, 3.0, inputs, method=method)
+    assert len(usual.events) > 12
+    monkeypatch.setattr(run, "EVENT_ROOM", 4)
+    assert ptp_symbolic.simulate(drive, 3.0, inputs, method=method).events == usual.events
+
+
+@pytest.mark.parametrize("name", ["rtol", "atol", "largest_step"])
+@pytest.mark.parametrize("value", [-1.0, 0.0, np.nan])
+def test_tolerances_that_mean_nothing_are_refused(drive, name: str, value: float) -> None:
+    with pytest.raises(InputError, match=rf"{name} = .*; give a number above zero"):
+        ptp_symbolic.simulate(drive, 0.1, **{name: value})

@@ -31,8 +31,9 @@ MOST_STEPS = 1e9
 class FixedPassage:
     """What steps of fixed length left: status, time reached in s and state [n] there.
 
-    x [k, n], ledger [k, 3] (stored, supplied, dissipated in J), events [e, 3] (time, element, mode
-    entered), steps taken, and the most mode sets that one of them tried.
+    x [k, n], ledger [k, 3] (stored, supplied, dissipated in J), the first events [e, 3] (time,
+    element, mode entered) and how many there were, steps taken, and the most mode sets that one of
+    them tried.
     """
 
     status: int
@@ -41,6 +42,7 @@ class FixedPassage:
     x: FloatArray
     ledger: FloatArray
     events: FloatArray
+    event_count: int
     steps: int
     most_sweeps: int
 
@@ -111,6 +113,7 @@ def pass_in_steps(
         record.x[kept],
         record.ledger[kept],
         record.events[: counts[EVENTS]],
+        int(counts[EVENTS]),
         int(counts[STEPS]),
         int(counts[INSTANT]),
     )

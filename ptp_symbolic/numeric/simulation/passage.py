@@ -38,7 +38,7 @@ class Passage:
     """What a run left: status, time reached in s, state [n] there, and outputs at the times asked.
 
     x [k, n], s [k, n, ns], ledger [k, 3] (stored, supplied, dissipated in J; no rows if not asked
-    for), events [e, 3] (time, element, mode entered), steps tried.
+    for), the first events [e, 3] (time, element, mode entered) and the number of all, steps tried.
     """
 
     status: int
@@ -48,6 +48,7 @@ class Passage:
     s: FloatArray
     ledger: FloatArray
     events: FloatArray
+    event_count: int
     steps: int
 
 
@@ -151,6 +152,7 @@ def pass_through(
         record.s,
         record.ledger,
         record.events[: record.counts[EVENTS]],
+        int(record.counts[EVENTS]),
         int(record.counts[STEPS]),
     )
 

@@ -36,7 +36,7 @@ FloatArray = NDArray[np.float64]
 OUTPUT_STEP = 1e-3
 MOST_SAMPLES = 5_000_000
 FIXED_STEP = "fixed_step"
-EVENT_CAPACITY = 100_000
+EVENT_ROOM = 100_000  # events for which there is room at first; a run with more is repeated
 AT_BOUND = 1e-6  # rad; where the equations end, steps can become too short to go on
 SLIDING = {-1.0: "slides backward", 0.0: "sticks", 1.0: "slides forward"}
 TOUCHING = {
@@ -106,19 +106,23 @@ def simulate(
     winding settles, "fixed_step" for steps of `step` s, None to let the model choose. Where a
     controller samples, the state at that instant is the one after it.
 
-    Raises InputError for unknown names, times that do not increase and a step that does not fit,
-    SimulationError when the state diverges or modes switch without end.
+    Raises InputError for unknown names, times that do not increase, a tolerance or largest step
+    that is not above zero and a step that does not fit, SimulationError when the state diverges or
+    modes switch without end.
     """
     t = output_times(times)
     x, p = start_of(model, initial or {}), checked_parameters(model, parameters or {})
     table = input_table(model, inputs or {}, p, float(t[-1]))
     chosen = chosen_method(model, method)
-    found: Passage | FixedPassage
-    if chosen == FIXED_STEP:
-        found = pass_in_steps(model, p, x, table, t, step, EVENT_CAPACITY)
-    else:
+    for name, value in (("rtol", rtol), ("atol", atol), ("largest_step", largest_step)):
+        if not value > 0.0:
+            raise InputError(f"{name} = {value:g}; give a number above zero.")
+
+    def run(event_room: int) -> Passage | FixedPassage:
+        if chosen == FIXED_STEP:
+            return pass_in_steps(model, p, x, table, t, step, event_room)
         accuracy = Accuracy(rtol, atol * tolerance_weights(model), largest_step)
-        found = pass_through(
+        return pass_through(
             model,
             chosen,
             p,
@@ -129,8 +133,12 @@ def simulate(
             t,
             accuracy,
             ledger=True,
-            event_room=EVENT_CAPACITY,
+            event_room=event_room,
         )
+
+    found = run(EVENT_ROOM)
+    if found.event_count > EVENT_ROOM:
+        found = run(found.event_count)
     refuse_failure(model, p, found.status, found.reached, found.state)
     return Trajectory(
         t,
