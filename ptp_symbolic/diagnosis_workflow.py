@@ -42,7 +42,12 @@ from ptp_symbolic.numeric.diagnose.summary import (
 )
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, accuracy
 from ptp_symbolic.numeric.diagnose.verdict import Verdict, decide
-from ptp_symbolic.numeric.identify.fit import Effort, all_values_at_start, fit_parameters, unblinded
+from ptp_symbolic.numeric.identify.fit import (
+    Effort,
+    all_values_at_start,
+    fit_parameters,
+    with_finite_differences,
+)
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.run import prepare_runs
 from ptp_symbolic.numeric.runtime.model import Model
@@ -107,7 +112,7 @@ def fit_platform(
         if task.free:
             progress("fitting")
             task, trial = refitted_without_chaos(task, fit_declared(task, propose(task)))
-            trial = replace(trial, fit=unblinded(trial.fit, executor))
+            trial = replace(trial, fit=with_finite_differences(trial.fit, executor))
         floor = floor_of(task, trial, carried_noise(task, trial.fit))
     units = model.units
     error = {
@@ -204,7 +209,7 @@ def _task(
 def _write_up(
     platform: Platform, task: Task, found: Search, verdict: Verdict, noted: Sequence[str]
 ) -> Output:
-    after = replace(verdict.final, fit=unblinded(verdict.final.fit, task.executor))
+    after = replace(verdict.final, fit=with_finite_differences(verdict.final.fit, task.executor))
     intervals = {e.name: e for e in estimates(after.fit)}
     parts = {
         "train": (found.declared.fit, after.fit),

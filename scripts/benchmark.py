@@ -37,9 +37,9 @@ from timing import Row, best
 import ptp_symbolic
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation import passage
+from ptp_symbolic.numeric.simulation import integration
+from ptp_symbolic.numeric.simulation.integration import Solution, integrate, tolerance_weights
 from ptp_symbolic.numeric.simulation.kernels.records import DONE
-from ptp_symbolic.numeric.simulation.passage import Passage, pass_through, tolerance_weights
 from ptp_symbolic.numeric.simulation.signals import inputs
 from ptp_symbolic.platform import ParameterDeclaration, read_platform
 
@@ -64,9 +64,9 @@ def one_trajectory() -> list[Row]:
     p, u, start = model.parameter_vector(), np.zeros(2), np.array([0.0, 0.5, 1.0, 0.0])
     table, ends = inputs.stack([inputs.constant(0.0)] * 2), np.array([0.0, END])
 
-    def run(tolerance: float) -> Passage:
-        accuracy = passage.Accuracy(tolerance, np.full(4, tolerance), 0.5)
-        return pass_through(model, "runge_kutta", p, start, table, True, ends, ends, accuracy)
+    def run(tolerance: float) -> Solution:
+        accuracy = integration.Accuracy(tolerance, np.full(4, tolerance), 0.5)
+        return integrate(model, "runge_kutta", p, start, table, True, ends, ends, accuracy)
 
     def peer(tolerance: float) -> Any:
         def rhs(t: float, x: Any) -> Any:
@@ -99,14 +99,14 @@ def off(x: Any, exact: Any) -> float:
     return float(np.max(np.abs(x - exact)))
 
 
-def prepare(model: Model, signal: inputs.InputSignal) -> Callable[..., Passage]:
+def prepare(model: Model, signal: inputs.InputSignal) -> Callable[..., Solution]:
     """A function that runs a geared machine for 10 s from rest: run(tolerance, ...)."""
     table, p, x = inputs.stack([signal]), model.parameter_vector(), np.zeros(len(model.state_names))
     stops, weights = table.with_stops(np.array([0.0, END])), 0.1 * tolerance_weights(model)
 
-    def run(tolerance: float, times: Any = GRID, method: str = ROSENBROCK, **rest: Any) -> Passage:
-        accuracy = passage.Accuracy(tolerance, tolerance * weights, 0.1)
-        found = pass_through(
+    def run(tolerance: float, times: Any = GRID, method: str = ROSENBROCK, **rest: Any) -> Solution:
+        accuracy = integration.Accuracy(tolerance, tolerance * weights, 0.1)
+        found = integrate(
             model,
             method,
             p,
@@ -152,7 +152,7 @@ def drive_cases(everything: bool) -> list[Row]:
 
 
 def _peer_row(
-    model: Model, name: str, method: str, run: Callable[..., Passage], ours: float
+    model: Model, name: str, method: str, run: Callable[..., Solution], ours: float
 ) -> Row:
     simulate = prepare_peer(model, CASES[name], method, run)
     for tolerance in TOLERANCES_OF_PEERS:
@@ -171,7 +171,7 @@ def _peer_row(
 
 
 def prepare_peer(
-    model: Model, signal: inputs.InputSignal, method: str, ours: Callable[..., Passage]
+    model: Model, signal: inputs.InputSignal, method: str, ours: Callable[..., Solution]
 ) -> Callable[..., tuple[float, int]]:
     """A function that runs 10 s by scipy: run(tolerance) gives its largest error and its events."""
     table, weights = inputs.stack([signal]), 0.1 * tolerance_weights(model)

@@ -25,7 +25,7 @@ def free_parameters(platform: Platform, model: Model) -> tuple[FreeParameter, ..
                 own[d.name].period,
                 tuple(ties.get(d.name, ())),
             ),
-            table=d.value,
+            declared_start=d.value,
         )
         for d in platform.parameters
         if d.free and d.name in own

@@ -8,7 +8,13 @@ from scipy import stats
 
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
-from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters, run_counts, unblinded
+from ptp_symbolic.numeric.identify.fit import (
+    Effort,
+    Fit,
+    fit_parameters,
+    run_counts,
+    with_finite_differences,
+)
 from ptp_symbolic.numeric.identify.intervals import estimates
 from tests.identify.pan_runs import (
     FINE_STEPS,
@@ -173,7 +179,7 @@ def test_a_parameter_without_influence_is_not_seen_through_coarse_simulations() 
     free = starts_off({"F_v_pan": 14.0, "v_s_pan": 0.02}, 6)
     fixed = {**KNOWN, **TRUTH, "F_c_pan": 0.24, "F_s_pan": 0.24}
     coarse = Effort(2, tolerance=Tolerance(1e-3, 1e-5))
-    fit = unblinded(fit_parameters(MODEL, made.runs, free, fixed, None, coarse))
+    fit = with_finite_differences(fit_parameters(MODEL, made.runs, free, fixed, None, coarse))
     viscous, stribeck = (np.linalg.norm(fit.evaluations[0].by_parameter, axis=0)).tolist()
     assert viscous > 1.0
     assert stribeck < 1e-6 * viscous

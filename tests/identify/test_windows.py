@@ -20,7 +20,7 @@ from ptp_symbolic.numeric.identify.windows import (
     window_length,
     without_chaos,
 )
-from ptp_symbolic.numeric.simulation.passage import Accuracy, default_method, pass_through
+from ptp_symbolic.numeric.simulation.integration import Accuracy, default_method, integrate
 from ptp_symbolic.platform import Platform, SignalDeclaration
 from tests.identify.curves import Floats
 
@@ -183,7 +183,7 @@ def test_a_window_is_driven_as_the_whole_run_is() -> None:
     """Started in the state of the whole run, every window goes on like it."""
     run, p, tight = wavy(), MODEL.parameter_vector(FREE), Tolerance(1e-9, 1e-11)
     none = np.zeros(0)
-    whole = pass_through(
+    whole = integrate(
         MODEL,
         default_method(MODEL),
         p,

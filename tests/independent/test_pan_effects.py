@@ -243,7 +243,7 @@ def test_a_push_on_the_load_is_linear_between_samples() -> None:
 
 
 def test_friction_never_pushes() -> None:
-    # Parts larger than the Coulomb torque: the level is zero there, not negative.
+    # Contributions larger than the Coulomb torque: the level is zero there, not negative.
     drive = PanDrive(friction_by_angle=rows(3, (0.0, -2.0, 1.0)), F_v_forward=0.0)
     states, _ = simulate(drive, np.zeros(200), TOUCHING + np.array([0, 0, 0, 0.2, 0.0, 0]))
     assert np.all(np.diff(states[:40, GEAR_RATE]) <= 1e-12)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ptp_symbolic
-from ptp_symbolic.numeric.simulation.passage import tolerance_weights
+from ptp_symbolic.numeric.simulation.integration import tolerance_weights
 from ptp_symbolic.numeric.simulation.signals.inputs import stack, step
 
 

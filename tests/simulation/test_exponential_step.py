@@ -10,14 +10,14 @@ from scipy.linalg import expm
 
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.kernels.records import DONE, KERNEL
-from ptp_symbolic.numeric.simulation.methods.phi_functions import double, fill_phi_functions
-from ptp_symbolic.numeric.simulation.passage import (
+from ptp_symbolic.numeric.simulation.integration import (
     Accuracy,
-    Passage,
-    pass_through,
+    Solution,
+    integrate,
     tolerance_weights,
 )
+from ptp_symbolic.numeric.simulation.kernels.records import DONE, KERNEL
+from ptp_symbolic.numeric.simulation.methods.phi_functions import double, fill_phi_functions
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, ramp, stack, step
 from ptp_symbolic.platform import (
     EffectDeclaration,
@@ -68,7 +68,7 @@ def servo() -> Model:
     return emission.emit(replace(platform, parameters=(*kept, fast)))
 
 
-def passage(
+def solution(
     model: Model,
     goal: InputSignal,
     method: str,
@@ -77,11 +77,11 @@ def passage(
     ledger: bool = False,
     parameters: dict[str, float] | None = None,
     start: float = 0.0,
-) -> Passage:
+) -> Solution:
     """A run from the first to the last of `times`, from rest but for the rate of the load."""
     table, weights, x = stack([goal]), tolerance_weights(model), np.zeros(len(model.state_names))
     x[1] = start
-    found = pass_through(
+    found = integrate(
         model,
         method,
         model.parameter_vector(parameters),
@@ -103,13 +103,13 @@ def test_a_servo_moves_as_the_explicit_method_says_with_a_step_per_sample(
     servo: Model, goal: InputSignal
 ) -> None:
     samples = np.linspace(0.0, END, 4001)
-    exact = passage(servo, goal, "runge_kutta", 1e-11, samples)
-    found = passage(servo, goal, "rosenbrock", 1e-7, samples)
+    exact = solution(servo, goal, "runge_kutta", 1e-11, samples)
+    found = solution(servo, goal, "rosenbrock", 1e-7, samples)
     assert np.max(np.abs(found.x[:, 0] - exact.x[:, 0])) < CLOSE
     assert len(found.events) == len(exact.events) >= 2
     np.testing.assert_array_equal(found.events[:, 1:], exact.events[:, 1:])
     np.testing.assert_allclose(found.events[:, 0], exact.events[:, 0], rtol=0.0, atol=LATE)
-    careful = passage(servo, goal, "rosenbrock", 1e-7, samples, ledger=True)
+    careful = solution(servo, goal, "rosenbrock", 1e-7, samples, ledger=True)
     assert found.steps < min(1.05 * 4000, careful.steps)
 
 
@@ -117,7 +117,7 @@ def test_a_linear_servo_moves_as_the_exponential_says(figure) -> None:
     """The hand-written loop of the controller's tests, exact from sample to sample."""
     period, goal = 1e-3, step(0.0, 0.2, 0.0)
     model, given = pid.servo(), pid.GAINS | pid.FINE | {"t_sample_pan": period}
-    found = passage(model, goal, "rosenbrock", 1e-6, np.arange(2001) * period, parameters=given)
+    found = solution(model, goal, "rosenbrock", 1e-6, np.arange(2001) * period, parameters=given)
     controller = pid.Controller(300.0, 900.0, 4.0, period)
     exact = pid.exact(controller, goal, 2000)
     assert figure("error, rad", np.abs(found.x[:, 0] - exact[:, 0]).max()) < 1e-12
@@ -151,7 +151,7 @@ def test_the_order_is_two_in_what_is_not_linear(figure) -> None:
     ).y[0, -1]
 
     def error(period: float) -> float:
-        found = passage(
+        found = solution(
             model,
             constant(0.0),
             "rosenbrock",
@@ -171,8 +171,8 @@ def test_the_order_is_two_in_what_is_not_linear(figure) -> None:
 
 def test_outputs_between_samples_are_those_of_the_adaptive_method(servo: Model) -> None:
     goal, between = ramp(0.0, 0.5, 0.0, 2.0), np.linspace(0.0, END, 9001)
-    exact = passage(servo, goal, "runge_kutta", 1e-11, between)
-    found = passage(servo, goal, "rosenbrock", 1e-6, between)
+    exact = solution(servo, goal, "runge_kutta", 1e-11, between)
+    found = solution(servo, goal, "rosenbrock", 1e-6, between)
     assert np.max(np.abs(found.x[:, 0] - exact.x[:, 0])) < CLOSE
     assert np.max(np.abs(found.x[:, 4] - exact.x[:, 4])) < 1e-4  # A
 
@@ -199,7 +199,7 @@ def test_a_base_that_shakes_once_a_sample_is_not_overlooked(figure) -> None:
     )
     times = np.linspace(0.0, 2.0, 101)
     exact, found = (
-        passage(model, step(0.0, 0.1, 0.0), method, tolerance, times, parameters=given)
+        solution(model, step(0.0, 0.1, 0.0), method, tolerance, times, parameters=given)
         for method, tolerance in (("runge_kutta", 1e-11), ("rosenbrock", 1e-5))
     )
     assert figure("error, rad", np.abs(found.x[:, 0] - exact.x[:, 0]).max()) < 1e-6
@@ -207,6 +207,6 @@ def test_a_base_that_shakes_once_a_sample_is_not_overlooked(figure) -> None:
 
 def test_a_body_at_rest_does_not_creep_from_sample_to_sample(servo: Model) -> None:
     """A goal too small to break friction loose: the load stays where it was to the last bit."""
-    found = passage(servo, step(0.0, 1e-9, 0.1), "rosenbrock", 1e-5, np.linspace(0.0, END, 4001))
+    found = solution(servo, step(0.0, 1e-9, 0.1), "rosenbrock", 1e-5, np.linspace(0.0, END, 4001))
     assert np.all(found.x[:, 0] == 0.0)
     assert found.steps <= 4001

@@ -7,9 +7,9 @@ import pytest
 
 import ptp_symbolic
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.simulation.integration import Accuracy, default_method, integrate
 from ptp_symbolic.numeric.simulation.kernels.records import DIVERGED
 from ptp_symbolic.numeric.simulation.methods.rodas5p import COUPLING, GAMMA, STAGES, A, C, D
-from ptp_symbolic.numeric.simulation.passage import Accuracy, default_method, pass_through
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine, stack, step, table
 from tests.simulation.block import J, block
 
@@ -112,7 +112,7 @@ def test_a_pole_in_finite_time_is_reported_with_its_time() -> None:
     ends = np.array([0.0, 2.0])
     for method in ("rosenbrock", "runge_kutta"):
         accuracy = Accuracy(1e-8, np.full(2, 1e-8), 0.1)
-        found = pass_through(
+        found = integrate(
             body,
             method,
             p,

@@ -122,7 +122,7 @@ def fit_table(trial: Trial, found: Sequence[Estimate]) -> dict[str, Any]:
     """Fitted parameters with intervals, starts, bounds hit and those the data cannot identify."""
     model = trial.fit.model
     meanings = {p.name: p.meaning for p in model.parameters}
-    declared = {f.name: f.table for f in trial.fit.free}
+    declared = {f.name: f.declared_start for f in trial.fit.free}
     return {
         e.name: {
             "value": e.value,

@@ -24,7 +24,7 @@ from ptp_symbolic.numeric.identify.constants import (
     ROUGH,
     SHARP,
 )
-from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters, unblinded
+from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters, with_finite_differences
 from ptp_symbolic.numeric.identify.least_squares import weighted_median
 from ptp_symbolic.numeric.identify.run import sizes
 
@@ -128,7 +128,7 @@ def _confirmed(
     """What is left of a trial when all that cannot be confirmed is taken out, noted in `refused`
     with the reason; its steps, and its fit with derivatives that are not blind.
     """
-    fit = unblinded(trial.fit, seeker.task.executor)
+    fit = with_finite_differences(trial.fit, seeker.task.executor)
     while trial.candidates:
         simpler = _off_bounds(seeker, trial, fit)
         weakness = _weakness(seeker, trial, steps, fit) if simpler is None else None
@@ -140,7 +140,7 @@ def _confirmed(
             trial, steps = _shortened(seeker, step.without)
         else:
             break
-        fit = unblinded(trial.fit, seeker.task.executor)
+        fit = with_finite_differences(trial.fit, seeker.task.executor)
     return trial, steps, fit
 
 
@@ -175,7 +175,7 @@ def _simplest(
     if len(best.trial.candidates) != 1:
         return chosen, steps, alike
     (candidate,) = best.trial.candidates
-    fit = unblinded(best.trial.fit, seeker.task.executor)
+    fit = with_finite_differences(best.trial.fit, seeker.task.executor)
     step = step_of(best.trial, candidate, steps[0].without)
     if _weakness(seeker, best.trial, [step], fit) is not None:
         return chosen, steps, alike

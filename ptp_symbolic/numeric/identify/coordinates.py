@@ -15,8 +15,8 @@ FloatArray = NDArray[np.float64]
 class FreeParameter:
     """A parameter to be fitted: start, bounds, period; `tied` follow its value.
 
-    `table` is the value that the platform declares to start from; None for a parameter of an
-    effect that is only searched for.
+    `declared_start` is the value that the platform declares to start from; None for a parameter of
+    an effect that is only searched for.
     """
 
     name: str
@@ -27,7 +27,7 @@ class FreeParameter:
     tied: tuple[str, ...] = ()
     logarithmic: bool = False
     scale: float = 1.0
-    table: float | None = None
+    declared_start: float | None = None
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -14,9 +14,9 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.integration import Accuracy, default_method, integrate
 from ptp_symbolic.numeric.simulation.kernels.calls import call, output_addresses
 from ptp_symbolic.numeric.simulation.kernels.records import DONE
-from ptp_symbolic.numeric.simulation.passage import Accuracy, default_method, pass_through
 from ptp_symbolic.numeric.simulation.signals.delays import delay_columns, delayed, delays_of
 
 FloatArray = NDArray[np.float64]
@@ -166,7 +166,7 @@ def evaluate(
     x, s = start_state(model, run, p, z, columns)
     late = delays_of(model, p)
     table = delayed(run.inputs, late)
-    found = pass_through(
+    found = integrate(
         model,
         default_method(model),
         p,

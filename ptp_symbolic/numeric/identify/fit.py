@@ -124,7 +124,7 @@ def fit_parameters(
     )
 
 
-def unblinded(fit: Fit, executor: Executor | None = None) -> Fit:
+def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
     """`fit` with differences over finite steps where derivatives at the optimum see next to nothing
     of what such a step does: intervals of an effect that acts through breakaways need them.
     """

@@ -14,10 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import unknown
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.passage import (
+from ptp_symbolic.numeric.simulation.integration import (
     METHODS,
     Accuracy,
-    pass_through,
+    integrate,
     tolerance_weights,
 )
 from ptp_symbolic.numeric.simulation.run import (
@@ -84,7 +84,7 @@ def sensitivity(
     chosen = chosen_method(model, method, tuple(METHODS))
     if chosen == EXPLICIT:
         largest_step = min(largest_step, stable_step(model, p, x))
-    found = pass_through(
+    found = integrate(
         model,
         chosen,
         p,

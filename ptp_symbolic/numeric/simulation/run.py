@@ -10,22 +10,25 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.fixed_step import FixedPassage, pass_in_steps
+from ptp_symbolic.numeric.simulation.fixed_integration import (
+    FixedSolution,
+    integrate_in_fixed_steps,
+)
+from ptp_symbolic.numeric.simulation.integration import (
+    METHODS,
+    Accuracy,
+    Solution,
+    default_method,
+    integrate,
+    limited_states,
+    tolerance_weights,
+)
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CHATTERING,
     DIVERGED,
     DONE,
     OUTSIDE,
     UNDECIDED,
-)
-from ptp_symbolic.numeric.simulation.passage import (
-    METHODS,
-    Accuracy,
-    Passage,
-    default_method,
-    limited_states,
-    pass_through,
-    tolerance_weights,
 )
 from ptp_symbolic.numeric.simulation.signals.delays import delayed, delays_of
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, InputTable, constant, stack
@@ -118,11 +121,11 @@ def simulate(
         if not value > 0.0:
             raise InputError(f"{name} = {value:g}; give a number above zero.")
 
-    def run(event_room: int) -> Passage | FixedPassage:
+    def run(event_room: int) -> Solution | FixedSolution:
         if chosen == FIXED_STEP:
-            return pass_in_steps(model, p, x, table, t, step, event_room)
+            return integrate_in_fixed_steps(model, p, x, table, t, step, event_room)
         accuracy = Accuracy(rtol, atol * tolerance_weights(model), largest_step)
-        return pass_through(
+        return integrate(
             model,
             chosen,
             p,

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic.symbolic.codegen.sharing import Line
+from ptp_symbolic.symbolic.derivation.contributions import slope_symbol
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.derivation.parts import slope_symbol
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from ptp_symbolic.symbolic.codegen.kernel import MODE_ARGUMENTS, Vectors, kernel
 from ptp_symbolic.symbolic.codegen.metadata import metadata_text
 from ptp_symbolic.symbolic.codegen.sharing import Line, share
 from ptp_symbolic.symbolic.codegen.templates import state_derivative_text
-from ptp_symbolic.symbolic.codegen.words import words_of
+from ptp_symbolic.symbolic.codegen.term_names import term_names
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.simplify.base_parameters import base_form
@@ -74,7 +74,7 @@ def _shared(
     equations: Equations, definitions: Sequence[Line], outputs: Sequence[Line]
 ) -> list[Line]:
     present = [(t, e) for t, e in outputs if e != 0]
-    return share(definitions, present, words_of(equations))
+    return share(definitions, present, term_names(equations))
 
 
 def _mode_derivative(equations: Equations, vectors: Vectors) -> str:
@@ -94,7 +94,7 @@ def _state_lines(equations: Equations) -> list[Line]:
     rates = dynamics.state_rates(equations, regrouped)
     outputs = [(f"dx[{i}]", rate) for i, rate in enumerate(rates)]
     named = [(str(s), e) for s, e in (*form.base_parameters, *form.shared_terms) if s != e]
-    return share((*named, *regrouped.definitions), outputs, words_of(equations))
+    return share((*named, *regrouped.definitions), outputs, term_names(equations))
 
 
 def _columns(
@@ -125,7 +125,7 @@ def _jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> 
 def _guards(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
     outputs = [(f"g[{i}]", e) for i, e in enumerate(dynamics.guard_expressions(equations, solve))]
     doc = "Write holding and breakaway torques, gap separations and contact torques into g."
-    lines = share(solve.definitions, outputs, words_of(equations)) if outputs else []
+    lines = share(solve.definitions, outputs, term_names(equations)) if outputs else []
     return kernel_text("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
 
 
@@ -171,7 +171,7 @@ def _impacts(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> l
 
 def _outputs(equations: Equations, vectors: Vectors) -> str:
     outputs = [(f"y[{i}]", e) for i, (_, _, e) in enumerate(equations.outputs)]
-    lines = share((), outputs, words_of(equations))
+    lines = share((), outputs, term_names(equations))
     return kernel_text(
         "outputs", "t, x, u, p, y", "Write the measured signals into y.", vectors, lines
     )
@@ -195,7 +195,7 @@ def _energy(equations: Equations, vectors: Vectors) -> str:
     outputs = [("e[0]", ledger.stored), ("e[1]", ledger.power_in), ("e[2]", ledger.dissipated)]
     doc = "Write stored energy in J, power in and dissipated power in W into e."
     terms = [(str(symbol), term) for symbol, term in equations.terms]
-    lines = share(terms, outputs, words_of(equations))
+    lines = share(terms, outputs, term_names(equations))
     return kernel_text("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, lines)
 
 
@@ -210,7 +210,7 @@ def _equation_error(equations: Equations, solve: dynamics.Solve, vectors: Vector
     moving = {sp.Symbol(s.name, real=True): s.derivative for s in equations.extra_states}
     others = [moving[s] for s in equations.state_symbols if s in moving]
     outputs = [(f"r[{i}]", e) for i, e in enumerate([*torques, *others])]
-    lines = share(definitions, outputs, words_of(equations))
+    lines = share(definitions, outputs, term_names(equations))
     extended = replace(vectors, x=(*vectors.x, *given))
     doc = (
         "Write the torque that every row lacks, then rates of other states into r; x ends in accel."
@@ -225,7 +225,9 @@ def _domain(equations: Equations, vectors: Vectors) -> str:
         for side, bound in enumerate((own.lower, own.upper))
     ]
     doc = "Write lower and upper bound of the state of every row of DOMAIN into bounds."
-    return kernel_text("domain", "p, bounds", doc, vectors, share((), outputs, words_of(equations)))
+    return kernel_text(
+        "domain", "p, bounds", doc, vectors, share((), outputs, term_names(equations))
+    )
 
 
 def _samplers(equations: Equations, vectors: Vectors) -> list[str]:
@@ -238,7 +240,7 @@ def _samplers(equations: Equations, vectors: Vectors) -> list[str]:
     outputs = [(f"z[{i}]", e) for i, e in enumerate(values)]
     doc = "Write period, offset and phase of every sampler, then what SAMPLED states become into z."
     named = [(str(symbol), term) for symbol, term in (*equations.terms, *terms.items())]
-    lines = share(named, outputs, words_of(equations))
+    lines = share(named, outputs, term_names(equations))
     for symbol, term in reversed(terms.items()):
         values = [value.xreplace({symbol: term}) for value in values]
     slopes = [
@@ -263,5 +265,5 @@ def _margins(equations: Equations, vectors: Vectors) -> str:
     ]
     doc = "Write by how much the parameters meet every row of REQUIREMENTS into margin."
     return kernel_text(
-        "margins", "p, margin", doc, vectors, share((), outputs, words_of(equations))
+        "margins", "p, margin", doc, vectors, share((), outputs, term_names(equations))
     )

@@ -6,16 +6,16 @@ from dataclasses import replace
 import sympy as sp
 
 from ptp_symbolic.platform import Platform
+from ptp_symbolic.symbolic.derivation.contributions import (
+    BASE_ACCELERATION,
+    GRAVITY_QUANTITIES,
+    Contributions,
+    collect,
+)
 from ptp_symbolic.symbolic.derivation.equations import Equations, PlacedEffect
 from ptp_symbolic.symbolic.derivation.friction import Mechanics, driving_torque, resolved_frictions
 from ptp_symbolic.symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.symbolic.derivation.ledger import energy_ledger
-from ptp_symbolic.symbolic.derivation.parts import (
-    BASE_ACCELERATION,
-    GRAVITY_QUANTITIES,
-    Parts,
-    collect,
-)
 from ptp_symbolic.symbolic.derivation.placement import acts_on, place_effects, resolved_parameters
 from ptp_symbolic.symbolic.derivation.prescribed import constraint_power, reduced, released
 from ptp_symbolic.symbolic.derivation.rigid_play import rigid_contact
@@ -37,21 +37,21 @@ def assemble(platform: Platform) -> Equations:
     with others, or whose expressions hold a symbol that nothing defines.
     """
     placed = place_effects(platform)
-    parts = released(collect(platform.axes, placed))
-    transmissions = [transmission(shaft, parts) for shaft in parts.shafts]
-    parts = _with_shaft_torques(parts, transmissions)
-    rigid = _rigid_configuration(platform, parts)
+    contributions = released(collect(platform.axes, placed))
+    transmissions = [transmission(shaft, contributions) for shaft in contributions.shafts]
+    contributions = _with_shaft_torques(contributions, transmissions)
+    rigid = _rigid_configuration(platform, contributions)
     rigid_equations = lagrange(rigid)
-    full = _mechanics(platform, parts, transmissions, rigid_equations)
-    mechanics, rigid_equations = reduced(full, rigid_equations, parts.prescribed)
+    full = _mechanics(platform, contributions, transmissions, rigid_equations)
+    mechanics, rigid_equations = reduced(full, rigid_equations, contributions.prescribed)
     contacts = [t.contact for t in transmissions if t.contact is not None]
-    contacts += [rigid_contact(play, parts, mechanics) for play in parts.plays]
-    frictions, loads = resolved_frictions(parts, mechanics)
-    inputs = _inputs(platform, parts)
+    contacts += [rigid_contact(play, contributions, mechanics) for play in contributions.plays]
+    frictions, loads = resolved_frictions(contributions, mechanics)
+    inputs = _inputs(platform, contributions)
     ledger = energy_ledger(
-        platform.axes, parts, frictions, [t.ledger for t in transmissions], rigid_equations
+        platform.axes, contributions, frictions, [t.ledger for t in transmissions], rigid_equations
     )
-    power = constraint_power(full, mechanics, frictions, parts.prescribed)
+    power = constraint_power(full, mechanics, frictions, contributions.prescribed)
     equations = Equations(
         name=platform.name,
         title=platform.title,
@@ -60,16 +60,16 @@ def assemble(platform: Platform) -> Equations:
         rates=mechanics.rates,
         mass_matrix=mechanics.mass,
         forcing=mechanics.forcing,
-        terms=(*parts.terms.items(), *loads),
-        extra_states=_extra_states(parts, (*mechanics.coordinates, *mechanics.rates)),
-        samplers=_samplers(parts),
+        terms=(*contributions.terms.items(), *loads),
+        extra_states=_extra_states(contributions, (*mechanics.coordinates, *mechanics.rates)),
+        samplers=_samplers(contributions),
         inputs=tuple(given for given, _ in inputs),
-        delays=tuple(_delay_of(axis, parts) for _, axis in inputs),
+        delays=tuple(_delay_of(axis, contributions) for _, axis in inputs),
         parameters=(),
         frictions=frictions,
         contacts=tuple(contacts),
-        outputs=_outputs(platform, parts),
-        limits=_limits(parts),
+        outputs=_outputs(platform, contributions),
+        limits=_limits(contributions),
         requirements=tuple(r for effect, place in placed for r in effect.requires(place)),
         ledger=replace(ledger, power_in=ledger.power_in + power),
         effects=tuple(
@@ -82,58 +82,67 @@ def assemble(platform: Platform) -> Equations:
     return _with_parameters(equations, resolved_parameters(platform, placed))
 
 
-def _with_shaft_torques(parts: Parts, transmissions: Sequence[Transmission]) -> Parts:
-    """`parts` in which the torque of every shaft is a quantity."""
+def _with_shaft_torques(
+    contributions: Contributions, transmissions: Sequence[Transmission]
+) -> Contributions:
+    """`contributions` in which the torque of every shaft is a quantity."""
     torques = {
         quantity_symbol(f"shaft_torque_{s.axis}"): t.transmitted
-        for s, t in zip(parts.shafts, transmissions, strict=True)
+        for s, t in zip(contributions.shafts, transmissions, strict=True)
     }
-    return replace(parts, values={**parts.values, **torques})
+    return replace(contributions, values={**contributions.values, **torques})
 
 
-def _limits(parts: Parts) -> tuple[Limit, ...]:
+def _limits(contributions: Contributions) -> tuple[Limit, ...]:
     return tuple(
-        Limit(own.state, parts.resolve(own.lower), parts.resolve(own.upper), own.meaning)
-        for contribution in parts.contributions
+        Limit(
+            own.state,
+            contributions.resolve(own.lower),
+            contributions.resolve(own.upper),
+            own.meaning,
+        )
+        for contribution in contributions.by_effect
         for own in contribution.limits
     )
 
 
 def _mechanics(
     platform: Platform,
-    parts: Parts,
+    contributions: Contributions,
     transmissions: Sequence[Transmission],
     rigid: RigidEquations,
 ) -> Mechanics:
     """Add drives, shafts, torques and potentials of the effects to the rigid equations."""
-    joints, gears = platform.axes, parts.split_axes
+    joints, gears = platform.axes, contributions.split_axes
     coordinates = (*map(kinematics.angle, joints), *map(kinematics.gear_angle, gears))
     rates = (*map(kinematics.rate, joints), *map(kinematics.gear_rate, gears))
     mass = sp.diag(rigid.mass_matrix, sp.zeros(len(gears)))
     forcing = sp.Matrix([*rigid.forcing, *([0] * len(gears))])
     row = {symbol: index for index, symbol in enumerate(rates)}
-    free = [axis for axis in joints if axis not in parts.driven]
+    free = [axis for axis in joints if axis not in contributions.driven]
     torques = [(kinematics.rate(axis), kinematics.torque(axis)) for axis in free]
     torques += [torque for t in transmissions for torque in t.torques]
-    torques += [torque for c in parts.contributions for torque in c.torques.items()]
-    for drive in parts.drives:
-        rate = parts.drive_rate(drive)
-        inertia = parts.resolve(drive.inertia)
+    torques += [torque for c in contributions.by_effect for torque in c.torques.items()]
+    for drive in contributions.drives:
+        rate = contributions.drive_rate(drive)
+        inertia = contributions.resolve(drive.inertia)
         mass[row[rate], row[rate]] += inertia
-        torques.append((rate, driving_torque(drive, parts, coordinates[row[rate]])))
+        torques.append((rate, driving_torque(drive, contributions, coordinates[row[rate]])))
     for symbol, torque in torques:
-        forcing[row[symbol]] += parts.resolve(torque)
-    potential = parts.resolve(sum((c.potential for c in parts.contributions), sp.Integer(0)))
+        forcing[row[symbol]] += contributions.resolve(torque)
+    potential = contributions.resolve(
+        sum((c.potential for c in contributions.by_effect), sp.Integer(0))
+    )
     for index, coordinate in enumerate(coordinates):
         forcing[index] -= sp.diff(potential, coordinate)
-    mass = mass.applyfunc(parts.resolve)
+    mass = mass.applyfunc(contributions.resolve)
     return Mechanics(coordinates, rates, sp.ImmutableMatrix(mass), sp.ImmutableMatrix(forcing))
 
 
-def _rigid_configuration(platform: Platform, parts: Parts) -> RigidConfiguration:
+def _rigid_configuration(platform: Platform, contributions: Contributions) -> RigidConfiguration:
     """Bodies, and gravity in the base frame less the acceleration of the base."""
-    tilt, azimuth = (parts.resolve(quantity_symbol(name)) for name in GRAVITY_QUANTITIES)
-    moved = [parts.resolve(quantity_symbol(name)) for name in BASE_ACCELERATION]
+    tilt, azimuth = (contributions.resolve(quantity_symbol(name)) for name in GRAVITY_QUANTITIES)
+    moved = [contributions.resolve(quantity_symbol(name)) for name in BASE_ACCELERATION]
     g = sp.Rational(repr(platform.gravity))
     direction = [
         sp.sin(tilt) * sp.cos(azimuth),
@@ -143,22 +152,24 @@ def _rigid_configuration(platform: Platform, parts: Parts) -> RigidConfiguration
     bodies = tuple(
         replace(
             body,
-            mass=parts.resolve(body.mass),
-            com=body.com.applyfunc(parts.resolve),
-            inertia=body.inertia.applyfunc(parts.resolve),
+            mass=contributions.resolve(body.mass),
+            com=body.com.applyfunc(contributions.resolve),
+            inertia=body.inertia.applyfunc(contributions.resolve),
         )
-        for contribution in parts.contributions
+        for contribution in contributions.by_effect
         for body in contribution.bodies
     )
     gravity = [g * d - a for d, a in zip(direction, moved, strict=True)]
     return RigidConfiguration(platform.axes, bodies, sp.ImmutableMatrix(gravity))
 
 
-def _inputs(platform: Platform, parts: Parts) -> list[tuple[Input, str]]:
+def _inputs(platform: Platform, contributions: Contributions) -> list[tuple[Input, str]]:
     """The inputs, each with its axis: of what commands or drives it, else the joint's torque."""
-    drives = {drive.axis: drive.inputs for drive in parts.drives}
-    drives |= {str(w).removeprefix("omega_"): (given,) for w, given in parts.prescribed.items()}
-    for contribution in parts.contributions:
+    drives = {drive.axis: drive.inputs for drive in contributions.drives}
+    drives |= {
+        str(w).removeprefix("omega_"): (given,) for w, given in contributions.prescribed.items()
+    }
+    for contribution in contributions.by_effect:
         drives |= contribution.commands
     inputs = []
     for axis in platform.axes:
@@ -167,12 +178,14 @@ def _inputs(platform: Platform, parts: Parts) -> list[tuple[Input, str]]:
     return inputs
 
 
-def _delay_of(axis: str, parts: Parts) -> sp.Symbol | None:
-    return next((c.delays[axis] for c in parts.contributions if axis in c.delays), None)
+def _delay_of(axis: str, contributions: Contributions) -> sp.Symbol | None:
+    return next((c.delays[axis] for c in contributions.by_effect if axis in c.delays), None)
 
 
-def _extra_states(parts: Parts, coordinates: Sequence[sp.Symbol]) -> tuple[State, ...]:
-    states = [state for contribution in parts.contributions for state in contribution.states]
+def _extra_states(
+    contributions: Contributions, coordinates: Sequence[sp.Symbol]
+) -> tuple[State, ...]:
+    states = [state for contribution in contributions.by_effect for state in contribution.states]
     taken = {str(symbol) for symbol in coordinates}
     for state in states:
         if state.name in taken:
@@ -181,30 +194,32 @@ def _extra_states(parts: Parts, coordinates: Sequence[sp.Symbol]) -> tuple[State
                 " effect and axis into its name."
             )
         taken.add(state.name)
-    return tuple(replace(s, derivative=parts.resolve(s.derivative)) for s in states)
+    return tuple(replace(s, derivative=contributions.resolve(s.derivative)) for s in states)
 
 
-def _samplers(parts: Parts) -> tuple[Sampler, ...]:
+def _samplers(contributions: Contributions) -> tuple[Sampler, ...]:
     return tuple(
         Sampler(
-            parts.resolve(own.period),
-            {symbol: parts.resolve(value) for symbol, value in own.updates.items()},
-            parts.resolve(own.offset),
-            parts.resolve(own.phase),
-            {symbol: parts.resolve(term) for symbol, term in own.terms.items()},
+            contributions.resolve(own.period),
+            {symbol: contributions.resolve(value) for symbol, value in own.updates.items()},
+            contributions.resolve(own.offset),
+            contributions.resolve(own.phase),
+            {symbol: contributions.resolve(term) for symbol, term in own.terms.items()},
         )
-        for contribution in parts.contributions
+        for contribution in contributions.by_effect
         for own in contribution.samplers
     )
 
 
-def _outputs(platform: Platform, parts: Parts) -> tuple[tuple[str, str, sp.Expr], ...]:
+def _outputs(
+    platform: Platform, contributions: Contributions
+) -> tuple[tuple[str, str, sp.Expr], ...]:
     """Measured signals: joint angles, then extra states, as their sensors show them."""
     signals = {str(kinematics.angle(axis)): "rad" for axis in platform.axes}
-    for contribution in parts.contributions:
+    for contribution in contributions.by_effect:
         signals.update({state.name: state.unit for state in contribution.states})
     return tuple(
-        (name, unit, parts.resolve(quantity_symbol(f"reading_{name}")))
+        (name, unit, contributions.resolve(quantity_symbol(f"reading_{name}")))
         for name, unit in signals.items()
     )
 

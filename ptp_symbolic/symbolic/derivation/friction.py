@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.symbolic.derivation.parts import Parts, slope_symbol
+from ptp_symbolic.symbolic.derivation.contributions import Contributions, slope_symbol
 from ptp_symbolic.symbolic.effects.effect import LOADS, Drive, Friction, quantity, slide
 
 ZERO = sp.Integer(0)
@@ -24,18 +24,18 @@ class Mechanics:
     forcing: sp.ImmutableMatrix
 
 
-def driving_torque(drive: Drive, parts: Parts, coordinate: sp.Symbol) -> sp.Expr:
+def driving_torque(drive: Drive, contributions: Contributions, coordinate: sp.Symbol) -> sp.Expr:
     """Torque in N m of `drive` on its row, less what its own inertia takes where it changes."""
-    inertia, rate = parts.resolve(drive.inertia), parts.drive_rate(drive)
+    inertia, rate = contributions.resolve(drive.inertia), contributions.drive_rate(drive)
     slope = sp.diff(inertia, coordinate)
-    for term in parts.terms:
-        if slope_symbol(term, coordinate) in parts.terms:
+    for term in contributions.terms:
+        if slope_symbol(term, coordinate) in contributions.terms:
             slope += sp.diff(inertia, term) * slope_symbol(term, coordinate)
-    return parts.resolve(drive.torque) - slope * rate**2 / 2
+    return contributions.resolve(drive.torque) - slope * rate**2 / 2
 
 
 def resolved_frictions(
-    parts: Parts, mechanics: Mechanics
+    contributions: Contributions, mechanics: Mechanics
 ) -> tuple[tuple[Friction, ...], tuple[Term, ...]]:
     """The frictions, one per rate, and as named functions the loads that some of them carry.
 
@@ -44,18 +44,18 @@ def resolved_frictions(
     frictions = [
         replace(
             f,
-            level=parts.resolve(f.level),
-            breakaway=parts.resolve(f.breakaway),
-            terms={symbol: parts.resolve(term) for symbol, term in f.terms.items()},
+            level=contributions.resolve(f.level),
+            breakaway=contributions.resolve(f.breakaway),
+            terms={symbol: contributions.resolve(term) for symbol, term in f.terms.items()},
         )
-        for f in parts.frictions
+        for f in contributions.frictions
     ]
     merged: dict[sp.Symbol, Friction] = {}
     terms: list[Term] = []
     for friction in frictions:
         found = friction
         if is_loaded(friction):
-            terms += _loads(friction, frictions, parts, mechanics)
+            terms += _loads(friction, frictions, contributions, mechanics)
             found = _loaded(friction, frictions)
         terms += found.terms.items()
         before = merged.get(found.rate, replace(found, level=ZERO, breakaway=ZERO))
@@ -93,15 +93,18 @@ def _loaded(friction: Friction, frictions: Iterable[Friction]) -> Friction:
 
 
 def _loads(
-    friction: Friction, frictions: Iterable[Friction], parts: Parts, mechanics: Mechanics
+    friction: Friction,
+    frictions: Iterable[Friction],
+    contributions: Contributions,
+    mechanics: Mechanics,
 ) -> list[Term]:
     """Torque of the drive, and torque and inertia of the rest, other joints eliminated."""
     row, mass = mechanics.rates.index(friction.rate), mechanics.mass
     inertia, torque, driving = mass[row, row], mechanics.forcing[row], ZERO
-    for drive in parts.drives:
-        if parts.drive_rate(drive) == friction.rate:
-            inertia -= parts.resolve(drive.inertia)
-            driving += driving_torque(drive, parts, mechanics.coordinates[row])
+    for drive in contributions.drives:
+        if contributions.drive_rate(drive) == friction.rate:
+            inertia -= contributions.resolve(drive.inertia)
+            driving += driving_torque(drive, contributions, mechanics.coordinates[row])
     torque -= driving
     by_rate = {f.rate: f for f in frictions}
     beside: list[Term] = []

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 import sympy as sp
 
+from ptp_symbolic.symbolic.derivation.contributions import Contributions
 from ptp_symbolic.symbolic.derivation.equations import Ledger
-from ptp_symbolic.symbolic.derivation.parts import Parts
 from ptp_symbolic.symbolic.effects.effect import Contribution, Friction, slide
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
@@ -15,7 +15,7 @@ ZERO = sp.Integer(0)
 
 def energy_ledger(
     axes: Iterable[str],
-    parts: Parts,
+    contributions: Contributions,
     frictions: Iterable[Friction],
     shafts: Iterable[Ledger],
     rigid: RigidEquations,
@@ -26,13 +26,16 @@ def energy_ledger(
     """
     stored, power_in, dissipated = rigid.kinetic + rigid.potential, ZERO, ZERO
     power_in += sum(
-        (kinematics.torque(a) * kinematics.rate(a) for a in axes if a not in parts.driven), ZERO
+        (kinematics.torque(a) * kinematics.rate(a) for a in axes if a not in contributions.driven),
+        ZERO,
     )
-    for drive in parts.drives:
-        stored += drive.stored + drive.inertia * parts.drive_rate(drive) ** 2 / 2
+    for drive in contributions.drives:
+        stored += drive.stored + drive.inertia * contributions.drive_rate(drive) ** 2 / 2
         power_in += drive.power_in
         dissipated += drive.dissipated
-    for contribution, is_loss in zip(parts.contributions, parts.dissipative, strict=True):
+    for contribution, is_loss in zip(
+        contributions.by_effect, contributions.dissipative, strict=True
+    ):
         stored += contribution.potential + contribution.stored
         power = sum((torque * rate for rate, torque in contribution.torques.items()), ZERO)
         power += _charging(contribution)
@@ -43,11 +46,11 @@ def energy_ledger(
         dissipated += slide(friction.axis) * friction.level * friction.rate
     for shaft in shafts:
         stored, dissipated = stored + shaft.stored, dissipated + shaft.dissipated
-    stored = parts.resolve(stored)
+    stored = contributions.resolve(stored)
     return Ledger(
         stored,
-        parts.resolve(power_in) + sp.diff(stored, kinematics.TIME),
-        parts.resolve(dissipated),
+        contributions.resolve(power_in) + sp.diff(stored, kinematics.TIME),
+        contributions.resolve(dissipated),
     )
 
 

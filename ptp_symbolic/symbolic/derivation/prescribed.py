@@ -6,22 +6,22 @@ from dataclasses import replace
 import sympy as sp
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.symbolic.derivation.contributions import Contributions
 from ptp_symbolic.symbolic.derivation.friction import Mechanics
-from ptp_symbolic.symbolic.derivation.parts import Parts
 from ptp_symbolic.symbolic.effects.effect import Friction, Input, slide
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
 
 ZERO = sp.Integer(0)
 
 
-def released(parts: Parts) -> Parts:
-    """`parts` without the dry friction of prescribed joints, which the motion overcomes.
+def released(contributions: Contributions) -> Contributions:
+    """`contributions` without the dry friction of prescribed joints, which the motion overcomes.
 
     Raises InputError where a motor or a shaft works on such a joint.
     """
-    rates = parts.prescribed
+    rates = contributions.prescribed
     axes = [str(rate).removeprefix("omega_") for rate in rates]
-    busy = {drive.axis for drive in parts.drives} | set(parts.split_axes)
+    busy = {drive.axis for drive in contributions.drives} | set(contributions.split_axes)
     for axis in axes:
         if axis in busy:
             raise InputError(
@@ -30,10 +30,10 @@ def released(parts: Parts) -> Parts:
             )
     kept = tuple(
         replace(c, frictions=tuple(f for f in c.frictions if f.rate not in rates))
-        for c in parts.contributions
+        for c in contributions.by_effect
     )
     still = {slide(axis): ZERO for axis in axes}
-    return replace(parts, contributions=kept, values={**parts.values, **still})
+    return replace(contributions, by_effect=kept, values={**contributions.values, **still})
 
 
 def reduced(

@@ -5,14 +5,14 @@ from collections.abc import Iterable
 import sympy as sp
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.symbolic.derivation.contributions import Contributions
 from ptp_symbolic.symbolic.derivation.equations import Contact
 from ptp_symbolic.symbolic.derivation.friction import Mechanics, is_loaded
-from ptp_symbolic.symbolic.derivation.parts import Parts
 from ptp_symbolic.symbolic.effects.effect import Friction, Play, quantity
 from ptp_symbolic.symbolic.mechanics import kinematics
 
 
-def rigid_contact(play: Play, parts: Parts, mechanics: Mechanics) -> Contact:
+def rigid_contact(play: Play, contributions: Contributions, mechanics: Mechanics) -> Contact:
     """The contact of `play`; its torque is no function of the state but follows from the motion.
 
     Raises InputError where a shaft lies beside it, nothing turns at the gear output, both sides
@@ -21,7 +21,7 @@ def rigid_contact(play: Play, parts: Parts, mechanics: Mechanics) -> Contact:
     axis = play.axis
     gear, joint = kinematics.gear_rate(axis), kinematics.rate(axis)
     row = mechanics.rates.index(gear)
-    if any(shaft.axis == axis for shaft in parts.shafts):
+    if any(shaft.axis == axis for shaft in contributions.shafts):
         raise InputError(
             f"Backlash on axis '{axis}' joins gear output and joint rigidly beside a shaft; remove"
             " shaft_compliance, or choose the kind dead_zone."
@@ -31,22 +31,26 @@ def rigid_contact(play: Play, parts: Parts, mechanics: Mechanics) -> Contact:
             f"Backlash on axis '{axis}' is struck by a gear output without inertia; declare a"
             " motor, such as dc_motor."
         )
-    _refuse_frictions(axis, gear, joint, parts.frictions, parts)
+    _refuse_frictions(axis, gear, joint, contributions.frictions, contributions)
     side, active = (sp.Symbol(f"{word}_{axis}", real=True) for word in ("side", "active"))
     return Contact(
         axis=axis,
         separation=kinematics.gear_angle(axis) - kinematics.angle(axis),
-        half_gap=parts.resolve(play.half_gap),
+        half_gap=contributions.resolve(play.half_gap),
         torque=sp.Integer(0),
         side=side,
         active=active,
-        restitution=parts.resolve(play.restitution),
+        restitution=contributions.resolve(play.restitution),
         holds=play.holds,
     )
 
 
 def _refuse_frictions(
-    axis: str, gear: sp.Symbol, joint: sp.Symbol, frictions: Iterable[Friction], parts: Parts
+    axis: str,
+    gear: sp.Symbol,
+    joint: sp.Symbol,
+    frictions: Iterable[Friction],
+    contributions: Contributions,
 ) -> None:
     own = [f for f in frictions if f.rate in (gear, joint)]
     if len({f.rate for f in own}) > 1:
@@ -56,7 +60,7 @@ def _refuse_frictions(
         )
     carried = quantity(f"shaft_torque_{axis}")
     for friction in own:
-        level = parts.resolve(friction.level) + parts.resolve(friction.breakaway)
+        level = contributions.resolve(friction.level) + contributions.resolve(friction.breakaway)
         if carried in level.free_symbols or is_loaded(friction):
             raise InputError(
                 f"Friction on axis '{axis}' depends on the torque that it carries, which rigid"

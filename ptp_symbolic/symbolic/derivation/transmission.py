@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ptp_symbolic.symbolic.derivation.contributions import Contributions
 from ptp_symbolic.symbolic.derivation.equations import Contact, Ledger
-from ptp_symbolic.symbolic.derivation.parts import Parts
 from ptp_symbolic.symbolic.effects.effect import Shaft
 from ptp_symbolic.symbolic.effects.effect import quantity as quantity_symbol
 from ptp_symbolic.symbolic.mechanics import kinematics
@@ -21,15 +21,15 @@ class Transmission:
     ledger: Ledger
 
 
-def transmission(shaft: Shaft, parts: Parts) -> Transmission:
+def transmission(shaft: Shaft, contributions: Contributions) -> Transmission:
     """The torques of `shaft`, whose twist a transmission error of the gear may modulate."""
     axis = shaft.axis
     gear, joint = kinematics.gear_rate(axis), kinematics.rate(axis)
-    error = parts.resolve(quantity_symbol(f"transmission_error_{axis}"))
+    error = contributions.resolve(quantity_symbol(f"transmission_error_{axis}"))
     lead = 1 + sp.diff(error, kinematics.gear_angle(axis))
     separation = kinematics.gear_angle(axis) + error - kinematics.angle(axis)
     speed = gear * lead - joint
-    half_gap = parts.resolve(quantity_symbol(f"half_gap_{axis}"))
+    half_gap = contributions.resolve(quantity_symbol(f"half_gap_{axis}"))
     side, active = (sp.Symbol(f"{word}_{axis}", real=True) for word in ("side", "active"))
     touching: sp.Expr = side**2
     face: sp.Expr = side

@@ -7,7 +7,7 @@ from ptp_symbolic.symbolic.derivation.equations import Equations
 SAMPLER_WORDS = ("period", "offset", "phase")
 
 
-def words_of(equations: Equations) -> dict[str, str]:
+def term_names(equations: Equations) -> dict[str, str]:
     """Words by target: ``accel_pan`` for ``dx[2]``, ``accel_pan_by_b_pan`` for ``fp[2, 4]``."""
     rates = _numbered("dx", [_rate(str(s)) for s in equations.state_symbols])
     guards = _numbered("g", _guards(equations))

@@ -8,16 +8,16 @@ from numpy.typing import NDArray
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation import fixed_runner
-from ptp_symbolic.numeric.simulation.kernels.calls import addresses
-from ptp_symbolic.numeric.simulation.kernels.records import EVENTS, INSTANT, STEPS, TIME
-from ptp_symbolic.numeric.simulation.methods.implicit_step import StepWork
-from ptp_symbolic.numeric.simulation.passage import (
+from ptp_symbolic.numeric.simulation.integration import (
     contact_table,
     new_record,
     new_tangents,
     new_watch,
     refuse_start,
 )
+from ptp_symbolic.numeric.simulation.kernels.calls import addresses
+from ptp_symbolic.numeric.simulation.kernels.records import EVENTS, INSTANT, STEPS, TIME
+from ptp_symbolic.numeric.simulation.methods.implicit_step import StepWork
 from ptp_symbolic.numeric.simulation.sampling import new_sampling
 from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
@@ -28,7 +28,7 @@ MOST_STEPS = 1e9
 
 
 @dataclass(frozen=True, eq=False)
-class FixedPassage:
+class FixedSolution:
     """What steps of fixed length left: status, time reached in s and state [n] there.
 
     x [k, n], ledger [k, 3] (stored, supplied, dissipated in J), the first events [e, 3] (time,
@@ -47,7 +47,7 @@ class FixedPassage:
     most_sweeps: int
 
 
-def pass_in_steps(
+def integrate_in_fixed_steps(
     model: Model,
     p: FloatArray,
     x: FloatArray,
@@ -55,7 +55,7 @@ def pass_in_steps(
     times: FloatArray,
     step: float,
     event_room: int = 0,
-) -> FixedPassage:
+) -> FixedSolution:
     """Simulate `model` from x [n] in steps of at most `step` s; outputs at `times` [k] in s.
 
     Every output time and every jump of an input is the end of a step. Raises InputError for a step
@@ -106,7 +106,7 @@ def pass_in_steps(
         tuple(new_sampling(model, p, x, times, 0)),
     )
     kept, counts = np.searchsorted(grid, times), record.counts
-    return FixedPassage(
+    return FixedSolution(
         status,
         float(record.clock[TIME]),
         x,

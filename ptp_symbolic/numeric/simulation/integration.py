@@ -34,7 +34,7 @@ METHODS = {"runge_kutta": RUNGE_KUTTA, "rosenbrock": ROSENBROCK}
 
 
 @dataclass(frozen=True, eq=False)
-class Passage:
+class Solution:
     """What a run left: status, time reached in s, state [n] there, and outputs at the times asked.
 
     x [k, n], s [k, n, ns], ledger [k, 3] (stored, supplied, dissipated in J; no rows if not asked
@@ -84,7 +84,7 @@ def tolerance_weights(model: Model) -> FloatArray:
     return np.array([factors.get(name.partition("_")[0], 1000.0) for name in model.state_names])
 
 
-def pass_through(
+def integrate(
     model: Model,
     method: str,
     p: FloatArray,
@@ -99,7 +99,7 @@ def pass_through(
     delay_column: IntArray | None = None,
     ledger: bool = False,
     event_room: int = 0,
-) -> Passage:
+) -> Solution:
     """Run `model` from the first to the last of `stops`, starting at x [n] with tangents s [n, ns].
 
     `held` says that inputs change at stops only; those that samplers alone read need not. With
@@ -144,7 +144,7 @@ def pass_through(
         tuple(new_sampling(model, p, x, stops, padded(s.shape[1]))),
         tuple(new_propagator(len(model.mode_names), model.moving, n)),
     )
-    return Passage(
+    return Solution(
         status,
         float(record.clock[TIME]),
         x,
@@ -263,7 +263,7 @@ def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watc
 def new_tangents(
     s: FloatArray, columns: IntArray, delay_column: IntArray, parameters: int, nu: int
 ) -> Tangents:
-    """Room for the tangents s [n, ns]; see `pass_through`."""
+    """Room for the tangents s [n, ns]; see `integrate`."""
     (n, ns), z = (len(s), padded(s.shape[1])), np.zeros
     table = z((n, ns))
     table[:, : s.shape[1]] = s

@@ -25,10 +25,10 @@ PLATFORM_QUANTITIES = (*GRAVITY_QUANTITIES, *BASE_ACCELERATION)
 
 
 @dataclass(frozen=True)
-class Parts:
+class Contributions:
     """Contributions of all effects, which of them only dissipate, and values of quantities."""
 
-    contributions: tuple[Contribution, ...]
+    by_effect: tuple[Contribution, ...]
     dissipative: tuple[bool, ...]
     values: Mapping[sp.Symbol, sp.Expr]
 
@@ -44,7 +44,7 @@ class Parts:
     def terms(self) -> dict[sp.Symbol, sp.Expr]:
         """Named functions of all effects, each followed by its slopes in the angles."""
         found: dict[sp.Symbol, sp.Expr] = {}
-        for contribution in self.contributions:
+        for contribution in self.by_effect:
             for symbol, term in contribution.terms.items():
                 found[symbol] = self.resolve(term)
                 found.update(_slopes(symbol, found))
@@ -53,17 +53,17 @@ class Parts:
     @property
     def frictions(self) -> list[Friction]:
         """Set-valued frictions of all effects."""
-        return [f for c in self.contributions for f in c.frictions]
+        return [f for c in self.by_effect for f in c.frictions]
 
     @property
     def shafts(self) -> list[Shaft]:
         """Shafts of all effects."""
-        return [s for c in self.contributions for s in c.shafts]
+        return [s for c in self.by_effect for s in c.shafts]
 
     @property
     def plays(self) -> list[Play]:
         """Gaps between rigid bodies of all effects."""
-        return [p for c in self.contributions for p in c.plays]
+        return [p for c in self.by_effect for p in c.plays]
 
     @property
     def split_axes(self) -> list[str]:
@@ -74,12 +74,12 @@ class Parts:
     @property
     def drives(self) -> list[Drive]:
         """Drives of all effects."""
-        return [d for c in self.contributions for d in c.drives]
+        return [d for c in self.by_effect for d in c.drives]
 
     @property
     def prescribed(self) -> dict[sp.Symbol, Input]:
         """Acceleration inputs of joint rates whose motion is prescribed."""
-        return {rate: i for c in self.contributions for rate, i in c.prescribed.items()}
+        return {rate: i for c in self.by_effect for rate, i in c.prescribed.items()}
 
     @property
     def driven(self) -> set[str]:
@@ -112,7 +112,7 @@ def slope_symbol(term: sp.Symbol, variable: sp.Symbol) -> sp.Symbol:
     return sp.Symbol(f"{term}_by_{variable}", real=True)
 
 
-def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Parts:
+def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Contributions:
     """Let every placed effect contribute, and apply all changes to the quantities."""
     placed = list(placed)
     contributions = tuple(effect.contribute(place) for effect, place in placed)
@@ -134,7 +134,7 @@ def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Part
     for name, change in changes:
         values[name] = change.through(values[name])
     symbols = {quantity_symbol(name): value for name, value in values.items()}
-    return Parts(contributions, tuple(effect.dissipative for effect, _ in placed), symbols)
+    return Contributions(contributions, tuple(effect.dissipative for effect, _ in placed), symbols)
 
 
 def _transmitted(axis: str, contributions: Iterable[Contribution]) -> sp.Expr:
