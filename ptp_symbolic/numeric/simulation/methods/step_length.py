@@ -34,15 +34,21 @@ def next_length(remaining, largest, clock):
 
 @inlined
 def accept(error, length, clock):
-    """Plan the next step from the error of an attempt; False when it must be repeated."""
+    """Plan the next step from the error of an attempt; False when it must be repeated.
+
+    A step that a stop has cut short says that longer ones are possible, not how long: the plan
+    stays where it is longer.
+    """
     if not error < 1e10:
         error = 1e10
     if error > 1.0:
         clock[LENGTH] = length * max(0.2, 0.9 * error**-0.2)
         return False
     grow = 5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2)
-    if grow > 1.0 or clock[LENGTH] <= length:
+    if clock[LENGTH] <= length:
         clock[LENGTH] = length * grow
+    else:
+        clock[LENGTH] = max(clock[LENGTH], length * grow)
     return True
 
 
