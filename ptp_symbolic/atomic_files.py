@@ -32,7 +32,9 @@ def write_files_atomically(folder: Path, files: Mapping[str, str | bytes]) -> No
         is_new = not folder.exists()
         if is_new:
             folder.parent.mkdir(parents=True, exist_ok=True)
-        temporary = _new_temporary(folder)
+        # Inside an existing folder, beside a new one: a mounted folder often has a parent that is
+        # read-only or lies on another file system.
+        temporary = _new_temporary(folder, folder.parent if is_new else folder)
         try:
             for name, content in zip(names, files.values(), strict=True):
                 _write_synced(temporary / name, content)
@@ -71,9 +73,7 @@ def check_writable(folder: Path) -> None:
     if not existing.is_dir():
         raise InputError(_refusal(folder, f"'{existing}' is not a folder"))
     try:
-        probe = existing / f".{secrets.token_hex(6)}.tmp"
-        probe.mkdir()
-        probe.rmdir()
+        _new_temporary(folder, existing).rmdir()
     except OSError as error:
         raise InputError(_refusal(folder, error.strerror or str(error))) from error
 
@@ -101,11 +101,8 @@ def _check_targets(folder: Path, names: list[str]) -> None:
             raise InputError(_refusal(target, "a folder has the name of the file"))
 
 
-def _new_temporary(folder: Path) -> Path:
-    """Make a temporary folder on the file system of `folder` and drop those of dead processes."""
-    # Inside an existing folder, beside a new one: a mounted folder often has a parent that is
-    # read-only or lies on another file system.
-    base = folder if folder.exists() else folder.parent
+def _new_temporary(folder: Path, base: Path) -> Path:
+    """Make a temporary folder for `folder` in `base` and drop those of dead processes."""
     stem = f".{folder.resolve().name}.{socket.gethostname()}."
     for stale in base.glob(".*.tmp"):
         if stale.name.startswith(stem) and stale.is_dir() and _is_stale(stale, stem):

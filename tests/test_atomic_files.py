@@ -182,3 +182,21 @@ def test_a_killed_process_leaves_whole_files_and_one_temporary_folder_at_most(
         assert len(list((tmp_path / "out").glob(".*.tmp"))) <= 1
     write_files_atomically(tmp_path / "out", {"a.txt": "end"})
     assert everything_in(tmp_path) == ["out", "out/a.txt", "out/b.txt"]
+
+
+@pytest.mark.parametrize("exists", [True, False])
+def test_what_a_killed_check_leaves_is_removed_by_the_next_run(
+    exists: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "out"
+    if exists:
+        out.mkdir()
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    ended.wait()
+    with monkeypatch.context() as killed:
+        killed.setattr(atomic_files.os, "getpid", lambda: ended.pid)
+        killed.setattr(Path, "rmdir", lambda _: None)
+        check_writable(out)
+    assert len(everything_in(tmp_path)) == 1 + exists
+    check_writable(out)
+    assert everything_in(tmp_path) == ["out"] * exists
