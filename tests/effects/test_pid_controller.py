@@ -13,6 +13,7 @@ from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, ramp, step
 from ptp_symbolic.platform import EffectDeclaration, Platform
+from ptp_symbolic.symbolic.effects import EFFECTS
 
 J, L, R, KT, JM, N = 0.05, 6.9e-3, 12.9, 0.0724, 1.1e-5, 500.0
 COUNT = 2 * math.pi / 7200
@@ -22,7 +23,8 @@ GAINS = {"K_p_pan": 300.0, "K_i_pan": 900.0, "K_d_pan": 4.0}
 
 def servo(*more: str) -> Model:
     names = ("rigid_bodies", "dc_motor", "pid_controller", *more)
-    effects = (EffectDeclaration(n, None if n == "rigid_bodies" else "pan", None) for n in names)
+    of_axes = {effect.id for effect in EFFECTS if effect.on_axis}
+    effects = (EffectDeclaration(n, "pan" if n in of_axes else None, None) for n in names)
     return emission.emit(Platform("servo", "Servo", ("pan",), 9.81, tuple(effects), (), ()))
 
 

@@ -128,8 +128,8 @@ def test_what_cannot_be_confirmed_is_a_hint_and_not_a_name() -> None:
 
 def test_a_declared_parameter_has_a_start_and_that_of_an_effect_has_none() -> None:
     trial = _trial(_candidate("x"))
-    own = SimpleNamespace(name="J_y_tilt", table=0.1)
-    added = SimpleNamespace(name="i_pan", table=None)
+    own = SimpleNamespace(name="J_y_tilt", declared_start=0.1)
+    added = SimpleNamespace(name="i_pan", declared_start=None)
     fit: Any = trial.fit
     fit.free = (own, added)
     fit.model.parameters += (SimpleNamespace(name="i_pan", meaning="a current"),)
