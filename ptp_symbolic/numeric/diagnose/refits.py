@@ -24,6 +24,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
     FAR_OFF,
+    FIRST_RUNG,
     ITERATIONS,
     LAST_RUNG,
     NEARBY,
@@ -42,12 +43,15 @@ FloatArray = NDArray[np.float64]
 
 def fit_declared(task: Task, proposals: Proposals) -> Trial:
     """The declared model, from where windows lead from the rows' start and from the declared one,
-    and from those two themselves.
+    and from those two themselves; where runs are windows already, from starts far off too.
     """
     starts = [proposals.start, declared_start(task)]
     spread = far_starts(task, proposals.start) if has_rough_starts(task) else []
     begun = over_windows(task, (), [*starts, *spread], task.executor)
     begun += [fitted(task, (), values, None) for values in starts]
+    if not task.windows:
+        far = [fitted(task, (), values, None) for values in spread]
+        begun += halving(task, far, FIRST_RUNG)
     best = halving(task, begun, LAST_RUNG) or begun[-1:]
     return polished(task, best[0], carried_noise(task, best[0].fit))
 
