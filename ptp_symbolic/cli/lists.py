@@ -87,7 +87,7 @@ def _explain(name: str, as_json: bool) -> None:
 def _described(kind: Any) -> dict[str, Any]:
     """One kind of an effect as data; `<axis>` stands for pan or tilt."""
     from ptp_symbolic.symbolic.derivation.placement import effects_that_define
-    from ptp_symbolic.symbolic.effects.effect import Place
+    from ptp_symbolic.symbolic.effect_interface.place import Place
 
     axes = ("pan", "tilt")
     place = Place(axes, "<axis>" if kind.on_axis else None, None, frozenset())
@@ -95,7 +95,7 @@ def _described(kind: Any) -> dict[str, Any]:
         "kind": kind.kind,
         "what": kind.title,
         "sits_on": "an axis" if kind.on_axis else "the whole platform",
-        "searched": not kind.structural,
+        "searched": kind.searched,
         "reference": kind.reference,
         "separating_experiment": kind.separating_experiment,
         "needs": [
@@ -114,7 +114,7 @@ def _described(kind: Any) -> dict[str, Any]:
                 "meaning": p.meaning,
                 "off_at": p.vanishes,
             }
-            for p in kind.parameters(place)
+            for p in kind.parameters_at(place)
         ],
     }
 

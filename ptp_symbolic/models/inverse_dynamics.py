@@ -16,8 +16,9 @@ from ptp_symbolic.platform import ParameterDeclaration, Platform, read_platform
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.effects.effect import slide
+from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.symbols import real
 
 FloatArray = NDArray[np.float64]
 
@@ -80,7 +81,7 @@ def inverse_dynamics(
     refuse_impossible(equations, platform)
     angles, rates, accelerations, times = _motion(motion).arrays(equations.axes)
     ways = np.where(rates != 0.0, np.sign(rates), np.sign(accelerations))
-    wanted = [sp.Symbol(f"alpha_{axis}", real=True) for axis in equations.axes]
+    wanted = [real(f"alpha_{axis}") for axis in equations.axes]
     sliding = [slide(axis) for axis in equations.axes]
     arguments = [*equations.coordinates, *equations.rates, *wanted, *sliding, kinematics.TIME]
     function = sp.lambdify(arguments, _torques(equations, wanted), "numpy", cse=True)
@@ -103,9 +104,9 @@ def _torques(equations: Equations, wanted: list[sp.Symbol]) -> list[sp.Expr]:
     torques = sp.Matrix(equations.mass_matrix * sp.Matrix(wanted) - equations.forcing)
     for friction in equations.frictions:
         torques[equations.rates.index(friction.rate)] += slide(friction.axis) * friction.level
-    known = {sp.Symbol(p.name, real=True): sp.Float(p.default, 17) for p in equations.parameters}
-    known |= {sp.Symbol(s.name, real=True): sp.Float(s.initial) for s in equations.extra_states}
-    known |= {sp.Symbol(i.name, real=True): sp.Float(0) for i in equations.inputs}
+    known = {real(p.name): sp.Float(p.default, 17) for p in equations.parameters}
+    known |= {real(s.name): sp.Float(s.initial) for s in equations.extra_states}
+    known |= {real(i.name): sp.Float(0) for i in equations.inputs}
     return [equations.written_out(torque).xreplace(known) for torque in torques]
 
 

@@ -23,7 +23,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.runtime.loader import verify
 from ptp_symbolic.symbolic.codegen.module import module_text
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 
 DIGITS = 16  # of a SHA-256 in a name: 64 bits
 

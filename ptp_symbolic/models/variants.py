@@ -25,7 +25,7 @@ def candidate_effects(platform: Platform) -> tuple[EffectDeclaration, ...]:
             EffectDeclaration(effect.id, axis, None)
             for effect in EFFECTS
             for axis in (platform.axes if effect.on_axis else (None,))
-            if not effect.structural
+            if effect.searched
             and (effect.id, axis) not in declared | {(e.effect, e.axis) for e in found}
             and {need.format(axis=axis) for need in effect.needs} <= available
         ]
@@ -59,7 +59,7 @@ def torque_driven(platform: Platform) -> Platform:
         if len(usable) == len(kept):
             break
         kept = usable
-    own = {p.name for effect, place in kept for p in effect.parameters(place)}
+    own = {p.name for effect, place in kept for p in effect.parameters_at(place)}
     return replace(
         platform,
         effects=tuple(EffectDeclaration(e.id, place.axis, place.site) for e, place in kept),

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 from ptp_symbolic.errors import InputError
 
+SITES = ("gear", "joint")  # where on its axis an effect may sit
+
 
 @dataclass(frozen=True)
 class ParameterDeclaration:

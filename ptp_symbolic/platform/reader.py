@@ -10,6 +10,7 @@ from typing import Any
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.platform import fields
 from ptp_symbolic.platform.declaration import (
+    SITES,
     EffectDeclaration,
     ParameterDeclaration,
     Platform,
@@ -19,7 +20,6 @@ from ptp_symbolic.platform.text_file import read_text_bytes
 from ptp_symbolic.platform.units import to_si
 
 AXES = ("pan", "tilt")
-SITES = ("gear", "joint")
 ROLES = ("input", "output")
 STANDARD_GRAVITY = 9.81
 

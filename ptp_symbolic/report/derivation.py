@@ -28,9 +28,10 @@ from ptp_symbolic.symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.symbolic.derivation.newton_euler import newton_euler
 from ptp_symbolic.symbolic.derivation.proof import compare_numerically, prove_equal
 from ptp_symbolic.symbolic.derivation.properties import energy_remainder, is_passive, is_symmetric
-from ptp_symbolic.symbolic.effects.effect import slide
+from ptp_symbolic.symbolic.effect_interface.place import active, slide
 from ptp_symbolic.symbolic.simplify.base_parameters import BaseForm
 from ptp_symbolic.symbolic.simplify.steps import SimplifiedEquations, simplify_rigid
+from ptp_symbolic.symbolic.symbols import real
 
 LAST_LINES = 14  # on the last page at least
 ROUTES = (("Newton--Euler", newton_euler), ("Kane", kane), ("Lagrange", lagrange))
@@ -62,7 +63,7 @@ def render_derivation(platform: Platform) -> dict[str, str | bytes]:
 def _routes(equations: Equations) -> str:
     derived = {name: route(equations.rigid) for name, route in ROUTES}
     reference = derived["Lagrange"]
-    numbers = {sp.Symbol(p.name, real=True): float(p.default) or 0.01 for p in equations.parameters}
+    numbers = {real(p.name): float(p.default) or 0.01 for p in equations.parameters}
     rows = []
     for name in ("Newton--Euler", "Kane"):
         proof = prove_equal(derived[name], reference)
@@ -112,6 +113,13 @@ def _results(equations: Equations) -> str:
     for contact in equations.contacts:
         own = [s for s in found if s.key[:2] == ("contact", contact.axis)]
         parts += [_contact(contact), _displayed(own)]
+    for switch in equations.switches:
+        on = symbol_latex(str(active(switch.name)))
+        words = (
+            rf"${on}=1$ from where the deviation reaches the threshold, of either sign, until what"
+            r" drives it changes sign; it is ready again between the thresholds:"
+        )
+        parts += [words, _displayed([s for s in found if s.key[:2] == ("switch", switch.name)])]
     for words, kinds in (
         ("The functions named in these equations are", ("term",)),
         ("Drives and effects have states of their own:", ("state",)),

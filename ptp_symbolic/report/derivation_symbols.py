@@ -6,8 +6,8 @@ from ptp_symbolic.platform import ParameterDeclaration, Platform
 from ptp_symbolic.report.latex_text import displayed, escaped, table, unit_latex
 from ptp_symbolic.symbolic.codegen.latex import latex_of, symbol_latex
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.effects.effect import slide
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 
 PAN = r"The pan frame turns about the vertical $z$ axis of the base by $\theta_{\mathrm{pan}}$"
 TILT = r"the tilt frame turns about the $y$ axis of the {base} by $\theta_{{\mathrm{{tilt}}}}$"
@@ -86,6 +86,11 @@ def _variables(equations: Equations) -> Iterator[tuple[str, str, str, str]]:
         face = f"face of the gap in the {contact.axis} drive that is touched: $-1$, $1$, none 0"
         yield str(contact.side), face, "1", "mode"
         yield str(contact.active), "1 while this face transmits torque, else 0", "1", "mode"
+    for switch in equations.switches:
+        name = escaped(switch.name)
+        beyond = f"threshold that {name} is beyond: the lower $-1$, the upper $1$, none 0"
+        yield str(side(switch.name)), beyond, "1", "mode"
+        yield str(active(switch.name)), f"1 while {name} is on, else 0", "1", "mode"
     for symbol, _ in equations.terms:
         yield str(symbol), "a function of those above, given with the equations", "1", "function"
 

@@ -9,6 +9,7 @@ from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.newton_euler import newton_euler
 from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
 from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.symbols import real
 from ptp_symbolic.thesis import configurations, printed, rigid
 from ptp_symbolic.thesis.items import Item, erratum, plain
 from ptp_symbolic.thesis.motion import along
@@ -37,7 +38,7 @@ def shaft_damping() -> Item:
 def euler_sign() -> Item:
     """Erratum 5: the sign before J_zt in Eq. 3.7, from Newton-Euler."""
     equations = newton_euler(assemble(read_platform("thesis-ideal")).rigid)
-    factor = normal_form(equations.forcing[1].diff(sp.Symbol("J_z_tilt", real=True)))
+    factor = normal_form(equations.forcing[1].diff(real("J_z_tilt")))
     theta, rate = kinematics.angle("tilt"), kinematics.rate("pan")
     settled = normal_form(factor + sp.cos(theta) * sp.sin(theta) * rate**2) == 0
     return erratum(
@@ -111,7 +112,7 @@ def euler_singularity() -> Item:
     """Erratum 30: the Euler rates of Eq. 3.9 on the motion of Table 5.2."""
     _, matrix = _euler_rates()
     determinant = sp.simplify(matrix.det())
-    theta = sp.Symbol("theta", real=True)
+    theta = real("theta")
     singular = determinant.subs(theta, sp.pi / 2) == 0
     times = np.linspace(0.0, 2.0, 200_001)
     angle = along(times, printed.IDEAL_MOTION["tilt"]).angle

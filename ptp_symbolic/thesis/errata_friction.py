@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, least_squares
 
+from ptp_symbolic.symbolic.symbols import real
 from ptp_symbolic.thesis import printed, ramp_test, responses
 from ptp_symbolic.thesis.friction import (
     DUTY_SPEEDS,
@@ -79,7 +80,7 @@ def branches() -> Item:
 
 def _odd(number: int, where: str, dry: sp.Expr, viscous: sp.Expr) -> Item:
     """Friction must oppose motion: `dry` as printed is even in v and feeds energy in at v < 0."""
-    v = sp.Symbol("v", real=True)
+    v = real("v")
     values = {
         sp.Symbol("F_c"): FRICTION.F_c,
         sp.Symbol("F_s"): FRICTION.F_s,
@@ -104,14 +105,14 @@ def _odd(number: int, where: str, dry: sp.Expr, viscous: sp.Expr) -> Item:
 def csvs_sign() -> Item:
     """Erratum 3: Eq. 2.11 carries no sign(v)."""
     F_c, F_s, v_s, F_v = sp.symbols("F_c F_s v_s F_v")
-    v = sp.Symbol("v", real=True)
+    v = real("v")
     return _odd(3, "Eq. 2.11, dry part", F_c + (F_s - F_c) * sp.exp(-((v / v_s) ** 2)), F_v * v)
 
 
 def stribeck_sign() -> Item:
     """Erratum 28: Eq. 2.9 carries no sign(v)."""
     F_c, F_s, v_s = sp.symbols("F_c F_s v_s")
-    v = sp.Symbol("v", real=True)
+    v = real("v")
     return _odd(
         28, "Eq. 2.9, Stribeck part", (F_s - F_c) * sp.exp(-((v / v_s) ** 2)), sp.Integer(0)
     )

@@ -12,6 +12,7 @@ from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, cubic_tr
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.symbols import real
 from ptp_symbolic.thesis.printed import Transition
 
 FloatArray = NDArray[np.float64]
@@ -76,7 +77,7 @@ def needed_torques(
     torques = {kinematics.torque(axis): 0 for axis in JOINTS}
     needed = equations.mass_matrix * accelerations - equations.forcing.xreplace(torques)
     numbers = {p.name: p.default for p in equations.parameters} | dict(values or {})
-    needed = needed.subs({sp.Symbol(name, real=True): value for name, value in numbers.items()})
+    needed = needed.subs({real(name): value for name, value in numbers.items()})
     arguments = [*map(kinematics.angle, JOINTS), *map(kinematics.rate, JOINTS), *accelerations]
     function = sp.lambdify(arguments, list(needed), modules="numpy")
     moves = [motion[axis] for axis in JOINTS]

@@ -23,8 +23,8 @@ from ptp_symbolic.numeric.simulation.run import Trajectory, simulate
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, table
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.symbolic.derivation.placement import place_effects
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effects import EFFECTS
-from ptp_symbolic.symbolic.effects.effect import Effect
 from tests.independent import pan_logs, two_axis_logs
 
 PLATFORMS = Path(__file__).parents[1] / "platforms"
@@ -32,7 +32,7 @@ MACHINES = ("fieldlog_pan", "fieldlog_pan_dc", "fieldlog_two_axis")
 COUNT = 2.0 * math.pi / 7200
 PERIOD, STEP = 0.005, 1e-4
 HEADER = "time [s],pan_voltage [V],pan_current [A],pan_angle [rad]"
-SEARCHED = [effect for effect in EFFECTS if not effect.structural]
+SEARCHED = [effect for effect in EFFECTS if effect.searched]
 MOTION = ("theta_pan", "theta_tilt", "omega_pan", "omega_tilt")
 SMALL = 2e-3  # in SI, of an effect whose searches begin at zero
 CHAOTIC = 1.0  # counts rms by which a voltage written with five decimals changes the motion
@@ -41,7 +41,10 @@ CHAOTIC = 1.0  # counts rms by which a voltage written with five decimals change
 def without(platform: Platform, effect: Effect) -> Platform:
     """`platform` without `effect` and its parameters."""
     own = {
-        q.name for e, place in place_effects(platform) if e is effect for q in e.parameters(place)
+        parameter.name
+        for other, place in place_effects(platform)
+        if other is effect
+        for parameter in other.parameters_at(place)
     }
     return replace(
         platform,

@@ -29,7 +29,6 @@ BASES = tuple(
     )
 )
 IDS = [effect.id for effect in EFFECTS]
-BENEATH = ("effect", "conditions", "harmonics")  # what effects are made of
 
 
 def with_effect(effect: Effect) -> Platform:
@@ -71,7 +70,7 @@ def vanishing(equations: Equations, effect: Effect) -> dict[sp.Symbol, sp.Expr]:
 
 def test_every_effect_has_its_file_and_one_import() -> None:
     folder = Path(catalogue.__file__).parent
-    files = {p.stem for p in folder.glob("*.py")} - {"__init__", *BENEATH}
+    files = {p.stem for p in folder.glob("*.py")} - {"__init__"}
     assert files == set(IDS), "a file per effect, imported and listed in effects/__init__.py"
     assert all(len(p.read_text().splitlines()) <= 80 for p in folder.glob("*.py") if p.stem in IDS)
 
@@ -88,7 +87,7 @@ def test_declared_parameters_are_used_and_have_units(effect: Effect) -> None:
         assert parameter.unit == "1" or to_si(parameter.unit)[0] == 1.0
 
 
-@pytest.mark.parametrize("effect", [e for e in EFFECTS if not e.structural], ids=lambda e: e.id)
+@pytest.mark.parametrize("effect", [e for e in EFFECTS if e.searched], ids=lambda e: e.id)
 def test_equations_are_unchanged_when_it_is_off(effect: Effect) -> None:
     platform = with_effect(effect)
     full = assemble(platform)
@@ -122,7 +121,7 @@ def test_what_it_brings_is_named_after_its_axis_and_stores_what_its_states_hold(
             continue
         added = effect.contribute(place)
         if place.axis is not None:
-            names = [p.name for p in effect.parameters(place)] + [s.name for s in added.states]
+            names = [p.name for p in effect.parameters_at(place)] + [s.name for s in added.states]
             assert all(place.axis in name.split("_") for name in names), names
         if added.states and added.torques:
             assert added.stored != 0, "torques of a state work on what it stores: declare it"
@@ -131,7 +130,7 @@ def test_what_it_brings_is_named_after_its_axis_and_stores_what_its_states_hold(
 @pytest.mark.parametrize("effect", EFFECTS, ids=IDS)
 def test_defaults_starts_and_where_it_vanishes_lie_within_the_bounds(effect: Effect) -> None:
     for placed, place in place_effects(with_effect(effect)):
-        for p in effect.parameters(place) if placed is effect else ():
+        for p in effect.parameters_at(place) if placed is effect else ():
             given = (p.default, *p.starts, *(() if p.vanishes is None else (p.vanishes,)))
             assert all(p.lower <= value <= p.upper for value in given), p.name
 

@@ -13,7 +13,7 @@ from ptp_symbolic.platform import read_platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.placement import declared_parameters, place_effects
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 
 Machine = tuple[Equations, dict[str, Parameter]]
 

@@ -16,12 +16,12 @@ from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.diagnosis import render_diagnosis
 from ptp_symbolic.report.latex_text import PREAMBLE
 from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
+from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects import EFFECTS
-from ptp_symbolic.symbolic.effects.effect import Place
 from tests.report.synthetic_diagnosis import synthetic_diagnosis
 
 PLATFORMS = Path(__file__).parent.parent / "platforms"
-SEARCHED = [effect.id for effect in EFFECTS if not effect.structural]
+SEARCHED = [effect.id for effect in EFFECTS if effect.searched]
 LAWS = (
     "csvs_friction",
     "direction_dependent_friction",
@@ -62,7 +62,7 @@ def test_every_effect_that_can_be_added_shows_its_equation(effect: str) -> None:
     assert any(
         p.name.format(axis=placed.axis) in row["text"]
         for row in rows
-        for p in own.parameters(Place(("pan", "tilt"), placed.axis, None, frozenset()))
+        for p in own.parameters_at(Place(("pan", "tilt"), placed.axis, None, frozenset()))
     )
 
 

@@ -143,7 +143,7 @@ def _half_gap(
     model: Model, contact: int, x: FloatArray, u: FloatArray, p: FloatArray
 ) -> tuple[float, FloatArray]:
     frictions = len(model.friction_rates)
-    count = 3 * frictions + 4 * len(model.module.CONTACT_ANGLES)
+    count = 3 * frictions + 4 * len(model.contacts)
     m, g = np.zeros(len(model.mode_names)), np.zeros(count)
     gx, gp = np.zeros((count, len(x))), np.zeros((count, len(p)))
     model.module.guards(0.0, x, u, p, m, g)

@@ -44,8 +44,13 @@ class Layout(NamedTuple):
 def layout_of(model: Model) -> Layout:
     """The layout of `model`.
 
-    Raises InputError for a model whose states are set by samplers: they have no equation of motion.
+    Raises InputError for a model whose states are set by samplers, which have no equation of
+    motion, and for one with switches, which depend on what was before.
     """
+    if len(model.contacts) > len(model.module.CONTACT_ANGLES):
+        raise InputError(
+            f"Model '{model.name}' has switches; its torques do not follow from the motion alone."
+        )
     if len(model.sampled):
         raise InputError(
             f"Model '{model.name}' has sampled states;"

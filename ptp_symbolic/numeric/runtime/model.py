@@ -42,7 +42,7 @@ class EffectInstance:
 
 @dataclass(frozen=True)
 class ModelParameter:
-    """A parameter of a model; see `ptp_symbolic.symbolic.parameters.Parameter` for the fields."""
+    """A parameter of a model, with the fields of `Parameter` in the effect interface."""
 
     name: str
     unit: str
@@ -153,10 +153,12 @@ class Model:
     def contacts(self) -> NDArray[np.int64]:
         """Per contact [c, 3]: state index of the rates at the gear output and at the joint; 0 where
         it is sprung, 1 where rigid bodies strike, 2 where the joint is held in the gap as well.
+        Switches of effects follow, as sprung ones.
 
         A module whose contacts are all sprung does not list them.
         """
-        sprung = np.zeros((len(self.module.CONTACT_ANGLES), 3), dtype=np.int64)
+        elements = (len(self.mode_names) - len(self.friction_rates)) // 2
+        sprung = np.zeros((elements, 3), dtype=np.int64)
         return np.asarray(vars(self.module).get("RIGID_CONTACTS", sprung))
 
     @cached_property

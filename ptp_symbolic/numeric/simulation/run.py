@@ -42,6 +42,13 @@ FIXED_STEP = "fixed_step"
 EVENT_ROOM = 100_000  # events for which there is room at first; a run with more is repeated
 AT_BOUND = 1e-6  # rad; where the equations end, steps can become too short to go on
 SLIDING = {-1.0: "slides backward", 0.0: "sticks", 1.0: "slides forward"}
+SWITCHING = {
+    -2.0: "goes off beyond the lower threshold",
+    -1.0: "goes on at the lower threshold",
+    0.0: "is ready",
+    1.0: "goes on at the upper threshold",
+    2.0: "goes off beyond the upper threshold",
+}
 TOUCHING = {
     -4.0: "leans on the lower face",
     -3.0: "bounces off the lower face",
@@ -280,6 +287,8 @@ def _named(model: Model, rows: FloatArray) -> tuple[Event, ...]:
         if index < len(frictions):
             events.append(Event(float(time), f"friction {frictions[index]}", SLIDING[mode]))
         else:
-            contact = contacts[index - len(frictions)]
-            events.append(Event(float(time), f"contact {contact}", TOUCHING[mode]))
+            number = index - len(frictions)
+            is_switch = number >= len(model.module.CONTACT_ANGLES)
+            what, modes = ("switch", SWITCHING) if is_switch else ("contact", TOUCHING)
+            events.append(Event(float(time), f"{what} {contacts[number]}", modes[mode]))
     return tuple(events)

@@ -14,7 +14,9 @@ from ptp_symbolic.symbolic.codegen.chain import ChainRule, chain_rule
 from ptp_symbolic.symbolic.codegen.sharing import Line
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
+from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.symbols import real
 
 ZERO = sp.Integer(0)
 
@@ -89,15 +91,15 @@ def solve_accelerations(equations: Equations) -> Solve:
                 continue
             name = f"mass_{places[i]}" if i == j else f"mass_{places[i]}_{places[j]}"
             definitions.append((name, equations.mass_matrix[i, j]))
-            mass[i, j] = mass[j, i] = sp.Symbol(name, real=True)
+            mass[i, j] = mass[j, i] = real(name)
         total = equations.forcing[i]
         friction = slides.get(rate)
-        direction = _slide(friction.axis) if friction else sp.Integer(1)
+        direction = slide(friction.axis) if friction else sp.Integer(1)
         free.append(direction**2 if friction else sp.Integer(1))
         if friction:
             total = total - direction * friction.level
         definitions.append((f"force_{places[i]}", total))
-        force[i] = sp.Symbol(f"force_{places[i]}", real=True)
+        force[i] = real(f"force_{places[i]}")
     locks = _locks(equations, free)
     moved = moved_inertias(mass, locks)
     inverses = _named_inverses(inverse_values(mass, moved, free), places, definitions)
@@ -113,7 +115,7 @@ def solve_accelerations(equations: Equations) -> Solve:
         locks,
     )
     accelerations = solve.solve(list(force))
-    names = [sp.Symbol(f"accel_{place}", real=True) for place in places]
+    names = [real(f"accel_{place}") for place in places]
     lines = [(str(name), a) for name, a in zip(names, accelerations, strict=True)]
     return replace(solve, definitions=(*definitions, *lines), accelerations=tuple(names))
 
@@ -163,12 +165,8 @@ def _named_inverses(
         name = f"inverse_mass_{places[i]}" if partner == i else "inverse_determinant"
         if name not in dict(definitions):
             definitions.append((name, value))
-        inverses.append(sp.Symbol(name, real=True))
+        inverses.append(real(name))
     return inverses
-
-
-def _slide(axis: str) -> sp.Symbol:
-    return sp.Symbol(f"slide_{axis}", real=True)
 
 
 def state_rates(equations: Equations, solve: Solve) -> list[sp.Expr]:
@@ -176,7 +174,7 @@ def state_rates(equations: Equations, solve: Solve) -> list[sp.Expr]:
     by_state = dict(zip(equations.coordinates, equations.rates, strict=True))
     by_state.update(zip(equations.rates, solve.accelerations, strict=True))
     for state in equations.extra_states:
-        by_state[sp.Symbol(state.name, real=True)] = state.derivative
+        by_state[real(state.name)] = state.derivative
     return [by_state[symbol] for symbol in equations.state_symbols]
 
 
@@ -215,7 +213,8 @@ def derivative_of(
 
 def guard_expressions(equations: Equations, solve: Solve) -> list[sp.Expr]:
     """Per friction: holding torque, breakaway forward and backward; per contact: separation,
-    half gap, torque at the upper and at the lower face.
+    half gap, torque at the upper and at the lower face; per switch deviation, threshold, and twice
+    what drives it.
 
     A rigid face has the speed of approach as its torque until it is active; a body that has let go
     of it has left it when it is FACE_DEPTH away.
@@ -228,7 +227,7 @@ def guard_expressions(equations: Equations, solve: Solve) -> list[sp.Expr]:
             if row in (lock.gear, lock.joint):
                 other = lock.gear + lock.joint - row
                 hold += lock.active * _torque_at_rest(equations, solve, other)
-        direction = _slide(friction.axis)
+        direction = slide(friction.axis)
         forward, backward = (friction.breakaway.subs(direction, s) for s in (1, -1))
         expressions += [hold, forward, backward]
     for contact in equations.contacts:
@@ -240,6 +239,8 @@ def guard_expressions(equations: Equations, solve: Solve) -> list[sp.Expr]:
         )
         depth = FACE_DEPTH * contact.side**2 if contact.rigid else ZERO
         expressions += [contact.separation, contact.half_gap - depth, upper, lower]
+    for switch in equations.switches:
+        expressions += [switch.deviation, switch.threshold, switch.drive, switch.drive]
     return expressions
 
 

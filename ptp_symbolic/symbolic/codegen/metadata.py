@@ -13,8 +13,9 @@ from ptp_symbolic.symbolic.codegen.literals import (
     repr_text,
 )
 from ptp_symbolic.symbolic.derivation.equations import Equations, PlacedEffect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.mechanics import kinematics
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.symbols import real
 
 
 def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]) -> str:
@@ -110,10 +111,10 @@ def _docstring(equations: Equations, operations: tuple[int, int]) -> str:
         lines += _wrapped(f"sliding friction[{friction.rate}]", friction.level)
     held = {symbol for _, symbol, _ in equations.updates}
     for state in equations.extra_states:
-        if sp.Symbol(state.name, real=True) not in held:
+        if real(state.name) not in held:
             lines += _wrapped(f"{state.name}'", state.derivative)
     for sampler in equations.samplers:
-        start = sp.Symbol("k", real=True) + sampler.phase
+        start = real("k") + sampler.phase
         lines += _wrapped("instants", sampler.offset + start * sampler.period)
         for symbol, term in sampler.terms.items():
             lines += _wrapped(str(symbol), term)
@@ -204,6 +205,7 @@ def _rigid_contacts(equations: Equations) -> list[str]:
         rates = (kinematics.gear_rate(contact.axis), kinematics.rate(contact.axis))
         rule = "2" if contact.holds else "1" if contact.rigid else "0"
         rows.append(f"[{', '.join([*(str(states.index(rate)) for rate in rates), rule])}]")
+    rows += ["[0, 0, 0]"] * len(equations.switches)
     return [
         "# Per contact: state index of both rates; 0 sprung, 1 rigid, 2 rigid and held in the gap.",
         f"RIGID_CONTACTS = np.array([{', '.join(rows)}], dtype=np.int64)",

@@ -16,6 +16,7 @@ from ptp_symbolic.symbolic.codegen.term_names import term_names
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.simplify.base_parameters import base_form
+from ptp_symbolic.symbolic.symbols import real
 
 SEAL = "# END sha256 "
 
@@ -100,14 +101,14 @@ def _state_lines(equations: Equations) -> list[Line]:
 def _columns(
     equations: Equations,
 ) -> list[tuple[str, tuple[sp.Symbol, ...]]]:
-    parameters = tuple(sp.Symbol(p.name, real=True) for p in equations.parameters)
-    inputs = tuple(sp.Symbol(i.name, real=True) for i in equations.inputs)
+    parameters = tuple(real(p.name) for p in equations.parameters)
+    inputs = tuple(real(i.name) for i in equations.inputs)
     return [("x", equations.state_symbols), ("u", inputs), ("p", parameters)]
 
 
 def _jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
     outputs: list[Line] = []
-    extra = {sp.Symbol(s.name, real=True): s.derivative for s in equations.extra_states}
+    extra = {real(s.name): s.derivative for s in equations.extra_states}
     for letter, symbols in _columns(equations):
         for j, variable in enumerate(symbols):
             by = dynamics.acceleration_derivative(equations, solve, variable)
@@ -207,7 +208,7 @@ def _equation_error(equations: Equations, solve: dynamics.Solve, vectors: Vector
     given = [str(acceleration) for acceleration in solve.accelerations]
     definitions = [(name, e) for name, e in solve.definitions if name not in given]
     torques = solve.mass * sp.Matrix(solve.accelerations) - solve.force
-    moving = {sp.Symbol(s.name, real=True): s.derivative for s in equations.extra_states}
+    moving = {real(s.name): s.derivative for s in equations.extra_states}
     others = [moving[s] for s in equations.state_symbols if s in moving]
     outputs = [(f"r[{i}]", e) for i, e in enumerate([*torques, *others])]
     lines = share(definitions, outputs, term_names(equations))

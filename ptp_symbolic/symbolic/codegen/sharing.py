@@ -5,6 +5,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import sympy as sp
 
+from ptp_symbolic.symbolic.symbols import real
+
 Line = tuple[str, sp.Expr]
 MAX_NAME = 40
 MULTIPLES = {2: "twice", 3: "thrice", sp.Rational(1, 2): "half"}
@@ -52,7 +54,7 @@ def _in_single_angles(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
 def _numbered() -> Iterator[sp.Symbol]:
     number = 0
     while True:
-        yield sp.Symbol(f"shared:{number}", real=True)
+        yield real(f"shared:{number}")
         number += 1
 
 
@@ -95,7 +97,7 @@ def _renamed(lines: Iterable[Line], kept: set[str], words: Mapping[str, str]) ->
             continue
         readable = _unused(_describe(expression) or f"{final_use[name]}_term", taken)
         taken.add(readable)
-        names[sp.Symbol(name, real=True)] = sp.Symbol(readable, real=True)
+        names[real(name)] = real(readable)
         result.append((readable, expression))
     return result
 

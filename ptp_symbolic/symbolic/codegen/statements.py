@@ -14,9 +14,11 @@ from ptp_symbolic.symbolic.codegen.latex import (
     rate_latex,
 )
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
-from ptp_symbolic.symbolic.effects.effect import Friction, Sampler, slide
+from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Sampler, Switch
+from ptp_symbolic.symbolic.effect_interface.place import slide
+from ptp_symbolic.symbolic.symbols import real
 
-TIME = sp.Symbol("t", real=True)
+TIME = real("t")
 RELATIONS = {"=": ("=", "=", "="), "<=": (r"\le", "<=", "≤")}
 
 
@@ -105,6 +107,7 @@ def _written_out(equations: Equations) -> list[Statement]:
         *_joints(equations),
         *(s for friction in equations.frictions for s in friction_statements(friction)),
         *(s for contact in equations.contacts for s in _contact(contact)),
+        *(s for switch in equations.switches for s in _switch(switch)),
         *(
             Statement(("term", str(symbol)), f"{symbol}, by its name in the others", symbol, term)
             for symbol, term in equations.terms
@@ -128,12 +131,12 @@ def with_definitions(shown: Sequence[Statement], found: Sequence[Statement]) -> 
 
 def sliding(friction: Friction) -> sp.Symbol:
     """The name of a friction torque while sliding."""
-    return sp.Symbol(f"F_sliding_{place(friction.rate)}", real=True)
+    return real(f"F_sliding_{place(friction.rate)}")
 
 
 def shaft_torque(contact: Contact) -> sp.Symbol:
     """The name of what a shaft transmits while it touches a face."""
-    return sp.Symbol(f"T_shaft_{contact.axis}", real=True)
+    return real(f"T_shaft_{contact.axis}")
 
 
 def place(rate: sp.Symbol) -> str:
@@ -145,7 +148,7 @@ def _joints(equations: Equations) -> Iterator[Statement]:
     rates = equations.rates
     for i, rate in enumerate(rates):
         for j in range(i, len(rates)):
-            symbol = sp.Symbol(f"M_{i + 1}_{j + 1}", real=True)
+            symbol = real(f"M_{i + 1}_{j + 1}")
             name = f"entry {i + 1}, {j + 1} of the mass matrix"
             entry = equations.mass_matrix[i, j]
             yield Statement(("mass", str(rate), str(rates[j])), name, symbol, entry, sums=True)
@@ -154,7 +157,7 @@ def _joints(equations: Equations) -> Iterator[Statement]:
         torque = equations.forcing[i]
         if rate in rubbing:
             torque -= slide(rubbing[rate].axis) * sliding(rubbing[rate])
-        symbol = sp.Symbol(f"f_{place(rate)}", real=True)
+        symbol = real(f"f_{place(rate)}")
         yield Statement(("torque", str(rate)), f"the torque on {rate}", symbol, torque, sums=True)
 
 
@@ -162,7 +165,7 @@ def friction_statements(friction: Friction) -> list[Statement]:
     """The law of a dry friction: sliding, sticking, and where it breaks away."""
     at, key = place(friction.rate), ("friction", str(friction.rate))
     direction = slide(friction.axis)
-    stuck, broken = (sp.Symbol(f"F_{w}_{at}", real=True) for w in ("sticking", "breakaway"))
+    stuck, broken = (real(f"F_{w}_{at}") for w in ("sticking", "breakaway"))
     return [
         Statement(
             (*key, "sliding"),
@@ -192,8 +195,8 @@ def friction_statements(friction: Friction) -> list[Statement]:
 
 def _contact(contact: Contact) -> Iterator[Statement]:
     axis, key = contact.axis, ("contact", contact.axis)
-    gap = sp.Symbol(f"half_gap_{axis}", real=True)
-    apart = sp.Symbol(f"separation_{axis}", real=True)
+    gap = real(f"half_gap_{axis}")
+    apart = real(f"separation_{axis}")
     yield Statement(
         (*key, "gap"), f"half of the gap in the {axis} drive", gap, contact.half_gap, part="contact"
     )
@@ -210,15 +213,30 @@ def _contact(contact: Contact) -> Iterator[Statement]:
             (*key, "torque"), name, shaft_torque(contact), contact.torque, part="contact"
         )
     else:
-        bounce = sp.Symbol(f"e_{axis}", real=True)
+        bounce = real(f"e_{axis}")
         name = f"the coefficient of restitution of a strike in {axis}"
         yield Statement((*key, "strike"), name, bounce, contact.restitution, part="contact")
+
+
+def _switch(switch: Switch) -> Iterator[Statement]:
+    for word, name, value in (
+        ("deviation", "what is compared with its threshold", switch.deviation),
+        ("threshold", "the threshold, of either sign, at which it switches on", switch.threshold),
+        ("drive", "what drives it on: it goes off where this changes sign", switch.drive),
+    ):
+        yield Statement(
+            ("switch", switch.name, word),
+            f"switch {switch.name}: {name}",
+            real(f"{word}_{switch.name}"),
+            value,
+            part="contact",
+        )
 
 
 def _states(equations: Equations) -> Iterator[Statement]:
     held = {symbol for _, symbol, _ in equations.updates}
     for state in equations.extra_states:
-        symbol = sp.Symbol(state.name, real=True)
+        symbol = real(state.name)
         if symbol not in held:
             name = f"the rate of change of {state.name} ({state.meaning})"
             yield Statement(("state", state.name), name, rate_of(symbol), state.derivative)
@@ -231,8 +249,8 @@ def rate_of(symbol: sp.Symbol) -> sp.Expr:
 
 def _sampler(number: int, sampler: Sampler) -> Iterator[Statement]:
     key = ("sampler", str(number))
-    start = sp.Symbol("k", real=True) + sampler.phase
-    instants = sp.Symbol("t_k", real=True)
+    start = real("k") + sampler.phase
+    instants = real("t_k")
     yield Statement(
         (*key, "instants"),
         "the instants at which is set anew what is held between",
@@ -249,9 +267,9 @@ def _signals(equations: Equations) -> Iterator[Statement]:
     for given, delay in zip(equations.inputs, equations.delays, strict=True):
         if delay is not None:
             late = sp.Function(given.name)(TIME - delay)
-            symbol = sp.Symbol(f"{given.name}_acting", real=True)
+            symbol = real(f"{given.name}_acting")
             yield Statement(("input", given.name), f"{given.name} as it acts", symbol, late)
     for name, _, reading in equations.outputs:
-        if reading != sp.Symbol(name, real=True):
-            symbol = sp.Symbol(f"{name}_measured", real=True)
+        if reading != real(name):
+            symbol = real(f"{name}_measured")
             yield Statement(("output", name), f"what the sensor of {name} shows", symbol, reading)

@@ -78,6 +78,8 @@ def _guards(equations: Equations) -> list[str]:
         words += [f"{word}_{friction.axis}" for word in ("holding", "forward", "backward")]
     for contact in equations.contacts:
         words += [f"{word}_{contact.axis}" for word in ("separation", "half_gap", "upper", "lower")]
+    for switch in equations.switches:
+        words += [f"{word}_{switch.name}" for word in ("deviation", "threshold", "up", "down")]
     return words
 
 

@@ -18,15 +18,16 @@ from ptp_symbolic.symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.symbolic.derivation.ledger import energy_ledger
 from ptp_symbolic.symbolic.derivation.placement import acts_on, place_effects, resolved_parameters
 from ptp_symbolic.symbolic.derivation.prescribed import constraint_power, reduced, released
+from ptp_symbolic.symbolic.derivation.reserved_names import refuse_reserved_names
 from ptp_symbolic.symbolic.derivation.rigid_play import rigid_contact
 from ptp_symbolic.symbolic.derivation.transmission import Transmission, transmission
-from ptp_symbolic.symbolic.effects.conditions import Limit
-from ptp_symbolic.symbolic.effects.effect import Input, Sampler, State
-from ptp_symbolic.symbolic.effects.effect import quantity as quantity_symbol
+from ptp_symbolic.symbolic.effect_interface.conditions import Limit
+from ptp_symbolic.symbolic.effect_interface.contribution import Input, Sampler, State, Switch
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import quantity as quantity_symbol
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
-from ptp_symbolic.symbolic.parameters import Parameter
 
 
 def assemble(platform: Platform) -> Equations:
@@ -39,7 +40,7 @@ def assemble(platform: Platform) -> Equations:
     placed = place_effects(platform)
     contributions = released(collect(platform.axes, placed))
     transmissions = [transmission(shaft, contributions) for shaft in contributions.shafts]
-    contributions = _with_shaft_torques(contributions, transmissions)
+    contributions = _with_twists(contributions, transmissions)
     rigid = _rigid_configuration(platform, contributions)
     rigid_equations = lagrange(rigid)
     full = _mechanics(platform, contributions, transmissions, rigid_equations)
@@ -68,29 +69,41 @@ def assemble(platform: Platform) -> Equations:
         parameters=(),
         frictions=frictions,
         contacts=tuple(contacts),
+        switches=_switches(contributions),
         outputs=_outputs(platform, contributions),
         limits=_limits(contributions),
         requirements=tuple(r for effect, place in placed for r in effect.requires(place)),
         ledger=replace(ledger, power_in=ledger.power_in + power),
         effects=tuple(
-            PlacedEffect(e, p.axis, tuple(q.name for q in e.parameters(p)), acts_on(e, p, placed))
-            for e, p in placed
+            PlacedEffect(
+                effect,
+                place.axis,
+                tuple(parameter.name for parameter in effect.parameters_at(place)),
+                acts_on(effect, place, placed),
+            )
+            for effect, place in placed
         ),
         rigid=rigid,
         rigid_equations=rigid_equations,
     )
-    return _with_parameters(equations, resolved_parameters(platform, placed))
+    equations = _with_parameters(equations, resolved_parameters(platform, placed))
+    refuse_reserved_names(equations)
+    return equations
 
 
-def _with_shaft_torques(
+def _with_twists(
     contributions: Contributions, transmissions: Sequence[Transmission]
 ) -> Contributions:
-    """`contributions` in which the torque of every shaft is a quantity."""
-    torques = {
-        quantity_symbol(f"shaft_torque_{s.axis}"): t.transmitted
-        for s, t in zip(contributions.shafts, transmissions, strict=True)
-    }
-    return replace(contributions, values={**contributions.values, **torques})
+    """`contributions` in which the torque and the twist of every shaft are quantities."""
+    found = [item for t in transmissions for item in t.quantities.items()]
+    return replace(contributions, values={**contributions.values, **dict(found)})
+
+
+def _switches(contributions: Contributions) -> tuple[Switch, ...]:
+    return tuple(
+        Switch(own.name, *map(contributions.resolve, (own.deviation, own.threshold, own.drive)))
+        for own in contributions.switches
+    )
 
 
 def _limits(contributions: Contributions) -> tuple[Limit, ...]:
@@ -226,32 +239,7 @@ def _outputs(
 
 def _with_parameters(equations: Equations, declared: dict[str, Parameter]) -> Equations:
     """Attach the parameters that the equations use, in the order of the effects."""
-    used: set[sp.Symbol] = set(equations.mass_matrix.free_symbols | equations.forcing.free_symbols)
-    for _, expression in equations.terms:
-        used |= expression.free_symbols
-    for friction in equations.frictions:
-        used |= friction.level.free_symbols | friction.breakaway.free_symbols
-    for contact in equations.contacts:
-        used |= contact.half_gap.free_symbols | contact.torque.free_symbols
-        used |= set() if contact.restitution is None else contact.restitution.free_symbols
-    for state in equations.extra_states:
-        used |= state.derivative.free_symbols
-    for sampler in equations.samplers:
-        for expression in (
-            sampler.period,
-            sampler.offset,
-            sampler.phase,
-            *sampler.updates.values(),
-            *sampler.terms.values(),
-        ):
-            used |= expression.free_symbols
-    for _, _, expression in equations.outputs:
-        used |= expression.free_symbols
-    for limit in equations.limits:
-        used |= limit.lower.free_symbols | limit.upper.free_symbols
-    for power in (equations.ledger.stored, equations.ledger.power_in, equations.ledger.dissipated):
-        used |= power.free_symbols
-    used |= {delay for delay in equations.delays if delay is not None}
+    used = {symbol for e in equations.expressions() for symbol in e.free_symbols}
     names = {str(symbol) for symbol in used}
     _refuse_undefined(equations, names - declared.keys())
     parameters = tuple(p for name, p in declared.items() if name in names)

@@ -2,22 +2,26 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from graphlib import CycleError, TopologicalSorter
 
 import sympy as sp
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
-from ptp_symbolic.symbolic.effects.effect import (
+from ptp_symbolic.symbolic.effect_interface.contribution import (
     Contribution,
     Drive,
-    Effect,
     Friction,
     Input,
-    Place,
     Play,
     Shaft,
+    Switch,
 )
-from ptp_symbolic.symbolic.effects.effect import quantity as quantity_symbol
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.place import Place, quantity_name
+from ptp_symbolic.symbolic.effect_interface.place import quantity as quantity_symbol
 from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.symbols import real
 
 GRAVITY_QUANTITIES = ("gravity_tilt", "gravity_azimuth")
 BASE_ACCELERATION = tuple(f"base_acceleration_{k}" for k in "xyz")
@@ -59,6 +63,11 @@ class Contributions:
     def shafts(self) -> list[Shaft]:
         """Shafts of all effects."""
         return [s for c in self.by_effect for s in c.shafts]
+
+    @property
+    def switches(self) -> list[Switch]:
+        """Switches of all effects."""
+        return [s for c in self.by_effect for s in c.switches]
 
     @property
     def plays(self) -> list[Play]:
@@ -109,11 +118,15 @@ def _slopes(term: sp.Symbol, found: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symb
 
 def slope_symbol(term: sp.Symbol, variable: sp.Symbol) -> sp.Symbol:
     """Name of the derivative of the named function `term` by `variable`."""
-    return sp.Symbol(f"{term}_by_{variable}", real=True)
+    return real(f"{term}_by_{variable}")
 
 
 def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Contributions:
-    """Let every placed effect contribute, and apply all changes to the quantities."""
+    """Let every placed effect contribute, and apply all changes to the quantities.
+
+    Raises InputError where two effects define one quantity; ValueError for an effect that changes
+    one which nothing defines, and where one refers to itself.
+    """
     placed = list(placed)
     contributions = tuple(effect.contribute(place) for effect, place in placed)
     values: dict[str, sp.Expr] = {name: sp.Integer(0) for name in PLATFORM_QUANTITIES}
@@ -121,12 +134,12 @@ def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Cont
         values[f"transmitted_torque_{axis}"] = _transmitted(axis, contributions)
         values[f"transmission_error_{axis}"] = sp.Integer(0)
         values[f"reading_{kinematics.angle(axis)}"] = kinematics.angle(axis)
+    _refuse_second_definitions(placed, contributions)
     for contribution in contributions:
         values.update(contribution.quantities)
-        values.update(
-            {f"reading_{s.name}": sp.Symbol(s.name, real=True) for s in contribution.states}
-        )
+        values.update({f"reading_{s.name}": real(s.name) for s in contribution.states})
     changes = [item for c in contributions for item in c.changes.items()]
+    _refuse_changes_of_nothing(placed, contributions, values)
     for name, change in changes:
         values[name] = values[name] * change.factor
     for name, change in changes:
@@ -134,7 +147,46 @@ def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Cont
     for name, change in changes:
         values[name] = change.through(values[name])
     symbols = {quantity_symbol(name): value for name, value in values.items()}
+    _refuse_circles(symbols)
     return Contributions(contributions, tuple(effect.dissipative for effect, _ in placed), symbols)
+
+
+def _refuse_second_definitions(
+    placed: Iterable[tuple[Effect, Place]], contributions: Iterable[Contribution]
+) -> None:
+    owners: dict[str, str] = {}
+    for (effect, _), contribution in zip(placed, contributions, strict=True):
+        for name in contribution.quantities:
+            other = owners.setdefault(name, effect.id)
+            if other != effect.id:
+                raise InputError(
+                    f"Effects '{other}' and '{effect.id}' both define '{name}'; declare one of"
+                    " them."
+                )
+
+
+def _refuse_changes_of_nothing(
+    placed: Iterable[tuple[Effect, Place]],
+    contributions: Iterable[Contribution],
+    values: Mapping[str, sp.Expr],
+) -> None:
+    for (effect, _), contribution in zip(placed, contributions, strict=True):
+        for name in contribution.changes:
+            if name not in values:
+                raise ValueError(
+                    f"Effect '{effect.id}' changes '{name}', which nothing defines: name it in"
+                    " the effect's `needs`."
+                )
+
+
+def _refuse_circles(values: Mapping[sp.Symbol, sp.Expr]) -> None:
+    """Raise ValueError where a quantity refers to itself, directly or by way of others."""
+    graph = {symbol: value.free_symbols & values.keys() for symbol, value in values.items()}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        names = " -> ".join(quantity_name(symbol) for symbol in error.args[1])
+        raise ValueError(f"A quantity refers to itself: {names}; break the circle.") from error
 
 
 def _transmitted(axis: str, contributions: Iterable[Contribution]) -> sp.Expr:

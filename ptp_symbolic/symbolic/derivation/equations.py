@@ -1,13 +1,23 @@
 """The equations of a machine, ready for simplification, emission and documents."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.conditions import Limit, Requirement
-from ptp_symbolic.symbolic.effects.effect import Effect, Friction, Input, Sampler, State
+from ptp_symbolic.symbolic.effect_interface.conditions import Limit, Requirement
+from ptp_symbolic.symbolic.effect_interface.contribution import (
+    Friction,
+    Input,
+    Sampler,
+    State,
+    Switch,
+)
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.symbols import real
 
 
 @dataclass(frozen=True)
@@ -64,7 +74,8 @@ class Equations:
 
     Set-valued friction and contact enter through mode symbols, so that the equations are smooth
     in every mode. `forcing` holds everything but the friction torques. `terms` are named functions
-    in which they are written, each of those before it. `samplers` set states at instants. `delays`
+    in which they are written, each of those before it. `switches` belong to effects. `samplers` set
+    states at instants. `delays`
     gives for every input the time by which it is late, if it can be. The equations hold within
     `limits`, for parameters that meet the `requirements`.
     """
@@ -84,6 +95,7 @@ class Equations:
     parameters: tuple[Parameter, ...]
     frictions: tuple[Friction, ...]
     contacts: tuple[Contact, ...]
+    switches: tuple[Switch, ...]
     outputs: tuple[tuple[str, str, sp.Expr], ...]
     limits: tuple[Limit, ...]
     requirements: tuple[Requirement, ...]
@@ -102,7 +114,7 @@ class Equations:
             for symbol in pair
         ]
         held = {symbol for _, symbol, _ in self.updates}
-        extra = [sp.Symbol(state.name, real=True) for state in self.extra_states]
+        extra = [real(state.name) for state in self.extra_states]
         extra.sort(key=held.__contains__)
         return (*self.coordinates[:joints], *self.rates[:joints], *gears, *extra)
 
@@ -132,17 +144,34 @@ class Equations:
     @property
     def motion_symbols(self) -> set[sp.Symbol]:
         """What the motion between samples and its energy ledger depend on."""
-        ledger = self.ledger
-        found = [*self.mass_matrix, *self.forcing, *(term for _, term in self.terms)]
-        found += [e for f in self.frictions for e in (f.level, f.breakaway)]
-        found += [e for c in self.contacts for e in (c.separation, c.half_gap, c.torque)]
-        found += [s.derivative for s in self.extra_states]
-        found += [ledger.stored, ledger.power_in, ledger.dissipated]
-        return set().union(*(e.free_symbols for e in found))
+        still = replace(self, samplers=(), outputs=(), limits=(), delays=())
+        return {symbol for e in still.expressions() for symbol in e.free_symbols}
+
+    def expressions(self) -> Iterator[sp.Expr]:
+        """All expressions of the equations, each once."""
+        yield from (*self.mass_matrix, *self.forcing)
+        yield from (term for _, term in self.terms)
+        for f in self.frictions:
+            yield from (f.level, f.breakaway)
+        for c in self.contacts:
+            yield from (c.separation, c.half_gap, c.torque)
+            yield from () if c.restitution is None else (c.restitution,)
+        for s in self.switches:
+            yield from (s.deviation, s.threshold, s.drive)
+        yield from (state.derivative for state in self.extra_states)
+        for sampler in self.samplers:
+            yield from (sampler.period, sampler.offset, sampler.phase)
+            yield from (*sampler.updates.values(), *sampler.terms.values())
+        yield from (reading for _, _, reading in self.outputs)
+        for limit in self.limits:
+            yield from (limit.lower, limit.upper)
+        yield from (self.ledger.stored, self.ledger.power_in, self.ledger.dissipated)
+        yield from (delay for delay in self.delays if delay is not None)
 
     @property
     def mode_symbols(self) -> tuple[sp.Symbol, ...]:
-        """Direction of every friction, then side and activity of every contact."""
-        slides = [sp.Symbol(f"slide_{friction.axis}", real=True) for friction in self.frictions]
+        """Direction of every friction, then side and activity of every contact and switch."""
+        slides = [slide(friction.axis) for friction in self.frictions]
         contacts = [symbol for c in self.contacts for symbol in (c.side, c.active)]
-        return (*slides, *contacts)
+        switches = [symbol for s in self.switches for symbol in (side(s.name), active(s.name))]
+        return (*slides, *contacts, *switches)

@@ -7,7 +7,9 @@ import sympy as sp
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.symbolic.derivation.contributions import Contributions, slope_symbol
-from ptp_symbolic.symbolic.effects.effect import LOADS, Drive, Friction, quantity, slide
+from ptp_symbolic.symbolic.effect_interface.contribution import Drive, Friction
+from ptp_symbolic.symbolic.effect_interface.place import LOADS, quantity, slide
+from ptp_symbolic.symbolic.symbols import real
 
 ZERO = sp.Integer(0)
 FOLLOWING = ("follower_coupling", "follower_inertia", "follower_torque")
@@ -68,7 +70,7 @@ def resolved_frictions(
 def _carried(friction: Friction) -> dict[sp.Symbol, sp.Symbol]:
     """Quantities of the load of `friction`, each with the name that it keeps in the equations."""
     names = [f"{name}_{friction.axis}" for name in LOADS]
-    return {quantity(name): sp.Symbol(name, real=True) for name in names}
+    return {quantity(name): real(name) for name in names}
 
 
 def is_loaded(friction: Friction) -> bool:
@@ -116,7 +118,7 @@ def _loads(
             _refuse_circle(by_rate[rate])
             direction = slide(by_rate[rate].axis)
             force, free = force - direction * by_rate[rate].level, direction**2
-        names = [sp.Symbol(f"{word}_{friction.axis}", real=True) for word in FOLLOWING]
+        names = [real(f"{word}_{friction.axis}") for word in FOLLOWING]
         beside += zip(names, (mass[row, other], mass[other, other], force), strict=True)
         coupling, other_inertia, other_torque = names
         inertia -= free * coupling**2 / other_inertia

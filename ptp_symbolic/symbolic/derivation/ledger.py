@@ -6,9 +6,11 @@ import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.contributions import Contributions
 from ptp_symbolic.symbolic.derivation.equations import Ledger
-from ptp_symbolic.symbolic.effects.effect import Contribution, Friction, slide
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Friction
+from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
+from ptp_symbolic.symbolic.symbols import real
 
 ZERO = sp.Integer(0)
 
@@ -58,7 +60,7 @@ def _charging(contribution: Contribution) -> sp.Expr:
     """Power that flows into the energy of an effect's own states."""
     return sum(
         (
-            sp.diff(contribution.stored, sp.Symbol(state.name, real=True)) * state.derivative
+            sp.diff(contribution.stored, real(state.name)) * state.derivative
             for state in contribution.states
         ),
         ZERO,

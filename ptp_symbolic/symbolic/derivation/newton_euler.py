@@ -11,6 +11,7 @@ import sympy as sp
 
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration, RigidEquations
+from ptp_symbolic.symbolic.symbols import real
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ def newton_euler(configuration: RigidConfiguration) -> RigidEquations:
     axes = configuration.axes
     coordinates = tuple(kinematics.angle(axis) for axis in axes)
     rates = tuple(kinematics.rate(axis) for axis in axes)
-    accelerations = [sp.Symbol(f"acceleration_{axis}", real=True) for axis in axes]
+    accelerations = [real(f"acceleration_{axis}") for axis in axes]
     motions = _outward(configuration, accelerations)
     moments = _inward(configuration, motions)
     mass_matrix = sp.Matrix(moments).jacobian(accelerations)

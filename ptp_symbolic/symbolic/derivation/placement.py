@@ -5,9 +5,10 @@ from dataclasses import replace
 from ptp_symbolic.errors import InputError, did_you_mean, unknown
 from ptp_symbolic.platform import ParameterDeclaration, Platform, naming_file
 from ptp_symbolic.platform.units import compatible
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects import EFFECTS
-from ptp_symbolic.symbolic.effects.effect import Effect, Place
-from ptp_symbolic.symbolic.parameters import Parameter
 
 
 def find_effect(identifier: str) -> Effect:
@@ -62,13 +63,18 @@ def _placed(platform: Platform) -> list[tuple[Effect, Place]]:
                 f"Effect '{effect.id}' is of the whole platform; remove its axis ="
                 f' "{declaration.axis}".'
             )
+        if declaration.site is not None and declaration.site not in effect.sites:
+            raise InputError(
+                f"Effect '{effect.id}' has no choice of site; remove its site ="
+                f' "{declaration.site}".'
+            )
         placed.append((effect, Place(platform.axes, declaration.axis, declaration.site, shafts)))
     return placed
 
 
 def declared_parameters(placed: list[tuple[Effect, Place]]) -> dict[str, Parameter]:
     """Return the parameters of the placed effects by name."""
-    return {p.name: p for effect, place in placed for p in effect.parameters(place)}
+    return {p.name: p for effect, place in placed for p in effect.parameters_at(place)}
 
 
 def undeclared_parameters(platform: Platform) -> tuple[Parameter, ...]:
@@ -147,7 +153,7 @@ def _check_ownership(placed: list[tuple[Effect, Place]]) -> None:
     """Refuse what would count twice: one effect declared again, or two that share parameters."""
     owners: dict[str, Effect] = {}
     for effect, place in placed:
-        for parameter in effect.parameters(place):
+        for parameter in effect.parameters_at(place):
             other = owners.setdefault(parameter.name, effect)
             if other is not effect:
                 raise InputError(
@@ -194,7 +200,7 @@ def _no_owner(name: str, axes: tuple[str, ...], own: dict[str, Parameter]) -> st
         effect.id
         for effect in EFFECTS
         for axis in (axes if effect.on_axis else (None,))
-        if name in {p.name for p in effect.parameters(Place(axes, axis, None, frozenset()))}
+        if name in {p.name for p in effect.parameters_at(Place(axes, axis, None, frozenset()))}
     ]
     guess = f": it is of {' or '.join(owners)}; declare one." if owners else did_you_mean(name, own)
     known = ", ".join(own)

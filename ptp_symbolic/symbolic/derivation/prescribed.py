@@ -8,8 +8,10 @@ import sympy as sp
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.symbolic.derivation.contributions import Contributions
 from ptp_symbolic.symbolic.derivation.friction import Mechanics
-from ptp_symbolic.symbolic.effects.effect import Friction, Input, slide
+from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Input
+from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
+from ptp_symbolic.symbolic.symbols import real
 
 ZERO = sp.Integer(0)
 
@@ -46,7 +48,7 @@ def reduced(
     mass, forcing = sp.Matrix(mechanics.mass), sp.Matrix(mechanics.forcing)
     rigid_mass, rigid_forcing = sp.Matrix(rigid.mass_matrix), sp.Matrix(rigid.forcing)
     for rate, given in inputs.items():
-        row, acceleration = mechanics.rates.index(rate), sp.Symbol(given.name, real=True)
+        row, acceleration = mechanics.rates.index(rate), real(given.name)
         for other in range(mass.rows):
             forcing[other] -= mass[other, row] * acceleration
         forcing[row] = acceleration

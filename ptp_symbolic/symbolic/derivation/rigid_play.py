@@ -8,7 +8,8 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.symbolic.derivation.contributions import Contributions
 from ptp_symbolic.symbolic.derivation.equations import Contact
 from ptp_symbolic.symbolic.derivation.friction import Mechanics, is_loaded
-from ptp_symbolic.symbolic.effects.effect import Friction, Play, quantity
+from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Play
+from ptp_symbolic.symbolic.effect_interface.place import active, quantity, side
 from ptp_symbolic.symbolic.mechanics import kinematics
 
 
@@ -32,14 +33,13 @@ def rigid_contact(play: Play, contributions: Contributions, mechanics: Mechanics
             " motor, such as dc_motor."
         )
     _refuse_frictions(axis, gear, joint, contributions.frictions, contributions)
-    side, active = (sp.Symbol(f"{word}_{axis}", real=True) for word in ("side", "active"))
     return Contact(
         axis=axis,
         separation=kinematics.gear_angle(axis) - kinematics.angle(axis),
         half_gap=contributions.resolve(play.half_gap),
         torque=sp.Integer(0),
-        side=side,
-        active=active,
+        side=side(axis),
+        active=active(axis),
         restitution=contributions.resolve(play.restitution),
         holds=play.holds,
     )

@@ -1,22 +1,25 @@
 """Shafts between gear output and joint: torques, dead zones, energy."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.contributions import Contributions
 from ptp_symbolic.symbolic.derivation.equations import Contact, Ledger
-from ptp_symbolic.symbolic.effects.effect import Shaft
-from ptp_symbolic.symbolic.effects.effect import quantity as quantity_symbol
+from ptp_symbolic.symbolic.effect_interface.contribution import Shaft
+from ptp_symbolic.symbolic.effect_interface.place import active, quantity, side
 from ptp_symbolic.symbolic.mechanics import kinematics
 
 
 @dataclass(frozen=True)
 class Transmission:
-    """One shaft: torque on the gear output and on the joint, its contact if it has play."""
+    """One shaft: torques in N m on the gear output and on the joint, its contact if it has play,
+    and the quantities that effects find on its axis.
+    """
 
     torques: tuple[tuple[sp.Symbol, sp.Expr], ...]
-    transmitted: sp.Expr
+    quantities: Mapping[sp.Symbol, sp.Expr]
     contact: Contact | None
     ledger: Ledger
 
@@ -25,30 +28,31 @@ def transmission(shaft: Shaft, contributions: Contributions) -> Transmission:
     """The torques of `shaft`, whose twist a transmission error of the gear may modulate."""
     axis = shaft.axis
     gear, joint = kinematics.gear_rate(axis), kinematics.rate(axis)
-    error = contributions.resolve(quantity_symbol(f"transmission_error_{axis}"))
+    error = contributions.resolve(quantity(f"transmission_error_{axis}"))
     lead = 1 + sp.diff(error, kinematics.gear_angle(axis))
     separation = kinematics.gear_angle(axis) + error - kinematics.angle(axis)
     speed = gear * lead - joint
-    half_gap = contributions.resolve(quantity_symbol(f"half_gap_{axis}"))
-    side, active = (sp.Symbol(f"{word}_{axis}", real=True) for word in ("side", "active"))
-    touching: sp.Expr = side**2
-    face: sp.Expr = side
-    pushing: sp.Expr = active
+    half_gap = contributions.resolve(quantity(f"half_gap_{axis}"))
+    touching: sp.Expr = side(axis) ** 2
+    face: sp.Expr = side(axis)
+    pushing: sp.Expr = active(axis)
     if half_gap == 0:
         face, pushing, touching = sp.Integer(0), sp.Integer(1), sp.Integer(1)
-    twist = separation - face * half_gap
-    spring, damper = shaft.stiffness * twist, shaft.damping * speed
-    torque = spring + damper
+    twist, twist_rate = (quantity(f"{word}_{axis}") for word in ("twist", "twist_rate"))
+    here = {twist: separation - face * half_gap, twist_rate: speed}
+    spring, losses = (e.subs(here) for e in (sp.diff(shaft.energy, twist), shaft.losses))
+    torque = spring + losses
     transmitted = pushing * torque
-    lost = pushing * damper - (1 - pushing) * spring
+    lost = pushing * losses - (1 - pushing) * spring
     return Transmission(
         torques=((gear, -transmitted * lead), (joint, transmitted)),
-        transmitted=transmitted,
+        quantities={quantity(f"shaft_torque_{axis}"): transmitted}
+        | {symbol: touching * value for symbol, value in here.items()},
         contact=None
         if half_gap == 0
-        else Contact(axis, separation, half_gap, torque, side, active),
+        else Contact(axis, separation, half_gap, torque, side(axis), active(axis)),
         ledger=Ledger(
-            stored=touching * shaft.stiffness * twist**2 / 2,
+            stored=touching * shaft.energy.subs(here),
             power_in=sp.Integer(0),
             dissipated=touching * lost * speed,
         ),

@@ -1,5 +1,6 @@
 """The catalogue of effects: one file each, listed here in the order of the catalogue."""
 
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effects.backlash import BACKLASH
 from ptp_symbolic.symbolic.effects.base_motion import BASE_MOTION
 from ptp_symbolic.symbolic.effects.base_tilt import BASE_TILT
@@ -10,7 +11,6 @@ from ptp_symbolic.symbolic.effects.csvs_friction import CSVS_FRICTION
 from ptp_symbolic.symbolic.effects.dc_motor import DC_MOTOR
 from ptp_symbolic.symbolic.effects.direction_dependent_friction import DIRECTION_DEPENDENT_FRICTION
 from ptp_symbolic.symbolic.effects.drive_deadband import DRIVE_DEADBAND
-from ptp_symbolic.symbolic.effects.effect import Effect
 from ptp_symbolic.symbolic.effects.encoder_eccentricity import ENCODER_ECCENTRICITY
 from ptp_symbolic.symbolic.effects.encoder_quantization import ENCODER_QUANTIZATION
 from ptp_symbolic.symbolic.effects.gear_eccentricity import GEAR_ECCENTRICITY
@@ -18,6 +18,7 @@ from ptp_symbolic.symbolic.effects.input_delay import INPUT_DELAY
 from ptp_symbolic.symbolic.effects.linear_actuator import LINEAR_ACTUATOR
 from ptp_symbolic.symbolic.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION
 from ptp_symbolic.symbolic.effects.lugre_friction import LUGRE_FRICTION
+from ptp_symbolic.symbolic.effects.maxwell_slip_friction import MAXWELL_SLIP_FRICTION
 from ptp_symbolic.symbolic.effects.payload import PAYLOAD
 from ptp_symbolic.symbolic.effects.payload_com_offset import PAYLOAD_COM_OFFSET
 from ptp_symbolic.symbolic.effects.pid_controller import PID_CONTROLLER
@@ -44,6 +45,7 @@ EFFECTS: tuple[Effect, ...] = (
     VISCOUS_FRICTION,
     CSVS_FRICTION,
     LUGRE_FRICTION,
+    MAXWELL_SLIP_FRICTION,
     DIRECTION_DEPENDENT_FRICTION,
     LOAD_DEPENDENT_FRICTION,
     POSITION_DEPENDENT_FRICTION,

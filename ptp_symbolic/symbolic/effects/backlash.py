@@ -10,8 +10,10 @@ from dataclasses import replace
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place, Play
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution, Play
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 GAP = Parameter(
     "gap_{axis}",
@@ -27,10 +29,6 @@ OPEN_GAP = replace(GAP, lower=1e-6, vanishes=None, starts=())
 RESTITUTION = Parameter(
     "e_gap_{axis}", "1", 0.5, 0.0, 1.0, "restitution: speed apart after a strike, per speed before"
 )
-
-
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return (GAP.at_axis(place.axis),)
 
 
 def _contribute(place: Place) -> Contribution:
@@ -53,7 +51,7 @@ def _kind(
         kind=kind,
         title=title,
         reference=reference,
-        parameters=lambda place: place.named(given),
+        parameters=given,
         contribute=contribute,
         structural=True,
         splits_axis=True,
@@ -65,7 +63,7 @@ BACKLASH = Effect(
     kind="dead_zone",
     title="backlash",
     reference="thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
-    parameters=_parameters,
+    parameters=(GAP,),
     contribute=_contribute,
     needs=("half_gap_{axis}",),
     separating_experiment="Reverse slowly with and without a known preload torque on the joint:"

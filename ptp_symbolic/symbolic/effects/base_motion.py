@@ -4,9 +4,11 @@ import math
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
-from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter(
@@ -43,12 +45,8 @@ PARAMETERS = (
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return PARAMETERS
-
-
 def _contribute(place: Place) -> Contribution:
-    amplitude, frequency, phase, azimuth = (place.parameter(p.name) for p in PARAMETERS)
+    amplitude, frequency, phase, azimuth = place.symbols(PARAMETERS)
     acceleration = amplitude * sp.sin(2 * sp.pi * frequency * TIME + phase)
     return Contribution(
         changes={
@@ -62,7 +60,7 @@ BASE_MOTION = Effect(
     id="base_motion",
     title="base that shakes",
     reference="inertial force of an accelerated frame, thesis section 1.2 (mobile platforms)",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
     on_axis=False,
     needs=("payload_com_x",),

@@ -2,8 +2,10 @@
 
 import math
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 TILT = Parameter(
     "beta_base",
@@ -27,10 +29,6 @@ AZIMUTH = Parameter(
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return (TILT, AZIMUTH)
-
-
 def _contribute(place: Place) -> Contribution:
     return Contribution(
         changes={
@@ -44,7 +42,7 @@ BASE_TILT = Effect(
     id="base_tilt",
     title="base that is not level",
     reference="gravity turned by two angles in thesis Eq. 3.8 with payload (section 3.2.2)",
-    parameters=_parameters,
+    parameters=(TILT, AZIMUTH),
     contribute=_contribute,
     on_axis=False,
     needs=("payload_com_x",),

@@ -1,7 +1,9 @@
 """A cable wrap that pulls back: a hardening spring with a rest angle."""
 
-from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Member, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect, Member
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 PARAMETERS = (
     Parameter(
@@ -41,12 +43,8 @@ MEMBERS = (
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
-
-
 def _contribute(place: Place) -> Contribution:
-    linear, cubic, rest = (place.parameter(p.name) for p in PARAMETERS)
+    linear, cubic, rest = place.symbols(PARAMETERS)
     twist = place.angle - rest
     return Contribution(potential=linear * twist**2 / 2 + cubic * twist**4 / 4)
 
@@ -55,7 +53,7 @@ CABLE_SPRING = Effect(
     id="cable_spring",
     title="cable wrap that pulls back",
     reference="Duffing (1918): spring with linear and cubic part",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
     members=MEMBERS,
     separating_experiment="Unplug or unwind the cable and repeat; or sweep beyond +-180 deg, where"

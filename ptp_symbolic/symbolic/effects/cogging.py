@@ -2,9 +2,11 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Place
-from ptp_symbolic.symbolic.effects.harmonics import harmonic_members
-from ptp_symbolic.symbolic.parameters import Parameter, harmonics
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.harmonics import harmonic_members
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter, harmonics
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 OF_SINE = "cogging torque that goes with the sine of the gear output's angle"
 OF_COSINE = "cogging torque that goes with the cosine"
@@ -16,16 +18,11 @@ AMPLITUDES = harmonics(
 CYCLES = Parameter("n_cog_{axis}", "1", 60.0, 0.5, 1e5, OF_CYCLES, locked_to="angle")
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    amplitudes = (p for pair in AMPLITUDES for p in pair)
-    return tuple(p.at_axis(place.axis) for p in (*amplitudes, CYCLES))
-
-
 def _contribute(place: Place) -> Contribution:
     cycles = place.parameter(CYCLES.name)
     potential = sp.Integer(0)
     for order, pair in enumerate(AMPLITUDES, start=1):
-        sine, cosine = (place.parameter(p.name) for p in pair)
+        sine, cosine = place.symbols(pair)
         waves = order * cycles
         phase = waves * place.gear_angle
         potential += sine * sp.cos(phase) / waves - cosine * sp.sin(phase) / waves
@@ -36,7 +33,7 @@ COGGING = Effect(
     id="cogging",
     title="cogging of the motor",
     reference="Hanselman (2003), section 6: cogging as a position-dependent potential",
-    parameters=_parameters,
+    parameters=(*(p for pair in AMPLITUDES for p in pair), CYCLES),
     contribute=_contribute,
     members=harmonic_members(AMPLITUDES, (CYCLES.name,)),
     separating_experiment="Turn the unpowered motor by hand or repeat at two loads: cogging stays,"

@@ -1,7 +1,9 @@
 """A constant torque on a joint: mean wind, a counterweight, a pulling cable."""
 
-from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 TORQUE = Parameter(
     "tau0_{axis}",
@@ -15,10 +17,6 @@ TORQUE = Parameter(
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return (TORQUE.at_axis(place.axis),)
-
-
 def _contribute(place: Place) -> Contribution:
     return Contribution(torques={place.rate: place.parameter("tau0_{axis}")})
 
@@ -27,7 +25,7 @@ CONSTANT_TORQUE = Effect(
     id="constant_torque",
     title="constant torque on the joint",
     reference="wind mean or preload; thesis section 1.2 names the outdoor load",
-    parameters=_parameters,
+    parameters=(TORQUE,),
     contribute=_contribute,
     separating_experiment="Drive the same speeds in both directions with the motor leads swapped:"
     " a torque on the joint keeps its sign, an electrical offset turns with the leads.",

@@ -2,11 +2,14 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Contribution, Drive, Effect, Input, Place, State
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Drive, Input, State
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
+from ptp_symbolic.symbolic.symbols import real
 
 ZERO = sp.Integer(0)
-WINDING = "winding_resistance_{axis}"
+WINDING, LOSS = "winding_resistance_{axis}", "winding_loss_{axis}"
 VOLTAGES = ("motor_voltage_{axis}", "drive_voltage_{axis}", "command_{axis}")  # each from the next
 
 
@@ -30,12 +33,13 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
 
     `damping` in N m s/rad acts on the rotor. The parameters of the motor are those of `dc_motor`.
     """
-    inductance, resistance, constant, rotor = (place.parameter(p.name) for p in MOTOR)
-    current = sp.Symbol(f"i_{place.axis}", real=True)
-    applied = sp.Symbol(f"u_{place.axis}", real=True)
-    warm, (voltage, switched, command) = place.quantity(WINDING), map(place.quantity, VOLTAGES)
+    inductance, resistance, constant, rotor = place.symbols(MOTOR)
+    current = real(f"i_{place.axis}")
+    applied = real(f"u_{place.axis}")
+    winding, loss = map(place.quantity, (WINDING, LOSS))
+    voltage, switched, command = map(place.quantity, VOLTAGES)
     speed = ratio * place.gear_rate
-    derivative = (voltage - warm * current - constant * speed) / inductance
+    derivative = (voltage - winding * current - constant * speed) / inductance
     drive = Drive(
         axis=place.own_axis,
         inertia=rotor * ratio**2,
@@ -43,12 +47,13 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
         inputs=(Input(str(applied), "V", f"voltage of the {place.axis} motor"),),
         power_in=voltage * current,
         stored=inductance * current**2 / 2,
-        dissipated=warm * current**2 + damping * speed**2,
+        dissipated=loss + damping * speed**2,
     )
-    defined = {warm: resistance, voltage: switched, switched: command, command: applied}
+    names = (WINDING, LOSS, *VOLTAGES)
+    values = (resistance, winding * current**2, switched, command, applied)
+    defined = {n.format(axis=place.axis): v for n, v in zip(names, values, strict=True)}
     state = State(str(current), "A", f"current of the {place.axis} motor", derivative)
-    quantities = {str(q).removeprefix("quantity:"): value for q, value in defined.items()}
-    return Contribution(quantities=quantities, drives=(drive,), states=(state,))
+    return Contribution(quantities=defined, drives=(drive,), states=(state,))
 
 
 def _contribute(place: Place) -> Contribution:
@@ -59,7 +64,7 @@ DC_MOTOR = Effect(
     id="dc_motor",
     title="geared DC motor",
     reference="thesis Eq. 3.10, Eq. 3.11 with erratum 8",
-    parameters=lambda place: place.named(PARAMETERS),
+    parameters=PARAMETERS,
     contribute=_contribute,
     structural=True,
 )

@@ -1,7 +1,9 @@
 """Friction that differs by direction: relative half differences, added for positive rate."""
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Member, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect, Member
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 CHANGED = {
     "a_F_c_{axis}": "coulomb_torque_{axis}",
@@ -30,10 +32,6 @@ MEMBERS = (
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
-
-
 def _contribute(place: Place) -> Contribution:
     return Contribution(
         changes={
@@ -47,7 +45,7 @@ DIRECTION_DEPENDENT_FRICTION = Effect(
     id="direction_dependent_friction",
     title="friction that differs by direction",
     reference="thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
     needs=("coulomb_torque_{axis}",),
     members=MEMBERS,

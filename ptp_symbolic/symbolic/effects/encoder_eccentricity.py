@@ -1,8 +1,10 @@
 """An encoder disc off its centre: the reading leads and lags once per turn."""
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.symbolic.effects.harmonics import harmonic_members, wave
-from ptp_symbolic.symbolic.parameters import Parameter, harmonics
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.harmonics import harmonic_members, wave
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter, harmonics
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 AMPLITUDES = harmonics(
     Parameter(
@@ -28,10 +30,6 @@ AMPLITUDES = harmonics(
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for pair in AMPLITUDES for p in pair)
-
-
 def _contribute(place: Place) -> Contribution:
     error = wave(place, AMPLITUDES, place.angle)
     return Contribution(changes={f"reading_{place.angle}": Change(addition=error)})
@@ -41,7 +39,7 @@ ENCODER_ECCENTRICITY = Effect(
     id="encoder_eccentricity",
     title="encoder off its centre",
     reference="Ellin and Dolsak (2008): eccentricity error of rotary encoders",
-    parameters=_parameters,
+    parameters=tuple(p for pair in AMPLITUDES for p in pair),
     contribute=_contribute,
     members=harmonic_members(AMPLITUDES),
     separating_experiment="Turn slowly against a second encoder or an optical polygon: the error"

@@ -4,8 +4,10 @@ import sympy as sp
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.printer import Printer
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 PARAMETERS = (
     Parameter(
@@ -32,10 +34,6 @@ class NearestCount(sp.Function):
         return count * sp.floor(angle / count + sp.Rational(1, 2))
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
-
-
 def _contribute(place: Place) -> Contribution:
     count = place.parameter("q_count_{axis}")
     counted = Change(through=lambda shown: NearestCount(shown, count))
@@ -46,7 +44,7 @@ ENCODER_QUANTIZATION = Effect(
     id="encoder_quantization",
     title="encoder that counts",
     reference="thesis Table 5.7: 7200 counts per turn (1800 lines, four edges each)",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
     structural=True,
 )

@@ -1,8 +1,10 @@
 """A gear that does not run true: its output leads and lags once per turn."""
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.symbolic.effects.harmonics import harmonic_members, wave
-from ptp_symbolic.symbolic.parameters import Parameter, harmonics
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.harmonics import harmonic_members, wave
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter, harmonics
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 AMPLITUDES = harmonics(
     Parameter(
@@ -28,10 +30,6 @@ AMPLITUDES = harmonics(
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for pair in AMPLITUDES for p in pair)
-
-
 def _contribute(place: Place) -> Contribution:
     error = wave(place, AMPLITUDES, place.gear_angle)
     return Contribution(changes={f"transmission_error_{place.axis}": Change(addition=error)})
@@ -41,7 +39,7 @@ GEAR_ECCENTRICITY = Effect(
     id="gear_eccentricity",
     title="gear that runs out of true",
     reference="Smith (1999), transmission error of an eccentric wheel",
-    parameters=_parameters,
+    parameters=tuple(p for pair in AMPLITUDES for p in pair),
     contribute=_contribute,
     needs=("half_gap_{axis}",),
     members=harmonic_members(AMPLITUDES),

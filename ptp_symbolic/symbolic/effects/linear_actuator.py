@@ -7,12 +7,15 @@ from dataclasses import replace
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.conditions import Limit, Requirement
+from ptp_symbolic.symbolic.effect_interface.conditions import Limit, Requirement
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Friction
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects.dc_motor import electric_drive, motor_parameters
-from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Friction, Place
 from ptp_symbolic.symbolic.mechanisms.linkage import Linkage
 from ptp_symbolic.symbolic.mechanisms.screw import Screw, ScrewFriction
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.symbols import real
 
 PARAMETERS = (
     *motor_parameters((9.35e-3, 17.0, 0.044, 1.62e-6)),
@@ -30,13 +33,13 @@ PARAMETERS = (
 
 
 def _machinery(place: Place) -> tuple[Screw, Linkage, sp.Symbol]:
-    own = [place.parameter(p.name) for p in PARAMETERS[6:]]
+    own = place.symbols(PARAMETERS[6:])
     return Screw(*own[:3]), Linkage(*own[3:7]), own[7]
 
 
 def _contribute(place: Place) -> Contribution:
     (screw, linkage, longest), angle, axis = _machinery(place), place.gear_angle, place.own_axis
-    ratio = sp.Symbol(f"ratio_{axis}", real=True)
+    ratio = real(f"ratio_{axis}")
     terms, lever = linkage.ratio_terms(angle, axis)
     added = electric_drive(place, ratio, place.parameter("b_motor_{axis}"))
     lost = ScrewFriction(axis, screw, *place.loads, added.drives[0].inertia)
@@ -63,7 +66,7 @@ LINEAR_ACTUATOR = Effect(
     id="linear_actuator",
     title="linear actuator with lead screw and linkage",
     reference="thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6",
-    parameters=lambda place: place.named(PARAMETERS),
+    parameters=PARAMETERS,
     contribute=_contribute,
     structural=True,
     requires=_requires,

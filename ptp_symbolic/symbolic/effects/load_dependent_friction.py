@@ -2,8 +2,10 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 PARAMETERS = (
     Parameter(
@@ -19,10 +21,6 @@ PARAMETERS = (
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
-
-
 def _contribute(place: Place) -> Contribution:
     carried = sp.Abs(place.quantity("transmitted_torque_{axis}"))
     added = Change(addition=place.parameter("mu_load_{axis}") * carried)
@@ -35,7 +33,7 @@ LOAD_DEPENDENT_FRICTION = Effect(
     id="load_dependent_friction",
     title="friction that grows with the load",
     reference="Dohring, Lee and Newman (1993): load-dependent transmission friction",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
     needs=("coulomb_torque_{axis}", "static_torque_{axis}"),
     separating_experiment="Repeat with a known weight on a known arm, lifted and lowered at the"

@@ -2,8 +2,12 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Place, State
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.platform import SITES
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, State
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
+from ptp_symbolic.symbolic.symbols import real
 
 PARAMETERS = (
     Parameter("sigma0_{axis}", "N m/rad", 1e3, 1e-6, 1e9, "stiffness of the bristles"),
@@ -15,16 +19,10 @@ PARAMETERS = (
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
-
-
 def _contribute(place: Place) -> Contribution:
-    stiffness, damping, viscous, coulomb, static, speed = (
-        place.parameter(p.name) for p in PARAMETERS
-    )
-    rate = place.rate if place.site == "joint" else place.gear_rate
-    bend = sp.Symbol(f"bristle_{place.axis}", real=True)
+    stiffness, damping, viscous, coulomb, static, speed = place.symbols(PARAMETERS)
+    rate = place.friction_rate
+    bend = real(f"bristle_{place.axis}")
     level = coulomb + (static - coulomb) * sp.exp(-((rate / speed) ** 2))
     bending = rate - stiffness * sp.Abs(rate) / level * bend
     return Contribution(
@@ -49,8 +47,9 @@ LUGRE_FRICTION = Effect(
     id="lugre_friction",
     title="LuGre friction",
     reference="Canudas de Wit, Olsson, Astrom and Lischinsky (1995), Eq. 1-4",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
+    sites=SITES,
     structural=True,
     separating_experiment="Swing below breakaway: bristles return elastically, dry friction stays.",
 )

@@ -2,9 +2,11 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Place
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.mechanics.bodies import Body
-from ptp_symbolic.symbolic.parameters import Parameter
 
 INERTIAS = tuple(
     Parameter(
@@ -19,28 +21,27 @@ OFFSETS = tuple(
 MASS = Parameter("m_payload", "kg", 4.992, 0.0, 1e5, "payload mass")
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    turning = {"pan": "z", "tilt": "y"}
-    if len(place.axes) == 1:
-        about = turning[place.axes[0]]
-        inertias = tuple(p for p in INERTIAS if p.name == f"J_{about}_payload")
-        return (MASS, *inertias, *(p for p in OFFSETS if p.name != f"c_{about}_payload"))
-    return (MASS, *INERTIAS, *OFFSETS)
+def _has(place: Place, parameter: Parameter) -> bool:
+    """About a single axis one inertia matters, and no offset along it."""
+    if len(place.axes) > 1 or parameter is MASS:
+        return True
+    about = {"pan": "z", "tilt": "y"}[place.axes[0]]
+    return (parameter.name == f"J_{about}_payload") == (parameter in INERTIAS) and (
+        parameter.name != f"c_{about}_payload"
+    )
 
 
 def _contribute(place: Place) -> Contribution:
-    declared = {p.name for p in _parameters(place)}
+    def value(parameter: Parameter) -> sp.Expr:
+        return parameter.symbol if _has(place, parameter) else sp.Integer(0)
 
-    def symbol(name: str) -> sp.Expr:
-        return place.parameter(name) if name in declared else sp.Integer(0)
-
-    offset = {f"payload_com_{k}": symbol(f"c_{k}_payload") for k in "xyz"}
+    offset = {f"payload_com_{p.name[2]}": value(p) for p in OFFSETS}
     body = Body(
         name="payload",
         frame=place.payload_frame,
-        mass=place.parameter("m_payload"),
+        mass=MASS.symbol,
         com=sp.ImmutableMatrix([place.quantity(name) for name in offset]),
-        inertia=sp.ImmutableMatrix(sp.diag(*(symbol(f"J_{k}_payload") for k in "xyz"))),
+        inertia=sp.ImmutableMatrix(sp.diag(*map(value, INERTIAS))),
     )
     return Contribution(quantities=offset, bodies=(body,))
 
@@ -49,7 +50,8 @@ PAYLOAD = Effect(
     id="payload",
     title="payload",
     reference="thesis section 3.2.2, Table 5.3 with erratum 18",
-    parameters=_parameters,
+    parameters=(MASS, *INERTIAS, *OFFSETS),
+    has=_has,
     contribute=_contribute,
     on_axis=False,
     structural=True,

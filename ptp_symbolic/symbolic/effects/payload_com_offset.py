@@ -1,7 +1,9 @@
 """A centre of mass of the payload that lies elsewhere than declared."""
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 SHIFTS = tuple(
     Parameter(
@@ -18,16 +20,15 @@ SHIFTS = tuple(
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
+def _has(place: Place, parameter: Parameter) -> bool:
     along_axis = {"pan": "dc_z_payload", "tilt": "dc_y_payload"}.get("".join(place.axes))
-    return tuple(p for p in SHIFTS if p.name != along_axis)
+    return parameter.name != along_axis
 
 
 def _contribute(place: Place) -> Contribution:
     return Contribution(
         changes={
-            f"payload_com_{p.name[3]}": Change(addition=place.parameter(p.name))
-            for p in _parameters(place)
+            f"payload_com_{p.name[3]}": Change(addition=p.symbol) for p in SHIFTS if _has(place, p)
         }
     )
 
@@ -36,7 +37,8 @@ PAYLOAD_COM_OFFSET = Effect(
     id="payload_com_offset",
     title="payload centre of mass off its declared place",
     reference="thesis section 3.2.2 (mass imbalance)",
-    parameters=_parameters,
+    parameters=SHIFTS,
+    has=_has,
     contribute=_contribute,
     on_axis=False,
     needs=("payload_com_x",),

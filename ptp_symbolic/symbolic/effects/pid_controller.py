@@ -5,17 +5,17 @@ The integral part is limited, not the sum behind it: as in the LM629 the sum goe
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import (
+from ptp_symbolic.symbolic.effect_interface.contribution import (
     Change,
     Contribution,
-    Effect,
     Input,
-    Place,
     Sampler,
     State,
 )
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects.encoder_quantization import NearestCount
-from ptp_symbolic.symbolic.parameters import Parameter
 
 PARAMETERS = (
     Parameter("K_p_{axis}", "V/rad", 100.0, 0.0, 1e9, "proportional gain"),
@@ -40,7 +40,7 @@ def _within(value: sp.Expr, limit: sp.Expr) -> sp.Expr:
 
 
 def _contribute(place: Place) -> Contribution:
-    kp, ki, kd, limit, period, every, full, steps = (place.parameter(p.name) for p in PARAMETERS)
+    kp, ki, kd, limit, period, every, full, steps = place.symbols(PARAMETERS)
     command, integral, derivative, last = (place.parameter(name) for name, _, _ in STATES)
     wanted = place.parameter("setpoint_{axis}")
     error, total, asked = map(place.parameter, ("error_{axis}", "sum_{axis}", "asked_{axis}"))
@@ -69,7 +69,7 @@ PID_CONTROLLER = Effect(
     id="pid_controller",
     title="sampled PID controller on the encoder",
     reference="National Semiconductor LM629 data sheet, PID filter (6 MHz clock); thesis 3.2.3.1",
-    parameters=lambda place: place.named(PARAMETERS),
+    parameters=PARAMETERS,
     contribute=_contribute,
     structural=True,
     needs=("command_{axis}",),

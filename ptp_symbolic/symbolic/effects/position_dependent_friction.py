@@ -2,9 +2,11 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.symbolic.effects.harmonics import harmonic_members, wave
-from ptp_symbolic.symbolic.parameters import Parameter, harmonics
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.harmonics import harmonic_members, wave
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter, harmonics
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 AMPLITUDES = harmonics(
     Parameter(
@@ -30,10 +32,6 @@ AMPLITUDES = harmonics(
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for pair in AMPLITUDES for p in pair)
-
-
 def _contribute(place: Place) -> Contribution:
     added = Change(
         addition=wave(place, AMPLITUDES, place.gear_angle),
@@ -48,7 +46,7 @@ POSITION_DEPENDENT_FRICTION = Effect(
     id="position_dependent_friction",
     title="friction that depends on the angle",
     reference="Armstrong-Helouvry (1991), section 4: friction against position",
-    parameters=_parameters,
+    parameters=tuple(p for pair in AMPLITUDES for p in pair),
     contribute=_contribute,
     needs=("coulomb_torque_{axis}", "static_torque_{axis}"),
     members=harmonic_members(AMPLITUDES),

@@ -5,7 +5,9 @@ moves freely. Dry friction of the axis only adds to the torque that the motion t
 out. Assumed: no motor and no shaft on the axis.
 """
 
-from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Input, Place
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Input
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 
 def _contribute(place: Place) -> Contribution:
@@ -18,7 +20,7 @@ PRESCRIBED_MOTION = Effect(
     id="prescribed_motion",
     title="prescribed motion of the joint",
     reference="rheonomic constraint; Goldstein, Poole and Safko (2002), section 1.3",
-    parameters=lambda place: (),
+    parameters=(),
     contribute=_contribute,
     structural=True,
 )

@@ -1,7 +1,9 @@
 """Products of inertia of the tilt body: principal axes that are not the joint axes."""
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 PARAMETERS = tuple(
     Parameter(
@@ -18,10 +20,6 @@ PARAMETERS = tuple(
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return PARAMETERS
-
-
 def _contribute(place: Place) -> Contribution:
     return Contribution(
         changes={
@@ -35,7 +33,7 @@ PRODUCT_OF_INERTIA = Effect(
     id="product_of_inertia",
     title="products of inertia of the tilt body",
     reference="thesis Table 2.2 with erratum 27: M_pt = -J_xy sin + J_yz cos",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
     on_axis=False,
     needs=("tilt_product_xy",),

@@ -9,8 +9,10 @@ from dataclasses import replace
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place, Sampler, State
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution, Sampler, State
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 Contributing = Callable[[Place], Contribution]
 SUPPLY = Parameter("u_supply_{axis}", "V", 24.0, 1e-3, 1e6, "supply voltage of the {axis} bridge")
@@ -63,7 +65,7 @@ def _kind(kind: str, title: str, contribute: Contributing, *given: Parameter) ->
         contribute=contribute,
         structural=True,
         reference="Mohan (2003), section 7 (full bridge); LM629 data sheet; thesis section 3.2.3.1",
-        parameters=lambda place: place.named(given),
+        parameters=given,
         needs=("drive_voltage_{axis}",),
     )
 

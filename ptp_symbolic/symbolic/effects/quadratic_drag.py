@@ -2,8 +2,10 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 PARAMETERS = (
     Parameter(
@@ -19,10 +21,6 @@ PARAMETERS = (
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
-
-
 def _contribute(place: Place) -> Contribution:
     torque = -place.parameter("c_drag_{axis}") * place.rate * sp.Abs(place.rate)
     return Contribution(torques={place.rate: torque})
@@ -32,7 +30,7 @@ QUADRATIC_DRAG = Effect(
     id="quadratic_drag",
     title="drag that grows with the square of the rate",
     reference="Newton (1687): resistance of the air; no wind",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
     dissipative=True,
     separating_experiment="Run at six or more steady rates up to the largest; repeat with the"

@@ -2,8 +2,11 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place, State
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution, State
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
+from ptp_symbolic.symbolic.symbols import real
 
 PARAMETERS = (
     Parameter(
@@ -28,13 +31,9 @@ PARAMETERS = (
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
-
-
 def _contribute(place: Place) -> Contribution:
-    gain, time = (place.parameter(p.name) for p in PARAMETERS)
-    rest = sp.Symbol(f"rest_time_{place.axis}", real=True)
+    gain, time = place.symbols(PARAMETERS)
+    rest = real(f"rest_time_{place.axis}")
     return Contribution(
         changes={f"breakaway_torque_{place.axis}": Change(1 + gain * sp.log(1 + rest / time))},
         states=(
@@ -53,7 +52,7 @@ RATE_DEPENDENT_BREAKAWAY = Effect(
     id="rate_dependent_breakaway",
     title="breakaway torque that grows with the time at rest",
     reference="Rabinowicz (1958), logarithm of the dwell time; thesis section 5.4 (slow ramp)",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
     needs=("breakaway_torque_{axis}",),
     separating_experiment="Ramp the torque from rest at several rates and after several pauses:"

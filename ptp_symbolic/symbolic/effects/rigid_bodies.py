@@ -2,23 +2,26 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Place
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.mechanics.bodies import Body
-from ptp_symbolic.symbolic.parameters import Parameter
+
+PARAMETERS = (
+    Parameter("J_pan", "kg m^2", 5.3e-4, 1e-12, 1e4, "inertia of the pan body about z"),
+    Parameter("J_x_tilt", "kg m^2", 4.1e-4, 1e-12, 1e4, "inertia of the tilt body about x"),
+    Parameter("J_y_tilt", "kg m^2", 6.5e-4, 1e-12, 1e4, "inertia of the tilt body about y"),
+    Parameter("J_z_tilt", "kg m^2", 2.7e-4, 1e-12, 1e4, "inertia of the tilt body about z"),
+)
+ALONE: dict[tuple[str, ...], str] = {
+    ("pan",): "J_pan",
+    ("tilt",): "J_y_tilt",
+}  # what matters of a body with one axis
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    pan = (Parameter("J_pan", "kg m^2", 5.3e-4, 1e-12, 1e4, "inertia of the pan body about z"),)
-    tilt = (
-        Parameter("J_x_tilt", "kg m^2", 4.1e-4, 1e-12, 1e4, "inertia of the tilt body about x"),
-        Parameter("J_y_tilt", "kg m^2", 6.5e-4, 1e-12, 1e4, "inertia of the tilt body about y"),
-        Parameter("J_z_tilt", "kg m^2", 2.7e-4, 1e-12, 1e4, "inertia of the tilt body about z"),
-    )
-    if place.axes == ("pan",):
-        return pan
-    if place.axes == ("tilt",):
-        return tilt[1:2]
-    return pan + tilt
+def _has(place: Place, parameter: Parameter) -> bool:
+    return parameter.name == ALONE.get(place.axes, parameter.name)
 
 
 def _contribute(place: Place) -> Contribution:
@@ -46,7 +49,8 @@ RIGID_BODIES = Effect(
     id="rigid_bodies",
     title="pan body and tilt body",
     reference="thesis Eq. 3.8, Table 5.1",
-    parameters=_parameters,
+    parameters=PARAMETERS,
+    has=_has,
     contribute=_contribute,
     on_axis=False,
     structural=True,

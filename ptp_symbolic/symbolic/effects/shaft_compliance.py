@@ -1,7 +1,11 @@
 """A flexible shaft between the gear output and the load."""
 
-from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Place, Shaft
-from ptp_symbolic.symbolic.parameters import Parameter
+import sympy as sp
+
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Shaft
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 PARAMETERS = (
     Parameter("k_shaft_{axis}", "N m/rad", 5000.0, 1e-3, 1e9, "shaft stiffness"),
@@ -9,15 +13,11 @@ PARAMETERS = (
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
-
-
 def _contribute(place: Place) -> Contribution:
-    stiffness, damping = (place.parameter(p.name) for p in PARAMETERS)
+    stiffness, damping = place.symbols(PARAMETERS)
     return Contribution(
-        quantities={f"half_gap_{place.axis}": 0 * stiffness},
-        shafts=(Shaft(place.own_axis, stiffness, damping),),
+        quantities={f"half_gap_{place.axis}": sp.Integer(0)},
+        shafts=(Shaft(place.own_axis, stiffness * place.twist**2 / 2, damping * place.twist_rate),),
     )
 
 
@@ -25,7 +25,7 @@ SHAFT_COMPLIANCE = Effect(
     id="shaft_compliance",
     title="flexible shaft",
     reference="thesis Eq. 2.15 with erratum 4, Table 5.7",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
     structural=True,
     splits_axis=True,

@@ -1,7 +1,9 @@
 """Viscous friction in a joint."""
 
-from ptp_symbolic.symbolic.effects.effect import Contribution, Effect, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 DAMPING = Parameter(
     "b_{axis}",
@@ -15,10 +17,6 @@ DAMPING = Parameter(
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return (DAMPING.at_axis(place.axis),)
-
-
 def _contribute(place: Place) -> Contribution:
     return Contribution(torques={place.rate: -place.parameter("b_{axis}") * place.rate})
 
@@ -27,7 +25,7 @@ VISCOUS_FRICTION = Effect(
     id="viscous_friction",
     title="viscous friction in the joint",
     reference="thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
-    parameters=_parameters,
+    parameters=(DAMPING,),
     contribute=_contribute,
     dissipative=True,
     separating_experiment="Run at six or more steady speeds, the slowest near the Stribeck speed.",

@@ -1,7 +1,9 @@
 """A drive that puts out a voltage although it is told to put out none."""
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 PARAMETERS = (
     Parameter(
@@ -17,10 +19,6 @@ PARAMETERS = (
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
-
-
 def _contribute(place: Place) -> Contribution:
     offset = place.parameter("u0_{axis}")
     return Contribution(changes={f"motor_voltage_{place.axis}": Change(addition=offset)})
@@ -30,7 +28,7 @@ VOLTAGE_OFFSET = Effect(
     id="voltage_offset",
     title="offset of the drive's voltage",
     reference="offset of the power amplifier, in series with thesis Eq. 3.10",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
     needs=("motor_voltage_{axis}",),
     separating_experiment="Swap the motor leads and repeat: an offset of the drive turns with"

@@ -2,8 +2,10 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 PARAMETERS = (
     Parameter(
@@ -19,10 +21,6 @@ PARAMETERS = (
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
-
-
 def _contribute(place: Place) -> Contribution:
     largest = place.parameter("u_max_{axis}")
 
@@ -36,7 +34,7 @@ VOLTAGE_SATURATION = Effect(
     id="voltage_saturation",
     title="supply voltage that limits the drive",
     reference="saturation at the supply rails, thesis section 3.2 (24 V supply)",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
     needs=("motor_voltage_{axis}",),
     separating_experiment="Read the voltage at the motor terminals at the largest command.",

@@ -1,9 +1,10 @@
 """A motor winding whose resistance rises as it heats."""
 
-import sympy as sp
-
-from ptp_symbolic.symbolic.effects.effect import Change, Contribution, Effect, Place, State
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution, State
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
+from ptp_symbolic.symbolic.symbols import real
 
 PARAMETERS = (
     Parameter(
@@ -28,15 +29,10 @@ PARAMETERS = (
 )
 
 
-def _parameters(place: Place) -> tuple[Parameter, ...]:
-    return tuple(p.at_axis(place.axis) for p in PARAMETERS)
-
-
 def _contribute(place: Place) -> Contribution:
-    gain, time = (place.parameter(p.name) for p in PARAMETERS)
-    heat = sp.Symbol(f"heat_{place.axis}", real=True)
-    current = sp.Symbol(f"i_{place.axis}", real=True)
-    loss = place.quantity("winding_resistance_{axis}") * current**2
+    gain, time = place.symbols(PARAMETERS)
+    heat = real(f"heat_{place.axis}")
+    loss = place.quantity("winding_loss_{axis}")
     return Contribution(
         changes={f"winding_resistance_{place.axis}": Change(factor=1 + heat)},
         states=(
@@ -54,9 +50,9 @@ WINDING_HEATING = Effect(
     id="winding_heating",
     title="winding that heats",
     reference="first-order thermal model of the winding, Kenjo and Nagamori (1985), section 5",
-    parameters=_parameters,
+    parameters=PARAMETERS,
     contribute=_contribute,
-    needs=("winding_resistance_{axis}",),
+    needs=("winding_resistance_{axis}", "winding_loss_{axis}"),
     separating_experiment="Repeat the same run cold and after minutes of load, and measure the"
     " winding's resistance before and after.",
 )

@@ -8,33 +8,35 @@ section 3.1.1, Eq. 3.1.
 
 import sympy as sp
 
+from ptp_symbolic.symbolic.symbols import real
+
 AXES = ("pan", "tilt")
-TIME = sp.Symbol("t", real=True)
+TIME = real("t")
 
 
 def angle(axis: str) -> sp.Symbol:
     """Joint angle theta_<axis> in rad."""
-    return sp.Symbol(f"theta_{axis}", real=True)
+    return real(f"theta_{axis}")
 
 
 def rate(axis: str) -> sp.Symbol:
     """Joint rate omega_<axis> in rad/s."""
-    return sp.Symbol(f"omega_{axis}", real=True)
+    return real(f"omega_{axis}")
 
 
 def torque(axis: str) -> sp.Symbol:
     """Torque tau_<axis> on the joint in N m, positive towards a growing angle."""
-    return sp.Symbol(f"tau_{axis}", real=True)
+    return real(f"tau_{axis}")
 
 
 def gear_angle(axis: str) -> sp.Symbol:
     """Motor angle of `axis` seen at the gear output, in rad."""
-    return sp.Symbol(f"theta_gear_{axis}", real=True)
+    return real(f"theta_gear_{axis}")
 
 
 def gear_rate(axis: str) -> sp.Symbol:
     """Motor rate of `axis` seen at the gear output, in rad/s."""
-    return sp.Symbol(f"omega_gear_{axis}", real=True)
+    return real(f"omega_gear_{axis}")
 
 
 def joint_direction(axis: str) -> sp.ImmutableMatrix:

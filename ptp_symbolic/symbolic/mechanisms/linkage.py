@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ptp_symbolic.symbolic.symbols import real
+
 
 @dataclass(frozen=True)
 class Linkage:
@@ -53,7 +55,7 @@ class Linkage:
     def ratio_terms(self, angle: sp.Expr, axis: str) -> tuple[dict[sp.Symbol, sp.Expr], sp.Expr]:
         """Named functions, each of those before it, and `ratio` written with them."""
         words = ("linkage_cos", "linkage_sin", "length")
-        cosine, sine, length = (sp.Symbol(f"{word}_{axis}", real=True) for word in words)
+        cosine, sine, length = (real(f"{word}_{axis}") for word in words)
         squares = self.arm**2 + self.ground**2
         terms = {
             cosine: self.cosine,
@@ -77,7 +79,7 @@ class Linkage:
 
         They are where the length, as a function of the opening at the joint, is stationary.
         """
-        opening = sp.Symbol("opening", real=True)
+        opening = real("opening")
         ground, arm = sp.symbols("ground arm", positive=True)
         squared = arm**2 + ground**2 - 2 * arm * ground * sp.cos(opening)
         found = sp.solveset(sp.diff(squared, opening), opening, sp.Interval(0, sp.pi))

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ptp_symbolic.symbolic.symbols import real
+
 
 @dataclass(frozen=True)
 class Screw:
@@ -109,7 +111,7 @@ class ScrewFriction:
     @property
     def _names(self) -> list[sp.Symbol]:
         words = ("raised", "lowered", "carried", "lost_raising", "lost_lowering")
-        return [sp.Symbol(f"{word}_{self.axis}", real=True) for word in words]
+        return [real(f"{word}_{self.axis}") for word in words]
 
 
 def _by_sign(value: sp.Expr, above: sp.Expr, below: sp.Expr) -> sp.Expr:

@@ -25,6 +25,7 @@ from ptp_symbolic.symbolic.simplify.regressors import (
     place_of,
     regress,
 )
+from ptp_symbolic.symbolic.symbols import real
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ def _functions_of_time(rigid: RigidEquations) -> dict[sp.Expr, sp.Symbol]:
     """Sines and cosines of the time (a base that moves), to be carried along as they are."""
     found = [f for f in rigid.forcing.atoms(sp.sin, sp.cos) if TIME in f.free_symbols]
     ordered = sorted(found, key=sp.default_sort_key)
-    return {f: sp.Symbol(f"clock:{number}", real=True) for number, f in enumerate(ordered)}
+    return {f: real(f"clock:{number}") for number, f in enumerate(ordered)}
 
 
 def _combined(
@@ -170,7 +171,7 @@ class _Basis:
             return alone, scale
         mostly_negative = sum(sp.sign(value) for value in coefficient.values()) < 0
         scale = sp.Integer(-1 if mostly_negative else 1)
-        symbol = sp.Symbol(unused_name(name, self.taken), real=True)
+        symbol = real(unused_name(name, self.taken))
         self.taken.add(str(symbol))
         self.parameters.append((symbol, sp.expand(scale * expression)))
         return symbol, scale

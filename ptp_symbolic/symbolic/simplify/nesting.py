@@ -7,6 +7,7 @@ import sympy as sp
 
 from ptp_symbolic.symbolic.simplify.operations import Line
 from ptp_symbolic.symbolic.simplify.regressors import Exponents, StateFunction, place_of
+from ptp_symbolic.symbolic.symbols import real
 
 Combination = dict[sp.Expr, sp.Rational]
 Row = dict[StateFunction, Combination]
@@ -55,7 +56,7 @@ class AngleSums:
 
     def named(self, name: str, meaning: sp.Expr) -> sp.Symbol:
         """Add a line that gives `meaning` the name `name`, or a like one, and return its symbol."""
-        symbol = sp.Symbol(unused_name(name, self._taken), real=True)
+        symbol = real(unused_name(name, self._taken))
         self._taken.add(str(symbol))
         self.lines.append((symbol, meaning))
         return symbol

@@ -3,6 +3,7 @@
 import sympy as sp
 
 from ptp_symbolic.symbolic.simplify.operations import Line
+from ptp_symbolic.symbolic.symbols import real
 
 
 def accelerations(mass_matrix: sp.MatrixBase, forcing: sp.MatrixBase) -> tuple[list[Line], list]:
@@ -13,9 +14,9 @@ def accelerations(mass_matrix: sp.MatrixBase, forcing: sp.MatrixBase) -> tuple[l
     n = mass_matrix.rows
     if n > 2:
         raise ValueError(f"{n} coupled joints; this solver takes one or two.")
-    mass = sp.Matrix(n, n, lambda i, j: sp.Symbol(f"mass_{min(i, j)}{max(i, j)}", real=True))
-    force = [sp.Symbol(f"force_{i}", real=True) for i in range(n)]
-    inverse = sp.Symbol("inverse_determinant", real=True)
+    mass = sp.Matrix(n, n, lambda i, j: real(f"mass_{min(i, j)}{max(i, j)}"))
+    force = [real(f"force_{i}") for i in range(n)]
+    inverse = real("inverse_determinant")
     lines = [(mass[i, j], mass_matrix[i, j]) for i in range(n) for j in range(i, n)]
     lines += zip(force, forcing, strict=True)
     if n == 1:

@@ -2,8 +2,9 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.effect import Member, Place
-from ptp_symbolic.symbolic.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.effect import Member
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 
 
 def wave(

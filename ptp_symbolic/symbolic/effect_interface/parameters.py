@@ -2,6 +2,10 @@
 
 from dataclasses import dataclass, replace
 
+import sympy as sp
+
+from ptp_symbolic.symbolic.symbols import real
+
 HIGHEST_HARMONIC = 3
 
 
@@ -26,6 +30,23 @@ class Parameter:
     starts: tuple[float, ...] = ()
     period: float | None = None
     locked_to: str | None = None
+
+    def check(self) -> None:
+        """Raise ValueError where default, a start or the vanishing value lies out of bounds."""
+        values = [("default", self.default), *(("start", start) for start in self.starts)]
+        if self.vanishes is not None:
+            values.append(("vanishing value", self.vanishes))
+        for word, value in values:
+            if not self.lower <= value <= self.upper:
+                raise ValueError(
+                    f"Parameter '{self.name}': its {word}, {value:g} {self.unit}, lies outside"
+                    f" [{self.lower:g}, {self.upper:g}]; change it, or the bounds."
+                )
+
+    @property
+    def symbol(self) -> sp.Symbol:
+        """The symbol of the parameter, its name being filled in."""
+        return real(self.name)
 
     def at_axis(self, axis: str | None) -> "Parameter":
         """Return the parameter with its name and meaning filled in for `axis`."""

@@ -1,21 +1,13 @@
-"""What an effect is: parameters, the values at which it vanishes, and what it adds.
-
-An effect is plain data plus one function, `contribute`, that turns the place where the effect
-sits into symbolic additions. Effects never name each other: they meet in *quantities*, named
-placeholders such as ``winding_resistance_pan`` that one effect defines and others change.
-"""
+"""What an effect may add to the machine: plain records of symbolic expressions."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effects.conditions import Limit, Requirement
-from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.effect_interface.conditions import Limit
 from ptp_symbolic.symbolic.mechanics.bodies import Body
-from ptp_symbolic.symbolic.parameters import Parameter
-
-LOADS = ("driving_torque", "load_torque", "load_inertia")
+from ptp_symbolic.symbolic.symbols import real
 
 
 def _unchanged(value: sp.Expr) -> sp.Expr:
@@ -48,6 +40,11 @@ class State:
     initial: float = 0.0
     zero_at_rest_of: str | None = None
 
+    @property
+    def symbol(self) -> sp.Symbol:
+        """The symbol of the state."""
+        return real(self.name)
+
 
 @dataclass(frozen=True)
 class Sampler:
@@ -77,6 +74,11 @@ class Input:
     unit: str
     meaning: str
 
+    @property
+    def symbol(self) -> sp.Symbol:
+        """The symbol of the input."""
+        return real(self.name)
+
 
 @dataclass(frozen=True)
 class Friction:
@@ -99,11 +101,34 @@ class Friction:
 
 @dataclass(frozen=True)
 class Shaft:
-    """A spring and damper between the gear output and the joint of `axis`."""
+    """A flexible shaft between the gear output and the joint of `axis`.
+
+    Its `energy` in J is a function of the quantity ``twist_<axis>``, zero at zero twist; its slope
+    is the torque of the spring. The torque of its `losses` in N m, against the twist, depends on
+    ``twist_rate_<axis>``, on the twist and on states of the effect, whose energy is in `stored` of
+    the contribution. Play lies outside of both: in a gap the twist rests.
+    """
 
     axis: str
-    stiffness: sp.Expr
-    damping: sp.Expr
+    energy: sp.Expr
+    losses: sp.Expr
+
+
+@dataclass(frozen=True)
+class Switch:
+    """Something that switches on at a threshold and off where it is no longer driven.
+
+    Beyond plus or minus the `threshold` (positive) of the `deviation` it is on while `drive` has
+    the sign of the deviation. It may be off beyond the threshold; back between, it is ready again.
+    Equations read the modes `side(name)` (-1, 0 between, 1) and `active(name)` (1 on, 0 off).
+    A slipping element of friction is one: its deflection reaches the most it can carry, and the
+    rate drives it further. All three are of the state, continuous across the switch.
+    """
+
+    name: str
+    deviation: sp.Expr
+    threshold: sp.Expr
+    drive: sp.Expr
 
 
 @dataclass(frozen=True)
@@ -162,6 +187,7 @@ class Contribution:
     frictions: tuple[Friction, ...] = ()
     shafts: tuple[Shaft, ...] = ()
     plays: tuple[Play, ...] = ()
+    switches: tuple[Switch, ...] = ()
     drives: tuple[Drive, ...] = ()
     states: tuple[State, ...] = ()
     samplers: tuple[Sampler, ...] = ()
@@ -169,127 +195,3 @@ class Contribution:
     delays: Mapping[str, sp.Symbol] = field(default_factory=dict)
     limits: tuple[Limit, ...] = ()
     prescribed: Mapping[sp.Symbol, Input] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where an effect sits: axes of the machine, its own axis and site, axes with a shaft."""
-
-    axes: tuple[str, ...]
-    axis: str | None
-    site: str | None
-    shafts: frozenset[str]
-
-    def named(self, parameters: tuple[Parameter, ...]) -> tuple[Parameter, ...]:
-        """The `parameters` of an effect with the name of its axis filled in."""
-        return tuple(p.at_axis(self.axis) for p in parameters)
-
-    def parameter(self, template: str) -> sp.Symbol:
-        """Symbol of the effect's parameter, e.g. ``k_shaft_{axis}``."""
-        return sp.Symbol(template.format(axis=self.axis), real=True)
-
-    def quantity(self, template: str) -> sp.Symbol:
-        """Placeholder of a named quantity that other effects may change."""
-        return quantity(template.format(axis=self.axis))
-
-    @property
-    def own_axis(self) -> str:
-        """The axis of an effect that always sits on one."""
-        if self.axis is None:
-            raise ValueError("This effect sits on an axis; name one.")
-        return self.axis
-
-    @property
-    def angle(self) -> sp.Symbol:
-        """Joint angle of the effect's axis in rad."""
-        return kinematics.angle(self.own_axis)
-
-    @property
-    def rate(self) -> sp.Symbol:
-        """Joint rate of the effect's axis in rad/s."""
-        return kinematics.rate(self.own_axis)
-
-    @property
-    def gear_rate(self) -> sp.Symbol:
-        """Rate at the gear output: a coordinate of its own behind a shaft, else the joint rate."""
-        if self.own_axis in self.shafts:
-            return kinematics.gear_rate(self.own_axis)
-        return self.rate
-
-    @property
-    def gear_angle(self) -> sp.Symbol:
-        """Angle at the gear output: a coordinate of its own behind a shaft, else the joint's."""
-        if self.own_axis in self.shafts:
-            return kinematics.gear_angle(self.own_axis)
-        return self.angle
-
-    @property
-    def slide(self) -> sp.Symbol:
-        """Direction of sliding of the friction on the effect's axis: -1, 0 (at rest) or 1."""
-        return slide(self.own_axis)
-
-    @property
-    def loads(self) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
-        """What friction in the drive carries, see `Friction`: torques in N m, inertia in kg m^2."""
-        driving, torque, inertia = (self.quantity(f"{name}_{{axis}}") for name in LOADS)
-        return driving, torque, inertia
-
-    @property
-    def payload_frame(self) -> str:
-        """Frame that carries a payload: the tilt body, or the pan body where there is no tilt."""
-        return "tilt" if "tilt" in self.axes else "pan"
-
-
-def quantity(name: str) -> sp.Symbol:
-    """Placeholder symbol of the quantity `name`."""
-    return sp.Symbol(f"quantity:{name}", real=True)
-
-
-def slide(axis: str) -> sp.Symbol:
-    """Direction symbol of the friction on `axis`."""
-    return sp.Symbol(f"slide_{axis}", real=True)
-
-
-def _without_conditions(place: Place) -> tuple[Requirement, ...]:
-    return ()
-
-
-@dataclass(frozen=True)
-class Member:
-    """A simpler version of an effect: the templates of the `parameters` that it has.
-
-    The others stay where they vanish, or take the value of another one, as `tied` says. A search
-    names an effect with the smallest member that the logs ask for.
-    """
-
-    title: str
-    parameters: tuple[str, ...]
-    tied: Mapping[str, str] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Effect:
-    """A physical effect, complete in one file.
-
-    `on_axis`: it sits on an axis, not on the whole platform. `needs`: quantities without which it
-    has nothing to act on; `requires`: what its parameters must fulfil. `dissipative`: its torques
-    only take energy out, which tests verify. `structural`: no parameter value makes it vanish (a
-    motor, a body): declared, never searched for. `members` are nested versions of it, the simplest
-    first and the whole last. Other `kinds` share its id; this is the usual one.
-    """
-
-    id: str
-    title: str
-    reference: str
-    parameters: Callable[[Place], tuple[Parameter, ...]]
-    contribute: Callable[[Place], Contribution]
-    on_axis: bool = True
-    dissipative: bool = False
-    structural: bool = False
-    splits_axis: bool = False
-    needs: tuple[str, ...] = ()
-    requires: Callable[[Place], tuple[Requirement, ...]] = _without_conditions
-    separating_experiment: str = ""
-    members: tuple[Member, ...] = ()
-    kind: str | None = None
-    kinds: tuple["Effect", ...] = ()

@@ -1,0 +1,92 @@
+"""What an effect is: parameters, the values at which it vanishes, and what it adds.
+
+An effect is plain data plus one function, `contribute`, that turns the place where the effect
+sits into symbolic additions. Effects never name each other: they meet in *quantities*, named
+placeholders such as ``winding_resistance_pan`` that one effect defines and others change.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from ptp_symbolic.symbolic.effect_interface.conditions import Requirement
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
+
+
+def _always(place: Place, parameter: Parameter) -> bool:
+    return True
+
+
+def _without_conditions(place: Place) -> tuple[Requirement, ...]:
+    return ()
+
+
+@dataclass(frozen=True)
+class Member:
+    """A simpler version of an effect: the templates of the `parameters` that it has.
+
+    The others stay where they vanish, or take the value of another one, as `tied` says. A search
+    names an effect with the smallest member that the logs ask for.
+    """
+
+    title: str
+    parameters: tuple[str, ...]
+    tied: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A physical effect, complete in one file.
+
+    `on_axis`: it sits on an axis, not on the whole platform. `needs`: quantities without which it
+    has nothing to act on; `requires`: what its parameters must fulfil. `dissipative`: its torques
+    only take energy out, which tests verify. `structural`: no parameter value makes it vanish (a
+    motor, a body): declared, never searched for; nor is one that is `declared_only`. `sites`: where
+    on its axis it may sit, if there is a choice. `has` tells which of its parameters it has at a
+    place. `members` are nested versions of it, the simplest first and the whole last. Other `kinds`
+    share its id; this is the usual one.
+
+    Raises ValueError for a parameter whose default, starts or vanishing value lie out of its
+    bounds, and for a member with parameters that are not the effect's.
+    """
+
+    id: str
+    title: str
+    reference: str
+    parameters: tuple[Parameter, ...]
+    contribute: Callable[[Place], Contribution]
+    on_axis: bool = True
+    dissipative: bool = False
+    structural: bool = False
+    declared_only: bool = False
+    sites: tuple[str, ...] = ()
+    splits_axis: bool = False
+    needs: tuple[str, ...] = ()
+    requires: Callable[[Place], tuple[Requirement, ...]] = _without_conditions
+    has: Callable[[Place, Parameter], bool] = _always
+    separating_experiment: str = ""
+    members: tuple[Member, ...] = ()
+    kind: str | None = None
+    kinds: tuple["Effect", ...] = ()
+
+    def __post_init__(self) -> None:
+        for parameter in self.parameters:
+            parameter.check()
+        names = {parameter.name for parameter in self.parameters}
+        for member in self.members:
+            named = {*member.parameters, *member.tied, *member.tied.values()}
+            if foreign := sorted(named - names):
+                raise ValueError(
+                    f"Effect '{self.id}': its member '{member.title}' has {', '.join(foreign)},"
+                    " which the effect has not."
+                )
+
+    @property
+    def searched(self) -> bool:
+        """Whether a diagnosis looks for the effect."""
+        return not (self.structural or self.declared_only)
+
+    def parameters_at(self, place: Place) -> tuple[Parameter, ...]:
+        """The parameters that the effect has at `place`, the name of its axis filled in."""
+        return tuple(p.at_axis(place.axis) for p in self.parameters if self.has(place, p))
