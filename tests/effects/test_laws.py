@@ -41,11 +41,28 @@ def with_effect(effect: Effect) -> Platform:
             needs = {need.format(axis=addition.axis) for need in effect.needs}
             if addition.effect == effect.id and needs <= available:
                 return replace(base, effects=(*base.effects, addition))
-    assert effect.structural, f"No base platform takes {effect.id}."
+    assert not effect.searched, f"No base platform takes {effect.id}."
     needs = {need.format(axis="pan") for need in effect.needs}
+    if effect.splits_axis:
+        return instead_of_shaft(effect)
     base = next(b for b in BASES if needs <= available_quantities(place_effects(b)))
     addition = EffectDeclaration(effect.id, base.axes[0] if effect.on_axis else None, None)
     return replace(base, effects=(*base.effects, addition))
+
+
+def instead_of_shaft(effect: Effect) -> Platform:
+    """The first base platform with a shaft, `effect` in its place, and nothing that acts on it."""
+    splitting = {e.id for e in EFFECTS if e.splits_axis}
+    base, shaft = next((b, e) for b in BASES for e in b.effects if e.effect in splitting)
+    key = f"{shaft.effect}@{shaft.axis}"
+    gone = [e for e in assemble(base).effects if e.effect.id == shaft.effect or key in e.acts_on]
+    own, names = {n for e in gone for n in e.parameters}, {e.effect.id for e in gone}
+    kept = tuple(e for e in base.effects if e.effect not in names)
+    return replace(
+        base,
+        effects=(*kept, EffectDeclaration(effect.id, shaft.axis, None)),
+        parameters=tuple(p for p in base.parameters if p.name not in own),
+    )
 
 
 def without(platform: Platform, effect: Effect) -> Platform:

@@ -32,7 +32,8 @@ def transmission(shaft: Shaft, contributions: Contributions) -> Transmission:
     lead = 1 + sp.diff(error, kinematics.gear_angle(axis))
     separation = kinematics.gear_angle(axis) + error - kinematics.angle(axis)
     speed = gear * lead - joint
-    half_gap = contributions.resolve(quantity(f"half_gap_{axis}"))
+    gap = quantity(f"half_gap_{axis}")
+    half_gap = contributions.resolve(contributions.values.get(gap, sp.Integer(0)))
     touching: sp.Expr = side(axis) ** 2
     face: sp.Expr = side(axis)
     pushing: sp.Expr = active(axis)
