@@ -89,9 +89,7 @@ def test_a_name_that_modules_use_for_themselves_is_refused(
 def test_a_site_that_an_effect_does_not_use_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     platform = machine(monkeypatch, effect(torque))
     (bodies, own) = platform.effects
-    with pytest.raises(
-        InputError, match="'own' has no choice of site; remove its site"
-    ):
+    with pytest.raises(InputError, match="'own' has no choice of site; remove its site"):
         assemble(replace(platform, effects=(bodies, replace(own, site="gear"))))
 
 

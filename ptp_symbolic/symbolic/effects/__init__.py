@@ -14,11 +14,14 @@ from ptp_symbolic.symbolic.effects.drive_deadband import DRIVE_DEADBAND
 from ptp_symbolic.symbolic.effects.encoder_eccentricity import ENCODER_ECCENTRICITY
 from ptp_symbolic.symbolic.effects.encoder_quantization import ENCODER_QUANTIZATION
 from ptp_symbolic.symbolic.effects.gear_eccentricity import GEAR_ECCENTRICITY
+from ptp_symbolic.symbolic.effects.harmonic_drive import HARMONIC_DRIVE
 from ptp_symbolic.symbolic.effects.input_delay import INPUT_DELAY
 from ptp_symbolic.symbolic.effects.linear_actuator import LINEAR_ACTUATOR
 from ptp_symbolic.symbolic.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION
 from ptp_symbolic.symbolic.effects.lugre_friction import LUGRE_FRICTION
+from ptp_symbolic.symbolic.effects.magnetic_detent import MAGNETIC_DETENT
 from ptp_symbolic.symbolic.effects.maxwell_slip_friction import MAXWELL_SLIP_FRICTION
+from ptp_symbolic.symbolic.effects.measurement_lag import MEASUREMENT_LAG
 from ptp_symbolic.symbolic.effects.payload import PAYLOAD
 from ptp_symbolic.symbolic.effects.payload_com_offset import PAYLOAD_COM_OFFSET
 from ptp_symbolic.symbolic.effects.pid_controller import PID_CONTROLLER
@@ -53,7 +56,9 @@ EFFECTS: tuple[Effect, ...] = (
     QUADRATIC_DRAG,
     BACKLASH,
     SHAFT_COMPLIANCE,
+    HARMONIC_DRIVE,
     COGGING,
+    MAGNETIC_DETENT,
     GEAR_ECCENTRICITY,
     DC_MOTOR,
     LINEAR_ACTUATOR,
@@ -68,5 +73,6 @@ EFFECTS: tuple[Effect, ...] = (
     CONSTANT_TORQUE,
     INPUT_DELAY,
     ENCODER_ECCENTRICITY,
+    MEASUREMENT_LAG,
     ENCODER_QUANTIZATION,
 )
