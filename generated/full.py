@@ -107,7 +107,7 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
   i_pan' = (-K_t_pan*N_pan*omega_gear_pan - R_pan*i_pan + u_pan)/L_pan
   i_tilt' = (-K_t_tilt*omega_tilt*ratio_tilt - R_tilt*i_tilt + u_tilt)/L_tilt
 
-Operations of the state derivative: 701 as derived, 323 as written.
+Operations of the state derivative: 701 as derived, 228 as written.
 
 Effects:
 - rigid_bodies: thesis Eq. 3.8, Table 5.1
@@ -127,7 +127,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "8e0e7062c78dce05"
+MODEL_HASH = "bfb4dc273b223e3c"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 AXES = ("pan", "tilt")
@@ -481,83 +481,61 @@ def mode_derivative(t, x, u, p, m, dx):
     active_pan = m[3]
     dx[0] = omega_pan
     dx[1] = omega_tilt
-    c_x_payload_c_z_payload_m_payload = c_x_payload * c_z_payload * m_payload
-    twice_c_x_payload_c_z_payload_m_payload = 2.0 * c_x_payload_c_z_payload_m_payload
-    inertia_pan_sin_cos_tilt = twice_c_x_payload_c_z_payload_m_payload
-    c_x_payload_sq = c_x_payload * c_x_payload
-    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_z_payload * c_z_payload) * m_payload
+    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
+    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
+    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
     inertia_pan_sin_sq_tilt = (
         J_x_payload
         + J_x_tilt
         - J_z_payload
         - J_z_tilt
-        - c_x_payload_sq_m_payload
-        + inertia_pan_sin_sq_tilt_term
+        - inertia_pan_sin_sq_tilt_term
+        + inertia_pan_sin_sq_tilt_term_2
     )
     cos_tilt = math.cos(theta_tilt)
     sin_tilt = math.sin(theta_tilt)
     inertia_pan_per_sin_tilt = (
         cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
     )
-    twice_cos_tilt = 2.0 * cos_tilt
-    coriolis = omega_pan * (inertia_pan_per_sin_tilt * twice_cos_tilt - inertia_pan_sin_cos_tilt)
+    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
     c_y_payload_m_payload = c_y_payload * m_payload
-    c_y_payload_m_payload_c_z_payload = c_y_payload_m_payload * c_z_payload
-    coupling_cos_tilt = c_y_payload_m_payload_c_z_payload
-    c_x_payload_c_y_payload_m_payload = c_x_payload * c_y_payload_m_payload
-    coupling_sin_tilt = c_x_payload_c_y_payload_m_payload
-    force_pan_term = active_pan * (
-        d_shaft_pan * (omega_gear_pan - omega_pan)
-        + k_shaft_pan * (-0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan)
+    coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
+    coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
+    shaft_torque_pan_term = omega_gear_pan - omega_pan
+    half_gap_pan = 0.5 * gap_pan
+    shaft_torque_pan_term_2 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
+    shaft_torque_pan = active_pan * (
+        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
     )
-    force_pan_term_2 = b_pan * omega_pan - force_pan_term
-    force_pan = -force_pan_term_2 - omega_tilt * (
-        coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)
+    force_pan = (
+        -b_pan * omega_pan
+        - omega_tilt
+        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
+        + shaft_torque_pan
     )
-    gravity_cos_tilt_term = 9.81 * m_payload
-    c_x_payload_gravity_cos_tilt_term = c_x_payload * gravity_cos_tilt_term
-    gravity_cos_tilt = c_x_payload_gravity_cos_tilt_term
-    c_z_payload_gravity_cos_tilt_term = c_z_payload * gravity_cos_tilt_term
-    gravity_sin_tilt = c_z_payload_gravity_cos_tilt_term
-    follower_coupling_tilt = (
-        c_x_payload_c_y_payload_m_payload * sin_tilt - c_y_payload_m_payload_c_z_payload * cos_tilt
+    inertia_tilt = (
+        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
     )
-    load_inertia_tilt_term = (
-        J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + inertia_pan_sin_sq_tilt_term
-    )
-    follower_inertia_tilt_term = (c_y_payload * c_y_payload) * m_payload
-    sin_tilt_sq = sin_tilt * sin_tilt
-    cos_tilt_sq = cos_tilt * cos_tilt
-    sin_tilt_twice_cos_tilt = sin_tilt * twice_cos_tilt
-    follower_inertia_tilt = (
+    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
+    inertia_pan = (
         J_pan
-        + J_x_payload * sin_tilt_sq
-        + J_x_tilt * sin_tilt_sq
-        + J_z_payload * cos_tilt_sq
-        + J_z_tilt * cos_tilt_sq
-        + c_x_payload_c_z_payload_m_payload * sin_tilt_twice_cos_tilt
-        + c_x_payload_sq_m_payload * cos_tilt_sq
-        + cos_tilt_sq * follower_inertia_tilt_term
-        + follower_inertia_tilt_term * sin_tilt_sq
-        + inertia_pan_sin_sq_tilt_term * sin_tilt_sq
+        + J_z_payload
+        + J_z_tilt
+        + (c_y_payload * c_y_payload) * m_payload
+        + inertia_pan_sin_sq_tilt_term
     )
-    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
-    load_inertia_tilt = (
-        -(follower_coupling_tilt * follower_coupling_tilt) * follower_inertia_tilt_inverse
-        + load_inertia_tilt_term
-    )
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan_inverse = 1.0 / mass_pan
+    load_inertia_tilt = inertia_tilt - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
     lead_tilt_inverse = 1.0 / lead_tilt
     lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
     lowered_tilt = (
-        (-1.0)
-        * lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        -lead_tilt_inverse_lowered_tilt_term
         * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
@@ -573,32 +551,26 @@ def mode_derivative(t, x, u, p, m, dx):
     ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt_term = math.sqrt(
+    length_tilt = math.sqrt(
         -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
     )
-    length_tilt = length_tilt_term
     ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
     ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
     lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = (
-        (1.0 - lowered_tilt)
-        * 1.0
-        / (abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term))
+    lost_lowering_tilt = (1.0 - lowered_tilt) / (
+        abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
     )
     raised_tilt = (
         lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
         * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
-    lost_raising_tilt = (
-        (raised_tilt - 1.0) * 1.0 / (load_inertia_tilt * raised_tilt + lost_lowering_tilt_term)
+    lost_raising_tilt = (raised_tilt - 1.0) / (
+        load_inertia_tilt * raised_tilt + lost_lowering_tilt_term
     )
     length_tilt_by_theta_tilt = (
-        1.0
-        / length_tilt_term
-        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
-    )
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    ) / length_tilt
     ratio_tilt_by_theta_tilt = (
         -math.pi
         * N_tilt
@@ -608,75 +580,42 @@ def mode_derivative(t, x, u, p, m, dx):
         / (length_tilt * length_tilt)
         + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
     )
-    omega_tilt_sq = omega_tilt * omega_tilt
-    driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
+    driving_torque_tilt_term = (
+        J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
+    )
+    gravity_cos_tilt_term = 9.81 * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
+    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    load_torque_tilt_term = (
+        -b_tilt * omega_tilt
+        + 0.5 * coriolis * omega_pan
+        + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt
+    )
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
     driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
-    minus_b_tilt_omega_tilt = -b_tilt * omega_tilt
     driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
-    J_x_payload_sin_tilt = J_x_payload * sin_tilt
-    omega_pan_omega_tilt = omega_pan * omega_tilt
-    follower_torque_tilt_term = omega_pan_omega_tilt * sin_tilt_twice_cos_tilt
-    follower_torque_tilt = (
-        -J_x_payload_sin_tilt * omega_pan_omega_tilt * twice_cos_tilt
-        - J_x_tilt * follower_torque_tilt_term
-        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_x_payload_c_y_payload_m_payload * cos_tilt * omega_tilt_sq
-        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - c_y_payload_m_payload_c_z_payload * omega_tilt_sq * sin_tilt
-        - cos_tilt_sq * omega_pan_omega_tilt * twice_c_x_payload_c_z_payload_m_payload
-        - follower_torque_tilt_term * inertia_pan_sin_sq_tilt_term
-        - force_pan_term_2
-    )
-    omega_pan_sq = omega_pan * omega_pan
-    cos_tilt_omega_pan_sq = cos_tilt * omega_pan_sq
-    cos_tilt_omega_pan_sq_sin_tilt = cos_tilt_omega_pan_sq * sin_tilt
-    load_torque_tilt_term = c_x_payload_c_z_payload_m_payload * omega_pan_sq
-    load_torque_tilt = (
-        J_x_payload_sin_tilt * cos_tilt_omega_pan_sq
-        + J_x_tilt * cos_tilt_omega_pan_sq_sin_tilt
-        - J_z_payload * cos_tilt_omega_pan_sq_sin_tilt
-        - J_z_tilt * cos_tilt_omega_pan_sq_sin_tilt
-        + c_x_payload_gravity_cos_tilt_term * cos_tilt
-        - c_x_payload_sq_m_payload * cos_tilt_omega_pan_sq_sin_tilt
-        + c_z_payload_gravity_cos_tilt_term * sin_tilt
-        + cos_tilt_omega_pan_sq_sin_tilt * inertia_pan_sin_sq_tilt_term
-        + cos_tilt_sq * load_torque_tilt_term
-        - follower_coupling_tilt * follower_inertia_tilt_inverse * follower_torque_tilt
-        - load_torque_tilt_term * sin_tilt_sq
-        + minus_b_tilt_omega_tilt
-    )
+    load_torque_tilt = -force_pan * mass_pan_inverse * mass_pan_tilt + load_torque_tilt_term
     carried_tilt = (
         driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
     )
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
     force_tilt = (
-        0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt
-        - driving_torque_tilt_term
-        + driving_torque_tilt_term_2 * ratio_tilt
-        + gravity_sin_tilt * sin_tilt
-        + minus_b_tilt_omega_tilt
+        -driving_torque_tilt_term
+        + load_torque_tilt_term
         - slide_tilt
         * (
             0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
             + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
         )
+        + transmitted_torque_tilt
     )
-    inertia_pan = (
-        J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + follower_inertia_tilt_term
-    )
-    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
-    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    inertia_tilt = load_inertia_tilt_term
     mass_tilt = inertia_tilt + lost_lowering_tilt_term
-    inverse_determinant = 1.0 / (
-        mass_pan * mass_tilt
-        - (mass_pan_tilt * mass_pan_tilt) * (slide_tilt * slide_tilt * slide_tilt * slide_tilt)
-    )
     slide_tilt_sq = slide_tilt * slide_tilt
+    inverse_determinant = 1.0 / (
+        mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt) * slide_tilt_sq
+    )
     mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
     accel_pan = inverse_determinant * (
         force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
@@ -689,22 +628,22 @@ def mode_derivative(t, x, u, p, m, dx):
     )
     dx[3] = accel_tilt
     dx[4] = omega_gear_pan
-    force_gear_pan_term = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
+    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_decay_pan = math.exp(
+        -(omega_gear_pan * omega_gear_pan)
+        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    )
+    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
     force_gear_pan = (
         K_t_pan * N_pan * i_pan
-        - force_pan_term
+        - shaft_torque_pan
         - slide_pan
         * (
-            F_v_pan * omega_gear_pan * slide_pan * (a_F_v_pan * slide_pan + 1.0)
-            + force_gear_pan_term
-            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - force_gear_pan_term)
-            * math.exp(
-                -(omega_gear_pan * omega_gear_pan)
-                / (
-                    (v_s_pan * v_s_pan)
-                    * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
-                )
-            )
+            coulomb_torque_pan
+            + omega_gear_pan * slide_pan * viscous_coefficient_pan
+            + stribeck_decay_pan * (F_s_pan * force_gear_pan_term - coulomb_torque_pan)
         )
     )
     mass_gear_pan = J_motor_pan * (N_pan * N_pan)
@@ -774,53 +713,51 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     slide_tilt = m[1]
     side_pan = m[2]
     active_pan = m[3]
-    active_pan_k_shaft_pan = active_pan * k_shaft_pan
-    follower_torque_tilt_by_theta_pan = -active_pan_k_shaft_pan
+    follower_torque_tilt_by_theta_gear_pan = active_pan * k_shaft_pan
+    follower_torque_tilt_by_theta_pan = -follower_torque_tilt_by_theta_gear_pan
     sin_tilt = math.sin(theta_tilt)
     c_y_payload_sin_tilt = c_y_payload * sin_tilt
     c_x_payload_c_y_payload_sin_tilt = c_x_payload * c_y_payload_sin_tilt
-    follower_coupling_tilt_term = c_x_payload_c_y_payload_sin_tilt * m_payload
+    mass_pan_tilt_term = c_x_payload_c_y_payload_sin_tilt * m_payload
     cos_tilt = math.cos(theta_tilt)
     c_z_payload_cos_tilt = c_z_payload * cos_tilt
     c_y_payload_c_z_payload_cos_tilt = c_y_payload * c_z_payload_cos_tilt
-    follower_coupling_tilt_term_2 = c_y_payload_c_z_payload_cos_tilt * m_payload
-    follower_coupling_tilt_term_3 = follower_coupling_tilt_term - follower_coupling_tilt_term_2
-    follower_coupling_tilt = follower_coupling_tilt_term_3
-    sin_tilt_sq = sin_tilt * sin_tilt
-    J_x_payload_sin_tilt_sq = J_x_payload * sin_tilt_sq
-    J_x_tilt_sin_tilt_sq = J_x_tilt * sin_tilt_sq
-    cos_tilt_sq = cos_tilt * cos_tilt
-    J_z_payload_cos_tilt_sq = J_z_payload * cos_tilt_sq
-    J_z_tilt_cos_tilt_sq = J_z_tilt * cos_tilt_sq
+    mass_pan_tilt_term_2 = c_y_payload_c_z_payload_cos_tilt * m_payload
+    mass_pan_tilt = mass_pan_tilt_term - mass_pan_tilt_term_2
+    follower_inertia_tilt_by_J_x_payload = sin_tilt * sin_tilt
+    mass_pan_term = J_x_payload * follower_inertia_tilt_by_J_x_payload
+    mass_pan_term_2 = J_x_tilt * follower_inertia_tilt_by_J_x_payload
+    follower_inertia_tilt_by_J_z_payload = cos_tilt * cos_tilt
+    mass_pan_term_3 = J_z_payload * follower_inertia_tilt_by_J_z_payload
+    mass_pan_term_4 = J_z_tilt * follower_inertia_tilt_by_J_z_payload
     c_x_payload_sq = c_x_payload * c_x_payload
     c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    c_x_payload_sq_m_payload_cos_tilt_sq = c_x_payload_sq_m_payload * cos_tilt_sq
+    mass_pan_term_5 = c_x_payload_sq_m_payload * follower_inertia_tilt_by_J_z_payload
     c_y_payload_sq = c_y_payload * c_y_payload
-    c_y_payload_sq_sin_tilt_sq = c_y_payload_sq * sin_tilt_sq
-    c_y_payload_sq_cos_tilt_sq = c_y_payload_sq * cos_tilt_sq
+    mass_pan_term_6 = c_y_payload_sq * follower_inertia_tilt_by_J_x_payload
+    mass_pan_term_7 = c_y_payload_sq * follower_inertia_tilt_by_J_z_payload
     c_z_payload_sq = c_z_payload * c_z_payload
     c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
-    c_z_payload_sq_m_payload_sin_tilt_sq = c_z_payload_sq_m_payload * sin_tilt_sq
+    mass_pan_term_8 = c_z_payload_sq_m_payload * follower_inertia_tilt_by_J_x_payload
     m_payload_sin_tilt = m_payload * sin_tilt
     c_x_payload_m_payload_sin_tilt = c_x_payload * m_payload_sin_tilt
     twice_c_z_payload_cos_tilt = 2.0 * c_z_payload_cos_tilt
-    follower_inertia_tilt_term = (
+    mass_pan = (
         J_pan
-        + J_x_payload_sin_tilt_sq
-        + J_x_tilt_sin_tilt_sq
-        + J_z_payload_cos_tilt_sq
-        + J_z_tilt_cos_tilt_sq
         + c_x_payload_m_payload_sin_tilt * twice_c_z_payload_cos_tilt
-        + c_x_payload_sq_m_payload_cos_tilt_sq
-        + c_y_payload_sq_cos_tilt_sq * m_payload
-        + c_y_payload_sq_sin_tilt_sq * m_payload
-        + c_z_payload_sq_m_payload_sin_tilt_sq
+        + m_payload * mass_pan_term_6
+        + m_payload * mass_pan_term_7
+        + mass_pan_term
+        + mass_pan_term_2
+        + mass_pan_term_3
+        + mass_pan_term_4
+        + mass_pan_term_5
+        + mass_pan_term_8
     )
-    follower_inertia_tilt = follower_inertia_tilt_term
-    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
-    load_torque_tilt_by_theta_pan_term = follower_coupling_tilt * follower_inertia_tilt_inverse
+    mass_pan_inverse = 1.0 / mass_pan
+    mass_pan_inverse_mass_pan_tilt = mass_pan_inverse * mass_pan_tilt
     load_torque_tilt_by_theta_pan = (
-        (-1.0) * follower_torque_tilt_by_theta_pan * load_torque_tilt_by_theta_pan_term
+        -follower_torque_tilt_by_theta_pan * mass_pan_inverse_mass_pan_tilt
     )
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
@@ -830,38 +767,33 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
     linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
-    linkage_sin_tilt_term_2 = math.sqrt(
+    linkage_sin_tilt = math.sqrt(
         l_ground_tilt_sq * linkage_sin_tilt_term - (linkage_cos_tilt * linkage_cos_tilt)
     )
-    linkage_sin_tilt = linkage_sin_tilt_term_2
     cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
-    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    ratio_tilt_by_N_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
     length_tilt_term = (
         -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
     )
-    length_tilt_term_2 = math.sqrt(length_tilt_term)
-    length_tilt = length_tilt_term_2
+    length_tilt = math.sqrt(length_tilt_term)
     length_tilt_inverse = 1.0 / length_tilt
     lead_tilt_inverse = 1.0 / lead_tilt
-    ratio_tilt_term_2 = math.pi * lead_tilt_inverse
-    length_tilt_inverse_ratio_tilt_term_2 = length_tilt_inverse * ratio_tilt_term_2
-    ratio_tilt_term_3 = length_tilt_inverse_ratio_tilt_term_2 * ratio_tilt_term
-    ratio_tilt = N_tilt * ratio_tilt_term_3
+    ratio_tilt_by_N_tilt_term_2 = math.pi * lead_tilt_inverse
+    ratio_tilt_by_N_tilt_term_3 = length_tilt_inverse * ratio_tilt_by_N_tilt_term_2
+    ratio_tilt_by_N_tilt = ratio_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt_term_3
+    ratio_tilt = N_tilt * ratio_tilt_by_N_tilt
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
     carried_tilt_by_theta_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_pan
-    mass_pan = follower_inertia_tilt_term
-    mass_pan_tilt = follower_coupling_tilt_term_3
     mass_tilt_term = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
     mass_tilt = J_motor_tilt_ratio_tilt_sq + mass_tilt_term
+    slide_tilt_sq = slide_tilt * slide_tilt
     inverse_determinant = 1.0 / (
-        mass_pan * mass_tilt
-        - (mass_pan_tilt * mass_pan_tilt) * (slide_tilt * slide_tilt * slide_tilt * slide_tilt)
+        mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt) * slide_tilt_sq
     )
-    active_pan_k_shaft_pan_mass_tilt = active_pan_k_shaft_pan * mass_tilt
-    slide_tilt_cubed = slide_tilt * slide_tilt * slide_tilt
+    accel_pan_by_theta_pan_term = follower_torque_tilt_by_theta_gear_pan * mass_tilt
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
     lowered_tilt_term_2 = f_screw_tilt_lowered_tilt_term - lead_tilt
@@ -872,8 +804,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lowered_tilt_term_lowered_tilt_term_4 = lowered_tilt_term * lowered_tilt_term_4
     lowered_tilt = -lowered_tilt_term_2 * lowered_tilt_term_lowered_tilt_term_4
     lost_lowering_tilt_term = 1.0 - lowered_tilt
-    follower_coupling_tilt_sq = follower_coupling_tilt * follower_coupling_tilt
-    load_inertia_tilt = -follower_coupling_tilt_sq * follower_inertia_tilt_inverse + mass_tilt_term
+    mass_pan_tilt_sq = mass_pan_tilt * mass_pan_tilt
+    load_inertia_tilt = -mass_pan_inverse * mass_pan_tilt_sq + mass_tilt_term
     lost_lowering_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
     lost_lowering_tilt_term_3 = 1.0 / (abs(lost_lowering_tilt_term_2))
     lost_lowering_tilt = lost_lowering_tilt_term * lost_lowering_tilt_term_3
@@ -887,33 +819,39 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
     lost_raising_tilt_term_2_inverse = 1.0 / lost_raising_tilt_term_2
     lost_raising_tilt = lost_raising_tilt_term * lost_raising_tilt_term_2_inverse
-    accel_pan_by_theta_pan_term = lost_lowering_tilt + lost_raising_tilt
+    accel_pan_by_theta_pan_term_2 = lost_lowering_tilt + lost_raising_tilt
     ratio_tilt_by_theta_tilt_term = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
-    ratio_tilt_by_theta_tilt_term_2 = (
-        length_tilt_inverse_ratio_tilt_term_2 * ratio_tilt_by_theta_tilt_term
-    )
-    N_tilt_ratio_tilt_term = N_tilt * ratio_tilt_term
+    ratio_tilt_by_theta_tilt_term_2 = ratio_tilt_by_N_tilt_term_3 * ratio_tilt_by_theta_tilt_term
+    N_tilt_ratio_tilt_by_N_tilt_term = N_tilt * ratio_tilt_by_N_tilt_term
     length_tilt_by_theta_tilt_term = (
         -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
     )
-    length_tilt_term_2_inverse = 1.0 / length_tilt_term_2
-    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_term_2_inverse
+    length_tilt_inverse_2 = 1.0 / length_tilt
+    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_inverse_2
     ratio_tilt_by_theta_tilt_term_3 = 1.0 / (length_tilt * length_tilt)
-    ratio_tilt_by_theta_tilt_term_4 = ratio_tilt_by_theta_tilt_term_3 * ratio_tilt_term_2
+    ratio_tilt_by_theta_tilt_term_4 = ratio_tilt_by_N_tilt_term_2 * ratio_tilt_by_theta_tilt_term_3
     ratio_tilt_by_theta_tilt_term_5 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_4
     ratio_tilt_by_theta_tilt = (
         N_tilt * ratio_tilt_by_theta_tilt_term_2
-        - N_tilt_ratio_tilt_term * ratio_tilt_by_theta_tilt_term_5
+        - N_tilt_ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_5
     )
     omega_tilt_sq = omega_tilt * omega_tilt
     omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
     driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq_ratio_tilt_by_theta_tilt
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
     b_motor_tilt_omega_tilt_ratio_tilt = b_motor_tilt * omega_tilt_ratio_tilt
-    driving_torque_tilt_term_2 = driving_torque_tilt_term * ratio_tilt - ratio_tilt * (
-        K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
+    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
+    driving_torque_tilt_term_3 = (
+        driving_torque_tilt_term * ratio_tilt - driving_torque_tilt_term_2 * ratio_tilt
     )
-    driving_torque_tilt = -driving_torque_tilt_term_2
+    driving_torque_tilt = -driving_torque_tilt_term_3
+    follower_torque_tilt_by_b_pan = -omega_pan
+    shaft_torque_pan_term = follower_torque_tilt_by_b_pan + omega_gear_pan
+    half_gap_pan = 0.5 * gap_pan
+    shaft_torque_pan_term_2 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
+    shaft_torque_pan = active_pan * (
+        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
+    )
     cos_tilt_sin_tilt = cos_tilt * sin_tilt
     twice_cos_tilt_sin_tilt = 2.0 * cos_tilt_sin_tilt
     J_x_payload_twice_cos_tilt_sin_tilt = J_x_payload * twice_cos_tilt_sin_tilt
@@ -921,37 +859,34 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     J_x_tilt_twice_cos_tilt_sin_tilt = J_x_tilt * twice_cos_tilt_sin_tilt
     cos_tilt_m_payload = cos_tilt * m_payload
     c_y_payload_cos_tilt_m_payload = c_y_payload * cos_tilt_m_payload
-    follower_torque_tilt_term = c_x_payload * c_y_payload_cos_tilt_m_payload
-    c_y_payload_sin_tilt_m_payload = c_y_payload_sin_tilt * m_payload
-    follower_torque_tilt_term_2 = c_y_payload_sin_tilt_m_payload * c_z_payload
+    force_pan_term = c_x_payload * c_y_payload_cos_tilt_m_payload
+    follower_coupling_tilt_by_c_x_payload = c_y_payload_sin_tilt * m_payload
+    force_pan_term_2 = c_z_payload * follower_coupling_tilt_by_c_x_payload
     twice_m_payload = 2.0 * m_payload
     c_x_payload_twice_m_payload = c_x_payload * twice_m_payload
-    c_x_payload_twice_m_payload_cos_tilt_sq = c_x_payload_twice_m_payload * cos_tilt_sq
-    follower_torque_tilt_term_3 = c_x_payload_twice_m_payload_cos_tilt_sq * c_z_payload
-    follower_torque_tilt_term_4 = c_z_payload_sq_m_payload * twice_cos_tilt_sin_tilt
-    minus_omega_pan = -omega_pan
-    minus_omega_pan_plus_omega_gear_pan = minus_omega_pan + omega_gear_pan
-    half_side_pan = 0.5 * side_pan
-    follower_torque_tilt_term_5 = -gap_pan * half_side_pan + theta_gear_pan - theta_pan
-    follower_torque_tilt_term_6 = active_pan * (
-        d_shaft_pan * minus_omega_pan_plus_omega_gear_pan
-        + follower_torque_tilt_term_5 * k_shaft_pan
-    )
-    follower_torque_tilt_term_7 = (
+    force_pan_term_3 = c_x_payload_twice_m_payload * follower_inertia_tilt_by_J_z_payload
+    c_z_payload_force_pan_term_3 = c_z_payload * force_pan_term_3
+    force_pan_term_4 = c_z_payload_sq_m_payload * twice_cos_tilt_sin_tilt
+    force_pan = (
         -J_x_payload_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
         - J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
         + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
         + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
         - b_pan * omega_pan
-        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        + 2.0
+        * c_x_payload
+        * c_z_payload
+        * follower_inertia_tilt_by_J_x_payload
+        * m_payload
+        * omega_pan
+        * omega_tilt
         + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - follower_torque_tilt_term * omega_tilt_sq
-        - follower_torque_tilt_term_2 * omega_tilt_sq
-        - follower_torque_tilt_term_3 * omega_pan_omega_tilt
-        - follower_torque_tilt_term_4 * omega_pan_omega_tilt
-        + follower_torque_tilt_term_6
+        - c_z_payload_force_pan_term_3 * omega_pan_omega_tilt
+        - force_pan_term * omega_tilt_sq
+        - force_pan_term_2 * omega_tilt_sq
+        - force_pan_term_4 * omega_pan_omega_tilt
+        + shaft_torque_pan
     )
-    follower_torque_tilt = follower_torque_tilt_term_7
     b_tilt_omega_tilt = b_tilt * omega_tilt
     load_torque_tilt_term = 9.81 * c_x_payload
     load_torque_tilt_term_2 = 9.81 * c_z_payload
@@ -959,13 +894,13 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
     load_torque_tilt_term_3 = J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
     J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq = J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
-    cos_tilt_sq_omega_pan_sq = cos_tilt_sq * omega_pan_sq
+    load_torque_tilt_term_4 = follower_inertia_tilt_by_J_z_payload * omega_pan_sq
     c_x_payload_c_z_payload = c_x_payload * c_z_payload
-    load_torque_tilt_term_4 = c_x_payload_c_z_payload * cos_tilt_sq_omega_pan_sq
-    omega_pan_sq_sin_tilt_sq = omega_pan_sq * sin_tilt_sq
-    load_torque_tilt_term_5 = c_x_payload_c_z_payload * omega_pan_sq_sin_tilt_sq
-    load_torque_tilt_term_5_m_payload = load_torque_tilt_term_5 * m_payload
-    load_torque_tilt_term_6 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+    load_torque_tilt_term_5 = c_x_payload_c_z_payload * load_torque_tilt_term_4
+    load_torque_tilt_term_6 = follower_inertia_tilt_by_J_x_payload * omega_pan_sq
+    load_torque_tilt_term_7 = c_x_payload_c_z_payload * load_torque_tilt_term_6
+    load_torque_tilt_term_7_m_payload = load_torque_tilt_term_7 * m_payload
+    load_torque_tilt_term_8 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
     load_torque_tilt = (
         J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
         + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
@@ -973,45 +908,47 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - b_tilt_omega_tilt
         + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
         + cos_tilt_m_payload * load_torque_tilt_term
-        - follower_torque_tilt * load_torque_tilt_by_theta_pan_term
+        - force_pan * mass_pan_inverse_mass_pan_tilt
         + load_torque_tilt_term_2 * m_payload_sin_tilt
         - load_torque_tilt_term_3
-        + load_torque_tilt_term_4 * m_payload
-        - load_torque_tilt_term_5_m_payload
-        - load_torque_tilt_term_6
+        + load_torque_tilt_term_5 * m_payload
+        - load_torque_tilt_term_7_m_payload
+        - load_torque_tilt_term_8
     )
     carried_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
     )
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    accel_pan_by_theta_pan_term_2 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
-    accel_pan_by_theta_pan_term_3 = (
+    accel_pan_by_theta_pan_term_3 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
+    accel_pan_by_theta_pan_term_4 = (
         0.5
-        * accel_pan_by_theta_pan_term
+        * accel_pan_by_theta_pan_term_2
         * slide_tilt
         * (0.0 if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))
-        + accel_pan_by_theta_pan_term_2 * slide_tilt
+        + accel_pan_by_theta_pan_term_3 * slide_tilt
     )
     fx[2, 0] = inverse_determinant * (
-        accel_pan_by_theta_pan_term_3 * carried_tilt_by_theta_pan * mass_pan_tilt * slide_tilt_cubed
-        - active_pan_k_shaft_pan_mass_tilt
+        -accel_pan_by_theta_pan_term
+        + accel_pan_by_theta_pan_term_4 * carried_tilt_by_theta_pan * mass_pan_tilt * slide_tilt
     )
-    slide_tilt_sq = slide_tilt * slide_tilt
     inverse_determinant_slide_tilt_sq = inverse_determinant * slide_tilt_sq
     mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
-    accel_tilt_by_theta_pan_term = active_pan_k_shaft_pan * mass_pan_tilt_slide_tilt_sq
-    accel_pan_by_theta_pan_term_3_slide_tilt = accel_pan_by_theta_pan_term_3 * slide_tilt
-    accel_tilt_by_theta_pan_term_2 = accel_pan_by_theta_pan_term_3_slide_tilt * mass_pan
+    accel_tilt_by_theta_pan_term = (
+        follower_torque_tilt_by_theta_gear_pan * mass_pan_tilt_slide_tilt_sq
+    )
+    accel_pan_by_theta_pan_term_4_slide_tilt = accel_pan_by_theta_pan_term_4 * slide_tilt
     fx[3, 0] = inverse_determinant_slide_tilt_sq * (
-        accel_tilt_by_theta_pan_term - accel_tilt_by_theta_pan_term_2 * carried_tilt_by_theta_pan
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_theta_pan * mass_pan
+        + accel_tilt_by_theta_pan_term
     )
     N_pan_sq = N_pan * N_pan
     mass_gear_pan = J_motor_pan * N_pan_sq
     inverse_mass_gear_pan = 1.0 / mass_gear_pan
     accel_gear_pan_by_theta_pan_term = inverse_mass_gear_pan * (slide_pan * slide_pan)
-    accel_gear_pan_by_theta_pan_term_2 = accel_gear_pan_by_theta_pan_term * active_pan_k_shaft_pan
+    accel_gear_pan_by_theta_pan_term_2 = (
+        accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_theta_gear_pan
+    )
     fx[5, 0] = accel_gear_pan_by_theta_pan_term_2
-    force_pan = follower_torque_tilt_term_7
     force_tilt_term = abs(carried_tilt_slide_tilt)
     half_force_tilt_term = 0.5 * force_tilt_term
     force_tilt = (
@@ -1019,18 +956,22 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + J_x_tilt * cos_tilt * omega_pan_sq * sin_tilt
         - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
         - b_tilt_omega_tilt
-        + c_x_payload * c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
+        + c_x_payload
+        * c_z_payload
+        * follower_inertia_tilt_by_J_z_payload
+        * m_payload
+        * omega_pan_sq
         + 9.81 * c_x_payload * cos_tilt * m_payload
         + 9.81 * c_z_payload * m_payload * sin_tilt
         + c_z_payload_sq * cos_tilt * m_payload * omega_pan_sq * sin_tilt
-        - driving_torque_tilt_term_2
+        - driving_torque_tilt_term_3
         - load_torque_tilt_term_3
-        - load_torque_tilt_term_5_m_payload
-        - load_torque_tilt_term_6
+        - load_torque_tilt_term_7_m_payload
+        - load_torque_tilt_term_8
         - slide_tilt
         * (
-            accel_pan_by_theta_pan_term * half_force_tilt_term
-            + accel_pan_by_theta_pan_term_2 * carried_tilt_slide_tilt
+            accel_pan_by_theta_pan_term_2 * half_force_tilt_term
+            + accel_pan_by_theta_pan_term_3 * carried_tilt_slide_tilt
         )
     )
     accel_pan = inverse_determinant * (
@@ -1039,85 +980,95 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     accel_tilt = inverse_determinant_slide_tilt_sq * (
         -force_pan * mass_pan_tilt_slide_tilt_sq + force_tilt * mass_pan
     )
-    accel_pan_by_theta_tilt_term = follower_torque_tilt_term + follower_torque_tilt_term_2
+    follower_coupling_tilt_by_theta_tilt = force_pan_term + force_pan_term_2
     J_z_payload_twice_cos_tilt_sin_tilt = J_z_payload * twice_cos_tilt_sin_tilt
     J_z_tilt_twice_cos_tilt_sin_tilt = J_z_tilt * twice_cos_tilt_sin_tilt
-    accel_pan_by_theta_tilt_term_2 = c_x_payload_twice_m_payload * c_z_payload * sin_tilt_sq
-    accel_pan_by_theta_tilt_term_3 = c_x_payload_sq_m_payload * twice_cos_tilt_sin_tilt
-    accel_pan_by_theta_tilt_term_4 = (
+    follower_inertia_tilt_by_theta_tilt_term = (
+        c_x_payload_twice_m_payload * c_z_payload * follower_inertia_tilt_by_J_x_payload
+    )
+    follower_inertia_tilt_by_theta_tilt_term_2 = c_x_payload_sq_m_payload * twice_cos_tilt_sin_tilt
+    follower_inertia_tilt_by_theta_tilt = (
         J_x_payload_twice_cos_tilt_sin_tilt
         + J_x_tilt_twice_cos_tilt_sin_tilt
         - J_z_payload_twice_cos_tilt_sin_tilt
         - J_z_tilt_twice_cos_tilt_sin_tilt
-        - accel_pan_by_theta_tilt_term_2
-        - accel_pan_by_theta_tilt_term_3
-        + follower_torque_tilt_term_3
-        + follower_torque_tilt_term_4
+        + c_z_payload_force_pan_term_3
+        - follower_inertia_tilt_by_theta_tilt_term
+        - follower_inertia_tilt_by_theta_tilt_term_2
+        + force_pan_term_4
     )
     twice_omega_pan_omega_tilt = 2.0 * omega_pan_omega_tilt
-    cos_tilt_sq_twice_omega_pan_omega_tilt = cos_tilt_sq * twice_omega_pan_omega_tilt
-    accel_pan_by_theta_tilt_term_5 = J_x_payload * cos_tilt_sq_twice_omega_pan_omega_tilt
-    accel_pan_by_theta_tilt_term_6 = J_x_tilt * cos_tilt_sq_twice_omega_pan_omega_tilt
-    sin_tilt_sq_twice_omega_pan_omega_tilt = sin_tilt_sq * twice_omega_pan_omega_tilt
-    accel_pan_by_theta_tilt_term_7 = J_z_payload * sin_tilt_sq_twice_omega_pan_omega_tilt
-    accel_pan_by_theta_tilt_term_8 = J_z_tilt * sin_tilt_sq_twice_omega_pan_omega_tilt
-    accel_pan_by_theta_tilt_term_9 = follower_coupling_tilt_term_2 * omega_tilt_sq
-    accel_pan_by_theta_tilt_term_10 = (
-        c_x_payload_sq_m_payload * sin_tilt_sq_twice_omega_pan_omega_tilt
+    accel_pan_by_theta_tilt_term = follower_inertia_tilt_by_J_z_payload * twice_omega_pan_omega_tilt
+    J_x_payload_accel_pan_by_theta_tilt_term = J_x_payload * accel_pan_by_theta_tilt_term
+    J_x_tilt_accel_pan_by_theta_tilt_term = J_x_tilt * accel_pan_by_theta_tilt_term
+    accel_pan_by_theta_tilt_term_2 = (
+        follower_inertia_tilt_by_J_x_payload * twice_omega_pan_omega_tilt
     )
-    accel_pan_by_theta_tilt_term_11 = (
-        c_z_payload_sq_m_payload * cos_tilt_sq_twice_omega_pan_omega_tilt
-    )
-    accel_pan_by_theta_tilt_term_12 = (
-        2.0 * J_x_payload * omega_pan * omega_tilt * sin_tilt_sq
-        + 2.0 * J_x_tilt * omega_pan * omega_tilt * sin_tilt_sq
-        + 2.0 * J_z_payload * cos_tilt_sq * omega_pan * omega_tilt
-        + 2.0 * J_z_tilt * cos_tilt_sq * omega_pan * omega_tilt
-        - accel_pan * accel_pan_by_theta_tilt_term_4
-        - accel_pan_by_theta_tilt_term * accel_tilt
-        - accel_pan_by_theta_tilt_term_10
-        - accel_pan_by_theta_tilt_term_11
+    accel_pan_by_theta_tilt_term_3 = J_z_payload * accel_pan_by_theta_tilt_term_2
+    J_z_tilt_accel_pan_by_theta_tilt_term_2 = J_z_tilt * accel_pan_by_theta_tilt_term_2
+    mass_pan_tilt_term_2_omega_tilt_sq = mass_pan_tilt_term_2 * omega_tilt_sq
+    accel_pan_by_theta_tilt_term_4 = accel_pan_by_theta_tilt_term_2 * c_x_payload_sq_m_payload
+    accel_pan_by_theta_tilt_term_5 = accel_pan_by_theta_tilt_term * c_z_payload_sq_m_payload
+    accel_pan_by_theta_tilt_term_6 = (
+        2.0 * J_x_payload * follower_inertia_tilt_by_J_x_payload * omega_pan * omega_tilt
+        - J_x_payload_accel_pan_by_theta_tilt_term
+        + 2.0 * J_x_tilt * follower_inertia_tilt_by_J_x_payload * omega_pan * omega_tilt
+        - J_x_tilt_accel_pan_by_theta_tilt_term
+        + 2.0 * J_z_payload * follower_inertia_tilt_by_J_z_payload * omega_pan * omega_tilt
+        + 2.0 * J_z_tilt * follower_inertia_tilt_by_J_z_payload * omega_pan * omega_tilt
+        - J_z_tilt_accel_pan_by_theta_tilt_term_2
+        - accel_pan * follower_inertia_tilt_by_theta_tilt
+        - accel_pan_by_theta_tilt_term_3
+        - accel_pan_by_theta_tilt_term_4
         - accel_pan_by_theta_tilt_term_5
-        - accel_pan_by_theta_tilt_term_6
-        - accel_pan_by_theta_tilt_term_7
-        - accel_pan_by_theta_tilt_term_8
-        - accel_pan_by_theta_tilt_term_9
+        - accel_tilt * follower_coupling_tilt_by_theta_tilt
         + c_x_payload * c_y_payload * m_payload * omega_tilt_sq * sin_tilt
         + 8.0 * c_x_payload * c_z_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        + 2.0 * c_x_payload_sq * cos_tilt_sq * m_payload * omega_pan * omega_tilt
-        + 2.0 * c_z_payload_sq * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        + 2.0
+        * c_x_payload_sq
+        * follower_inertia_tilt_by_J_z_payload
+        * m_payload
+        * omega_pan
+        * omega_tilt
+        + 2.0
+        * c_z_payload_sq
+        * follower_inertia_tilt_by_J_x_payload
+        * m_payload
+        * omega_pan
+        * omega_tilt
+        - mass_pan_tilt_term_2_omega_tilt_sq
     )
     length_tilt_by_theta_tilt_by_theta_tilt_term = (
         length_tilt_by_theta_tilt_term * length_tilt_term ** (-1.5)
     )
     length_tilt_by_theta_tilt_by_theta_tilt = (
         -length_tilt_by_theta_tilt_by_theta_tilt_term * length_tilt_by_theta_tilt_term
-        + length_tilt_term_2_inverse
+        + length_tilt_inverse_2
         * (0.5 * cos_tilt_linkage_cos_tilt + 0.5 * linkage_sin_tilt_sin_tilt)
     )
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term = N_tilt * length_tilt_inverse_ratio_tilt_term_2
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term_2 = (
-        N_tilt_ratio_tilt_term * ratio_tilt_by_theta_tilt_term_4
+    N_tilt_ratio_tilt_by_N_tilt_term_3 = N_tilt * ratio_tilt_by_N_tilt_term_3
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (
+        N_tilt_ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_4
     )
     N_tilt_ratio_tilt_by_theta_tilt_term = N_tilt * ratio_tilt_by_theta_tilt_term
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term_3 = (
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_2 = (
         N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt_term_4
     )
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term_4 = (
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_3 = (
         2.0
         * math.pi
         * N_tilt
         * lead_tilt_inverse
         * length_tilt_by_theta_tilt
-        * ratio_tilt_term
+        * ratio_tilt_by_N_tilt_term
         / (length_tilt * length_tilt * length_tilt)
-        - ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
     )
     ratio_tilt_by_theta_tilt_by_theta_tilt = (
-        -length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
-        + length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
-        - length_tilt_by_theta_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
-        - ratio_tilt_by_theta_tilt_by_theta_tilt_term * ratio_tilt_term
+        -N_tilt_ratio_tilt_by_N_tilt_term_3 * ratio_tilt_by_N_tilt_term
+        - length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        + length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
     )
     J_motor_tilt_ratio_tilt = J_motor_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_omega_tilt_sq = J_motor_tilt_ratio_tilt * omega_tilt_sq
@@ -1129,61 +1080,57 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt
     )
     driving_torque_tilt_by_theta_tilt = -driving_torque_tilt_by_theta_tilt_term_2
-    follower_coupling_tilt_by_theta_tilt = accel_pan_by_theta_tilt_term
-    follower_inertia_tilt_by_theta_tilt = accel_pan_by_theta_tilt_term_4
-    twice_load_torque_tilt_by_theta_pan_term = 2.0 * load_torque_tilt_by_theta_pan_term
-    load_inertia_tilt_by_theta_tilt_term = 1.0 / (follower_inertia_tilt * follower_inertia_tilt)
-    load_inertia_tilt_by_theta_tilt_term_2 = (
-        follower_coupling_tilt_sq * load_inertia_tilt_by_theta_tilt_term
-    )
+    twice_mass_pan_inverse_mass_pan_tilt = 2.0 * mass_pan_inverse_mass_pan_tilt
+    load_inertia_tilt_by_theta_tilt_term = 1.0 / (mass_pan * mass_pan)
+    load_inertia_tilt_by_theta_tilt_term_2 = load_inertia_tilt_by_theta_tilt_term * mass_pan_tilt_sq
     load_inertia_tilt_by_theta_tilt = (
-        -follower_coupling_tilt_by_theta_tilt * twice_load_torque_tilt_by_theta_pan_term
+        -follower_coupling_tilt_by_theta_tilt * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_theta_tilt * load_inertia_tilt_by_theta_tilt_term_2
     )
     follower_torque_tilt_by_theta_tilt_term = c_x_payload_m_payload_sin_tilt * c_z_payload_cos_tilt
     follower_torque_tilt_by_theta_tilt = (
-        J_x_payload_sin_tilt_sq * twice_omega_pan_omega_tilt
-        + J_x_tilt_sin_tilt_sq * twice_omega_pan_omega_tilt
-        + J_z_payload_cos_tilt_sq * twice_omega_pan_omega_tilt
-        + J_z_tilt_cos_tilt_sq * twice_omega_pan_omega_tilt
-        - accel_pan_by_theta_tilt_term_10
-        - accel_pan_by_theta_tilt_term_11
+        -J_x_payload_accel_pan_by_theta_tilt_term
+        - J_x_tilt_accel_pan_by_theta_tilt_term
+        - J_z_tilt_accel_pan_by_theta_tilt_term_2
+        - accel_pan_by_theta_tilt_term_3
+        - accel_pan_by_theta_tilt_term_4
         - accel_pan_by_theta_tilt_term_5
-        - accel_pan_by_theta_tilt_term_6
-        - accel_pan_by_theta_tilt_term_7
-        - accel_pan_by_theta_tilt_term_8
-        - accel_pan_by_theta_tilt_term_9
-        + c_x_payload_sq_m_payload_cos_tilt_sq * twice_omega_pan_omega_tilt
-        + c_z_payload_sq_m_payload_sin_tilt_sq * twice_omega_pan_omega_tilt
-        + follower_coupling_tilt_term * omega_tilt_sq
         + 8.0 * follower_torque_tilt_by_theta_tilt_term * omega_pan_omega_tilt
+        + mass_pan_term * twice_omega_pan_omega_tilt
+        + mass_pan_term_2 * twice_omega_pan_omega_tilt
+        + mass_pan_term_3 * twice_omega_pan_omega_tilt
+        + mass_pan_term_4 * twice_omega_pan_omega_tilt
+        + mass_pan_term_5 * twice_omega_pan_omega_tilt
+        + mass_pan_term_8 * twice_omega_pan_omega_tilt
+        + mass_pan_tilt_term * omega_tilt_sq
+        - mass_pan_tilt_term_2_omega_tilt_sq
     )
-    load_torque_tilt_by_theta_tilt_term = follower_inertia_tilt_inverse * follower_torque_tilt
-    load_torque_tilt_by_theta_tilt_term_2 = (
-        -J_x_payload * cos_tilt_sq * omega_pan_sq
-        + J_x_payload_sin_tilt_sq * omega_pan_sq
-        - J_x_tilt * cos_tilt_sq * omega_pan_sq
-        + J_x_tilt_sin_tilt_sq * omega_pan_sq
-        - J_z_payload * omega_pan_sq * sin_tilt_sq
-        + J_z_payload_cos_tilt_sq * omega_pan_sq
-        - J_z_tilt * omega_pan_sq * sin_tilt_sq
-        + J_z_tilt_cos_tilt_sq * omega_pan_sq
+    force_pan_mass_pan_inverse = force_pan * mass_pan_inverse
+    load_torque_tilt_by_theta_tilt_term = (
+        -J_x_payload * follower_inertia_tilt_by_J_z_payload * omega_pan_sq
+        - J_x_tilt * follower_inertia_tilt_by_J_z_payload * omega_pan_sq
+        - J_z_payload * follower_inertia_tilt_by_J_x_payload * omega_pan_sq
+        - J_z_tilt * follower_inertia_tilt_by_J_x_payload * omega_pan_sq
         + 9.81 * c_x_payload_m_payload_sin_tilt
-        - c_x_payload_sq * m_payload * omega_pan_sq * sin_tilt_sq
-        + c_x_payload_sq_m_payload_cos_tilt_sq * omega_pan_sq
+        - c_x_payload_sq * follower_inertia_tilt_by_J_x_payload * m_payload * omega_pan_sq
         - 9.81 * c_z_payload * cos_tilt * m_payload
-        - c_z_payload_sq * cos_tilt_sq * m_payload * omega_pan_sq
-        + c_z_payload_sq_m_payload_sin_tilt_sq * omega_pan_sq
+        - c_z_payload_sq * follower_inertia_tilt_by_J_z_payload * m_payload * omega_pan_sq
         + 4.0 * follower_torque_tilt_by_theta_tilt_term * omega_pan_sq
+        + mass_pan_term * omega_pan_sq
+        + mass_pan_term_2 * omega_pan_sq
+        + mass_pan_term_3 * omega_pan_sq
+        + mass_pan_term_4 * omega_pan_sq
+        + mass_pan_term_5 * omega_pan_sq
+        + mass_pan_term_8 * omega_pan_sq
     )
     load_torque_tilt_by_theta_tilt = (
-        follower_coupling_tilt
-        * follower_inertia_tilt_by_theta_tilt
-        * follower_torque_tilt
+        -follower_coupling_tilt_by_theta_tilt * force_pan_mass_pan_inverse
+        + follower_inertia_tilt_by_theta_tilt
+        * force_pan
         * load_inertia_tilt_by_theta_tilt_term
-        - follower_coupling_tilt_by_theta_tilt * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_theta_tilt * load_torque_tilt_by_theta_pan_term
-        - load_torque_tilt_by_theta_tilt_term_2
+        * mass_pan_tilt
+        - follower_torque_tilt_by_theta_tilt * mass_pan_inverse_mass_pan_tilt
+        - load_torque_tilt_by_theta_tilt_term
     )
     twice_ratio_tilt_by_theta_tilt = 2.0 * ratio_tilt_by_theta_tilt
     J_motor_tilt_ratio_tilt_load_torque_tilt = J_motor_tilt_ratio_tilt * load_torque_tilt
@@ -1195,9 +1142,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     lost_lowering_tilt_by_theta_tilt_term = (
         lost_lowering_tilt_term
-        * 1.0
-        / (lost_lowering_tilt_term_2 * lost_lowering_tilt_term_2)
         * (0.0 if lost_lowering_tilt_term_2 == 0 else math.copysign(1, lost_lowering_tilt_term_2))
+        / (lost_lowering_tilt_term_2 * lost_lowering_tilt_term_2)
     )
     lost_lowering_tilt_by_theta_tilt_term_2 = lost_lowering_tilt_by_theta_tilt_term * lowered_tilt
     lost_lowering_tilt_by_theta_tilt_term_3 = (
@@ -1207,8 +1153,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         -load_inertia_tilt_by_theta_tilt * lost_lowering_tilt_by_theta_tilt_term_2
         - lost_lowering_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
     )
-    lost_raising_tilt_by_theta_tilt_term = (
-        lost_raising_tilt_term * 1.0 / (lost_raising_tilt_term_2 * lost_raising_tilt_term_2)
+    lost_raising_tilt_by_theta_tilt_term = lost_raising_tilt_term / (
+        lost_raising_tilt_term_2 * lost_raising_tilt_term_2
     )
     lost_raising_tilt_by_theta_tilt_term_2 = lost_raising_tilt_by_theta_tilt_term * raised_tilt
     lost_raising_tilt_by_theta_tilt_term_3 = (
@@ -1219,192 +1165,185 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - lost_raising_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
     )
     half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
-    accel_pan_by_theta_tilt_term_13 = slide_tilt * (
+    accel_pan_by_theta_tilt_term_7 = slide_tilt * (
         0.5 * force_tilt_term - half_carried_tilt_slide_tilt
     )
-    accel_pan_by_theta_tilt_term_14 = slide_tilt * (
+    accel_pan_by_theta_tilt_term_8 = slide_tilt * (
         half_carried_tilt_slide_tilt + half_force_tilt_term
     )
     J_motor_tilt_ratio_tilt_accel_tilt = J_motor_tilt_ratio_tilt * accel_tilt
-    accel_pan_by_theta_tilt_term_15 = (
+    accel_pan_by_theta_tilt_term_9 = (
         -J_motor_tilt_ratio_tilt_accel_tilt * twice_ratio_tilt_by_theta_tilt
-        - accel_pan * accel_pan_by_theta_tilt_term
-        - accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_theta_tilt
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_theta_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_theta_tilt
+        - accel_pan * follower_coupling_tilt_by_theta_tilt
+        - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_theta_tilt
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_theta_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_theta_tilt
         - driving_torque_tilt_by_theta_tilt_term_2
-        - load_torque_tilt_by_theta_tilt_term_2
+        - load_torque_tilt_by_theta_tilt_term
     )
     fx[2, 1] = inverse_determinant * (
-        accel_pan_by_theta_tilt_term_12 * mass_tilt
-        - accel_pan_by_theta_tilt_term_15 * mass_pan_tilt_slide_tilt_sq
+        accel_pan_by_theta_tilt_term_6 * mass_tilt
+        - accel_pan_by_theta_tilt_term_9 * mass_pan_tilt_slide_tilt_sq
     )
     fx[3, 1] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_theta_tilt_term_12 * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_theta_tilt_term_15 * mass_pan
+        -accel_pan_by_theta_tilt_term_6 * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_theta_tilt_term_9 * mass_pan
     )
     L_tilt_inverse = 1.0 / L_tilt
     K_t_tilt_L_tilt_inverse_omega_tilt = K_t_tilt * L_tilt_inverse * omega_tilt
     fx[7, 1] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_theta_tilt
     fx[0, 2] = 1.0
-    active_pan_d_shaft_pan = active_pan * d_shaft_pan
-    follower_torque_tilt_by_omega_pan_term = (
+    follower_torque_tilt_by_omega_gear_pan = active_pan * d_shaft_pan
+    follower_torque_tilt_by_omega_pan = (
         -J_x_payload_twice_cos_tilt_sin_tilt * omega_tilt
         - J_x_tilt_twice_cos_tilt_sin_tilt * omega_tilt
         + 2.0 * J_z_payload * cos_tilt * omega_tilt * sin_tilt
         + 2.0 * J_z_tilt * cos_tilt * omega_tilt * sin_tilt
-        - active_pan_d_shaft_pan
         - b_pan
-        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_tilt * sin_tilt_sq
+        + 2.0
+        * c_x_payload
+        * c_z_payload
+        * follower_inertia_tilt_by_J_x_payload
+        * m_payload
+        * omega_tilt
         + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_tilt * sin_tilt
-        - follower_torque_tilt_term_3 * omega_tilt
-        - follower_torque_tilt_term_4 * omega_tilt
+        - c_z_payload_force_pan_term_3 * omega_tilt
+        - follower_torque_tilt_by_omega_gear_pan
+        - force_pan_term_4 * omega_tilt
     )
-    follower_torque_tilt_by_omega_pan = follower_torque_tilt_by_omega_pan_term
     load_torque_tilt_by_omega_pan_term = J_x_payload_twice_cos_tilt_sin_tilt * omega_pan
     load_torque_tilt_by_omega_pan_term_2 = J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan
     load_torque_tilt_by_omega_pan_term_3 = J_z_payload_twice_cos_tilt_sin_tilt * omega_pan
     load_torque_tilt_by_omega_pan_term_4 = J_z_tilt_twice_cos_tilt_sin_tilt * omega_pan
-    accel_pan_by_theta_tilt_term_2_omega_pan = accel_pan_by_theta_tilt_term_2 * omega_pan
-    follower_torque_tilt_term_3_omega_pan = follower_torque_tilt_term_3 * omega_pan
-    accel_pan_by_theta_tilt_term_3_omega_pan = accel_pan_by_theta_tilt_term_3 * omega_pan
-    follower_torque_tilt_term_4_omega_pan = follower_torque_tilt_term_4 * omega_pan
-    load_torque_tilt_by_omega_pan_term_5 = (
-        accel_pan_by_theta_tilt_term_2_omega_pan
-        + accel_pan_by_theta_tilt_term_3_omega_pan
-        - follower_torque_tilt_term_3_omega_pan
-        - follower_torque_tilt_term_4_omega_pan
+    load_torque_tilt_by_omega_pan_term_5 = follower_inertia_tilt_by_theta_tilt_term * omega_pan
+    c_z_payload_force_pan_term_3_omega_pan = c_z_payload_force_pan_term_3 * omega_pan
+    load_torque_tilt_by_omega_pan_term_6 = follower_inertia_tilt_by_theta_tilt_term_2 * omega_pan
+    force_pan_term_4_omega_pan = force_pan_term_4 * omega_pan
+    load_torque_tilt_by_omega_pan_term_7 = (
+        -c_z_payload_force_pan_term_3_omega_pan
+        - force_pan_term_4_omega_pan
         - load_torque_tilt_by_omega_pan_term
         - load_torque_tilt_by_omega_pan_term_2
         + load_torque_tilt_by_omega_pan_term_3
         + load_torque_tilt_by_omega_pan_term_4
+        + load_torque_tilt_by_omega_pan_term_5
+        + load_torque_tilt_by_omega_pan_term_6
     )
     load_torque_tilt_by_omega_pan = (
-        -follower_torque_tilt_by_omega_pan * load_torque_tilt_by_theta_pan_term
-        - load_torque_tilt_by_omega_pan_term_5
+        -follower_torque_tilt_by_omega_pan * mass_pan_inverse_mass_pan_tilt
+        - load_torque_tilt_by_omega_pan_term_7
     )
     carried_tilt_by_omega_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_pan
     accel_pan_by_omega_pan_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_omega_pan
-        - load_torque_tilt_by_omega_pan_term_5
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_omega_pan
+        - load_torque_tilt_by_omega_pan_term_7
     )
     fx[2, 2] = inverse_determinant * (
         -accel_pan_by_omega_pan_term * mass_pan_tilt_slide_tilt_sq
-        + follower_torque_tilt_by_omega_pan_term * mass_tilt
+        + follower_torque_tilt_by_omega_pan * mass_tilt
     )
     fx[3, 2] = inverse_determinant_slide_tilt_sq * (
         accel_pan_by_omega_pan_term * mass_pan
-        - follower_torque_tilt_by_omega_pan_term * mass_pan_tilt_slide_tilt_sq
+        - follower_torque_tilt_by_omega_pan * mass_pan_tilt_slide_tilt_sq
     )
-    fx[5, 2] = accel_gear_pan_by_theta_pan_term * active_pan_d_shaft_pan
+    fx[5, 2] = accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_omega_gear_pan
     fx[1, 3] = 1.0
     twice_omega_tilt = 2.0 * omega_tilt
-    follower_torque_tilt_by_omega_tilt_term = (
-        accel_pan_by_theta_tilt_term_2_omega_pan
-        + accel_pan_by_theta_tilt_term_3_omega_pan
-        - follower_torque_tilt_term * twice_omega_tilt
-        - follower_torque_tilt_term_2 * twice_omega_tilt
-        - follower_torque_tilt_term_3_omega_pan
-        - follower_torque_tilt_term_4_omega_pan
+    follower_torque_tilt_by_omega_tilt = (
+        -c_z_payload_force_pan_term_3_omega_pan
+        - force_pan_term * twice_omega_tilt
+        - force_pan_term_2 * twice_omega_tilt
+        - force_pan_term_4_omega_pan
         - load_torque_tilt_by_omega_pan_term
         - load_torque_tilt_by_omega_pan_term_2
         + load_torque_tilt_by_omega_pan_term_3
         + load_torque_tilt_by_omega_pan_term_4
+        + load_torque_tilt_by_omega_pan_term_5
+        + load_torque_tilt_by_omega_pan_term_6
     )
     driving_torque_tilt_by_omega_tilt_term = (
         J_motor_tilt * omega_tilt_ratio_tilt * twice_ratio_tilt_by_theta_tilt
         + b_motor_tilt * ratio_tilt_sq
     )
     driving_torque_tilt_by_omega_tilt = -driving_torque_tilt_by_omega_tilt_term
-    follower_torque_tilt_by_omega_tilt = follower_torque_tilt_by_omega_tilt_term
     load_torque_tilt_by_omega_tilt = (
-        -b_tilt - follower_torque_tilt_by_omega_tilt * load_torque_tilt_by_theta_pan_term
+        -b_tilt - follower_torque_tilt_by_omega_tilt * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_omega_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_tilt
         + driving_torque_tilt_by_omega_tilt * load_inertia_tilt
     )
     accel_pan_by_omega_tilt_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_omega_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_omega_tilt
         - b_tilt
         - driving_torque_tilt_by_omega_tilt_term
     )
     fx[2, 3] = inverse_determinant * (
         -accel_pan_by_omega_tilt_term * mass_pan_tilt_slide_tilt_sq
-        + follower_torque_tilt_by_omega_tilt_term * mass_tilt
+        + follower_torque_tilt_by_omega_tilt * mass_tilt
     )
     fx[3, 3] = inverse_determinant_slide_tilt_sq * (
         accel_pan_by_omega_tilt_term * mass_pan
-        - follower_torque_tilt_by_omega_tilt_term * mass_pan_tilt_slide_tilt_sq
+        - follower_torque_tilt_by_omega_tilt * mass_pan_tilt_slide_tilt_sq
     )
-    K_t_tilt_ratio_tilt = K_t_tilt * ratio_tilt
-    fx[7, 3] = -K_t_tilt_ratio_tilt * L_tilt_inverse
-    follower_torque_tilt_by_theta_gear_pan = active_pan_k_shaft_pan
+    driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
+    fx[7, 3] = -L_tilt_inverse * driving_torque_tilt_by_i_tilt
     load_torque_tilt_by_theta_gear_pan = (
-        (-1.0) * follower_torque_tilt_by_theta_gear_pan * load_torque_tilt_by_theta_pan_term
+        -follower_torque_tilt_by_theta_gear_pan * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_theta_gear_pan = (
-        (-1.0) * J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_gear_pan
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_gear_pan
     )
     accel_pan_by_theta_gear_pan_term = (
-        accel_pan_by_theta_pan_term_3 * mass_pan_tilt * slide_tilt_cubed
+        accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_theta_gear_pan
     )
     fx[2, 4] = inverse_determinant * (
-        accel_pan_by_theta_gear_pan_term * carried_tilt_by_theta_gear_pan
-        + active_pan_k_shaft_pan_mass_tilt
+        accel_pan_by_theta_gear_pan_term * mass_pan_tilt + accel_pan_by_theta_pan_term
     )
     fx[3, 4] = inverse_determinant_slide_tilt_sq * (
-        -accel_tilt_by_theta_pan_term
-        - accel_tilt_by_theta_pan_term_2 * carried_tilt_by_theta_gear_pan
+        -accel_pan_by_theta_gear_pan_term * mass_pan - accel_tilt_by_theta_pan_term
     )
     fx[5, 4] = -accel_gear_pan_by_theta_pan_term_2
-    follower_torque_tilt_by_omega_gear_pan = active_pan_d_shaft_pan
     load_torque_tilt_by_omega_gear_pan = (
-        (-1.0) * follower_torque_tilt_by_omega_gear_pan * load_torque_tilt_by_theta_pan_term
+        -follower_torque_tilt_by_omega_gear_pan * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_omega_gear_pan = (
-        (-1.0) * J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_gear_pan
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_gear_pan
+    )
+    accel_pan_by_omega_gear_pan_term = (
+        accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_omega_gear_pan
     )
     fx[2, 5] = inverse_determinant * (
-        accel_pan_by_theta_gear_pan_term * carried_tilt_by_omega_gear_pan
-        + active_pan_d_shaft_pan * mass_tilt
+        accel_pan_by_omega_gear_pan_term * mass_pan_tilt
+        + follower_torque_tilt_by_omega_gear_pan * mass_tilt
     )
     fx[3, 5] = inverse_determinant_slide_tilt_sq * (
-        -accel_tilt_by_theta_pan_term_2 * carried_tilt_by_omega_gear_pan
-        - active_pan_d_shaft_pan * mass_pan_tilt_slide_tilt_sq
+        -accel_pan_by_omega_gear_pan_term * mass_pan
+        - follower_torque_tilt_by_omega_gear_pan * mass_pan_tilt_slide_tilt_sq
     )
     fx[4, 5] = 1.0
-    accel_gear_pan_by_omega_gear_pan_term = a_F_v_pan * slide_pan + 1.0
-    accel_gear_pan_by_omega_gear_pan_term_2 = (
-        F_v_pan * accel_gear_pan_by_omega_gear_pan_term * slide_pan
-    )
-    accel_gear_pan_by_omega_gear_pan_term_3 = 1.0 / (v_s_pan * v_s_pan)
-    accel_gear_pan_by_omega_gear_pan_term_4 = a_v_s_pan * slide_pan + 1.0
-    accel_gear_pan_by_omega_gear_pan_term_5 = 1.0 / (
-        accel_gear_pan_by_omega_gear_pan_term_4 * accel_gear_pan_by_omega_gear_pan_term_4
-    )
-    accel_gear_pan_by_omega_gear_pan_term_6 = (
-        accel_gear_pan_by_omega_gear_pan_term_3 * accel_gear_pan_by_omega_gear_pan_term_5
-    )
-    accel_gear_pan_by_omega_gear_pan_term_7 = a_F_c_pan * slide_pan + 1.0
-    accel_gear_pan_by_omega_gear_pan_term_8 = F_c_pan * accel_gear_pan_by_omega_gear_pan_term_7
-    accel_gear_pan_by_omega_gear_pan_term_9 = a_F_s_pan * slide_pan + 1.0
+    viscous_coefficient_pan_term = a_F_v_pan * slide_pan + 1.0
+    viscous_coefficient_pan = F_v_pan * viscous_coefficient_pan_term
+    slide_pan_viscous_coefficient_pan = slide_pan * viscous_coefficient_pan
+    stribeck_decay_pan_term = 1.0 / (v_s_pan * v_s_pan)
+    stribeck_decay_pan_term_2 = a_v_s_pan * slide_pan + 1.0
+    stribeck_decay_pan_term_3 = 1.0 / (stribeck_decay_pan_term_2 * stribeck_decay_pan_term_2)
+    stribeck_decay_pan_term_4 = stribeck_decay_pan_term * stribeck_decay_pan_term_3
+    coulomb_torque_pan_term = a_F_c_pan * slide_pan + 1.0
+    coulomb_torque_pan = F_c_pan * coulomb_torque_pan_term
+    accel_gear_pan_by_omega_gear_pan_term = a_F_s_pan * slide_pan + 1.0
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    accel_gear_pan_by_omega_gear_pan_term_10 = math.exp(
-        -accel_gear_pan_by_omega_gear_pan_term_6 * omega_gear_pan_sq
+    stribeck_decay_pan = math.exp(-omega_gear_pan_sq * stribeck_decay_pan_term_4)
+    accel_gear_pan_by_omega_gear_pan_term_2 = stribeck_decay_pan * (
+        F_s_pan * accel_gear_pan_by_omega_gear_pan_term - coulomb_torque_pan
     )
-    accel_gear_pan_by_omega_gear_pan_term_11 = accel_gear_pan_by_omega_gear_pan_term_10 * (
-        F_s_pan * accel_gear_pan_by_omega_gear_pan_term_9 - accel_gear_pan_by_omega_gear_pan_term_8
-    )
-    accel_gear_pan_by_omega_gear_pan_term_12 = 2.0 * accel_gear_pan_by_omega_gear_pan_term_11
+    accel_gear_pan_by_omega_gear_pan_term_3 = 2.0 * accel_gear_pan_by_omega_gear_pan_term_2
     fx[5, 5] = accel_gear_pan_by_theta_pan_term * (
-        -active_pan_d_shaft_pan
+        -follower_torque_tilt_by_omega_gear_pan
         - slide_pan
         * (
-            -accel_gear_pan_by_omega_gear_pan_term_12
-            * accel_gear_pan_by_omega_gear_pan_term_6
-            * omega_gear_pan
-            + accel_gear_pan_by_omega_gear_pan_term_2
+            -accel_gear_pan_by_omega_gear_pan_term_3 * omega_gear_pan * stribeck_decay_pan_term_4
+            + slide_pan_viscous_coefficient_pan
         )
     )
     L_pan_inverse = 1.0 / L_pan
@@ -1412,10 +1351,10 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fx[6, 5] = -K_t_pan_N_pan * L_pan_inverse
     fx[5, 6] = K_t_pan_N_pan * accel_gear_pan_by_theta_pan_term
     fx[6, 6] = -L_pan_inverse * R_pan
-    driving_torque_tilt_by_i_tilt = K_t_tilt_ratio_tilt
     carried_tilt_by_i_tilt = driving_torque_tilt_by_i_tilt * load_inertia_tilt
     accel_pan_by_i_tilt_term = (
-        K_t_tilt_ratio_tilt - accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_i_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_i_tilt
+        + driving_torque_tilt_by_i_tilt
     )
     accel_pan_by_i_tilt_term_2 = inverse_determinant * mass_pan_tilt_slide_tilt_sq
     fx[2, 7] = -accel_pan_by_i_tilt_term * accel_pan_by_i_tilt_term_2
@@ -1429,7 +1368,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         follower_inertia_tilt_by_J_pan * load_inertia_tilt_by_theta_tilt_term_2
     )
     load_torque_tilt_by_J_pan_term = (
-        follower_coupling_tilt * follower_torque_tilt * load_inertia_tilt_by_theta_tilt_term
+        force_pan * load_inertia_tilt_by_theta_tilt_term * mass_pan_tilt
     )
     load_torque_tilt_by_J_pan = follower_inertia_tilt_by_J_pan * load_torque_tilt_by_J_pan_term
     carried_tilt_by_J_pan = (
@@ -1437,15 +1376,15 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + driving_torque_tilt * load_inertia_tilt_by_J_pan
     )
     lost_lowering_tilt_by_J_pan = (
-        (-1.0) * load_inertia_tilt_by_J_pan * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_pan * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_pan = (
-        (-1.0) * load_inertia_tilt_by_J_pan * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_pan * lost_raising_tilt_by_theta_tilt_term_2
     )
     accel_pan_by_J_pan_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_pan
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_pan
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_pan
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_pan
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_pan
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_pan
     )
     fp[2, 0] = inverse_determinant * (
         -accel_pan * mass_tilt - accel_pan_by_J_pan_term * mass_pan_tilt_slide_tilt_sq
@@ -1453,89 +1392,89 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[3, 0] = inverse_determinant_slide_tilt_sq * (
         accel_pan * mass_pan_tilt_slide_tilt_sq + accel_pan_by_J_pan_term * mass_pan
     )
-    accel_pan_by_J_x_tilt_term = omega_pan_omega_tilt * twice_cos_tilt_sin_tilt
-    accel_pan_by_J_x_tilt_term_2 = -accel_pan * sin_tilt_sq - accel_pan_by_J_x_tilt_term
-    accel_pan_by_J_x_tilt_term_3 = -accel_pan_by_J_x_tilt_term_2 * mass_tilt
-    follower_inertia_tilt_by_J_x_tilt = sin_tilt_sq
-    load_inertia_tilt_by_J_x_tilt = (
-        follower_inertia_tilt_by_J_x_tilt * load_inertia_tilt_by_theta_tilt_term_2
+    follower_torque_tilt_by_J_z_payload = omega_pan_omega_tilt * twice_cos_tilt_sin_tilt
+    accel_pan_by_J_x_tilt_term = (
+        -accel_pan * follower_inertia_tilt_by_J_x_payload - follower_torque_tilt_by_J_z_payload
     )
-    minus_accel_pan_by_J_x_tilt_term = -accel_pan_by_J_x_tilt_term
-    follower_torque_tilt_by_J_x_tilt = minus_accel_pan_by_J_x_tilt_term
+    accel_pan_by_J_x_tilt_term_2 = -accel_pan_by_J_x_tilt_term * mass_tilt
+    load_inertia_tilt_by_J_x_tilt = (
+        follower_inertia_tilt_by_J_x_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
+    follower_torque_tilt_by_J_x_payload = -follower_torque_tilt_by_J_z_payload
     load_torque_tilt_by_J_x_tilt = (
         cos_tilt_sin_tilt_omega_pan_sq
-        + follower_inertia_tilt_by_J_x_tilt * load_torque_tilt_by_J_pan_term
-        - follower_torque_tilt_by_J_x_tilt * load_torque_tilt_by_theta_pan_term
+        + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_J_pan_term
+        - follower_torque_tilt_by_J_x_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_x_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_tilt
         + driving_torque_tilt * load_inertia_tilt_by_J_x_tilt
     )
     lost_lowering_tilt_by_J_x_tilt = (
-        (-1.0) * load_inertia_tilt_by_J_x_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_x_tilt * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_x_tilt = (
-        (-1.0) * load_inertia_tilt_by_J_x_tilt * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_x_tilt * lost_raising_tilt_by_theta_tilt_term_2
     )
     minus_cos_tilt_sin_tilt_omega_pan_sq = -cos_tilt_sin_tilt_omega_pan_sq
-    accel_pan_by_J_x_tilt_term_4 = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_x_tilt
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_x_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_x_tilt
+    accel_pan_by_J_x_tilt_term_3 = (
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_x_tilt
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_x_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_x_tilt
         - minus_cos_tilt_sin_tilt_omega_pan_sq
     )
     fp[2, 1] = inverse_determinant * (
-        -accel_pan_by_J_x_tilt_term_3 - accel_pan_by_J_x_tilt_term_4 * mass_pan_tilt_slide_tilt_sq
+        -accel_pan_by_J_x_tilt_term_2 - accel_pan_by_J_x_tilt_term_3 * mass_pan_tilt_slide_tilt_sq
     )
-    accel_tilt_by_J_x_tilt_term = -accel_pan_by_J_x_tilt_term_2 * mass_pan_tilt_slide_tilt_sq
+    accel_tilt_by_J_x_tilt_term = -accel_pan_by_J_x_tilt_term * mass_pan_tilt_slide_tilt_sq
     fp[3, 1] = inverse_determinant_slide_tilt_sq * (
-        accel_pan_by_J_x_tilt_term_4 * mass_pan + accel_tilt_by_J_x_tilt_term
+        accel_pan_by_J_x_tilt_term_3 * mass_pan + accel_tilt_by_J_x_tilt_term
     )
     load_inertia_tilt_by_J_y_tilt = 1.0
     carried_tilt_by_J_y_tilt = driving_torque_tilt * load_inertia_tilt_by_J_y_tilt
     lost_lowering_tilt_by_J_y_tilt = (
-        (-1.0) * load_inertia_tilt_by_J_y_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_y_tilt * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_y_tilt = (
-        (-1.0) * load_inertia_tilt_by_J_y_tilt * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_y_tilt * lost_raising_tilt_by_theta_tilt_term_2
     )
     accel_pan_by_J_y_tilt_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_y_tilt
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_y_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_y_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_y_tilt
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_y_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_y_tilt
         - accel_tilt
     )
     fp[2, 2] = -accel_pan_by_J_y_tilt_term * accel_pan_by_i_tilt_term_2
     fp[3, 2] = accel_pan_by_J_y_tilt_term * accel_tilt_by_i_tilt_term
-    accel_pan_by_J_z_tilt_term = -accel_pan * cos_tilt_sq - minus_accel_pan_by_J_x_tilt_term
-    accel_pan_by_J_z_tilt_term_2 = -accel_pan_by_J_z_tilt_term * mass_tilt
-    follower_inertia_tilt_by_J_z_tilt = cos_tilt_sq
-    load_inertia_tilt_by_J_z_tilt = (
-        follower_inertia_tilt_by_J_z_tilt * load_inertia_tilt_by_theta_tilt_term_2
+    accel_pan_by_J_z_tilt_term = (
+        -accel_pan * follower_inertia_tilt_by_J_z_payload - follower_torque_tilt_by_J_x_payload
     )
-    follower_torque_tilt_by_J_z_tilt = accel_pan_by_J_x_tilt_term
+    accel_pan_by_J_z_tilt_term_2 = -accel_pan_by_J_z_tilt_term * mass_tilt
+    load_inertia_tilt_by_J_z_tilt = (
+        follower_inertia_tilt_by_J_z_payload * load_inertia_tilt_by_theta_tilt_term_2
+    )
     load_torque_tilt_by_J_z_tilt = (
         -cos_tilt_sin_tilt_omega_pan_sq
-        + follower_coupling_tilt
-        * follower_inertia_tilt_by_J_z_tilt
-        * follower_torque_tilt
+        + follower_inertia_tilt_by_J_z_payload
+        * force_pan
         * load_inertia_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_J_z_tilt * load_torque_tilt_by_theta_pan_term
+        * mass_pan_tilt
+        - follower_torque_tilt_by_J_z_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_z_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_tilt
         + driving_torque_tilt * load_inertia_tilt_by_J_z_tilt
     )
     lost_lowering_tilt_by_J_z_tilt = (
-        (-1.0) * load_inertia_tilt_by_J_z_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_z_tilt * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_z_tilt = (
-        (-1.0) * load_inertia_tilt_by_J_z_tilt * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_z_tilt * lost_raising_tilt_by_theta_tilt_term_2
     )
     accel_pan_by_J_z_tilt_term_3 = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_z_tilt
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_z_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_z_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_z_tilt
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_z_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_z_tilt
         - cos_tilt_sin_tilt_omega_pan_sq
     )
     fp[2, 3] = inverse_determinant * (
@@ -1545,111 +1484,112 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[3, 3] = inverse_determinant_slide_tilt_sq * (
         accel_pan_by_J_z_tilt_term_3 * mass_pan + accel_tilt_by_J_z_tilt_term
     )
-    accel_pan_by_m_payload_term = (
+    follower_coupling_tilt_by_m_payload = (
         c_x_payload_c_y_payload_sin_tilt - c_y_payload_c_z_payload_cos_tilt
     )
-    accel_pan_by_m_payload_term_2 = (
+    follower_inertia_tilt_by_m_payload = (
         c_x_payload * sin_tilt * twice_c_z_payload_cos_tilt
-        + c_x_payload_sq * cos_tilt_sq
-        + c_y_payload_sq_cos_tilt_sq
-        + c_y_payload_sq_sin_tilt_sq
-        + c_z_payload_sq * sin_tilt_sq
+        + c_x_payload_sq * follower_inertia_tilt_by_J_z_payload
+        + c_z_payload_sq * follower_inertia_tilt_by_J_x_payload
+        + mass_pan_term_6
+        + mass_pan_term_7
     )
     c_x_payload_omega_tilt_sq = c_x_payload * omega_tilt_sq
     c_z_payload_omega_tilt_sq = c_z_payload * omega_tilt_sq
-    accel_pan_by_m_payload_term_3 = (
-        accel_pan_by_J_x_tilt_term * c_z_payload_sq
-        - 2.0 * c_x_payload * c_z_payload * omega_pan * omega_tilt * sin_tilt_sq
-        + c_x_payload_c_z_payload * cos_tilt_sq_twice_omega_pan_omega_tilt
+    accel_pan_by_m_payload_term = (
+        accel_pan_by_theta_tilt_term * c_x_payload_c_z_payload
+        - 2.0
+        * c_x_payload
+        * c_z_payload
+        * follower_inertia_tilt_by_J_x_payload
+        * omega_pan
+        * omega_tilt
         + c_x_payload_omega_tilt_sq * c_y_payload * cos_tilt
         - 2.0 * c_x_payload_sq * cos_tilt * omega_pan * omega_tilt * sin_tilt
         + c_y_payload_sin_tilt * c_z_payload_omega_tilt_sq
+        + c_z_payload_sq * follower_torque_tilt_by_J_z_payload
     )
-    accel_pan_by_m_payload_term_4 = (
-        -accel_pan * accel_pan_by_m_payload_term_2
-        - accel_pan_by_m_payload_term * accel_tilt
-        - accel_pan_by_m_payload_term_3
+    accel_pan_by_m_payload_term_2 = (
+        -accel_pan * follower_inertia_tilt_by_m_payload
+        - accel_pan_by_m_payload_term
+        - accel_tilt * follower_coupling_tilt_by_m_payload
     )
-    follower_coupling_tilt_by_m_payload = accel_pan_by_m_payload_term
-    follower_inertia_tilt_by_m_payload = accel_pan_by_m_payload_term_2
     c_x_payload_sq_plus_c_z_payload_sq = c_x_payload_sq + c_z_payload_sq
     load_inertia_tilt_by_m_payload = (
         c_x_payload_sq_plus_c_z_payload_sq
-        - follower_coupling_tilt_by_m_payload * twice_load_torque_tilt_by_theta_pan_term
+        - follower_coupling_tilt_by_m_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_m_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
-    follower_torque_tilt_by_m_payload = -accel_pan_by_m_payload_term_3
+    follower_torque_tilt_by_m_payload = -accel_pan_by_m_payload_term
     load_torque_tilt_by_m_payload_term = c_x_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
     load_torque_tilt_by_m_payload = (
         c_z_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
         + cos_tilt * load_torque_tilt_term
-        - follower_coupling_tilt_by_m_payload * load_torque_tilt_by_theta_tilt_term
+        - follower_coupling_tilt_by_m_payload * force_pan_mass_pan_inverse
         + follower_inertia_tilt_by_m_payload * load_torque_tilt_by_J_pan_term
-        - follower_torque_tilt_by_m_payload * load_torque_tilt_by_theta_pan_term
+        - follower_torque_tilt_by_m_payload * mass_pan_inverse_mass_pan_tilt
         - load_torque_tilt_by_m_payload_term
         + load_torque_tilt_term_2 * sin_tilt
-        + load_torque_tilt_term_4
-        - load_torque_tilt_term_5
+        + load_torque_tilt_term_5
+        - load_torque_tilt_term_7
     )
     carried_tilt_by_m_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_m_payload
         + driving_torque_tilt * load_inertia_tilt_by_m_payload
     )
     lost_lowering_tilt_by_m_payload = (
-        (-1.0) * load_inertia_tilt_by_m_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_m_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_m_payload = (
-        (-1.0) * load_inertia_tilt_by_m_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_m_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
-    accel_pan_by_m_payload_term_5 = (
-        -accel_pan * accel_pan_by_m_payload_term
-        - accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_m_payload
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_m_payload
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_m_payload
+    accel_pan_by_m_payload_term_3 = (
+        -accel_pan * follower_coupling_tilt_by_m_payload
+        - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_m_payload
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_m_payload
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_m_payload
         - accel_tilt * c_x_payload_sq_plus_c_z_payload_sq
-        + c_x_payload * c_z_payload * cos_tilt_sq * omega_pan_sq
+        + c_x_payload * c_z_payload * follower_inertia_tilt_by_J_z_payload * omega_pan_sq
         + 9.81 * c_x_payload * cos_tilt
         + 9.81 * c_z_payload * sin_tilt
         + c_z_payload_sq * cos_tilt * omega_pan_sq * sin_tilt
         - load_torque_tilt_by_m_payload_term
-        - load_torque_tilt_term_5
+        - load_torque_tilt_term_7
     )
     fp[2, 4] = inverse_determinant * (
-        accel_pan_by_m_payload_term_4 * mass_tilt
-        - accel_pan_by_m_payload_term_5 * mass_pan_tilt_slide_tilt_sq
+        accel_pan_by_m_payload_term_2 * mass_tilt
+        - accel_pan_by_m_payload_term_3 * mass_pan_tilt_slide_tilt_sq
     )
     fp[3, 4] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_m_payload_term_4 * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_m_payload_term_5 * mass_pan
+        -accel_pan_by_m_payload_term_2 * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_m_payload_term_3 * mass_pan
     )
-    follower_inertia_tilt_by_J_x_payload = sin_tilt_sq
     load_inertia_tilt_by_J_x_payload = (
         follower_inertia_tilt_by_J_x_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
-    follower_torque_tilt_by_J_x_payload = minus_accel_pan_by_J_x_tilt_term
     load_torque_tilt_by_J_x_payload = (
         cos_tilt_sin_tilt_omega_pan_sq
         + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_J_pan_term
-        - follower_torque_tilt_by_J_x_payload * load_torque_tilt_by_theta_pan_term
+        - follower_torque_tilt_by_J_x_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_x_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_payload
         + driving_torque_tilt * load_inertia_tilt_by_J_x_payload
     )
     lost_lowering_tilt_by_J_x_payload = (
-        (-1.0) * load_inertia_tilt_by_J_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_x_payload = (
-        (-1.0) * load_inertia_tilt_by_J_x_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_x_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
     accel_pan_by_J_x_payload_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_x_payload
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_x_payload
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_x_payload
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_x_payload
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_x_payload
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_x_payload
         - minus_cos_tilt_sin_tilt_omega_pan_sq
     )
     fp[2, 5] = inverse_determinant * (
-        -accel_pan_by_J_x_payload_term * mass_pan_tilt_slide_tilt_sq - accel_pan_by_J_x_tilt_term_3
+        -accel_pan_by_J_x_payload_term * mass_pan_tilt_slide_tilt_sq - accel_pan_by_J_x_tilt_term_2
     )
     fp[3, 5] = inverse_determinant_slide_tilt_sq * (
         accel_pan_by_J_x_payload_term * mass_pan + accel_tilt_by_J_x_tilt_term
@@ -1657,46 +1597,44 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     load_inertia_tilt_by_J_y_payload = 1.0
     carried_tilt_by_J_y_payload = driving_torque_tilt * load_inertia_tilt_by_J_y_payload
     lost_lowering_tilt_by_J_y_payload = (
-        (-1.0) * load_inertia_tilt_by_J_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_y_payload = (
-        (-1.0) * load_inertia_tilt_by_J_y_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_y_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
     accel_pan_by_J_y_payload_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_y_payload
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_y_payload
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_y_payload
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_y_payload
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_y_payload
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_y_payload
         - accel_tilt
     )
     fp[2, 6] = -accel_pan_by_J_y_payload_term * accel_pan_by_i_tilt_term_2
     fp[3, 6] = accel_pan_by_J_y_payload_term * accel_tilt_by_i_tilt_term
-    follower_inertia_tilt_by_J_z_payload = cos_tilt_sq
     load_inertia_tilt_by_J_z_payload = (
         follower_inertia_tilt_by_J_z_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
-    follower_torque_tilt_by_J_z_payload = accel_pan_by_J_x_tilt_term
     load_torque_tilt_by_J_z_payload = (
         -cos_tilt_sin_tilt_omega_pan_sq
-        + follower_coupling_tilt
-        * follower_inertia_tilt_by_J_z_payload
-        * follower_torque_tilt
+        + follower_inertia_tilt_by_J_z_payload
+        * force_pan
         * load_inertia_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_J_z_payload * load_torque_tilt_by_theta_pan_term
+        * mass_pan_tilt
+        - follower_torque_tilt_by_J_z_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_z_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_payload
         + driving_torque_tilt * load_inertia_tilt_by_J_z_payload
     )
     lost_lowering_tilt_by_J_z_payload = (
-        (-1.0) * load_inertia_tilt_by_J_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_z_payload = (
-        (-1.0) * load_inertia_tilt_by_J_z_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_z_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
     accel_pan_by_J_z_payload_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_z_payload
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_z_payload
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_z_payload
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_z_payload
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_z_payload
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_z_payload
         - cos_tilt_sin_tilt_omega_pan_sq
     )
     fp[2, 7] = inverse_determinant * (
@@ -1705,53 +1643,58 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[3, 7] = inverse_determinant_slide_tilt_sq * (
         accel_pan_by_J_z_payload_term * mass_pan + accel_tilt_by_J_z_tilt_term
     )
-    accel_pan_by_c_x_payload_term = m_payload_sin_tilt * twice_c_z_payload_cos_tilt
-    accel_pan_by_c_x_payload_term_2 = (
-        accel_pan_by_c_x_payload_term + c_x_payload_twice_m_payload_cos_tilt_sq
+    follower_inertia_tilt_by_c_x_payload_term = m_payload_sin_tilt * twice_c_z_payload_cos_tilt
+    follower_inertia_tilt_by_c_x_payload = (
+        follower_inertia_tilt_by_c_x_payload_term + force_pan_term_3
     )
-    accel_pan_by_c_x_payload_term_3 = c_y_payload_cos_tilt_m_payload * omega_tilt_sq
+    accel_pan_by_c_x_payload_term = c_y_payload_cos_tilt_m_payload * omega_tilt_sq
     c_z_payload_twice_m_payload = c_z_payload * twice_m_payload
-    accel_pan_by_c_x_payload_term_4 = (
-        c_z_payload_twice_m_payload * cos_tilt_sq * omega_pan_omega_tilt
+    accel_pan_by_c_x_payload_term_2 = (
+        c_z_payload_twice_m_payload * follower_inertia_tilt_by_J_z_payload * omega_pan_omega_tilt
     )
-    accel_pan_by_c_x_payload_term_5 = (
-        -accel_pan * accel_pan_by_c_x_payload_term_2
-        - accel_pan_by_c_x_payload_term_3
-        - accel_pan_by_c_x_payload_term_4
-        - accel_tilt * c_y_payload_sin_tilt_m_payload
+    accel_pan_by_c_x_payload_term_3 = (
+        -accel_pan * follower_inertia_tilt_by_c_x_payload
+        - accel_pan_by_c_x_payload_term
+        - accel_pan_by_c_x_payload_term_2
+        - accel_tilt * follower_coupling_tilt_by_c_x_payload
         + 4.0 * c_x_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        + 2.0 * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        + 2.0
+        * c_z_payload
+        * follower_inertia_tilt_by_J_x_payload
+        * m_payload
+        * omega_pan
+        * omega_tilt
     )
-    follower_coupling_tilt_by_c_x_payload = c_y_payload_sin_tilt_m_payload
-    follower_inertia_tilt_by_c_x_payload = accel_pan_by_c_x_payload_term_2
     load_inertia_tilt_by_c_x_payload = (
         c_x_payload_twice_m_payload
-        - follower_coupling_tilt_by_c_x_payload * twice_load_torque_tilt_by_theta_pan_term
+        - follower_coupling_tilt_by_c_x_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_c_x_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
-    c_z_payload_twice_m_payload_sin_tilt_sq = c_z_payload_twice_m_payload * sin_tilt_sq
+    follower_torque_tilt_by_c_x_payload_term = (
+        c_z_payload_twice_m_payload * follower_inertia_tilt_by_J_x_payload
+    )
     c_x_payload_m_payload_sin_tilt_cos_tilt = c_x_payload_m_payload_sin_tilt * cos_tilt
-    follower_torque_tilt_by_c_x_payload_term = 4.0 * omega_pan_omega_tilt
+    follower_torque_tilt_by_c_x_payload_term_2 = 4.0 * omega_pan_omega_tilt
     follower_torque_tilt_by_c_x_payload = (
-        -accel_pan_by_c_x_payload_term_3
-        - accel_pan_by_c_x_payload_term_4
-        + c_x_payload_m_payload_sin_tilt_cos_tilt * follower_torque_tilt_by_c_x_payload_term
-        + c_z_payload_twice_m_payload_sin_tilt_sq * omega_pan_omega_tilt
+        -accel_pan_by_c_x_payload_term
+        - accel_pan_by_c_x_payload_term_2
+        + c_x_payload_m_payload_sin_tilt_cos_tilt * follower_torque_tilt_by_c_x_payload_term_2
+        + follower_torque_tilt_by_c_x_payload_term * omega_pan_omega_tilt
     )
     load_torque_tilt_by_c_x_payload_term = 2.0 * c_x_payload_m_payload_sin_tilt_cos_tilt
     load_torque_tilt_by_c_x_payload_term_2 = (
-        -c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
-        + c_z_payload * m_payload * omega_pan_sq_sin_tilt_sq
+        -c_z_payload * follower_inertia_tilt_by_J_z_payload * m_payload * omega_pan_sq
+        + c_z_payload * load_torque_tilt_term_6 * m_payload
         - 9.81 * cos_tilt * m_payload
         + load_torque_tilt_by_c_x_payload_term * omega_pan_sq
     )
     load_torque_tilt_by_c_x_payload = (
-        follower_coupling_tilt
-        * follower_inertia_tilt_by_c_x_payload
-        * follower_torque_tilt
+        -follower_coupling_tilt_by_c_x_payload * force_pan_mass_pan_inverse
+        + follower_inertia_tilt_by_c_x_payload
+        * force_pan
         * load_inertia_tilt_by_theta_tilt_term
-        - follower_coupling_tilt_by_c_x_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_c_x_payload * load_torque_tilt_by_theta_pan_term
+        * mass_pan_tilt
+        - follower_torque_tilt_by_c_x_payload * mass_pan_inverse_mass_pan_tilt
         - load_torque_tilt_by_c_x_payload_term_2
     )
     carried_tilt_by_c_x_payload = (
@@ -1759,112 +1702,115 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + driving_torque_tilt * load_inertia_tilt_by_c_x_payload
     )
     lost_lowering_tilt_by_c_x_payload = (
-        (-1.0) * load_inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_c_x_payload = (
-        (-1.0) * load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
-    accel_pan_by_c_x_payload_term_6 = (
-        -accel_pan * c_y_payload_sin_tilt_m_payload
-        - accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_c_x_payload
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_c_x_payload
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_c_x_payload
+    accel_pan_by_c_x_payload_term_4 = (
+        -accel_pan * follower_coupling_tilt_by_c_x_payload
+        - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_c_x_payload
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_c_x_payload
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_c_x_payload
         - accel_tilt * c_x_payload_twice_m_payload
         - load_torque_tilt_by_c_x_payload_term_2
     )
     fp[2, 8] = inverse_determinant * (
-        accel_pan_by_c_x_payload_term_5 * mass_tilt
-        - accel_pan_by_c_x_payload_term_6 * mass_pan_tilt_slide_tilt_sq
+        accel_pan_by_c_x_payload_term_3 * mass_tilt
+        - accel_pan_by_c_x_payload_term_4 * mass_pan_tilt_slide_tilt_sq
     )
     fp[3, 8] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_c_x_payload_term_5 * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_c_x_payload_term_6 * mass_pan
+        -accel_pan_by_c_x_payload_term_3 * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_c_x_payload_term_4 * mass_pan
     )
-    accel_pan_by_c_y_payload_term = (
+    follower_coupling_tilt_by_c_y_payload = (
         c_x_payload_m_payload_sin_tilt - c_z_payload_cos_tilt * m_payload
     )
     c_y_payload_twice_m_payload = c_y_payload * twice_m_payload
-    accel_pan_by_c_y_payload_term_2 = (
-        c_y_payload_twice_m_payload * cos_tilt_sq + c_y_payload_twice_m_payload * sin_tilt_sq
+    follower_inertia_tilt_by_c_y_payload = (
+        c_y_payload_twice_m_payload * follower_inertia_tilt_by_J_x_payload
+        + c_y_payload_twice_m_payload * follower_inertia_tilt_by_J_z_payload
     )
-    accel_pan_by_c_y_payload_term_3 = (
+    accel_pan_by_c_y_payload_term = (
         c_x_payload_omega_tilt_sq * cos_tilt_m_payload
         + c_z_payload_omega_tilt_sq * m_payload_sin_tilt
     )
-    accel_pan_by_c_y_payload_term_4 = (
-        -accel_pan * accel_pan_by_c_y_payload_term_2
-        - accel_pan_by_c_y_payload_term * accel_tilt
-        - accel_pan_by_c_y_payload_term_3
+    accel_pan_by_c_y_payload_term_2 = (
+        -accel_pan * follower_inertia_tilt_by_c_y_payload
+        - accel_pan_by_c_y_payload_term
+        - accel_tilt * follower_coupling_tilt_by_c_y_payload
     )
-    follower_coupling_tilt_by_c_y_payload = accel_pan_by_c_y_payload_term
-    follower_inertia_tilt_by_c_y_payload = accel_pan_by_c_y_payload_term_2
     load_inertia_tilt_by_c_y_payload = (
-        -follower_coupling_tilt_by_c_y_payload * twice_load_torque_tilt_by_theta_pan_term
+        -follower_coupling_tilt_by_c_y_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_c_y_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
-    follower_torque_tilt_by_c_y_payload = -accel_pan_by_c_y_payload_term_3
+    follower_torque_tilt_by_c_y_payload = -accel_pan_by_c_y_payload_term
     load_torque_tilt_by_c_y_payload = (
-        follower_coupling_tilt
-        * follower_inertia_tilt_by_c_y_payload
-        * follower_torque_tilt
+        -follower_coupling_tilt_by_c_y_payload * force_pan_mass_pan_inverse
+        + follower_inertia_tilt_by_c_y_payload
+        * force_pan
         * load_inertia_tilt_by_theta_tilt_term
-        - follower_coupling_tilt_by_c_y_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_c_y_payload * load_torque_tilt_by_theta_pan_term
+        * mass_pan_tilt
+        - follower_torque_tilt_by_c_y_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_c_y_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_y_payload
         + driving_torque_tilt * load_inertia_tilt_by_c_y_payload
     )
     lost_lowering_tilt_by_c_y_payload = (
-        (-1.0) * load_inertia_tilt_by_c_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_c_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_c_y_payload = (
-        (-1.0) * load_inertia_tilt_by_c_y_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_c_y_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
-    accel_pan_by_c_y_payload_term_5 = (
-        -accel_pan * accel_pan_by_c_y_payload_term
-        - accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_c_y_payload
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_c_y_payload
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_c_y_payload
+    accel_pan_by_c_y_payload_term_3 = (
+        -accel_pan * follower_coupling_tilt_by_c_y_payload
+        - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_c_y_payload
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_c_y_payload
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_c_y_payload
     )
     fp[2, 9] = inverse_determinant * (
-        accel_pan_by_c_y_payload_term_4 * mass_tilt
-        - accel_pan_by_c_y_payload_term_5 * mass_pan_tilt_slide_tilt_sq
+        accel_pan_by_c_y_payload_term_2 * mass_tilt
+        - accel_pan_by_c_y_payload_term_3 * mass_pan_tilt_slide_tilt_sq
     )
     fp[3, 9] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_c_y_payload_term_4 * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_c_y_payload_term_5 * mass_pan
+        -accel_pan_by_c_y_payload_term_2 * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_c_y_payload_term_3 * mass_pan
+    )
+    follower_inertia_tilt_by_c_z_payload = (
+        follower_torque_tilt_by_c_x_payload_term + load_torque_tilt_by_c_x_payload_term
     )
     accel_pan_by_c_z_payload_term = (
-        c_z_payload_twice_m_payload_sin_tilt_sq + load_torque_tilt_by_c_x_payload_term
+        -2.0
+        * c_x_payload
+        * follower_inertia_tilt_by_J_x_payload
+        * m_payload
+        * omega_pan
+        * omega_tilt
+        + c_z_payload_cos_tilt * follower_torque_tilt_by_c_x_payload_term_2 * m_payload_sin_tilt
+        + follower_coupling_tilt_by_c_x_payload * omega_tilt_sq
+        + force_pan_term_3 * omega_pan_omega_tilt
     )
     accel_pan_by_c_z_payload_term_2 = (
-        -2.0 * c_x_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        + c_x_payload_twice_m_payload_cos_tilt_sq * omega_pan_omega_tilt
-        + c_y_payload_sin_tilt_m_payload * omega_tilt_sq
-        + c_z_payload_cos_tilt * follower_torque_tilt_by_c_x_payload_term * m_payload_sin_tilt
-    )
-    accel_pan_by_c_z_payload_term_3 = (
-        -accel_pan * accel_pan_by_c_z_payload_term
-        - accel_pan_by_c_z_payload_term_2
+        -accel_pan * follower_inertia_tilt_by_c_z_payload
+        - accel_pan_by_c_z_payload_term
         + accel_tilt * c_y_payload * cos_tilt * m_payload
     )
     follower_coupling_tilt_by_c_z_payload = -c_y_payload_cos_tilt_m_payload
-    follower_inertia_tilt_by_c_z_payload = accel_pan_by_c_z_payload_term
     load_inertia_tilt_by_c_z_payload = (
         c_z_payload_twice_m_payload
-        - follower_coupling_tilt_by_c_z_payload * twice_load_torque_tilt_by_theta_pan_term
+        - follower_coupling_tilt_by_c_z_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_c_z_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
-    follower_torque_tilt_by_c_z_payload = -accel_pan_by_c_z_payload_term_2
+    follower_torque_tilt_by_c_z_payload = -accel_pan_by_c_z_payload_term
     c_x_payload_m_payload = c_x_payload * m_payload
-    load_torque_tilt_by_c_z_payload_term = c_x_payload_m_payload * omega_pan_sq_sin_tilt_sq
+    load_torque_tilt_by_c_z_payload_term = c_x_payload_m_payload * load_torque_tilt_term_6
     load_torque_tilt_by_c_z_payload = (
-        accel_pan_by_c_x_payload_term * omega_pan_sq
-        + c_x_payload_m_payload * cos_tilt_sq_omega_pan_sq
-        - follower_coupling_tilt_by_c_z_payload * load_torque_tilt_by_theta_tilt_term
+        c_x_payload_m_payload * load_torque_tilt_term_4
+        - follower_coupling_tilt_by_c_z_payload * force_pan_mass_pan_inverse
+        + follower_inertia_tilt_by_c_x_payload_term * omega_pan_sq
         + follower_inertia_tilt_by_c_z_payload * load_torque_tilt_by_J_pan_term
-        - follower_torque_tilt_by_c_z_payload * load_torque_tilt_by_theta_pan_term
+        - follower_torque_tilt_by_c_z_payload * mass_pan_inverse_mass_pan_tilt
         - load_torque_tilt_by_c_z_payload_term
         + 9.81 * m_payload_sin_tilt
     )
@@ -1873,145 +1819,123 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + driving_torque_tilt * load_inertia_tilt_by_c_z_payload
     )
     lost_lowering_tilt_by_c_z_payload = (
-        (-1.0) * load_inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_c_z_payload = (
-        (-1.0) * load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
-    accel_pan_by_c_z_payload_term_4 = (
+    accel_pan_by_c_z_payload_term_3 = (
         accel_pan * c_y_payload * cos_tilt * m_payload
-        - accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_c_z_payload
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_c_z_payload
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_c_z_payload
+        - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_c_z_payload
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_c_z_payload
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_c_z_payload
         - accel_tilt * c_z_payload_twice_m_payload
-        + c_x_payload * cos_tilt_sq * m_payload * omega_pan_sq
+        + c_x_payload * follower_inertia_tilt_by_J_z_payload * m_payload * omega_pan_sq
         + 2.0 * c_z_payload * cos_tilt * m_payload * omega_pan_sq * sin_tilt
         - load_torque_tilt_by_c_z_payload_term
         + 9.81 * m_payload * sin_tilt
     )
     fp[2, 10] = inverse_determinant * (
-        accel_pan_by_c_z_payload_term_3 * mass_tilt
-        - accel_pan_by_c_z_payload_term_4 * mass_pan_tilt_slide_tilt_sq
+        accel_pan_by_c_z_payload_term_2 * mass_tilt
+        - accel_pan_by_c_z_payload_term_3 * mass_pan_tilt_slide_tilt_sq
     )
     fp[3, 10] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_c_z_payload_term_3 * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_c_z_payload_term_4 * mass_pan
+        -accel_pan_by_c_z_payload_term_2 * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_c_z_payload_term_3 * mass_pan
     )
-    follower_torque_tilt_by_b_pan = minus_omega_pan
-    load_torque_tilt_by_b_pan = -follower_torque_tilt_by_b_pan * load_torque_tilt_by_theta_pan_term
+    load_torque_tilt_by_b_pan = -follower_torque_tilt_by_b_pan * mass_pan_inverse_mass_pan_tilt
     carried_tilt_by_b_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_pan
+    accel_pan_by_b_pan_term = accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_b_pan
     fp[2, 11] = inverse_determinant * (
-        accel_pan_by_theta_gear_pan_term * carried_tilt_by_b_pan - mass_tilt * omega_pan
+        accel_pan_by_b_pan_term * mass_pan_tilt - mass_tilt * omega_pan
     )
     fp[3, 11] = inverse_determinant_slide_tilt_sq * (
-        -accel_tilt_by_theta_pan_term_2 * carried_tilt_by_b_pan
-        + mass_pan_tilt * omega_pan * slide_tilt_sq
+        -accel_pan_by_b_pan_term * mass_pan + mass_pan_tilt * omega_pan * slide_tilt_sq
     )
     load_torque_tilt_by_b_tilt = -omega_tilt
     carried_tilt_by_b_tilt = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_tilt
     accel_pan_by_b_tilt_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_b_tilt - omega_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_b_tilt - omega_tilt
     )
     fp[2, 12] = -accel_pan_by_b_tilt_term * accel_pan_by_i_tilt_term_2
     fp[3, 12] = accel_pan_by_b_tilt_term * accel_tilt_by_i_tilt_term
-    accel_gear_pan_by_F_c_pan_term = inverse_mass_gear_pan * (slide_pan * slide_pan * slide_pan)
-    fp[5, 13] = (
-        (-1.0)
-        * accel_gear_pan_by_F_c_pan_term
-        * (
-            -accel_gear_pan_by_omega_gear_pan_term_10 * accel_gear_pan_by_omega_gear_pan_term_7
-            + accel_gear_pan_by_omega_gear_pan_term_7
-        )
+    inverse_mass_gear_pan_slide_pan = inverse_mass_gear_pan * slide_pan
+    fp[5, 13] = -inverse_mass_gear_pan_slide_pan * (
+        -coulomb_torque_pan_term * stribeck_decay_pan + coulomb_torque_pan_term
     )
     fp[5, 14] = (
-        (-1.0)
-        * accel_gear_pan_by_F_c_pan_term
-        * accel_gear_pan_by_omega_gear_pan_term_10
-        * accel_gear_pan_by_omega_gear_pan_term_9
+        -accel_gear_pan_by_omega_gear_pan_term
+        * inverse_mass_gear_pan_slide_pan
+        * stribeck_decay_pan
     )
-    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_12 * omega_gear_pan_sq
+    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_3 * omega_gear_pan_sq
     fp[5, 15] = (
-        (-1.0)
-        * accel_gear_pan_by_F_c_pan_term
-        * accel_gear_pan_by_omega_gear_pan_term_5
-        * accel_gear_pan_by_v_s_pan_term
-        * 1.0
+        -accel_gear_pan_by_v_s_pan_term
+        * inverse_mass_gear_pan_slide_pan
+        * stribeck_decay_pan_term_3
         / (v_s_pan * v_s_pan * v_s_pan)
     )
-    accel_gear_pan_by_F_v_pan_term = inverse_mass_gear_pan * (
-        slide_pan * slide_pan * slide_pan * slide_pan
-    )
-    fp[5, 16] = (
-        (-1.0)
-        * accel_gear_pan_by_F_v_pan_term
-        * accel_gear_pan_by_omega_gear_pan_term
-        * omega_gear_pan
-    )
+    fp[5, 16] = -accel_gear_pan_by_theta_pan_term * omega_gear_pan * viscous_coefficient_pan_term
     F_c_pan_slide_pan = F_c_pan * slide_pan
-    fp[5, 17] = (
-        (-1.0)
-        * accel_gear_pan_by_F_c_pan_term
-        * (-F_c_pan_slide_pan * accel_gear_pan_by_omega_gear_pan_term_10 + F_c_pan_slide_pan)
+    fp[5, 17] = -inverse_mass_gear_pan_slide_pan * (
+        -F_c_pan_slide_pan * stribeck_decay_pan + F_c_pan_slide_pan
     )
-    fp[5, 18] = -F_s_pan * accel_gear_pan_by_F_v_pan_term * accel_gear_pan_by_omega_gear_pan_term_10
+    fp[5, 18] = -F_s_pan * accel_gear_pan_by_theta_pan_term * stribeck_decay_pan
     fp[5, 19] = (
-        (-1.0)
-        * accel_gear_pan_by_F_v_pan_term
-        * accel_gear_pan_by_omega_gear_pan_term_3
-        * 1.0
-        / (
-            accel_gear_pan_by_omega_gear_pan_term_4
-            * accel_gear_pan_by_omega_gear_pan_term_4
-            * accel_gear_pan_by_omega_gear_pan_term_4
-        )
+        -accel_gear_pan_by_theta_pan_term
         * accel_gear_pan_by_v_s_pan_term
+        * stribeck_decay_pan_term
+        / (stribeck_decay_pan_term_2 * stribeck_decay_pan_term_2 * stribeck_decay_pan_term_2)
     )
-    fp[5, 20] = -F_v_pan * inverse_mass_gear_pan * omega_gear_pan * slide_pan**5.0
-    active_pan_k_shaft_pan_half_side_pan = active_pan_k_shaft_pan * half_side_pan
-    follower_torque_tilt_by_gap_pan = -active_pan_k_shaft_pan_half_side_pan
-    load_torque_tilt_by_gap_pan = (
-        (-1.0) * follower_torque_tilt_by_gap_pan * load_torque_tilt_by_theta_pan_term
-    )
+    fp[5, 20] = -F_v_pan * inverse_mass_gear_pan_slide_pan * omega_gear_pan
+    half_side_pan = 0.5 * side_pan
+    follower_torque_tilt_by_gap_pan_term = follower_torque_tilt_by_theta_gear_pan * half_side_pan
+    follower_torque_tilt_by_gap_pan = -follower_torque_tilt_by_gap_pan_term
+    load_torque_tilt_by_gap_pan = -follower_torque_tilt_by_gap_pan * mass_pan_inverse_mass_pan_tilt
     carried_tilt_by_gap_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_gap_pan
     fp[2, 21] = inverse_determinant * (
-        accel_pan_by_theta_pan_term_3 * carried_tilt_by_gap_pan * mass_pan_tilt * slide_tilt_cubed
-        - active_pan_k_shaft_pan_mass_tilt * half_side_pan
+        -accel_pan_by_theta_pan_term * half_side_pan
+        + accel_pan_by_theta_pan_term_4 * carried_tilt_by_gap_pan * mass_pan_tilt * slide_tilt
     )
     fp[3, 21] = inverse_determinant_slide_tilt_sq * (
-        -accel_tilt_by_theta_pan_term_2 * carried_tilt_by_gap_pan
-        + active_pan_k_shaft_pan_half_side_pan * mass_pan_tilt_slide_tilt_sq
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_gap_pan * mass_pan
+        + follower_torque_tilt_by_gap_pan_term * mass_pan_tilt_slide_tilt_sq
     )
-    fp[5, 21] = accel_gear_pan_by_theta_pan_term * active_pan_k_shaft_pan_half_side_pan
-    active_pan_follower_torque_tilt_term_5 = active_pan * follower_torque_tilt_term_5
-    follower_torque_tilt_by_k_shaft_pan = active_pan_follower_torque_tilt_term_5
+    fp[5, 21] = accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_gap_pan_term
+    follower_torque_tilt_by_k_shaft_pan = active_pan * shaft_torque_pan_term_2
     load_torque_tilt_by_k_shaft_pan = (
-        (-1.0) * follower_torque_tilt_by_k_shaft_pan * load_torque_tilt_by_theta_pan_term
+        -follower_torque_tilt_by_k_shaft_pan * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_k_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_k_shaft_pan
+    accel_pan_by_k_shaft_pan_term = (
+        accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_k_shaft_pan
+    )
     fp[2, 22] = inverse_determinant * (
-        accel_pan_by_theta_gear_pan_term * carried_tilt_by_k_shaft_pan
-        + active_pan_follower_torque_tilt_term_5 * mass_tilt
+        accel_pan_by_k_shaft_pan_term * mass_pan_tilt
+        + follower_torque_tilt_by_k_shaft_pan * mass_tilt
     )
     fp[3, 22] = inverse_determinant_slide_tilt_sq * (
-        -accel_tilt_by_theta_pan_term_2 * carried_tilt_by_k_shaft_pan
-        - active_pan_follower_torque_tilt_term_5 * mass_pan_tilt_slide_tilt_sq
+        -accel_pan_by_k_shaft_pan_term * mass_pan
+        - follower_torque_tilt_by_k_shaft_pan * mass_pan_tilt_slide_tilt_sq
     )
-    fp[5, 22] = -accel_gear_pan_by_theta_pan_term * active_pan_follower_torque_tilt_term_5
-    follower_torque_tilt_by_d_shaft_pan_term = active_pan * minus_omega_pan_plus_omega_gear_pan
-    follower_torque_tilt_by_d_shaft_pan = follower_torque_tilt_by_d_shaft_pan_term
+    fp[5, 22] = -accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_k_shaft_pan
+    follower_torque_tilt_by_d_shaft_pan = active_pan * shaft_torque_pan_term
     load_torque_tilt_by_d_shaft_pan = (
-        (-1.0) * follower_torque_tilt_by_d_shaft_pan * load_torque_tilt_by_theta_pan_term
+        -follower_torque_tilt_by_d_shaft_pan * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_d_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_d_shaft_pan
+    accel_pan_by_d_shaft_pan_term = (
+        accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_d_shaft_pan
+    )
     fp[2, 23] = inverse_determinant * (
-        accel_pan_by_theta_gear_pan_term * carried_tilt_by_d_shaft_pan
-        + follower_torque_tilt_by_d_shaft_pan_term * mass_tilt
+        accel_pan_by_d_shaft_pan_term * mass_pan_tilt
+        + follower_torque_tilt_by_d_shaft_pan * mass_tilt
     )
     fp[3, 23] = inverse_determinant_slide_tilt_sq * (
-        -accel_tilt_by_theta_pan_term_2 * carried_tilt_by_d_shaft_pan
-        - follower_torque_tilt_by_d_shaft_pan_term * mass_pan_tilt_slide_tilt_sq
+        -accel_pan_by_d_shaft_pan_term * mass_pan
+        - follower_torque_tilt_by_d_shaft_pan * mass_pan_tilt_slide_tilt_sq
     )
-    fp[5, 23] = -accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_d_shaft_pan_term
+    fp[5, 23] = -accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_d_shaft_pan
     fp[6, 24] = -(-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / (L_pan * L_pan)
     fp[6, 25] = -L_pan_inverse * i_pan
     fp[5, 26] = N_pan * accel_gear_pan_by_theta_pan_term * i_pan
@@ -2019,12 +1943,12 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[6, 26] = -L_pan_inverse_omega_gear_pan * N_pan
     force_gear_pan = (
         K_t_pan * N_pan * i_pan
-        - follower_torque_tilt_term_6
+        - shaft_torque_pan
         - slide_pan
         * (
-            accel_gear_pan_by_omega_gear_pan_term_11
-            + accel_gear_pan_by_omega_gear_pan_term_2 * omega_gear_pan
-            + accel_gear_pan_by_omega_gear_pan_term_8
+            accel_gear_pan_by_omega_gear_pan_term_2
+            + coulomb_torque_pan
+            + omega_gear_pan * slide_pan_viscous_coefficient_pan
         )
     )
     accel_gear_pan = accel_gear_pan_by_theta_pan_term * force_gear_pan
@@ -2033,17 +1957,14 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         -2.0 * J_motor_pan * N_pan * accel_gear_pan + K_t_pan * i_pan
     )
     fp[6, 28] = -K_t_pan * L_pan_inverse_omega_gear_pan
-    fp[7, 29] = (
-        (-1.0)
-        * 1.0
-        / (L_tilt * L_tilt)
-        * (-K_t_tilt_ratio_tilt * omega_tilt - R_tilt * i_tilt + u_tilt)
+    fp[7, 29] = -(-R_tilt * i_tilt - driving_torque_tilt_by_i_tilt * omega_tilt + u_tilt) / (
+        L_tilt * L_tilt
     )
     fp[7, 30] = -L_tilt_inverse * i_tilt
     driving_torque_tilt_by_K_t_tilt = i_tilt * ratio_tilt
     carried_tilt_by_K_t_tilt = driving_torque_tilt_by_K_t_tilt * load_inertia_tilt
     accel_pan_by_K_t_tilt_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_K_t_tilt + i_tilt * ratio_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_K_t_tilt + i_tilt * ratio_tilt
     )
     fp[2, 31] = -accel_pan_by_K_t_tilt_term * accel_pan_by_i_tilt_term_2
     fp[3, 31] = accel_pan_by_K_t_tilt_term * accel_tilt_by_i_tilt_term
@@ -2056,9 +1977,9 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_term * ratio_tilt_sq
     lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term * ratio_tilt_sq
     accel_pan_by_J_motor_tilt_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_J_motor_tilt
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_J_motor_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_J_motor_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_motor_tilt
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_motor_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_motor_tilt
         - accel_tilt * ratio_tilt_sq
         - driving_torque_tilt_by_J_motor_tilt_term
     )
@@ -2068,14 +1989,14 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     driving_torque_tilt_by_b_motor_tilt = -omega_tilt_ratio_tilt_sq
     carried_tilt_by_b_motor_tilt = driving_torque_tilt_by_b_motor_tilt * load_inertia_tilt
     accel_pan_by_b_motor_tilt_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_b_motor_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_b_motor_tilt
         - omega_tilt_ratio_tilt_sq
     )
     fp[2, 33] = -accel_pan_by_b_motor_tilt_term * accel_pan_by_i_tilt_term_2
     fp[3, 33] = accel_pan_by_b_motor_tilt_term * accel_tilt_by_i_tilt_term
-    ratio_tilt_by_N_tilt = ratio_tilt_term_3
     ratio_tilt_by_theta_tilt_by_N_tilt = (
-        ratio_tilt_by_theta_tilt_term_2 - ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_term
+        -ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_5
+        + ratio_tilt_by_theta_tilt_term_2
     )
     driving_torque_tilt_by_N_tilt_term = (
         J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_N_tilt
@@ -2093,9 +2014,9 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_by_N_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
     twice_J_motor_tilt_ratio_tilt_accel_tilt = 2.0 * J_motor_tilt_ratio_tilt_accel_tilt
     accel_pan_by_N_tilt_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_N_tilt
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_N_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_N_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_N_tilt
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_N_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_N_tilt
         - driving_torque_tilt_by_N_tilt_term
         - ratio_tilt_by_N_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
@@ -2104,14 +2025,14 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[7, 34] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_N_tilt
     ratio_tilt_by_lead_tilt_term = 1.0 / (lead_tilt * lead_tilt)
     ratio_tilt_by_lead_tilt_term_2 = math.pi * length_tilt_inverse * ratio_tilt_by_lead_tilt_term
-    ratio_tilt_by_lead_tilt = -N_tilt_ratio_tilt_term * ratio_tilt_by_lead_tilt_term_2
+    ratio_tilt_by_lead_tilt = -N_tilt_ratio_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt_term_2
     ratio_tilt_by_theta_tilt_by_lead_tilt = (
         math.pi
         * N_tilt
         * length_tilt_by_theta_tilt
+        * ratio_tilt_by_N_tilt_term
         * ratio_tilt_by_lead_tilt_term
         * ratio_tilt_by_theta_tilt_term_3
-        * ratio_tilt_term
         - N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt_term_2
     )
     driving_torque_tilt_by_lead_tilt_term = (
@@ -2154,9 +2075,9 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_lead_tilt
     )
     accel_pan_by_lead_tilt_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_lead_tilt
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_lead_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_lead_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_lead_tilt
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_lead_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_lead_tilt
         - driving_torque_tilt_by_lead_tilt_term
         - ratio_tilt_by_lead_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
@@ -2173,7 +2094,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         * lowered_tilt_by_lead_tilt_term_4
         * lowered_tilt_term_2
         - lowered_tilt_by_d_screw_tilt_term_3 * lowered_tilt_term_4
-        - lowered_tilt_by_lead_tilt_term_3 * ratio_tilt_term_2
+        - lowered_tilt_by_lead_tilt_term_3 * ratio_tilt_by_N_tilt_term_2
     )
     lost_lowering_tilt_by_d_screw_tilt = (
         lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_d_screw_tilt
@@ -2181,14 +2102,14 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     raised_tilt_by_d_screw_tilt = (
         -lead_tilt_inverse * lowered_tilt_by_d_screw_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
         + lowered_tilt_by_d_screw_tilt_term_3 * raised_tilt_term_3
-        + raised_tilt_by_lead_tilt_term * ratio_tilt_term_2
+        + raised_tilt_by_lead_tilt_term * ratio_tilt_by_N_tilt_term_2
     )
     lost_raising_tilt_by_d_screw_tilt = (
         lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_d_screw_tilt
     )
     accel_pan_by_d_screw_tilt_term = (
-        -accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_d_screw_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_d_screw_tilt
+        -accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_d_screw_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_d_screw_tilt
     )
     fp[2, 36] = -accel_pan_by_d_screw_tilt_term * accel_pan_by_i_tilt_term_2
     fp[3, 36] = accel_pan_by_d_screw_tilt_term * accel_tilt_by_i_tilt_term
@@ -2210,27 +2131,27 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_f_screw_tilt
     )
     accel_pan_by_f_screw_tilt_term = (
-        -accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_f_screw_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_f_screw_tilt
+        -accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_f_screw_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_f_screw_tilt
     )
     fp[2, 37] = -accel_pan_by_f_screw_tilt_term * accel_pan_by_i_tilt_term_2
     fp[3, 37] = accel_pan_by_f_screw_tilt_term * accel_tilt_by_i_tilt_term
     linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
-    linkage_sin_tilt_term_2_inverse = 1.0 / linkage_sin_tilt_term_2
-    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_term_2_inverse
+    linkage_sin_tilt_inverse = 1.0 / linkage_sin_tilt
+    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_inverse
     linkage_sin_tilt_by_l_ground_tilt = (
-        l_ground_tilt * linkage_sin_tilt_term * linkage_sin_tilt_term_2_inverse
+        l_ground_tilt * linkage_sin_tilt_inverse * linkage_sin_tilt_term
         - linkage_cos_tilt_by_l_ground_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
-    half_length_tilt_term_2_inverse = 0.5 * length_tilt_term_2_inverse
-    cos_tilt_half_length_tilt_term_2_inverse = cos_tilt * half_length_tilt_term_2_inverse
-    half_length_tilt_term_2_inverse_sin_tilt = half_length_tilt_term_2_inverse * sin_tilt
+    half_length_tilt_inverse_2 = 0.5 * length_tilt_inverse_2
+    cos_tilt_half_length_tilt_inverse_2 = cos_tilt * half_length_tilt_inverse_2
+    half_length_tilt_inverse_2_sin_tilt = half_length_tilt_inverse_2 * sin_tilt
     length_tilt_by_l_ground_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_ground_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
-        + l_ground_tilt * length_tilt_term_2_inverse
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_l_ground_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
+        + l_ground_tilt * length_tilt_inverse_2
     )
-    ratio_tilt_by_l_ground_tilt_term = cos_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+    ratio_tilt_by_l_ground_tilt_term = N_tilt_ratio_tilt_by_N_tilt_term_3 * cos_tilt
     ratio_tilt_by_l_ground_tilt = (
         math.pi
         * N_tilt
@@ -2238,7 +2159,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         * length_tilt_inverse
         * linkage_cos_tilt_by_l_ground_tilt
         * sin_tilt
-        - length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         - linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt_term = (
@@ -2246,10 +2167,10 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
         cos_tilt * length_tilt_by_theta_tilt_by_l_ground_tilt_term
-        + half_length_tilt_term_2_inverse_sin_tilt
+        + half_length_tilt_inverse_2_sin_tilt
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 = (
-        -cos_tilt_half_length_tilt_term_2_inverse
+        -cos_tilt_half_length_tilt_inverse_2
         + length_tilt_by_theta_tilt_by_l_ground_tilt_term * sin_tilt
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt = (
@@ -2259,15 +2180,15 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     N_tilt_ratio_tilt_by_theta_tilt_term_5 = N_tilt * ratio_tilt_by_theta_tilt_term_5
     ratio_tilt_by_theta_tilt_by_l_ground_tilt_term = (
-        N_tilt_ratio_tilt_by_theta_tilt_term_5 * cos_tilt
-        + ratio_tilt_by_theta_tilt_by_theta_tilt_term * sin_tilt
+        N_tilt_ratio_tilt_by_N_tilt_term_3 * sin_tilt
+        + N_tilt_ratio_tilt_by_theta_tilt_term_5 * cos_tilt
     )
     ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
         -N_tilt_ratio_tilt_by_theta_tilt_term_5 * sin_tilt + ratio_tilt_by_l_ground_tilt_term
     )
     ratio_tilt_by_theta_tilt_by_l_ground_tilt = (
-        length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
-        - length_tilt_by_theta_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         + linkage_cos_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
@@ -2281,48 +2202,47 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + driving_torque_tilt_by_l_ground_tilt * load_inertia_tilt
     )
     lost_lowering_tilt_by_l_ground_tilt = (
-        (-1.0) * lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
     )
     lost_raising_tilt_by_l_ground_tilt = (
-        (-1.0) * lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
     )
     accel_pan_by_l_ground_tilt_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_l_ground_tilt
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_l_ground_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_l_ground_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_l_ground_tilt
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_l_ground_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_l_ground_tilt
         - driving_torque_tilt_by_l_ground_tilt_term
         - ratio_tilt_by_l_ground_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
     fp[2, 38] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_l_ground_tilt_term
     fp[3, 38] = accel_pan_by_l_ground_tilt_term * accel_tilt_by_i_tilt_term
     fp[7, 38] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_l_ground_tilt
-    linkage_cos_tilt_by_l_min_tilt_term = -2.0 * l_min_tilt - 2.0 * s_start_tilt
-    linkage_cos_tilt_by_l_min_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    linkage_cos_tilt_by_s_start_tilt = -2.0 * l_min_tilt - 2.0 * s_start_tilt
     linkage_sin_tilt_by_l_min_tilt = (
-        (-1.0) * linkage_cos_tilt_by_l_min_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+        -linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_l_min_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_min_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_min_tilt
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_s_start_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_l_min_tilt
     )
     ratio_tilt_by_l_min_tilt = (
         math.pi
         * N_tilt
         * lead_tilt_inverse
         * length_tilt_inverse
-        * linkage_cos_tilt_by_l_min_tilt
+        * linkage_cos_tilt_by_s_start_tilt
         * sin_tilt
-        - length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         - linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_theta_tilt_by_l_min_tilt = (
-        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_min_tilt
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_s_start_tilt
         + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_min_tilt
     )
     ratio_tilt_by_theta_tilt_by_l_min_tilt = (
-        length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
-        - length_tilt_by_theta_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
-        + linkage_cos_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
     driving_torque_tilt_by_l_min_tilt_term = (
@@ -2337,9 +2257,9 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_lowering_tilt_by_l_min_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
     lost_raising_tilt_by_l_min_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
     accel_pan_by_l_min_tilt_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_l_min_tilt
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_l_min_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_l_min_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_l_min_tilt
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_l_min_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_l_min_tilt
         - driving_torque_tilt_by_l_min_tilt_term
         - ratio_tilt_by_l_min_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
@@ -2348,13 +2268,13 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[7, 39] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_l_min_tilt
     linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
     linkage_sin_tilt_by_r_arm_tilt = (
-        4.0 * l_ground_tilt_sq * linkage_sin_tilt_term_2_inverse * r_arm_tilt
+        4.0 * l_ground_tilt_sq * linkage_sin_tilt_inverse * r_arm_tilt
         - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_r_arm_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_r_arm_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
-        + length_tilt_term_2_inverse * r_arm_tilt
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_r_arm_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
+        + length_tilt_inverse_2 * r_arm_tilt
     )
     ratio_tilt_by_r_arm_tilt = (
         math.pi
@@ -2363,7 +2283,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         * length_tilt_inverse
         * linkage_cos_tilt_by_r_arm_tilt
         * sin_tilt
-        - length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         - linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_theta_tilt_by_r_arm_tilt = (
@@ -2372,8 +2292,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - length_tilt_by_theta_tilt_by_theta_tilt_term * r_arm_tilt
     )
     ratio_tilt_by_theta_tilt_by_r_arm_tilt = (
-        length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
-        - length_tilt_by_theta_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         + linkage_cos_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
@@ -2389,22 +2309,21 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_lowering_tilt_by_r_arm_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
     lost_raising_tilt_by_r_arm_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
     accel_pan_by_r_arm_tilt_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_r_arm_tilt
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_r_arm_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_r_arm_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_r_arm_tilt
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_r_arm_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_r_arm_tilt
         - driving_torque_tilt_by_r_arm_tilt_term
         - ratio_tilt_by_r_arm_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
     fp[2, 40] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_r_arm_tilt_term
     fp[3, 40] = accel_pan_by_r_arm_tilt_term * accel_tilt_by_i_tilt_term
     fp[7, 40] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_r_arm_tilt
-    linkage_cos_tilt_by_s_start_tilt = linkage_cos_tilt_by_l_min_tilt_term
     linkage_sin_tilt_by_s_start_tilt = (
-        (-1.0) * linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+        -linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_s_start_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_s_start_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_s_start_tilt
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_s_start_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_s_start_tilt
     )
     ratio_tilt_by_s_start_tilt = (
         math.pi
@@ -2413,7 +2332,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         * length_tilt_inverse
         * linkage_cos_tilt_by_s_start_tilt
         * sin_tilt
-        - length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         - linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_theta_tilt_by_s_start_tilt = (
@@ -2421,8 +2340,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_s_start_tilt
     )
     ratio_tilt_by_theta_tilt_by_s_start_tilt = (
-        length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
-        - length_tilt_by_theta_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
@@ -2436,15 +2355,15 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + driving_torque_tilt_by_s_start_tilt * load_inertia_tilt
     )
     lost_lowering_tilt_by_s_start_tilt = (
-        (-1.0) * lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
     )
     lost_raising_tilt_by_s_start_tilt = (
-        (-1.0) * lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
     )
     accel_pan_by_s_start_tilt_term = (
-        -accel_pan_by_theta_pan_term_3_slide_tilt * carried_tilt_by_s_start_tilt
-        - accel_pan_by_theta_tilt_term_13 * lost_lowering_tilt_by_s_start_tilt
-        - accel_pan_by_theta_tilt_term_14 * lost_raising_tilt_by_s_start_tilt
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_s_start_tilt
+        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_s_start_tilt
+        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_s_start_tilt
         - driving_torque_tilt_by_s_start_tilt_term
         - ratio_tilt_by_s_start_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
@@ -2498,14 +2417,16 @@ def guards(t, x, u, p, m, g):
     slide_tilt = m[1]
     side_pan = m[2]
     active_pan = m[3]
-    holding_pan_term = d_shaft_pan * (omega_gear_pan - omega_pan)
+    shaft_torque_pan_term = omega_gear_pan - omega_pan
+    d_shaft_pan_shaft_torque_pan_term = d_shaft_pan * shaft_torque_pan_term
     half_gap_pan = 0.5 * gap_pan
-    holding_pan_term_2 = -theta_gear_pan + theta_pan
-    holding_pan_term_3 = active_pan * (
-        holding_pan_term + k_shaft_pan * (-half_gap_pan * side_pan - holding_pan_term_2)
+    shaft_torque_pan_term_2 = -theta_gear_pan + theta_pan
+    shaft_torque_pan_term_3 = -half_gap_pan * side_pan - shaft_torque_pan_term_2
+    shaft_torque_pan = active_pan * (
+        d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_3
     )
-    minus_holding_pan_term_3 = -holding_pan_term_3
-    g[0] = K_t_pan * N_pan * i_pan + minus_holding_pan_term_3
+    minus_shaft_torque_pan = -shaft_torque_pan
+    g[0] = K_t_pan * N_pan * i_pan + minus_shaft_torque_pan
     g[1] = F_s_pan * (a_F_s_pan + 1.0)
     g[2] = F_s_pan * (1.0 - a_F_s_pan)
     cos_tilt = math.cos(theta_tilt)
@@ -2523,7 +2444,7 @@ def guards(t, x, u, p, m, g):
     force_pan_term = cos_tilt_sin_tilt * twice_omega_pan_omega_tilt
     omega_tilt_sq = omega_tilt * omega_tilt
     c_x_payload_c_z_payload_m_payload = c_x_payload * c_z_payload * m_payload
-    force_pan_term_2 = (
+    force_pan = (
         -J_x_payload * force_pan_term
         - J_x_tilt * force_pan_term
         + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
@@ -2535,18 +2456,16 @@ def guards(t, x, u, p, m, g):
         + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
         - c_y_payload_m_payload_c_z_payload * omega_tilt_sq * sin_tilt
         - c_z_payload_sq_m_payload * force_pan_term
-        - minus_holding_pan_term_3
+        - minus_shaft_torque_pan
     )
-    force_pan = force_pan_term_2
-    follower_coupling_tilt_term = (
+    mass_pan_tilt = (
         c_x_payload_c_y_payload_m_payload * sin_tilt - c_y_payload_m_payload_c_z_payload * cos_tilt
     )
-    follower_coupling_tilt = follower_coupling_tilt_term
     c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    follower_inertia_tilt_term = (c_y_payload * c_y_payload) * m_payload
+    mass_pan_term = (c_y_payload * c_y_payload) * m_payload
     c_x_payload_cos_tilt = c_x_payload * cos_tilt
     c_z_payload_sin_tilt = c_z_payload * sin_tilt
-    follower_inertia_tilt_term_2 = (
+    mass_pan = (
         J_pan
         + J_x_payload * sin_tilt_sq
         + J_x_tilt * sin_tilt_sq
@@ -2555,29 +2474,23 @@ def guards(t, x, u, p, m, g):
         + 2.0 * c_x_payload_cos_tilt * c_z_payload_sin_tilt * m_payload
         + c_x_payload_sq_m_payload * cos_tilt_sq
         + c_z_payload_sq_m_payload * sin_tilt_sq
-        + cos_tilt_sq * follower_inertia_tilt_term
-        + follower_inertia_tilt_term * sin_tilt_sq
+        + cos_tilt_sq * mass_pan_term
+        + mass_pan_term * sin_tilt_sq
     )
-    follower_inertia_tilt = follower_inertia_tilt_term_2
-    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
+    mass_pan_inverse = 1.0 / mass_pan
     load_inertia_tilt_term = (
         J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
     )
-    load_inertia_tilt = (
-        -(follower_coupling_tilt * follower_coupling_tilt) * follower_inertia_tilt_inverse
-        + load_inertia_tilt_term
-    )
+    load_inertia_tilt = load_inertia_tilt_term - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
     lead_tilt_inverse = 1.0 / lead_tilt
     lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
     lowered_tilt = (
-        (-1.0)
-        * lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        -lead_tilt_inverse_lowered_tilt_term
         * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
@@ -2593,32 +2506,26 @@ def guards(t, x, u, p, m, g):
     ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt_term = math.sqrt(
+    length_tilt = math.sqrt(
         -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
     )
-    length_tilt = length_tilt_term
     ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
     ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
     lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = (
-        (1.0 - lowered_tilt)
-        * 1.0
-        / (abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term))
+    lost_lowering_tilt = (1.0 - lowered_tilt) / (
+        abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
     )
     raised_tilt = (
         lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
         * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
-    lost_raising_tilt = (
-        (raised_tilt - 1.0) * 1.0 / (load_inertia_tilt * raised_tilt + lost_lowering_tilt_term)
+    lost_raising_tilt = (raised_tilt - 1.0) / (
+        load_inertia_tilt * raised_tilt + lost_lowering_tilt_term
     )
     length_tilt_by_theta_tilt = (
-        1.0
-        / length_tilt_term
-        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
-    )
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    ) / length_tilt
     ratio_tilt_by_theta_tilt = (
         -math.pi
         * N_tilt
@@ -2628,12 +2535,12 @@ def guards(t, x, u, p, m, g):
         / (length_tilt * length_tilt)
         + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
     )
-    driving_torque_tilt_term = (
+    driving_torque_tilt_term = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt
+    driving_torque_tilt_term_2 = (
         J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
-        - ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt)
+        - driving_torque_tilt_term * ratio_tilt
     )
-    driving_torque_tilt = -driving_torque_tilt_term
-    follower_torque_tilt = force_pan_term_2
+    driving_torque_tilt = -driving_torque_tilt_term_2
     b_tilt_omega_tilt = b_tilt * omega_tilt
     load_torque_tilt_term = 9.81 * m_payload
     omega_pan_sq = omega_pan * omega_pan
@@ -2652,7 +2559,7 @@ def guards(t, x, u, p, m, g):
         + c_z_payload_sin_tilt * load_torque_tilt_term
         + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
         + cos_tilt_sq * load_torque_tilt_term_3
-        - follower_coupling_tilt * follower_inertia_tilt_inverse * follower_torque_tilt
+        - force_pan * mass_pan_inverse * mass_pan_tilt
         - load_torque_tilt_term_2
         - load_torque_tilt_term_3_sin_tilt_sq
         - load_torque_tilt_term_4
@@ -2670,7 +2577,7 @@ def guards(t, x, u, p, m, g):
         - 9.81 * c_x_payload * cos_tilt * m_payload
         - 9.81 * c_z_payload * m_payload * sin_tilt
         - c_z_payload_sq * cos_tilt * m_payload * omega_pan_sq * sin_tilt
-        + driving_torque_tilt_term
+        + driving_torque_tilt_term_2
         + load_torque_tilt_term_2
         + load_torque_tilt_term_3_sin_tilt_sq
         + load_torque_tilt_term_4
@@ -2679,14 +2586,11 @@ def guards(t, x, u, p, m, g):
         0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
         + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
     )
-    mass_pan = follower_inertia_tilt_term_2
-    mass_pan_tilt = follower_coupling_tilt_term
     mass_tilt = load_inertia_tilt_term + lost_lowering_tilt_term
-    inverse_determinant = 1.0 / (
-        mass_pan * mass_tilt
-        - (mass_pan_tilt * mass_pan_tilt) * (slide_tilt * slide_tilt * slide_tilt * slide_tilt)
-    )
     slide_tilt_sq = slide_tilt * slide_tilt
+    inverse_determinant = 1.0 / (
+        mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt) * slide_tilt_sq
+    )
     mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
     accel_pan = inverse_determinant * (
         force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
@@ -2700,8 +2604,10 @@ def guards(t, x, u, p, m, g):
     separation_pan_term = theta_gear_pan - theta_pan
     g[6] = separation_pan_term
     g[7] = half_gap_pan
-    g[8] = holding_pan_term + k_shaft_pan * (-half_gap_pan - holding_pan_term_2)
-    g[9] = holding_pan_term + k_shaft_pan * (half_gap_pan + separation_pan_term)
+    g[8] = d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * (
+        -half_gap_pan - shaft_torque_pan_term_2
+    )
+    g[9] = d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * (half_gap_pan + separation_pan_term)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -2749,55 +2655,52 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     slide_tilt = m[1]
     side_pan = m[2]
     active_pan = m[3]
-    active_pan_k_shaft_pan = active_pan * k_shaft_pan
-    gx[0, 0] = active_pan_k_shaft_pan
-    minus_active_pan_k_shaft_pan = -active_pan_k_shaft_pan
-    follower_torque_tilt_by_theta_pan = minus_active_pan_k_shaft_pan
+    follower_torque_tilt_by_theta_gear_pan = active_pan * k_shaft_pan
+    gx[0, 0] = follower_torque_tilt_by_theta_gear_pan
+    follower_torque_tilt_by_theta_pan = -follower_torque_tilt_by_theta_gear_pan
     sin_tilt = math.sin(theta_tilt)
     c_y_payload_sin_tilt = c_y_payload * sin_tilt
     c_x_payload_c_y_payload_sin_tilt = c_x_payload * c_y_payload_sin_tilt
-    follower_coupling_tilt_term = c_x_payload_c_y_payload_sin_tilt * m_payload
+    mass_pan_tilt_term = c_x_payload_c_y_payload_sin_tilt * m_payload
     cos_tilt = math.cos(theta_tilt)
     c_z_payload_cos_tilt = c_z_payload * cos_tilt
     c_y_payload_c_z_payload_cos_tilt = c_y_payload * c_z_payload_cos_tilt
-    follower_coupling_tilt_term_2 = c_y_payload_c_z_payload_cos_tilt * m_payload
-    follower_coupling_tilt_term_3 = follower_coupling_tilt_term - follower_coupling_tilt_term_2
-    follower_coupling_tilt = follower_coupling_tilt_term_3
-    sin_tilt_sq = sin_tilt * sin_tilt
-    J_x_payload_sin_tilt_sq = J_x_payload * sin_tilt_sq
-    J_x_tilt_sin_tilt_sq = J_x_tilt * sin_tilt_sq
-    cos_tilt_sq = cos_tilt * cos_tilt
-    J_z_payload_cos_tilt_sq = J_z_payload * cos_tilt_sq
-    J_z_tilt_cos_tilt_sq = J_z_tilt * cos_tilt_sq
+    mass_pan_tilt_term_2 = c_y_payload_c_z_payload_cos_tilt * m_payload
+    mass_pan_tilt = mass_pan_tilt_term - mass_pan_tilt_term_2
+    follower_inertia_tilt_by_J_x_payload = sin_tilt * sin_tilt
+    mass_pan_term = J_x_payload * follower_inertia_tilt_by_J_x_payload
+    mass_pan_term_2 = J_x_tilt * follower_inertia_tilt_by_J_x_payload
+    follower_inertia_tilt_by_J_z_payload = cos_tilt * cos_tilt
+    mass_pan_term_3 = J_z_payload * follower_inertia_tilt_by_J_z_payload
+    mass_pan_term_4 = J_z_tilt * follower_inertia_tilt_by_J_z_payload
     c_x_payload_sq = c_x_payload * c_x_payload
     c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    c_x_payload_sq_m_payload_cos_tilt_sq = c_x_payload_sq_m_payload * cos_tilt_sq
+    mass_pan_term_5 = c_x_payload_sq_m_payload * follower_inertia_tilt_by_J_z_payload
     c_y_payload_sq = c_y_payload * c_y_payload
-    c_y_payload_sq_sin_tilt_sq = c_y_payload_sq * sin_tilt_sq
-    c_y_payload_sq_cos_tilt_sq = c_y_payload_sq * cos_tilt_sq
+    mass_pan_term_6 = c_y_payload_sq * follower_inertia_tilt_by_J_x_payload
+    mass_pan_term_7 = c_y_payload_sq * follower_inertia_tilt_by_J_z_payload
     c_z_payload_sq = c_z_payload * c_z_payload
     c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
-    c_z_payload_sq_m_payload_sin_tilt_sq = c_z_payload_sq_m_payload * sin_tilt_sq
+    mass_pan_term_8 = c_z_payload_sq_m_payload * follower_inertia_tilt_by_J_x_payload
     m_payload_sin_tilt = m_payload * sin_tilt
     c_x_payload_m_payload_sin_tilt = c_x_payload * m_payload_sin_tilt
     twice_c_z_payload_cos_tilt = 2.0 * c_z_payload_cos_tilt
-    follower_inertia_tilt_term = (
+    mass_pan = (
         J_pan
-        + J_x_payload_sin_tilt_sq
-        + J_x_tilt_sin_tilt_sq
-        + J_z_payload_cos_tilt_sq
-        + J_z_tilt_cos_tilt_sq
         + c_x_payload_m_payload_sin_tilt * twice_c_z_payload_cos_tilt
-        + c_x_payload_sq_m_payload_cos_tilt_sq
-        + c_y_payload_sq_cos_tilt_sq * m_payload
-        + c_y_payload_sq_sin_tilt_sq * m_payload
-        + c_z_payload_sq_m_payload_sin_tilt_sq
+        + m_payload * mass_pan_term_6
+        + m_payload * mass_pan_term_7
+        + mass_pan_term
+        + mass_pan_term_2
+        + mass_pan_term_3
+        + mass_pan_term_4
+        + mass_pan_term_5
+        + mass_pan_term_8
     )
-    follower_inertia_tilt = follower_inertia_tilt_term
-    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
-    load_torque_tilt_by_theta_pan_term = follower_coupling_tilt * follower_inertia_tilt_inverse
+    mass_pan_inverse = 1.0 / mass_pan
+    mass_pan_inverse_mass_pan_tilt = mass_pan_inverse * mass_pan_tilt
     load_torque_tilt_by_theta_pan = (
-        (-1.0) * follower_torque_tilt_by_theta_pan * load_torque_tilt_by_theta_pan_term
+        -follower_torque_tilt_by_theta_pan * mass_pan_inverse_mass_pan_tilt
     )
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
@@ -2807,33 +2710,29 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
     linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
-    linkage_sin_tilt_term_2 = math.sqrt(
+    linkage_sin_tilt = math.sqrt(
         l_ground_tilt_sq * linkage_sin_tilt_term - (linkage_cos_tilt * linkage_cos_tilt)
     )
-    linkage_sin_tilt = linkage_sin_tilt_term_2
     cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
-    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    ratio_tilt_by_N_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
     length_tilt_term = (
         -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
     )
-    length_tilt_term_2 = math.sqrt(length_tilt_term)
-    length_tilt = length_tilt_term_2
+    length_tilt = math.sqrt(length_tilt_term)
     length_tilt_inverse = 1.0 / length_tilt
     lead_tilt_inverse = 1.0 / lead_tilt
-    ratio_tilt_term_2 = math.pi * lead_tilt_inverse
-    length_tilt_inverse_ratio_tilt_term_2 = length_tilt_inverse * ratio_tilt_term_2
-    ratio_tilt_term_3 = length_tilt_inverse_ratio_tilt_term_2 * ratio_tilt_term
-    ratio_tilt = N_tilt * ratio_tilt_term_3
+    ratio_tilt_by_N_tilt_term_2 = math.pi * lead_tilt_inverse
+    ratio_tilt_by_N_tilt_term_3 = length_tilt_inverse * ratio_tilt_by_N_tilt_term_2
+    ratio_tilt_by_N_tilt = ratio_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt_term_3
+    ratio_tilt = N_tilt * ratio_tilt_by_N_tilt
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
     carried_tilt_by_theta_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_pan
-    mass_pan_tilt = follower_coupling_tilt_term_3
     mass_tilt_term = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
     mass_tilt = J_motor_tilt_ratio_tilt_sq + mass_tilt_term
-    active_pan_k_shaft_pan_mass_tilt = active_pan_k_shaft_pan * mass_tilt
-    slide_tilt_cubed = slide_tilt * slide_tilt * slide_tilt
+    holding_tilt_by_theta_pan_term = follower_torque_tilt_by_theta_gear_pan * mass_tilt
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
     lowered_tilt_term_2 = f_screw_tilt_lowered_tilt_term - lead_tilt
@@ -2844,8 +2743,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     lowered_tilt_term_lowered_tilt_term_4 = lowered_tilt_term * lowered_tilt_term_4
     lowered_tilt = -lowered_tilt_term_2 * lowered_tilt_term_lowered_tilt_term_4
     lost_lowering_tilt_term = 1.0 - lowered_tilt
-    follower_coupling_tilt_sq = follower_coupling_tilt * follower_coupling_tilt
-    load_inertia_tilt = -follower_coupling_tilt_sq * follower_inertia_tilt_inverse + mass_tilt_term
+    mass_pan_tilt_sq = mass_pan_tilt * mass_pan_tilt
+    load_inertia_tilt = -mass_pan_inverse * mass_pan_tilt_sq + mass_tilt_term
     lost_lowering_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
     lost_lowering_tilt_term_3 = 1.0 / (abs(lost_lowering_tilt_term_2))
     lost_lowering_tilt = lost_lowering_tilt_term * lost_lowering_tilt_term_3
@@ -2859,33 +2758,40 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     lost_raising_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
     lost_raising_tilt_term_2_inverse = 1.0 / lost_raising_tilt_term_2
     lost_raising_tilt = lost_raising_tilt_term * lost_raising_tilt_term_2_inverse
-    holding_tilt_by_theta_pan_term = lost_lowering_tilt + lost_raising_tilt
+    holding_tilt_by_theta_pan_term_2 = lost_lowering_tilt + lost_raising_tilt
     ratio_tilt_by_theta_tilt_term = cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt
-    ratio_tilt_by_theta_tilt_term_2 = (
-        length_tilt_inverse_ratio_tilt_term_2 * ratio_tilt_by_theta_tilt_term
-    )
-    N_tilt_ratio_tilt_term = N_tilt * ratio_tilt_term
+    ratio_tilt_by_theta_tilt_term_2 = ratio_tilt_by_N_tilt_term_3 * ratio_tilt_by_theta_tilt_term
+    N_tilt_ratio_tilt_by_N_tilt_term = N_tilt * ratio_tilt_by_N_tilt_term
     length_tilt_by_theta_tilt_term = (
         -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
     )
-    length_tilt_term_2_inverse = 1.0 / length_tilt_term_2
-    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_term_2_inverse
+    length_tilt_inverse_2 = 1.0 / length_tilt
+    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_inverse_2
     ratio_tilt_by_theta_tilt_term_3 = 1.0 / (length_tilt * length_tilt)
-    ratio_tilt_by_theta_tilt_term_4 = ratio_tilt_by_theta_tilt_term_3 * ratio_tilt_term_2
+    ratio_tilt_by_theta_tilt_term_4 = ratio_tilt_by_N_tilt_term_2 * ratio_tilt_by_theta_tilt_term_3
     ratio_tilt_by_theta_tilt_term_5 = length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_term_4
     ratio_tilt_by_theta_tilt = (
         N_tilt * ratio_tilt_by_theta_tilt_term_2
-        - N_tilt_ratio_tilt_term * ratio_tilt_by_theta_tilt_term_5
+        - N_tilt_ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_5
     )
     omega_tilt_sq = omega_tilt * omega_tilt
     omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
     driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq_ratio_tilt_by_theta_tilt
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
     b_motor_tilt_omega_tilt_ratio_tilt = b_motor_tilt * omega_tilt_ratio_tilt
-    driving_torque_tilt_term_2 = driving_torque_tilt_term * ratio_tilt - ratio_tilt * (
-        K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
+    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
+    driving_torque_tilt_term_3 = (
+        driving_torque_tilt_term * ratio_tilt - driving_torque_tilt_term_2 * ratio_tilt
     )
-    driving_torque_tilt = -driving_torque_tilt_term_2
+    driving_torque_tilt = -driving_torque_tilt_term_3
+    follower_torque_tilt_by_b_pan = -omega_pan
+    shaft_torque_pan_term = follower_torque_tilt_by_b_pan + omega_gear_pan
+    half_gap_pan = 0.5 * gap_pan
+    shaft_torque_pan_term_2 = -theta_gear_pan + theta_pan
+    shaft_torque_pan_term_3 = -half_gap_pan * side_pan - shaft_torque_pan_term_2
+    shaft_torque_pan = active_pan * (
+        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_3
+    )
     cos_tilt_sin_tilt = cos_tilt * sin_tilt
     twice_cos_tilt_sin_tilt = 2.0 * cos_tilt_sin_tilt
     J_x_payload_twice_cos_tilt_sin_tilt = J_x_payload * twice_cos_tilt_sin_tilt
@@ -2893,38 +2799,34 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     J_x_tilt_twice_cos_tilt_sin_tilt = J_x_tilt * twice_cos_tilt_sin_tilt
     cos_tilt_m_payload = cos_tilt * m_payload
     c_y_payload_cos_tilt_m_payload = c_y_payload * cos_tilt_m_payload
-    follower_torque_tilt_term = c_x_payload * c_y_payload_cos_tilt_m_payload
-    c_y_payload_sin_tilt_m_payload = c_y_payload_sin_tilt * m_payload
-    follower_torque_tilt_term_2 = c_y_payload_sin_tilt_m_payload * c_z_payload
+    force_pan_term = c_x_payload * c_y_payload_cos_tilt_m_payload
+    follower_coupling_tilt_by_c_x_payload = c_y_payload_sin_tilt * m_payload
+    force_pan_term_2 = c_z_payload * follower_coupling_tilt_by_c_x_payload
     twice_m_payload = 2.0 * m_payload
     c_x_payload_twice_m_payload = c_x_payload * twice_m_payload
-    c_x_payload_twice_m_payload_cos_tilt_sq = c_x_payload_twice_m_payload * cos_tilt_sq
-    follower_torque_tilt_term_3 = c_x_payload_twice_m_payload_cos_tilt_sq * c_z_payload
-    follower_torque_tilt_term_4 = c_z_payload_sq_m_payload * twice_cos_tilt_sin_tilt
-    minus_omega_pan = -omega_pan
-    minus_omega_pan_plus_omega_gear_pan = minus_omega_pan + omega_gear_pan
-    half_gap_pan = 0.5 * gap_pan
-    follower_torque_tilt_term_5 = -theta_gear_pan + theta_pan
-    follower_torque_tilt_term_6 = -follower_torque_tilt_term_5 - half_gap_pan * side_pan
-    follower_torque_tilt_term_7 = active_pan * (
-        d_shaft_pan * minus_omega_pan_plus_omega_gear_pan
-        + follower_torque_tilt_term_6 * k_shaft_pan
-    )
-    follower_torque_tilt_term_8 = (
+    force_pan_term_3 = c_x_payload_twice_m_payload * follower_inertia_tilt_by_J_z_payload
+    c_z_payload_force_pan_term_3 = c_z_payload * force_pan_term_3
+    force_pan_term_4 = c_z_payload_sq_m_payload * twice_cos_tilt_sin_tilt
+    force_pan = (
         -J_x_payload_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
         - J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
         + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
         + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
         - b_pan * omega_pan
-        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
+        + 2.0
+        * c_x_payload
+        * c_z_payload
+        * follower_inertia_tilt_by_J_x_payload
+        * m_payload
+        * omega_pan
+        * omega_tilt
         + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - follower_torque_tilt_term * omega_tilt_sq
-        - follower_torque_tilt_term_2 * omega_tilt_sq
-        - follower_torque_tilt_term_3 * omega_pan_omega_tilt
-        - follower_torque_tilt_term_4 * omega_pan_omega_tilt
-        + follower_torque_tilt_term_7
+        - c_z_payload_force_pan_term_3 * omega_pan_omega_tilt
+        - force_pan_term * omega_tilt_sq
+        - force_pan_term_2 * omega_tilt_sq
+        - force_pan_term_4 * omega_pan_omega_tilt
+        + shaft_torque_pan
     )
-    follower_torque_tilt = follower_torque_tilt_term_8
     b_tilt_omega_tilt = b_tilt * omega_tilt
     load_torque_tilt_term = 9.81 * c_x_payload
     load_torque_tilt_term_2 = 9.81 * c_z_payload
@@ -2932,13 +2834,13 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
     load_torque_tilt_term_3 = J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
     J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq = J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
-    cos_tilt_sq_omega_pan_sq = cos_tilt_sq * omega_pan_sq
+    load_torque_tilt_term_4 = follower_inertia_tilt_by_J_z_payload * omega_pan_sq
     c_x_payload_c_z_payload = c_x_payload * c_z_payload
-    load_torque_tilt_term_4 = c_x_payload_c_z_payload * cos_tilt_sq_omega_pan_sq
-    omega_pan_sq_sin_tilt_sq = omega_pan_sq * sin_tilt_sq
-    load_torque_tilt_term_5 = c_x_payload_c_z_payload * omega_pan_sq_sin_tilt_sq
-    load_torque_tilt_term_5_m_payload = load_torque_tilt_term_5 * m_payload
-    load_torque_tilt_term_6 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
+    load_torque_tilt_term_5 = c_x_payload_c_z_payload * load_torque_tilt_term_4
+    load_torque_tilt_term_6 = follower_inertia_tilt_by_J_x_payload * omega_pan_sq
+    load_torque_tilt_term_7 = c_x_payload_c_z_payload * load_torque_tilt_term_6
+    load_torque_tilt_term_7_m_payload = load_torque_tilt_term_7 * m_payload
+    load_torque_tilt_term_8 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
     load_torque_tilt = (
         J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
         + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
@@ -2946,42 +2848,32 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         - b_tilt_omega_tilt
         + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
         + cos_tilt_m_payload * load_torque_tilt_term
-        - follower_torque_tilt * load_torque_tilt_by_theta_pan_term
+        - force_pan * mass_pan_inverse_mass_pan_tilt
         + load_torque_tilt_term_2 * m_payload_sin_tilt
         - load_torque_tilt_term_3
-        + load_torque_tilt_term_4 * m_payload
-        - load_torque_tilt_term_5_m_payload
-        - load_torque_tilt_term_6
+        + load_torque_tilt_term_5 * m_payload
+        - load_torque_tilt_term_7_m_payload
+        - load_torque_tilt_term_8
     )
     carried_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
     )
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    holding_tilt_by_theta_pan_term_2 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
-    holding_tilt_by_theta_pan_term_3 = (
+    holding_tilt_by_theta_pan_term_3 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
+    holding_tilt_by_theta_pan_term_4 = (
         0.5
-        * holding_tilt_by_theta_pan_term
+        * holding_tilt_by_theta_pan_term_2
         * slide_tilt
         * (0.0 if carried_tilt_slide_tilt == 0 else math.copysign(1, carried_tilt_slide_tilt))
-        + holding_tilt_by_theta_pan_term_2 * slide_tilt
+        + holding_tilt_by_theta_pan_term_3 * slide_tilt
     )
-    mass_pan = follower_inertia_tilt_term
-    mass_pan_tilt_sq = mass_pan_tilt * mass_pan_tilt
-    inverse_determinant = 1.0 / (
-        mass_pan * mass_tilt
-        - mass_pan_tilt_sq * (slide_tilt * slide_tilt * slide_tilt * slide_tilt)
-    )
+    slide_tilt_sq = slide_tilt * slide_tilt
+    inverse_determinant_term = (mass_pan_tilt * mass_pan_tilt) * slide_tilt_sq
+    inverse_determinant = 1.0 / (-inverse_determinant_term + mass_pan * mass_tilt)
     inverse_determinant_mass_pan_tilt = inverse_determinant * mass_pan_tilt
-    gx[3, 0] = (
-        (-1.0)
-        * inverse_determinant_mass_pan_tilt
-        * (
-            -active_pan_k_shaft_pan_mass_tilt
-            + carried_tilt_by_theta_pan
-            * holding_tilt_by_theta_pan_term_3
-            * mass_pan_tilt
-            * slide_tilt_cubed
-        )
+    gx[3, 0] = -inverse_determinant_mass_pan_tilt * (
+        carried_tilt_by_theta_pan * holding_tilt_by_theta_pan_term_4 * mass_pan_tilt * slide_tilt
+        - holding_tilt_by_theta_pan_term
     )
     forward_tilt_by_theta_pan_term = (
         0.0 if load_torque_tilt == 0 else math.copysign(1, load_torque_tilt)
@@ -3002,7 +2894,6 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     minus_k_shaft_pan = -k_shaft_pan
     gx[8, 0] = minus_k_shaft_pan
     gx[9, 0] = minus_k_shaft_pan
-    force_pan = follower_torque_tilt_term_8
     force_tilt_term = abs(carried_tilt_slide_tilt)
     half_force_tilt_term = 0.5 * force_tilt_term
     force_tilt = (
@@ -3010,60 +2901,64 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + J_x_tilt * cos_tilt * omega_pan_sq * sin_tilt
         - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
         - b_tilt_omega_tilt
-        + c_x_payload * c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
+        + c_x_payload
+        * c_z_payload
+        * follower_inertia_tilt_by_J_z_payload
+        * m_payload
+        * omega_pan_sq
         + 9.81 * c_x_payload * cos_tilt * m_payload
         + 9.81 * c_z_payload * m_payload * sin_tilt
         + c_z_payload_sq * cos_tilt * m_payload * omega_pan_sq * sin_tilt
-        - driving_torque_tilt_term_2
+        - driving_torque_tilt_term_3
         - load_torque_tilt_term_3
-        - load_torque_tilt_term_5_m_payload
-        - load_torque_tilt_term_6
+        - load_torque_tilt_term_7_m_payload
+        - load_torque_tilt_term_8
         - slide_tilt
         * (
-            carried_tilt_slide_tilt * holding_tilt_by_theta_pan_term_2
-            + half_force_tilt_term * holding_tilt_by_theta_pan_term
+            carried_tilt_slide_tilt * holding_tilt_by_theta_pan_term_3
+            + half_force_tilt_term * holding_tilt_by_theta_pan_term_2
         )
     )
-    slide_tilt_sq = slide_tilt * slide_tilt
     mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
     accel_pan = inverse_determinant * (
         force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
     )
-    inverse_determinant_slide_tilt_sq = inverse_determinant * slide_tilt_sq
-    accel_tilt = inverse_determinant_slide_tilt_sq * (
-        -force_pan * mass_pan_tilt_slide_tilt_sq + force_tilt * mass_pan
+    accel_tilt = (
+        inverse_determinant
+        * slide_tilt_sq
+        * (-force_pan * mass_pan_tilt_slide_tilt_sq + force_tilt * mass_pan)
     )
     length_tilt_by_theta_tilt_by_theta_tilt_term = (
         length_tilt_by_theta_tilt_term * length_tilt_term ** (-1.5)
     )
     length_tilt_by_theta_tilt_by_theta_tilt = (
         -length_tilt_by_theta_tilt_by_theta_tilt_term * length_tilt_by_theta_tilt_term
-        + length_tilt_term_2_inverse
+        + length_tilt_inverse_2
         * (0.5 * cos_tilt_linkage_cos_tilt + 0.5 * linkage_sin_tilt_sin_tilt)
     )
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term = N_tilt * length_tilt_inverse_ratio_tilt_term_2
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term_2 = (
-        N_tilt_ratio_tilt_term * ratio_tilt_by_theta_tilt_term_4
+    N_tilt_ratio_tilt_by_N_tilt_term_3 = N_tilt * ratio_tilt_by_N_tilt_term_3
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term = (
+        N_tilt_ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_4
     )
     N_tilt_ratio_tilt_by_theta_tilt_term = N_tilt * ratio_tilt_by_theta_tilt_term
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term_3 = (
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_2 = (
         N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt_term_4
     )
-    ratio_tilt_by_theta_tilt_by_theta_tilt_term_4 = (
+    ratio_tilt_by_theta_tilt_by_theta_tilt_term_3 = (
         2.0
         * math.pi
         * N_tilt
         * lead_tilt_inverse
         * length_tilt_by_theta_tilt
-        * ratio_tilt_term
+        * ratio_tilt_by_N_tilt_term
         / (length_tilt * length_tilt * length_tilt)
-        - ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
     )
     ratio_tilt_by_theta_tilt_by_theta_tilt = (
-        -length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
-        + length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
-        - length_tilt_by_theta_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
-        - ratio_tilt_by_theta_tilt_by_theta_tilt_term * ratio_tilt_term
+        -N_tilt_ratio_tilt_by_N_tilt_term_3 * ratio_tilt_by_N_tilt_term
+        - length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        + length_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
     )
     J_motor_tilt_ratio_tilt = J_motor_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_omega_tilt_sq = J_motor_tilt_ratio_tilt * omega_tilt_sq
@@ -3075,96 +2970,98 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt
     )
     driving_torque_tilt_by_theta_tilt = -driving_torque_tilt_by_theta_tilt_term_2
-    follower_coupling_tilt_by_theta_tilt_term = (
-        follower_torque_tilt_term + follower_torque_tilt_term_2
-    )
-    follower_coupling_tilt_by_theta_tilt = follower_coupling_tilt_by_theta_tilt_term
+    follower_coupling_tilt_by_theta_tilt = force_pan_term + force_pan_term_2
     J_z_payload_twice_cos_tilt_sin_tilt = J_z_payload * twice_cos_tilt_sin_tilt
     J_z_tilt_twice_cos_tilt_sin_tilt = J_z_tilt * twice_cos_tilt_sin_tilt
     follower_inertia_tilt_by_theta_tilt_term = (
-        c_x_payload_twice_m_payload * c_z_payload * sin_tilt_sq
+        c_x_payload_twice_m_payload * c_z_payload * follower_inertia_tilt_by_J_x_payload
     )
     follower_inertia_tilt_by_theta_tilt_term_2 = c_x_payload_sq_m_payload * twice_cos_tilt_sin_tilt
-    follower_inertia_tilt_by_theta_tilt_term_3 = (
+    follower_inertia_tilt_by_theta_tilt = (
         J_x_payload_twice_cos_tilt_sin_tilt
         + J_x_tilt_twice_cos_tilt_sin_tilt
         - J_z_payload_twice_cos_tilt_sin_tilt
         - J_z_tilt_twice_cos_tilt_sin_tilt
+        + c_z_payload_force_pan_term_3
         - follower_inertia_tilt_by_theta_tilt_term
         - follower_inertia_tilt_by_theta_tilt_term_2
-        + follower_torque_tilt_term_3
-        + follower_torque_tilt_term_4
+        + force_pan_term_4
     )
-    follower_inertia_tilt_by_theta_tilt = follower_inertia_tilt_by_theta_tilt_term_3
-    twice_load_torque_tilt_by_theta_pan_term = 2.0 * load_torque_tilt_by_theta_pan_term
-    load_inertia_tilt_by_theta_tilt_term = 1.0 / (follower_inertia_tilt * follower_inertia_tilt)
-    load_inertia_tilt_by_theta_tilt_term_2 = (
-        follower_coupling_tilt_sq * load_inertia_tilt_by_theta_tilt_term
-    )
+    twice_mass_pan_inverse_mass_pan_tilt = 2.0 * mass_pan_inverse_mass_pan_tilt
+    load_inertia_tilt_by_theta_tilt_term = 1.0 / (mass_pan * mass_pan)
+    load_inertia_tilt_by_theta_tilt_term_2 = load_inertia_tilt_by_theta_tilt_term * mass_pan_tilt_sq
     load_inertia_tilt_by_theta_tilt = (
-        -follower_coupling_tilt_by_theta_tilt * twice_load_torque_tilt_by_theta_pan_term
+        -follower_coupling_tilt_by_theta_tilt * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_theta_tilt * load_inertia_tilt_by_theta_tilt_term_2
     )
     twice_omega_pan_omega_tilt = 2.0 * omega_pan_omega_tilt
-    cos_tilt_sq_twice_omega_pan_omega_tilt = cos_tilt_sq * twice_omega_pan_omega_tilt
-    follower_torque_tilt_by_theta_tilt_term = J_x_payload * cos_tilt_sq_twice_omega_pan_omega_tilt
-    follower_torque_tilt_by_theta_tilt_term_2 = J_x_tilt * cos_tilt_sq_twice_omega_pan_omega_tilt
-    sin_tilt_sq_twice_omega_pan_omega_tilt = sin_tilt_sq * twice_omega_pan_omega_tilt
-    follower_torque_tilt_by_theta_tilt_term_3 = J_z_payload * sin_tilt_sq_twice_omega_pan_omega_tilt
-    follower_torque_tilt_by_theta_tilt_term_4 = J_z_tilt * sin_tilt_sq_twice_omega_pan_omega_tilt
-    follower_torque_tilt_by_theta_tilt_term_5 = follower_coupling_tilt_term_2 * omega_tilt_sq
-    follower_torque_tilt_by_theta_tilt_term_6 = (
+    follower_torque_tilt_by_theta_tilt_term = (
+        follower_inertia_tilt_by_J_z_payload * twice_omega_pan_omega_tilt
+    )
+    follower_torque_tilt_by_theta_tilt_term_2 = (
+        J_x_payload * follower_torque_tilt_by_theta_tilt_term
+    )
+    follower_torque_tilt_by_theta_tilt_term_3 = J_x_tilt * follower_torque_tilt_by_theta_tilt_term
+    follower_torque_tilt_by_theta_tilt_term_4 = (
+        follower_inertia_tilt_by_J_x_payload * twice_omega_pan_omega_tilt
+    )
+    follower_torque_tilt_by_theta_tilt_term_5 = (
+        J_z_payload * follower_torque_tilt_by_theta_tilt_term_4
+    )
+    follower_torque_tilt_by_theta_tilt_term_6 = J_z_tilt * follower_torque_tilt_by_theta_tilt_term_4
+    mass_pan_tilt_term_2_omega_tilt_sq = mass_pan_tilt_term_2 * omega_tilt_sq
+    follower_torque_tilt_by_theta_tilt_term_7 = (
         c_x_payload_m_payload_sin_tilt * c_z_payload_cos_tilt
     )
-    follower_torque_tilt_by_theta_tilt_term_7 = (
-        c_x_payload_sq_m_payload * sin_tilt_sq_twice_omega_pan_omega_tilt
-    )
     follower_torque_tilt_by_theta_tilt_term_8 = (
-        c_z_payload_sq_m_payload * cos_tilt_sq_twice_omega_pan_omega_tilt
+        c_x_payload_sq_m_payload * follower_torque_tilt_by_theta_tilt_term_4
+    )
+    follower_torque_tilt_by_theta_tilt_term_9 = (
+        c_z_payload_sq_m_payload * follower_torque_tilt_by_theta_tilt_term
     )
     follower_torque_tilt_by_theta_tilt = (
-        J_x_payload_sin_tilt_sq * twice_omega_pan_omega_tilt
-        + J_x_tilt_sin_tilt_sq * twice_omega_pan_omega_tilt
-        + J_z_payload_cos_tilt_sq * twice_omega_pan_omega_tilt
-        + J_z_tilt_cos_tilt_sq * twice_omega_pan_omega_tilt
-        + c_x_payload_sq_m_payload_cos_tilt_sq * twice_omega_pan_omega_tilt
-        + c_z_payload_sq_m_payload_sin_tilt_sq * twice_omega_pan_omega_tilt
-        + follower_coupling_tilt_term * omega_tilt_sq
-        - follower_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_theta_tilt_term_2
+        -follower_torque_tilt_by_theta_tilt_term_2
         - follower_torque_tilt_by_theta_tilt_term_3
-        - follower_torque_tilt_by_theta_tilt_term_4
         - follower_torque_tilt_by_theta_tilt_term_5
-        + 8.0 * follower_torque_tilt_by_theta_tilt_term_6 * omega_pan_omega_tilt
-        - follower_torque_tilt_by_theta_tilt_term_7
+        - follower_torque_tilt_by_theta_tilt_term_6
+        + 8.0 * follower_torque_tilt_by_theta_tilt_term_7 * omega_pan_omega_tilt
         - follower_torque_tilt_by_theta_tilt_term_8
+        - follower_torque_tilt_by_theta_tilt_term_9
+        + mass_pan_term * twice_omega_pan_omega_tilt
+        + mass_pan_term_2 * twice_omega_pan_omega_tilt
+        + mass_pan_term_3 * twice_omega_pan_omega_tilt
+        + mass_pan_term_4 * twice_omega_pan_omega_tilt
+        + mass_pan_term_5 * twice_omega_pan_omega_tilt
+        + mass_pan_term_8 * twice_omega_pan_omega_tilt
+        + mass_pan_tilt_term * omega_tilt_sq
+        - mass_pan_tilt_term_2_omega_tilt_sq
     )
-    load_torque_tilt_by_theta_tilt_term = follower_inertia_tilt_inverse * follower_torque_tilt
-    load_torque_tilt_by_theta_tilt_term_2 = (
-        -J_x_payload * cos_tilt_sq * omega_pan_sq
-        + J_x_payload_sin_tilt_sq * omega_pan_sq
-        - J_x_tilt * cos_tilt_sq * omega_pan_sq
-        + J_x_tilt_sin_tilt_sq * omega_pan_sq
-        - J_z_payload * omega_pan_sq * sin_tilt_sq
-        + J_z_payload_cos_tilt_sq * omega_pan_sq
-        - J_z_tilt * omega_pan_sq * sin_tilt_sq
-        + J_z_tilt_cos_tilt_sq * omega_pan_sq
+    force_pan_mass_pan_inverse = force_pan * mass_pan_inverse
+    load_torque_tilt_by_theta_tilt_term = (
+        -J_x_payload * follower_inertia_tilt_by_J_z_payload * omega_pan_sq
+        - J_x_tilt * follower_inertia_tilt_by_J_z_payload * omega_pan_sq
+        - J_z_payload * follower_inertia_tilt_by_J_x_payload * omega_pan_sq
+        - J_z_tilt * follower_inertia_tilt_by_J_x_payload * omega_pan_sq
         + 9.81 * c_x_payload_m_payload_sin_tilt
-        - c_x_payload_sq * m_payload * omega_pan_sq * sin_tilt_sq
-        + c_x_payload_sq_m_payload_cos_tilt_sq * omega_pan_sq
+        - c_x_payload_sq * follower_inertia_tilt_by_J_x_payload * m_payload * omega_pan_sq
         - 9.81 * c_z_payload * cos_tilt * m_payload
-        - c_z_payload_sq * cos_tilt_sq * m_payload * omega_pan_sq
-        + c_z_payload_sq_m_payload_sin_tilt_sq * omega_pan_sq
-        + 4.0 * follower_torque_tilt_by_theta_tilt_term_6 * omega_pan_sq
+        - c_z_payload_sq * follower_inertia_tilt_by_J_z_payload * m_payload * omega_pan_sq
+        + 4.0 * follower_torque_tilt_by_theta_tilt_term_7 * omega_pan_sq
+        + mass_pan_term * omega_pan_sq
+        + mass_pan_term_2 * omega_pan_sq
+        + mass_pan_term_3 * omega_pan_sq
+        + mass_pan_term_4 * omega_pan_sq
+        + mass_pan_term_5 * omega_pan_sq
+        + mass_pan_term_8 * omega_pan_sq
     )
     load_torque_tilt_by_theta_tilt = (
-        follower_coupling_tilt
-        * follower_inertia_tilt_by_theta_tilt
-        * follower_torque_tilt
+        -follower_coupling_tilt_by_theta_tilt * force_pan_mass_pan_inverse
+        + follower_inertia_tilt_by_theta_tilt
+        * force_pan
         * load_inertia_tilt_by_theta_tilt_term
-        - follower_coupling_tilt_by_theta_tilt * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_theta_tilt * load_torque_tilt_by_theta_pan_term
-        - load_torque_tilt_by_theta_tilt_term_2
+        * mass_pan_tilt
+        - follower_torque_tilt_by_theta_tilt * mass_pan_inverse_mass_pan_tilt
+        - load_torque_tilt_by_theta_tilt_term
     )
     twice_ratio_tilt_by_theta_tilt = 2.0 * ratio_tilt_by_theta_tilt
     J_motor_tilt_ratio_tilt_load_torque_tilt = J_motor_tilt_ratio_tilt * load_torque_tilt
@@ -3176,9 +3073,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     lost_lowering_tilt_by_theta_tilt_term = (
         lost_lowering_tilt_term
-        * 1.0
-        / (lost_lowering_tilt_term_2 * lost_lowering_tilt_term_2)
         * (0.0 if lost_lowering_tilt_term_2 == 0 else math.copysign(1, lost_lowering_tilt_term_2))
+        / (lost_lowering_tilt_term_2 * lost_lowering_tilt_term_2)
     )
     lost_lowering_tilt_by_theta_tilt_term_2 = lost_lowering_tilt_by_theta_tilt_term * lowered_tilt
     lost_lowering_tilt_by_theta_tilt_term_3 = (
@@ -3188,8 +3084,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         -load_inertia_tilt_by_theta_tilt * lost_lowering_tilt_by_theta_tilt_term_2
         - lost_lowering_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
     )
-    lost_raising_tilt_by_theta_tilt_term = (
-        lost_raising_tilt_term * 1.0 / (lost_raising_tilt_term_2 * lost_raising_tilt_term_2)
+    lost_raising_tilt_by_theta_tilt_term = lost_raising_tilt_term / (
+        lost_raising_tilt_term_2 * lost_raising_tilt_term_2
     )
     lost_raising_tilt_by_theta_tilt_term_2 = lost_raising_tilt_by_theta_tilt_term * raised_tilt
     lost_raising_tilt_by_theta_tilt_term_3 = (
@@ -3199,7 +3095,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         -load_inertia_tilt_by_theta_tilt * lost_raising_tilt_by_theta_tilt_term_2
         - lost_raising_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
     )
-    holding_tilt_by_theta_tilt_term = holding_tilt_by_theta_pan_term_3 * slide_tilt
+    holding_tilt_by_theta_tilt_term = holding_tilt_by_theta_pan_term_4 * slide_tilt
     half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
     holding_tilt_by_theta_tilt_term_2 = slide_tilt * (
         0.5 * force_tilt_term - half_carried_tilt_slide_tilt
@@ -3209,9 +3105,9 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     J_motor_tilt_ratio_tilt_accel_tilt = J_motor_tilt_ratio_tilt * accel_tilt
     holding_tilt_by_theta_tilt_term_4 = (
-        accel_pan * follower_coupling_tilt_by_theta_tilt_term
+        accel_pan * follower_coupling_tilt_by_theta_tilt
         + driving_torque_tilt_by_theta_tilt_term_2
-        + load_torque_tilt_by_theta_tilt_term_2
+        + load_torque_tilt_by_theta_tilt_term
     )
     gx[3, 1] = -holding_tilt_by_theta_tilt_term_4 - inverse_determinant_mass_pan_tilt * (
         -mass_pan_tilt_slide_tilt_sq
@@ -3224,12 +3120,12 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         )
         + mass_tilt
         * (
-            2.0 * J_x_payload * omega_pan * omega_tilt * sin_tilt_sq
-            + 2.0 * J_x_tilt * omega_pan * omega_tilt * sin_tilt_sq
-            + 2.0 * J_z_payload * cos_tilt_sq * omega_pan * omega_tilt
-            + 2.0 * J_z_tilt * cos_tilt_sq * omega_pan * omega_tilt
-            - accel_pan * follower_inertia_tilt_by_theta_tilt_term_3
-            - accel_tilt * follower_coupling_tilt_by_theta_tilt_term
+            2.0 * J_x_payload * follower_inertia_tilt_by_J_x_payload * omega_pan * omega_tilt
+            + 2.0 * J_x_tilt * follower_inertia_tilt_by_J_x_payload * omega_pan * omega_tilt
+            + 2.0 * J_z_payload * follower_inertia_tilt_by_J_z_payload * omega_pan * omega_tilt
+            + 2.0 * J_z_tilt * follower_inertia_tilt_by_J_z_payload * omega_pan * omega_tilt
+            - accel_pan * follower_inertia_tilt_by_theta_tilt
+            - accel_tilt * follower_coupling_tilt_by_theta_tilt
             + c_x_payload * c_y_payload * m_payload * omega_tilt_sq * sin_tilt
             + 8.0
             * c_x_payload
@@ -3239,45 +3135,59 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
             * omega_pan
             * omega_tilt
             * sin_tilt
-            + 2.0 * c_x_payload_sq * cos_tilt_sq * m_payload * omega_pan * omega_tilt
-            + 2.0 * c_z_payload_sq * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-            - follower_torque_tilt_by_theta_tilt_term
+            + 2.0
+            * c_x_payload_sq
+            * follower_inertia_tilt_by_J_z_payload
+            * m_payload
+            * omega_pan
+            * omega_tilt
+            + 2.0
+            * c_z_payload_sq
+            * follower_inertia_tilt_by_J_x_payload
+            * m_payload
+            * omega_pan
+            * omega_tilt
             - follower_torque_tilt_by_theta_tilt_term_2
             - follower_torque_tilt_by_theta_tilt_term_3
-            - follower_torque_tilt_by_theta_tilt_term_4
             - follower_torque_tilt_by_theta_tilt_term_5
-            - follower_torque_tilt_by_theta_tilt_term_7
+            - follower_torque_tilt_by_theta_tilt_term_6
             - follower_torque_tilt_by_theta_tilt_term_8
+            - follower_torque_tilt_by_theta_tilt_term_9
+            - mass_pan_tilt_term_2_omega_tilt_sq
         )
     )
     gx[4, 1] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_theta_tilt
     gx[5, 1] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_theta_tilt
-    active_pan_d_shaft_pan = active_pan * d_shaft_pan
-    gx[0, 2] = active_pan_d_shaft_pan
-    follower_torque_tilt_by_omega_pan_term = (
+    follower_torque_tilt_by_omega_gear_pan = active_pan * d_shaft_pan
+    gx[0, 2] = follower_torque_tilt_by_omega_gear_pan
+    follower_torque_tilt_by_omega_pan = (
         -J_x_payload_twice_cos_tilt_sin_tilt * omega_tilt
         - J_x_tilt_twice_cos_tilt_sin_tilt * omega_tilt
         + 2.0 * J_z_payload * cos_tilt * omega_tilt * sin_tilt
         + 2.0 * J_z_tilt * cos_tilt * omega_tilt * sin_tilt
-        - active_pan_d_shaft_pan
         - b_pan
-        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_tilt * sin_tilt_sq
+        + 2.0
+        * c_x_payload
+        * c_z_payload
+        * follower_inertia_tilt_by_J_x_payload
+        * m_payload
+        * omega_tilt
         + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_tilt * sin_tilt
-        - follower_torque_tilt_term_3 * omega_tilt
-        - follower_torque_tilt_term_4 * omega_tilt
+        - c_z_payload_force_pan_term_3 * omega_tilt
+        - follower_torque_tilt_by_omega_gear_pan
+        - force_pan_term_4 * omega_tilt
     )
-    follower_torque_tilt_by_omega_pan = follower_torque_tilt_by_omega_pan_term
     load_torque_tilt_by_omega_pan_term = J_x_payload_twice_cos_tilt_sin_tilt * omega_pan
     load_torque_tilt_by_omega_pan_term_2 = J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan
     load_torque_tilt_by_omega_pan_term_3 = J_z_payload_twice_cos_tilt_sin_tilt * omega_pan
     load_torque_tilt_by_omega_pan_term_4 = J_z_tilt_twice_cos_tilt_sin_tilt * omega_pan
     load_torque_tilt_by_omega_pan_term_5 = follower_inertia_tilt_by_theta_tilt_term * omega_pan
-    follower_torque_tilt_term_3_omega_pan = follower_torque_tilt_term_3 * omega_pan
+    c_z_payload_force_pan_term_3_omega_pan = c_z_payload_force_pan_term_3 * omega_pan
     load_torque_tilt_by_omega_pan_term_6 = follower_inertia_tilt_by_theta_tilt_term_2 * omega_pan
-    follower_torque_tilt_term_4_omega_pan = follower_torque_tilt_term_4 * omega_pan
+    force_pan_term_4_omega_pan = force_pan_term_4 * omega_pan
     load_torque_tilt_by_omega_pan_term_7 = (
-        -follower_torque_tilt_term_3_omega_pan
-        - follower_torque_tilt_term_4_omega_pan
+        -c_z_payload_force_pan_term_3_omega_pan
+        - force_pan_term_4_omega_pan
         - load_torque_tilt_by_omega_pan_term
         - load_torque_tilt_by_omega_pan_term_2
         + load_torque_tilt_by_omega_pan_term_3
@@ -3286,14 +3196,14 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + load_torque_tilt_by_omega_pan_term_6
     )
     load_torque_tilt_by_omega_pan = (
-        -follower_torque_tilt_by_omega_pan * load_torque_tilt_by_theta_pan_term
+        -follower_torque_tilt_by_omega_pan * mass_pan_inverse_mass_pan_tilt
         - load_torque_tilt_by_omega_pan_term_7
     )
     carried_tilt_by_omega_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_pan
     gx[3, 2] = (
         -inverse_determinant_mass_pan_tilt
         * (
-            follower_torque_tilt_by_omega_pan_term * mass_tilt
+            follower_torque_tilt_by_omega_pan * mass_tilt
             - mass_pan_tilt_slide_tilt_sq
             * (
                 -carried_tilt_by_omega_pan * holding_tilt_by_theta_tilt_term
@@ -3313,11 +3223,11 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     driving_torque_tilt_by_omega_tilt = -driving_torque_tilt_by_omega_tilt_term
     twice_omega_tilt = 2.0 * omega_tilt
-    follower_torque_tilt_by_omega_tilt_term = (
-        -follower_torque_tilt_term * twice_omega_tilt
-        - follower_torque_tilt_term_2 * twice_omega_tilt
-        - follower_torque_tilt_term_3_omega_pan
-        - follower_torque_tilt_term_4_omega_pan
+    follower_torque_tilt_by_omega_tilt = (
+        -c_z_payload_force_pan_term_3_omega_pan
+        - force_pan_term * twice_omega_tilt
+        - force_pan_term_2 * twice_omega_tilt
+        - force_pan_term_4_omega_pan
         - load_torque_tilt_by_omega_pan_term
         - load_torque_tilt_by_omega_pan_term_2
         + load_torque_tilt_by_omega_pan_term_3
@@ -3325,9 +3235,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + load_torque_tilt_by_omega_pan_term_5
         + load_torque_tilt_by_omega_pan_term_6
     )
-    follower_torque_tilt_by_omega_tilt = follower_torque_tilt_by_omega_tilt_term
     load_torque_tilt_by_omega_tilt = (
-        -b_tilt - follower_torque_tilt_by_omega_tilt * load_torque_tilt_by_theta_pan_term
+        -b_tilt - follower_torque_tilt_by_omega_tilt * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_omega_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_tilt
@@ -3335,7 +3244,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     holding_tilt_by_omega_tilt_term = b_tilt + driving_torque_tilt_by_omega_tilt_term
     gx[3, 3] = -holding_tilt_by_omega_tilt_term - inverse_determinant_mass_pan_tilt * (
-        follower_torque_tilt_by_omega_tilt_term * mass_tilt
+        follower_torque_tilt_by_omega_tilt * mass_tilt
         - mass_pan_tilt_slide_tilt_sq
         * (
             -carried_tilt_by_omega_tilt * holding_tilt_by_theta_tilt_term
@@ -3344,64 +3253,51 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     gx[4, 3] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_omega_tilt
     gx[5, 3] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_tilt
-    gx[0, 4] = minus_active_pan_k_shaft_pan
-    follower_torque_tilt_by_theta_gear_pan = active_pan_k_shaft_pan
+    gx[0, 4] = follower_torque_tilt_by_theta_pan
     load_torque_tilt_by_theta_gear_pan = (
-        (-1.0) * follower_torque_tilt_by_theta_gear_pan * load_torque_tilt_by_theta_pan_term
+        -follower_torque_tilt_by_theta_gear_pan * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_theta_gear_pan = (
-        (-1.0) * J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_gear_pan
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_gear_pan
     )
-    holding_tilt_by_theta_gear_pan_term = (
-        holding_tilt_by_theta_pan_term_3 * mass_pan_tilt * slide_tilt_cubed
-    )
-    gx[3, 4] = (
-        (-1.0)
-        * inverse_determinant_mass_pan_tilt
-        * (
-            active_pan_k_shaft_pan_mass_tilt
-            + carried_tilt_by_theta_gear_pan * holding_tilt_by_theta_gear_pan_term
-        )
+    holding_tilt_by_theta_gear_pan_term = holding_tilt_by_theta_tilt_term * mass_pan_tilt
+    gx[3, 4] = -inverse_determinant_mass_pan_tilt * (
+        carried_tilt_by_theta_gear_pan * holding_tilt_by_theta_gear_pan_term
+        + holding_tilt_by_theta_pan_term
     )
     gx[4, 4] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_theta_gear_pan
     gx[5, 4] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_theta_gear_pan
     gx[6, 4] = 1.0
     gx[8, 4] = k_shaft_pan
     gx[9, 4] = k_shaft_pan
-    gx[0, 5] = -active_pan_d_shaft_pan
-    follower_torque_tilt_by_omega_gear_pan = active_pan_d_shaft_pan
+    gx[0, 5] = -follower_torque_tilt_by_omega_gear_pan
     load_torque_tilt_by_omega_gear_pan = (
-        (-1.0) * follower_torque_tilt_by_omega_gear_pan * load_torque_tilt_by_theta_pan_term
+        -follower_torque_tilt_by_omega_gear_pan * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_omega_gear_pan = (
-        (-1.0) * J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_gear_pan
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_gear_pan
     )
-    gx[3, 5] = (
-        (-1.0)
-        * inverse_determinant_mass_pan_tilt
-        * (
-            active_pan_d_shaft_pan * mass_tilt
-            + carried_tilt_by_omega_gear_pan * holding_tilt_by_theta_gear_pan_term
-        )
+    gx[3, 5] = -inverse_determinant_mass_pan_tilt * (
+        carried_tilt_by_omega_gear_pan * holding_tilt_by_theta_gear_pan_term
+        + follower_torque_tilt_by_omega_gear_pan * mass_tilt
     )
     gx[4, 5] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_omega_gear_pan
     gx[5, 5] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_gear_pan
     gx[8, 5] = d_shaft_pan
     gx[9, 5] = d_shaft_pan
     gx[0, 6] = K_t_pan * N_pan
-    K_t_tilt_ratio_tilt = K_t_tilt * ratio_tilt
-    driving_torque_tilt_by_i_tilt = K_t_tilt_ratio_tilt
+    driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
     carried_tilt_by_i_tilt = driving_torque_tilt_by_i_tilt * load_inertia_tilt
-    holding_tilt_by_i_tilt_term = inverse_determinant_slide_tilt_sq * mass_pan_tilt_sq
-    gx[3, 7] = K_t_tilt_ratio_tilt + holding_tilt_by_i_tilt_term * (
-        K_t_tilt_ratio_tilt - carried_tilt_by_i_tilt * holding_tilt_by_theta_tilt_term
+    holding_tilt_by_i_tilt_term = inverse_determinant * inverse_determinant_term
+    gx[3, 7] = driving_torque_tilt_by_i_tilt + holding_tilt_by_i_tilt_term * (
+        -carried_tilt_by_i_tilt * holding_tilt_by_theta_tilt_term + driving_torque_tilt_by_i_tilt
     )
     follower_inertia_tilt_by_J_pan = 1.0
     load_inertia_tilt_by_J_pan = (
         follower_inertia_tilt_by_J_pan * load_inertia_tilt_by_theta_tilt_term_2
     )
     load_torque_tilt_by_J_pan_term = (
-        follower_coupling_tilt * follower_torque_tilt * load_inertia_tilt_by_theta_tilt_term
+        force_pan * load_inertia_tilt_by_theta_tilt_term * mass_pan_tilt
     )
     load_torque_tilt_by_J_pan = follower_inertia_tilt_by_J_pan * load_torque_tilt_by_J_pan_term
     carried_tilt_by_J_pan = (
@@ -3409,51 +3305,45 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + driving_torque_tilt * load_inertia_tilt_by_J_pan
     )
     lost_lowering_tilt_by_J_pan = (
-        (-1.0) * load_inertia_tilt_by_J_pan * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_pan * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_pan = (
-        (-1.0) * load_inertia_tilt_by_J_pan * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_pan * lost_raising_tilt_by_theta_tilt_term_2
     )
-    gp[3, 0] = (
-        (-1.0)
-        * inverse_determinant_mass_pan_tilt
+    gp[3, 0] = -inverse_determinant_mass_pan_tilt * (
+        -accel_pan * mass_tilt
+        - mass_pan_tilt_slide_tilt_sq
         * (
-            -accel_pan * mass_tilt
-            - mass_pan_tilt_slide_tilt_sq
-            * (
-                -carried_tilt_by_J_pan * holding_tilt_by_theta_tilt_term
-                - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_pan
-                - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_pan
-            )
+            -carried_tilt_by_J_pan * holding_tilt_by_theta_tilt_term
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_pan
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_pan
         )
     )
     gp[4, 0] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_pan
     gp[5, 0] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_pan
-    follower_inertia_tilt_by_J_x_tilt = sin_tilt_sq
     load_inertia_tilt_by_J_x_tilt = (
-        follower_inertia_tilt_by_J_x_tilt * load_inertia_tilt_by_theta_tilt_term_2
+        follower_inertia_tilt_by_J_x_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
-    follower_torque_tilt_by_J_x_tilt_term = omega_pan_omega_tilt * twice_cos_tilt_sin_tilt
-    follower_torque_tilt_by_J_x_tilt_term_2 = -follower_torque_tilt_by_J_x_tilt_term
-    follower_torque_tilt_by_J_x_tilt = follower_torque_tilt_by_J_x_tilt_term_2
+    follower_torque_tilt_by_J_z_payload = omega_pan_omega_tilt * twice_cos_tilt_sin_tilt
+    follower_torque_tilt_by_J_x_payload = -follower_torque_tilt_by_J_z_payload
     load_torque_tilt_by_J_x_tilt = (
         cos_tilt_sin_tilt_omega_pan_sq
-        + follower_inertia_tilt_by_J_x_tilt * load_torque_tilt_by_J_pan_term
-        - follower_torque_tilt_by_J_x_tilt * load_torque_tilt_by_theta_pan_term
+        + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_J_pan_term
+        - follower_torque_tilt_by_J_x_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_x_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_tilt
         + driving_torque_tilt * load_inertia_tilt_by_J_x_tilt
     )
     lost_lowering_tilt_by_J_x_tilt = (
-        (-1.0) * load_inertia_tilt_by_J_x_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_x_tilt * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_x_tilt = (
-        (-1.0) * load_inertia_tilt_by_J_x_tilt * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_x_tilt * lost_raising_tilt_by_theta_tilt_term_2
     )
     minus_cos_tilt_sin_tilt_omega_pan_sq = -cos_tilt_sin_tilt_omega_pan_sq
-    holding_tilt_by_J_x_tilt_term = (
-        (-1.0) * mass_tilt * (-accel_pan * sin_tilt_sq - follower_torque_tilt_by_J_x_tilt_term)
+    holding_tilt_by_J_x_tilt_term = -mass_tilt * (
+        -accel_pan * follower_inertia_tilt_by_J_x_payload - follower_torque_tilt_by_J_z_payload
     )
     gp[3, 1] = (
         -inverse_determinant_mass_pan_tilt
@@ -3474,10 +3364,10 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     load_inertia_tilt_by_J_y_tilt = 1.0
     carried_tilt_by_J_y_tilt = driving_torque_tilt * load_inertia_tilt_by_J_y_tilt
     lost_lowering_tilt_by_J_y_tilt = (
-        (-1.0) * load_inertia_tilt_by_J_y_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_y_tilt * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_y_tilt = (
-        (-1.0) * load_inertia_tilt_by_J_y_tilt * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_y_tilt * lost_raising_tilt_by_theta_tilt_term_2
     )
     gp[3, 2] = holding_tilt_by_i_tilt_term * (
         -accel_tilt
@@ -3485,31 +3375,29 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_y_tilt
         - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_y_tilt
     )
-    follower_inertia_tilt_by_J_z_tilt = cos_tilt_sq
     load_inertia_tilt_by_J_z_tilt = (
-        follower_inertia_tilt_by_J_z_tilt * load_inertia_tilt_by_theta_tilt_term_2
+        follower_inertia_tilt_by_J_z_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
-    follower_torque_tilt_by_J_z_tilt = follower_torque_tilt_by_J_x_tilt_term
     load_torque_tilt_by_J_z_tilt = (
         -cos_tilt_sin_tilt_omega_pan_sq
-        + follower_coupling_tilt
-        * follower_inertia_tilt_by_J_z_tilt
-        * follower_torque_tilt
+        + follower_inertia_tilt_by_J_z_payload
+        * force_pan
         * load_inertia_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_J_z_tilt * load_torque_tilt_by_theta_pan_term
+        * mass_pan_tilt
+        - follower_torque_tilt_by_J_z_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_z_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_tilt
         + driving_torque_tilt * load_inertia_tilt_by_J_z_tilt
     )
     lost_lowering_tilt_by_J_z_tilt = (
-        (-1.0) * load_inertia_tilt_by_J_z_tilt * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_z_tilt * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_z_tilt = (
-        (-1.0) * load_inertia_tilt_by_J_z_tilt * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_z_tilt * lost_raising_tilt_by_theta_tilt_term_2
     )
-    holding_tilt_by_J_z_tilt_term = (
-        (-1.0) * mass_tilt * (-accel_pan * cos_tilt_sq - follower_torque_tilt_by_J_x_tilt_term_2)
+    holding_tilt_by_J_z_tilt_term = -mass_tilt * (
+        -accel_pan * follower_inertia_tilt_by_J_z_payload - follower_torque_tilt_by_J_x_payload
     )
     gp[3, 3] = -cos_tilt_sin_tilt_omega_pan_sq - inverse_determinant_mass_pan_tilt * (
         -holding_tilt_by_J_z_tilt_term
@@ -3523,65 +3411,68 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     gp[4, 3] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_z_tilt
     gp[5, 3] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_z_tilt
-    follower_coupling_tilt_by_m_payload_term = (
+    follower_coupling_tilt_by_m_payload = (
         c_x_payload_c_y_payload_sin_tilt - c_y_payload_c_z_payload_cos_tilt
     )
-    follower_coupling_tilt_by_m_payload = follower_coupling_tilt_by_m_payload_term
-    follower_inertia_tilt_by_m_payload_term = (
+    follower_inertia_tilt_by_m_payload = (
         c_x_payload * sin_tilt * twice_c_z_payload_cos_tilt
-        + c_x_payload_sq * cos_tilt_sq
-        + c_y_payload_sq_cos_tilt_sq
-        + c_y_payload_sq_sin_tilt_sq
-        + c_z_payload_sq * sin_tilt_sq
+        + c_x_payload_sq * follower_inertia_tilt_by_J_z_payload
+        + c_z_payload_sq * follower_inertia_tilt_by_J_x_payload
+        + mass_pan_term_6
+        + mass_pan_term_7
     )
-    follower_inertia_tilt_by_m_payload = follower_inertia_tilt_by_m_payload_term
     c_x_payload_sq_plus_c_z_payload_sq = c_x_payload_sq + c_z_payload_sq
     load_inertia_tilt_by_m_payload = (
         c_x_payload_sq_plus_c_z_payload_sq
-        - follower_coupling_tilt_by_m_payload * twice_load_torque_tilt_by_theta_pan_term
+        - follower_coupling_tilt_by_m_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_m_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
     c_x_payload_omega_tilt_sq = c_x_payload * omega_tilt_sq
     c_z_payload_omega_tilt_sq = c_z_payload * omega_tilt_sq
     follower_torque_tilt_by_m_payload_term = (
-        -2.0 * c_x_payload * c_z_payload * omega_pan * omega_tilt * sin_tilt_sq
-        + c_x_payload_c_z_payload * cos_tilt_sq_twice_omega_pan_omega_tilt
+        -2.0
+        * c_x_payload
+        * c_z_payload
+        * follower_inertia_tilt_by_J_x_payload
+        * omega_pan
+        * omega_tilt
+        + c_x_payload_c_z_payload * follower_torque_tilt_by_theta_tilt_term
         + c_x_payload_omega_tilt_sq * c_y_payload * cos_tilt
         - 2.0 * c_x_payload_sq * cos_tilt * omega_pan * omega_tilt * sin_tilt
         + c_y_payload_sin_tilt * c_z_payload_omega_tilt_sq
-        + c_z_payload_sq * follower_torque_tilt_by_J_x_tilt_term
+        + c_z_payload_sq * follower_torque_tilt_by_J_z_payload
     )
     follower_torque_tilt_by_m_payload = -follower_torque_tilt_by_m_payload_term
     load_torque_tilt_by_m_payload_term = c_x_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
     load_torque_tilt_by_m_payload = (
         c_z_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
         + cos_tilt * load_torque_tilt_term
-        - follower_coupling_tilt_by_m_payload * load_torque_tilt_by_theta_tilt_term
+        - follower_coupling_tilt_by_m_payload * force_pan_mass_pan_inverse
         + follower_inertia_tilt_by_m_payload * load_torque_tilt_by_J_pan_term
-        - follower_torque_tilt_by_m_payload * load_torque_tilt_by_theta_pan_term
+        - follower_torque_tilt_by_m_payload * mass_pan_inverse_mass_pan_tilt
         - load_torque_tilt_by_m_payload_term
         + load_torque_tilt_term_2 * sin_tilt
-        + load_torque_tilt_term_4
-        - load_torque_tilt_term_5
+        + load_torque_tilt_term_5
+        - load_torque_tilt_term_7
     )
     carried_tilt_by_m_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_m_payload
         + driving_torque_tilt * load_inertia_tilt_by_m_payload
     )
     lost_lowering_tilt_by_m_payload = (
-        (-1.0) * load_inertia_tilt_by_m_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_m_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_m_payload = (
-        (-1.0) * load_inertia_tilt_by_m_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_m_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
     holding_tilt_by_m_payload_term = (
-        accel_pan * follower_coupling_tilt_by_m_payload_term
-        - c_x_payload * c_z_payload * cos_tilt_sq * omega_pan_sq
+        accel_pan * follower_coupling_tilt_by_m_payload
+        - c_x_payload * c_z_payload * follower_inertia_tilt_by_J_z_payload * omega_pan_sq
         - 9.81 * c_x_payload * cos_tilt
         - 9.81 * c_z_payload * sin_tilt
         - c_z_payload_sq * cos_tilt * omega_pan_sq * sin_tilt
         + load_torque_tilt_by_m_payload_term
-        + load_torque_tilt_term_5
+        + load_torque_tilt_term_7
     )
     gp[3, 4] = -holding_tilt_by_m_payload_term - inverse_determinant_mass_pan_tilt * (
         -mass_pan_tilt_slide_tilt_sq
@@ -3594,32 +3485,30 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         )
         + mass_tilt
         * (
-            -accel_pan * follower_inertia_tilt_by_m_payload_term
-            - accel_tilt * follower_coupling_tilt_by_m_payload_term
+            -accel_pan * follower_inertia_tilt_by_m_payload
+            - accel_tilt * follower_coupling_tilt_by_m_payload
             - follower_torque_tilt_by_m_payload_term
         )
     )
     gp[4, 4] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_m_payload
     gp[5, 4] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_m_payload
-    follower_inertia_tilt_by_J_x_payload = sin_tilt_sq
     load_inertia_tilt_by_J_x_payload = (
         follower_inertia_tilt_by_J_x_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
-    follower_torque_tilt_by_J_x_payload = follower_torque_tilt_by_J_x_tilt_term_2
     load_torque_tilt_by_J_x_payload = (
         cos_tilt_sin_tilt_omega_pan_sq
         + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_J_pan_term
-        - follower_torque_tilt_by_J_x_payload * load_torque_tilt_by_theta_pan_term
+        - follower_torque_tilt_by_J_x_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_x_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_payload
         + driving_torque_tilt * load_inertia_tilt_by_J_x_payload
     )
     lost_lowering_tilt_by_J_x_payload = (
-        (-1.0) * load_inertia_tilt_by_J_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_x_payload = (
-        (-1.0) * load_inertia_tilt_by_J_x_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_x_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
     gp[3, 5] = (
         -inverse_determinant_mass_pan_tilt
@@ -3640,10 +3529,10 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     load_inertia_tilt_by_J_y_payload = 1.0
     carried_tilt_by_J_y_payload = driving_torque_tilt * load_inertia_tilt_by_J_y_payload
     lost_lowering_tilt_by_J_y_payload = (
-        (-1.0) * load_inertia_tilt_by_J_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_y_payload = (
-        (-1.0) * load_inertia_tilt_by_J_y_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_y_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
     gp[3, 6] = holding_tilt_by_i_tilt_term * (
         -accel_tilt
@@ -3651,28 +3540,26 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_y_payload
         - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_y_payload
     )
-    follower_inertia_tilt_by_J_z_payload = cos_tilt_sq
     load_inertia_tilt_by_J_z_payload = (
         follower_inertia_tilt_by_J_z_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
-    follower_torque_tilt_by_J_z_payload = follower_torque_tilt_by_J_x_tilt_term
     load_torque_tilt_by_J_z_payload = (
         -cos_tilt_sin_tilt_omega_pan_sq
-        + follower_coupling_tilt
-        * follower_inertia_tilt_by_J_z_payload
-        * follower_torque_tilt
+        + follower_inertia_tilt_by_J_z_payload
+        * force_pan
         * load_inertia_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_J_z_payload * load_torque_tilt_by_theta_pan_term
+        * mass_pan_tilt
+        - follower_torque_tilt_by_J_z_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_z_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_payload
         + driving_torque_tilt * load_inertia_tilt_by_J_z_payload
     )
     lost_lowering_tilt_by_J_z_payload = (
-        (-1.0) * load_inertia_tilt_by_J_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_J_z_payload = (
-        (-1.0) * load_inertia_tilt_by_J_z_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_J_z_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
     gp[3, 7] = -cos_tilt_sin_tilt_omega_pan_sq - inverse_determinant_mass_pan_tilt * (
         -holding_tilt_by_J_z_tilt_term
@@ -3686,45 +3573,45 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     gp[4, 7] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_z_payload
     gp[5, 7] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_z_payload
-    follower_coupling_tilt_by_c_x_payload = c_y_payload_sin_tilt_m_payload
     follower_inertia_tilt_by_c_x_payload_term = m_payload_sin_tilt * twice_c_z_payload_cos_tilt
-    follower_inertia_tilt_by_c_x_payload_term_2 = (
-        c_x_payload_twice_m_payload_cos_tilt_sq + follower_inertia_tilt_by_c_x_payload_term
+    follower_inertia_tilt_by_c_x_payload = (
+        follower_inertia_tilt_by_c_x_payload_term + force_pan_term_3
     )
-    follower_inertia_tilt_by_c_x_payload = follower_inertia_tilt_by_c_x_payload_term_2
     load_inertia_tilt_by_c_x_payload = (
         c_x_payload_twice_m_payload
-        - follower_coupling_tilt_by_c_x_payload * twice_load_torque_tilt_by_theta_pan_term
+        - follower_coupling_tilt_by_c_x_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_c_x_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
     c_z_payload_twice_m_payload = c_z_payload * twice_m_payload
-    c_z_payload_twice_m_payload_sin_tilt_sq = c_z_payload_twice_m_payload * sin_tilt_sq
-    c_x_payload_m_payload_sin_tilt_cos_tilt = c_x_payload_m_payload_sin_tilt * cos_tilt
-    follower_torque_tilt_by_c_x_payload_term = c_y_payload_cos_tilt_m_payload * omega_tilt_sq
-    follower_torque_tilt_by_c_x_payload_term_2 = (
-        c_z_payload_twice_m_payload * cos_tilt_sq * omega_pan_omega_tilt
+    follower_torque_tilt_by_c_x_payload_term = (
+        c_z_payload_twice_m_payload * follower_inertia_tilt_by_J_x_payload
     )
-    follower_torque_tilt_by_c_x_payload_term_3 = 4.0 * omega_pan_omega_tilt
+    c_x_payload_m_payload_sin_tilt_cos_tilt = c_x_payload_m_payload_sin_tilt * cos_tilt
+    follower_torque_tilt_by_c_x_payload_term_2 = c_y_payload_cos_tilt_m_payload * omega_tilt_sq
+    follower_torque_tilt_by_c_x_payload_term_3 = (
+        c_z_payload_twice_m_payload * follower_inertia_tilt_by_J_z_payload * omega_pan_omega_tilt
+    )
+    follower_torque_tilt_by_c_x_payload_term_4 = 4.0 * omega_pan_omega_tilt
     follower_torque_tilt_by_c_x_payload = (
-        c_x_payload_m_payload_sin_tilt_cos_tilt * follower_torque_tilt_by_c_x_payload_term_3
-        + c_z_payload_twice_m_payload_sin_tilt_sq * omega_pan_omega_tilt
-        - follower_torque_tilt_by_c_x_payload_term
+        c_x_payload_m_payload_sin_tilt_cos_tilt * follower_torque_tilt_by_c_x_payload_term_4
+        + follower_torque_tilt_by_c_x_payload_term * omega_pan_omega_tilt
         - follower_torque_tilt_by_c_x_payload_term_2
+        - follower_torque_tilt_by_c_x_payload_term_3
     )
     load_torque_tilt_by_c_x_payload_term = 2.0 * c_x_payload_m_payload_sin_tilt_cos_tilt
     load_torque_tilt_by_c_x_payload_term_2 = (
-        -c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
-        + c_z_payload * m_payload * omega_pan_sq_sin_tilt_sq
+        -c_z_payload * follower_inertia_tilt_by_J_z_payload * m_payload * omega_pan_sq
+        + c_z_payload * load_torque_tilt_term_6 * m_payload
         - 9.81 * cos_tilt * m_payload
         + load_torque_tilt_by_c_x_payload_term * omega_pan_sq
     )
     load_torque_tilt_by_c_x_payload = (
-        follower_coupling_tilt
-        * follower_inertia_tilt_by_c_x_payload
-        * follower_torque_tilt
+        -follower_coupling_tilt_by_c_x_payload * force_pan_mass_pan_inverse
+        + follower_inertia_tilt_by_c_x_payload
+        * force_pan
         * load_inertia_tilt_by_theta_tilt_term
-        - follower_coupling_tilt_by_c_x_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_c_x_payload * load_torque_tilt_by_theta_pan_term
+        * mass_pan_tilt
+        - follower_torque_tilt_by_c_x_payload * mass_pan_inverse_mass_pan_tilt
         - load_torque_tilt_by_c_x_payload_term_2
     )
     carried_tilt_by_c_x_payload = (
@@ -3732,13 +3619,13 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + driving_torque_tilt * load_inertia_tilt_by_c_x_payload
     )
     lost_lowering_tilt_by_c_x_payload = (
-        (-1.0) * load_inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_c_x_payload = (
-        (-1.0) * load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
     holding_tilt_by_c_x_payload_term = (
-        accel_pan * c_y_payload_sin_tilt_m_payload + load_torque_tilt_by_c_x_payload_term_2
+        accel_pan * follower_coupling_tilt_by_c_x_payload + load_torque_tilt_by_c_x_payload_term_2
     )
     gp[3, 8] = -holding_tilt_by_c_x_payload_term - inverse_determinant_mass_pan_tilt * (
         -mass_pan_tilt_slide_tilt_sq
@@ -3751,27 +3638,31 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         )
         + mass_tilt
         * (
-            -accel_pan * follower_inertia_tilt_by_c_x_payload_term_2
-            - accel_tilt * c_y_payload_sin_tilt_m_payload
+            -accel_pan * follower_inertia_tilt_by_c_x_payload
+            - accel_tilt * follower_coupling_tilt_by_c_x_payload
             + 4.0 * c_x_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-            + 2.0 * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-            - follower_torque_tilt_by_c_x_payload_term
+            + 2.0
+            * c_z_payload
+            * follower_inertia_tilt_by_J_x_payload
+            * m_payload
+            * omega_pan
+            * omega_tilt
             - follower_torque_tilt_by_c_x_payload_term_2
+            - follower_torque_tilt_by_c_x_payload_term_3
         )
     )
     gp[4, 8] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_x_payload
     gp[5, 8] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_x_payload
-    follower_coupling_tilt_by_c_y_payload_term = (
+    follower_coupling_tilt_by_c_y_payload = (
         c_x_payload_m_payload_sin_tilt - c_z_payload_cos_tilt * m_payload
     )
-    follower_coupling_tilt_by_c_y_payload = follower_coupling_tilt_by_c_y_payload_term
     c_y_payload_twice_m_payload = c_y_payload * twice_m_payload
-    follower_inertia_tilt_by_c_y_payload_term = (
-        c_y_payload_twice_m_payload * cos_tilt_sq + c_y_payload_twice_m_payload * sin_tilt_sq
+    follower_inertia_tilt_by_c_y_payload = (
+        c_y_payload_twice_m_payload * follower_inertia_tilt_by_J_x_payload
+        + c_y_payload_twice_m_payload * follower_inertia_tilt_by_J_z_payload
     )
-    follower_inertia_tilt_by_c_y_payload = follower_inertia_tilt_by_c_y_payload_term
     load_inertia_tilt_by_c_y_payload = (
-        -follower_coupling_tilt_by_c_y_payload * twice_load_torque_tilt_by_theta_pan_term
+        -follower_coupling_tilt_by_c_y_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_c_y_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
     follower_torque_tilt_by_c_y_payload_term = (
@@ -3780,24 +3671,24 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     follower_torque_tilt_by_c_y_payload = -follower_torque_tilt_by_c_y_payload_term
     load_torque_tilt_by_c_y_payload = (
-        follower_coupling_tilt
-        * follower_inertia_tilt_by_c_y_payload
-        * follower_torque_tilt
+        -follower_coupling_tilt_by_c_y_payload * force_pan_mass_pan_inverse
+        + follower_inertia_tilt_by_c_y_payload
+        * force_pan
         * load_inertia_tilt_by_theta_tilt_term
-        - follower_coupling_tilt_by_c_y_payload * load_torque_tilt_by_theta_tilt_term
-        - follower_torque_tilt_by_c_y_payload * load_torque_tilt_by_theta_pan_term
+        * mass_pan_tilt
+        - follower_torque_tilt_by_c_y_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_c_y_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_y_payload
         + driving_torque_tilt * load_inertia_tilt_by_c_y_payload
     )
     lost_lowering_tilt_by_c_y_payload = (
-        (-1.0) * load_inertia_tilt_by_c_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_c_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_c_y_payload = (
-        (-1.0) * load_inertia_tilt_by_c_y_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_c_y_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
-    holding_tilt_by_c_y_payload_term = accel_pan * follower_coupling_tilt_by_c_y_payload_term
+    holding_tilt_by_c_y_payload_term = accel_pan * follower_coupling_tilt_by_c_y_payload
     gp[3, 9] = -holding_tilt_by_c_y_payload_term - inverse_determinant_mass_pan_tilt * (
         -mass_pan_tilt_slide_tilt_sq
         * (
@@ -3808,42 +3699,46 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         )
         + mass_tilt
         * (
-            -accel_pan * follower_inertia_tilt_by_c_y_payload_term
-            - accel_tilt * follower_coupling_tilt_by_c_y_payload_term
+            -accel_pan * follower_inertia_tilt_by_c_y_payload
+            - accel_tilt * follower_coupling_tilt_by_c_y_payload
             - follower_torque_tilt_by_c_y_payload_term
         )
     )
     gp[4, 9] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_y_payload
     gp[5, 9] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_y_payload
     follower_coupling_tilt_by_c_z_payload = -c_y_payload_cos_tilt_m_payload
-    follower_inertia_tilt_by_c_z_payload_term = (
-        c_z_payload_twice_m_payload_sin_tilt_sq + load_torque_tilt_by_c_x_payload_term
+    follower_inertia_tilt_by_c_z_payload = (
+        follower_torque_tilt_by_c_x_payload_term + load_torque_tilt_by_c_x_payload_term
     )
-    follower_inertia_tilt_by_c_z_payload = follower_inertia_tilt_by_c_z_payload_term
     load_inertia_tilt_by_c_z_payload = (
         c_z_payload_twice_m_payload
-        - follower_coupling_tilt_by_c_z_payload * twice_load_torque_tilt_by_theta_pan_term
+        - follower_coupling_tilt_by_c_z_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_c_z_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
     follower_torque_tilt_by_c_z_payload_term = (
-        -2.0 * c_x_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        + c_x_payload_twice_m_payload_cos_tilt_sq * omega_pan_omega_tilt
-        + c_y_payload_sin_tilt_m_payload * omega_tilt_sq
-        + c_z_payload_cos_tilt * follower_torque_tilt_by_c_x_payload_term_3 * m_payload_sin_tilt
+        -2.0
+        * c_x_payload
+        * follower_inertia_tilt_by_J_x_payload
+        * m_payload
+        * omega_pan
+        * omega_tilt
+        + c_z_payload_cos_tilt * follower_torque_tilt_by_c_x_payload_term_4 * m_payload_sin_tilt
+        + follower_coupling_tilt_by_c_x_payload * omega_tilt_sq
+        + force_pan_term_3 * omega_pan_omega_tilt
     )
     follower_torque_tilt_by_c_z_payload = -follower_torque_tilt_by_c_z_payload_term
     c_x_payload_m_payload = c_x_payload * m_payload
-    load_torque_tilt_by_c_z_payload_term = c_x_payload_m_payload * omega_pan_sq_sin_tilt_sq
+    load_torque_tilt_by_c_z_payload_term = c_x_payload_m_payload * load_torque_tilt_term_6
     load_torque_tilt_by_c_z_payload_term_2 = (
-        c_x_payload_m_payload * cos_tilt_sq_omega_pan_sq
+        c_x_payload_m_payload * load_torque_tilt_term_4
         + follower_inertia_tilt_by_c_x_payload_term * omega_pan_sq
         - load_torque_tilt_by_c_z_payload_term
         + 9.81 * m_payload_sin_tilt
     )
     load_torque_tilt_by_c_z_payload = (
-        -follower_coupling_tilt_by_c_z_payload * load_torque_tilt_by_theta_tilt_term
+        -follower_coupling_tilt_by_c_z_payload * force_pan_mass_pan_inverse
         + follower_inertia_tilt_by_c_z_payload * load_torque_tilt_by_J_pan_term
-        - follower_torque_tilt_by_c_z_payload * load_torque_tilt_by_theta_pan_term
+        - follower_torque_tilt_by_c_z_payload * mass_pan_inverse_mass_pan_tilt
         + load_torque_tilt_by_c_z_payload_term_2
     )
     carried_tilt_by_c_z_payload = (
@@ -3851,10 +3746,10 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + driving_torque_tilt * load_inertia_tilt_by_c_z_payload
     )
     lost_lowering_tilt_by_c_z_payload = (
-        (-1.0) * load_inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_c_z_payload = (
-        (-1.0) * load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_theta_tilt_term_2
+        -load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
     gp[3, 10] = (
         accel_pan * c_y_payload_cos_tilt_m_payload
@@ -3864,7 +3759,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
             * (
                 accel_pan * c_y_payload * cos_tilt * m_payload
                 - accel_tilt * c_z_payload_twice_m_payload
-                + c_x_payload * cos_tilt_sq * m_payload * omega_pan_sq
+                + c_x_payload * follower_inertia_tilt_by_J_z_payload * m_payload * omega_pan_sq
                 + 2.0 * c_z_payload * cos_tilt * m_payload * omega_pan_sq * sin_tilt
                 - carried_tilt_by_c_z_payload * holding_tilt_by_theta_tilt_term
                 - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_c_z_payload
@@ -3874,7 +3769,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
             )
             + mass_tilt
             * (
-                -accel_pan * follower_inertia_tilt_by_c_z_payload_term
+                -accel_pan * follower_inertia_tilt_by_c_z_payload
                 + accel_tilt * c_y_payload * cos_tilt * m_payload
                 - follower_torque_tilt_by_c_z_payload_term
             )
@@ -3883,23 +3778,19 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     gp[4, 10] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_z_payload
     gp[5, 10] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_z_payload
-    follower_torque_tilt_by_b_pan = minus_omega_pan
-    load_torque_tilt_by_b_pan = -follower_torque_tilt_by_b_pan * load_torque_tilt_by_theta_pan_term
+    load_torque_tilt_by_b_pan = -follower_torque_tilt_by_b_pan * mass_pan_inverse_mass_pan_tilt
     carried_tilt_by_b_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_pan
-    gp[3, 11] = (
-        (-1.0)
-        * inverse_determinant_mass_pan_tilt
-        * (carried_tilt_by_b_pan * holding_tilt_by_theta_gear_pan_term - mass_tilt * omega_pan)
+    gp[3, 11] = -inverse_determinant_mass_pan_tilt * (
+        carried_tilt_by_b_pan * holding_tilt_by_theta_gear_pan_term - mass_tilt * omega_pan
     )
     gp[4, 11] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_b_pan
     gp[5, 11] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_b_pan
-    minus_omega_tilt = -omega_tilt
-    load_torque_tilt_by_b_tilt = minus_omega_tilt
+    load_torque_tilt_by_b_tilt = -omega_tilt
     carried_tilt_by_b_tilt = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_tilt
     gp[3, 12] = (
         holding_tilt_by_i_tilt_term
         * (-carried_tilt_by_b_tilt * holding_tilt_by_theta_tilt_term - omega_tilt)
-        + minus_omega_tilt
+        + load_torque_tilt_by_b_tilt
     )
     gp[4, 12] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_b_tilt
     gp[5, 12] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_b_tilt
@@ -3908,23 +3799,14 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     gp[1, 18] = F_s_pan
     gp[2, 18] = -F_s_pan
     half_side_pan = 0.5 * side_pan
-    active_pan_k_shaft_pan_half_side_pan = active_pan_k_shaft_pan * half_side_pan
-    gp[0, 21] = active_pan_k_shaft_pan_half_side_pan
-    follower_torque_tilt_by_gap_pan = -active_pan_k_shaft_pan_half_side_pan
-    load_torque_tilt_by_gap_pan = (
-        (-1.0) * follower_torque_tilt_by_gap_pan * load_torque_tilt_by_theta_pan_term
-    )
+    holding_pan_by_gap_pan_term = follower_torque_tilt_by_theta_gear_pan * half_side_pan
+    gp[0, 21] = holding_pan_by_gap_pan_term
+    follower_torque_tilt_by_gap_pan = -holding_pan_by_gap_pan_term
+    load_torque_tilt_by_gap_pan = -follower_torque_tilt_by_gap_pan * mass_pan_inverse_mass_pan_tilt
     carried_tilt_by_gap_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_gap_pan
-    gp[3, 21] = (
-        (-1.0)
-        * inverse_determinant_mass_pan_tilt
-        * (
-            -active_pan_k_shaft_pan_mass_tilt * half_side_pan
-            + carried_tilt_by_gap_pan
-            * holding_tilt_by_theta_pan_term_3
-            * mass_pan_tilt
-            * slide_tilt_cubed
-        )
+    gp[3, 21] = -inverse_determinant_mass_pan_tilt * (
+        carried_tilt_by_gap_pan * holding_tilt_by_theta_pan_term_4 * mass_pan_tilt * slide_tilt
+        - half_side_pan * holding_tilt_by_theta_pan_term
     )
     gp[4, 21] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_gap_pan
     gp[5, 21] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_gap_pan
@@ -3932,63 +3814,49 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     half_k_shaft_pan = 0.5 * k_shaft_pan
     gp[8, 21] = -half_k_shaft_pan
     gp[9, 21] = half_k_shaft_pan
-    active_pan_follower_torque_tilt_term_6 = active_pan * follower_torque_tilt_term_6
-    gp[0, 22] = -active_pan_follower_torque_tilt_term_6
-    follower_torque_tilt_by_k_shaft_pan = active_pan_follower_torque_tilt_term_6
+    follower_torque_tilt_by_k_shaft_pan = active_pan * shaft_torque_pan_term_3
+    gp[0, 22] = -follower_torque_tilt_by_k_shaft_pan
     load_torque_tilt_by_k_shaft_pan = (
-        (-1.0) * follower_torque_tilt_by_k_shaft_pan * load_torque_tilt_by_theta_pan_term
+        -follower_torque_tilt_by_k_shaft_pan * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_k_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_k_shaft_pan
-    gp[3, 22] = (
-        (-1.0)
-        * inverse_determinant_mass_pan_tilt
-        * (
-            active_pan_follower_torque_tilt_term_6 * mass_tilt
-            + carried_tilt_by_k_shaft_pan * holding_tilt_by_theta_gear_pan_term
-        )
+    gp[3, 22] = -inverse_determinant_mass_pan_tilt * (
+        carried_tilt_by_k_shaft_pan * holding_tilt_by_theta_gear_pan_term
+        + follower_torque_tilt_by_k_shaft_pan * mass_tilt
     )
     gp[4, 22] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_k_shaft_pan
     gp[5, 22] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_k_shaft_pan
-    gp[8, 22] = -follower_torque_tilt_term_5 - half_gap_pan
+    gp[8, 22] = -half_gap_pan - shaft_torque_pan_term_2
     gp[9, 22] = half_gap_pan + theta_gear_pan - theta_pan
-    holding_pan_by_d_shaft_pan_term = active_pan * minus_omega_pan_plus_omega_gear_pan
-    gp[0, 23] = -holding_pan_by_d_shaft_pan_term
-    follower_torque_tilt_by_d_shaft_pan = holding_pan_by_d_shaft_pan_term
+    follower_torque_tilt_by_d_shaft_pan = active_pan * shaft_torque_pan_term
+    gp[0, 23] = -follower_torque_tilt_by_d_shaft_pan
     load_torque_tilt_by_d_shaft_pan = (
-        (-1.0) * follower_torque_tilt_by_d_shaft_pan * load_torque_tilt_by_theta_pan_term
+        -follower_torque_tilt_by_d_shaft_pan * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_d_shaft_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_d_shaft_pan
-    gp[3, 23] = (
-        (-1.0)
-        * inverse_determinant_mass_pan_tilt
-        * (
-            carried_tilt_by_d_shaft_pan * holding_tilt_by_theta_gear_pan_term
-            + holding_pan_by_d_shaft_pan_term * mass_tilt
-        )
+    gp[3, 23] = -inverse_determinant_mass_pan_tilt * (
+        carried_tilt_by_d_shaft_pan * holding_tilt_by_theta_gear_pan_term
+        + follower_torque_tilt_by_d_shaft_pan * mass_tilt
     )
     gp[4, 23] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_d_shaft_pan
     gp[5, 23] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_d_shaft_pan
-    gp[8, 23] = minus_omega_pan_plus_omega_gear_pan
-    gp[9, 23] = minus_omega_pan_plus_omega_gear_pan
+    gp[8, 23] = shaft_torque_pan_term
+    gp[9, 23] = shaft_torque_pan_term
     gp[0, 26] = N_pan * i_pan
     gp[0, 28] = K_t_pan * i_pan
-    i_tilt_ratio_tilt = i_tilt * ratio_tilt
-    driving_torque_tilt_by_K_t_tilt = i_tilt_ratio_tilt
+    driving_torque_tilt_by_K_t_tilt = i_tilt * ratio_tilt
     carried_tilt_by_K_t_tilt = driving_torque_tilt_by_K_t_tilt * load_inertia_tilt
-    gp[3, 31] = (
-        holding_tilt_by_i_tilt_term
-        * (-carried_tilt_by_K_t_tilt * holding_tilt_by_theta_tilt_term + i_tilt * ratio_tilt)
-        + i_tilt_ratio_tilt
+    gp[3, 31] = driving_torque_tilt_by_K_t_tilt + holding_tilt_by_i_tilt_term * (
+        -carried_tilt_by_K_t_tilt * holding_tilt_by_theta_tilt_term + i_tilt * ratio_tilt
     )
     driving_torque_tilt_by_J_motor_tilt_term = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
-    driving_torque_tilt_by_J_motor_tilt_term_2 = -driving_torque_tilt_by_J_motor_tilt_term
-    driving_torque_tilt_by_J_motor_tilt = driving_torque_tilt_by_J_motor_tilt_term_2
+    driving_torque_tilt_by_J_motor_tilt = -driving_torque_tilt_by_J_motor_tilt_term
     carried_tilt_by_J_motor_tilt = (
         driving_torque_tilt_by_J_motor_tilt * load_inertia_tilt - load_torque_tilt * ratio_tilt_sq
     )
     lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_term * ratio_tilt_sq
     lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term * ratio_tilt_sq
-    gp[3, 32] = driving_torque_tilt_by_J_motor_tilt_term_2 + holding_tilt_by_i_tilt_term * (
+    gp[3, 32] = driving_torque_tilt_by_J_motor_tilt + holding_tilt_by_i_tilt_term * (
         -accel_tilt * ratio_tilt_sq
         - carried_tilt_by_J_motor_tilt * holding_tilt_by_theta_tilt_term
         - driving_torque_tilt_by_J_motor_tilt_term
@@ -3996,20 +3864,14 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_motor_tilt
     )
     omega_tilt_ratio_tilt_sq = omega_tilt * ratio_tilt_sq
-    minus_omega_tilt_ratio_tilt_sq = -omega_tilt_ratio_tilt_sq
-    driving_torque_tilt_by_b_motor_tilt = minus_omega_tilt_ratio_tilt_sq
+    driving_torque_tilt_by_b_motor_tilt = -omega_tilt_ratio_tilt_sq
     carried_tilt_by_b_motor_tilt = driving_torque_tilt_by_b_motor_tilt * load_inertia_tilt
-    gp[3, 33] = (
-        holding_tilt_by_i_tilt_term
-        * (
-            -carried_tilt_by_b_motor_tilt * holding_tilt_by_theta_tilt_term
-            - omega_tilt_ratio_tilt_sq
-        )
-        + minus_omega_tilt_ratio_tilt_sq
+    gp[3, 33] = driving_torque_tilt_by_b_motor_tilt + holding_tilt_by_i_tilt_term * (
+        -carried_tilt_by_b_motor_tilt * holding_tilt_by_theta_tilt_term - omega_tilt_ratio_tilt_sq
     )
-    ratio_tilt_by_N_tilt = ratio_tilt_term_3
     ratio_tilt_by_theta_tilt_by_N_tilt = (
-        ratio_tilt_by_theta_tilt_term_2 - ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_term
+        -ratio_tilt_by_N_tilt_term * ratio_tilt_by_theta_tilt_term_5
+        + ratio_tilt_by_theta_tilt_term_2
     )
     driving_torque_tilt_by_N_tilt_term = (
         J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_N_tilt
@@ -4043,14 +3905,14 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     ratio_tilt_by_lead_tilt_term = 1.0 / (lead_tilt * lead_tilt)
     ratio_tilt_by_lead_tilt_term_2 = math.pi * length_tilt_inverse * ratio_tilt_by_lead_tilt_term
-    ratio_tilt_by_lead_tilt = -N_tilt_ratio_tilt_term * ratio_tilt_by_lead_tilt_term_2
+    ratio_tilt_by_lead_tilt = -N_tilt_ratio_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt_term_2
     ratio_tilt_by_theta_tilt_by_lead_tilt = (
         math.pi
         * N_tilt
         * length_tilt_by_theta_tilt
+        * ratio_tilt_by_N_tilt_term
         * ratio_tilt_by_lead_tilt_term
         * ratio_tilt_by_theta_tilt_term_3
-        * ratio_tilt_term
         - N_tilt_ratio_tilt_by_theta_tilt_term * ratio_tilt_by_lead_tilt_term_2
     )
     driving_torque_tilt_by_lead_tilt_term = (
@@ -4131,7 +3993,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         * lowered_tilt_by_lead_tilt_term_4
         * lowered_tilt_term_2
         - lowered_tilt_by_d_screw_tilt_term_3 * lowered_tilt_term_4
-        - lowered_tilt_by_lead_tilt_term_3 * ratio_tilt_term_2
+        - lowered_tilt_by_lead_tilt_term_3 * ratio_tilt_by_N_tilt_term_2
     )
     lost_lowering_tilt_by_d_screw_tilt = (
         lost_lowering_tilt_by_lead_tilt_term * lowered_tilt_by_d_screw_tilt
@@ -4139,7 +4001,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     raised_tilt_by_d_screw_tilt = (
         -lead_tilt_inverse * lowered_tilt_by_d_screw_tilt_term_2 * raised_tilt_by_lead_tilt_term_2
         + lowered_tilt_by_d_screw_tilt_term_3 * raised_tilt_term_3
-        + raised_tilt_by_lead_tilt_term * ratio_tilt_term_2
+        + raised_tilt_by_lead_tilt_term * ratio_tilt_by_N_tilt_term_2
     )
     lost_raising_tilt_by_d_screw_tilt = (
         lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_d_screw_tilt
@@ -4186,21 +4048,21 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + forward_tilt_by_lead_tilt_term_3 * lowered_tilt_by_f_screw_tilt
     )
     linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
-    linkage_sin_tilt_term_2_inverse = 1.0 / linkage_sin_tilt_term_2
-    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_term_2_inverse
+    linkage_sin_tilt_inverse = 1.0 / linkage_sin_tilt
+    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_inverse
     linkage_sin_tilt_by_l_ground_tilt = (
-        l_ground_tilt * linkage_sin_tilt_term * linkage_sin_tilt_term_2_inverse
+        l_ground_tilt * linkage_sin_tilt_inverse * linkage_sin_tilt_term
         - linkage_cos_tilt_by_l_ground_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
-    half_length_tilt_term_2_inverse = 0.5 * length_tilt_term_2_inverse
-    cos_tilt_half_length_tilt_term_2_inverse = cos_tilt * half_length_tilt_term_2_inverse
-    half_length_tilt_term_2_inverse_sin_tilt = half_length_tilt_term_2_inverse * sin_tilt
+    half_length_tilt_inverse_2 = 0.5 * length_tilt_inverse_2
+    cos_tilt_half_length_tilt_inverse_2 = cos_tilt * half_length_tilt_inverse_2
+    half_length_tilt_inverse_2_sin_tilt = half_length_tilt_inverse_2 * sin_tilt
     length_tilt_by_l_ground_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_ground_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
-        + l_ground_tilt * length_tilt_term_2_inverse
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_l_ground_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
+        + l_ground_tilt * length_tilt_inverse_2
     )
-    ratio_tilt_by_l_ground_tilt_term = cos_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+    ratio_tilt_by_l_ground_tilt_term = N_tilt_ratio_tilt_by_N_tilt_term_3 * cos_tilt
     ratio_tilt_by_l_ground_tilt = (
         math.pi
         * N_tilt
@@ -4208,7 +4070,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         * length_tilt_inverse
         * linkage_cos_tilt_by_l_ground_tilt
         * sin_tilt
-        - length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         - linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt_term = (
@@ -4216,10 +4078,10 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
         cos_tilt * length_tilt_by_theta_tilt_by_l_ground_tilt_term
-        + half_length_tilt_term_2_inverse_sin_tilt
+        + half_length_tilt_inverse_2_sin_tilt
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 = (
-        -cos_tilt_half_length_tilt_term_2_inverse
+        -cos_tilt_half_length_tilt_inverse_2
         + length_tilt_by_theta_tilt_by_l_ground_tilt_term * sin_tilt
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt = (
@@ -4229,15 +4091,15 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     N_tilt_ratio_tilt_by_theta_tilt_term_5 = N_tilt * ratio_tilt_by_theta_tilt_term_5
     ratio_tilt_by_theta_tilt_by_l_ground_tilt_term = (
-        N_tilt_ratio_tilt_by_theta_tilt_term_5 * cos_tilt
-        + ratio_tilt_by_theta_tilt_by_theta_tilt_term * sin_tilt
+        N_tilt_ratio_tilt_by_N_tilt_term_3 * sin_tilt
+        + N_tilt_ratio_tilt_by_theta_tilt_term_5 * cos_tilt
     )
     ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
         -N_tilt_ratio_tilt_by_theta_tilt_term_5 * sin_tilt + ratio_tilt_by_l_ground_tilt_term
     )
     ratio_tilt_by_theta_tilt_by_l_ground_tilt = (
-        length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
-        - length_tilt_by_theta_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        length_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         + linkage_cos_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
@@ -4254,10 +4116,10 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + driving_torque_tilt_by_l_ground_tilt * load_inertia_tilt
     )
     lost_lowering_tilt_by_l_ground_tilt = (
-        (-1.0) * lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
     )
     lost_raising_tilt_by_l_ground_tilt = (
-        (-1.0) * lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
     )
     gp[3, 38] = (
         -driving_torque_tilt_by_l_ground_tilt_term
@@ -4271,33 +4133,32 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
             - ratio_tilt_by_l_ground_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
         )
     )
-    linkage_cos_tilt_by_l_min_tilt_term = -2.0 * l_min_tilt - 2.0 * s_start_tilt
-    linkage_cos_tilt_by_l_min_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    linkage_cos_tilt_by_s_start_tilt = -2.0 * l_min_tilt - 2.0 * s_start_tilt
     linkage_sin_tilt_by_l_min_tilt = (
-        (-1.0) * linkage_cos_tilt_by_l_min_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+        -linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_l_min_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_min_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_min_tilt
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_s_start_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_l_min_tilt
     )
     ratio_tilt_by_l_min_tilt = (
         math.pi
         * N_tilt
         * lead_tilt_inverse
         * length_tilt_inverse
-        * linkage_cos_tilt_by_l_min_tilt
+        * linkage_cos_tilt_by_s_start_tilt
         * sin_tilt
-        - length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         - linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_theta_tilt_by_l_min_tilt = (
-        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_min_tilt
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_s_start_tilt
         + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_min_tilt
     )
     ratio_tilt_by_theta_tilt_by_l_min_tilt = (
-        length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
-        - length_tilt_by_theta_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
-        + linkage_cos_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
+        + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
     driving_torque_tilt_by_l_min_tilt_term = (
@@ -4328,13 +4189,13 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
     linkage_sin_tilt_by_r_arm_tilt = (
-        4.0 * l_ground_tilt_sq * linkage_sin_tilt_term_2_inverse * r_arm_tilt
+        4.0 * l_ground_tilt_sq * linkage_sin_tilt_inverse * r_arm_tilt
         - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_r_arm_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_r_arm_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
-        + length_tilt_term_2_inverse * r_arm_tilt
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_r_arm_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
+        + length_tilt_inverse_2 * r_arm_tilt
     )
     ratio_tilt_by_r_arm_tilt = (
         math.pi
@@ -4343,7 +4204,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         * length_tilt_inverse
         * linkage_cos_tilt_by_r_arm_tilt
         * sin_tilt
-        - length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         - linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_theta_tilt_by_r_arm_tilt = (
@@ -4352,8 +4213,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         - length_tilt_by_theta_tilt_by_theta_tilt_term * r_arm_tilt
     )
     ratio_tilt_by_theta_tilt_by_r_arm_tilt = (
-        length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
-        - length_tilt_by_theta_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        length_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         + linkage_cos_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
@@ -4383,13 +4244,12 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
             - ratio_tilt_by_r_arm_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
         )
     )
-    linkage_cos_tilt_by_s_start_tilt = linkage_cos_tilt_by_l_min_tilt_term
     linkage_sin_tilt_by_s_start_tilt = (
-        (-1.0) * linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+        -linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_s_start_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_s_start_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_s_start_tilt
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_s_start_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_s_start_tilt
     )
     ratio_tilt_by_s_start_tilt = (
         math.pi
@@ -4398,7 +4258,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         * length_tilt_inverse
         * linkage_cos_tilt_by_s_start_tilt
         * sin_tilt
-        - length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        - length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         - linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_theta_tilt_by_s_start_tilt = (
@@ -4406,8 +4266,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_s_start_tilt
     )
     ratio_tilt_by_theta_tilt_by_s_start_tilt = (
-        length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_4
-        - length_tilt_by_theta_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_2
+        length_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
+        - length_tilt_by_theta_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
@@ -4424,10 +4284,10 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + driving_torque_tilt_by_s_start_tilt * load_inertia_tilt
     )
     lost_lowering_tilt_by_s_start_tilt = (
-        (-1.0) * lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
     )
     lost_raising_tilt_by_s_start_tilt = (
-        (-1.0) * lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
     )
     gp[3, 41] = (
         -driving_torque_tilt_by_s_start_tilt_term
@@ -4546,7 +4406,8 @@ def energy(t, x, u, p, m, e):
     sin_tilt_sq_stored_term_4 = sin_tilt_sq * stored_term_4
     stored_term_5 = c_x_payload_sin_tilt * c_z_payload_cos_tilt
     omega_pan_omega_tilt = omega_pan * omega_tilt
-    stored_term_6 = -0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan
+    half_gap_pan = 0.5 * gap_pan
+    stored_term_6 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
     stored_term_7 = 9.81 * m_payload
     omega_pan_sq = omega_pan * omega_pan
     m_payload_omega_pan_sq = m_payload * omega_pan_sq
@@ -4564,22 +4425,21 @@ def energy(t, x, u, p, m, e):
     ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt_term = math.sqrt(
+    length_tilt = math.sqrt(
         -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
     )
-    length_tilt = length_tilt_term
     lead_tilt_inverse = 1.0 / lead_tilt
     ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
     ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
+    side_pan_sq = side_pan * side_pan
+    i_tilt_sq = i_tilt * i_tilt
+    i_pan_sq = i_pan * i_pan
+    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
     half_omega_pan_sq = 0.5 * omega_pan_sq
     omega_tilt_sq = omega_tilt * omega_tilt
     half_omega_tilt_sq = 0.5 * omega_tilt_sq
-    i_pan_sq = i_pan * i_pan
-    i_tilt_sq = i_tilt * i_tilt
-    omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    side_pan_sq = side_pan * side_pan
     e[0] = (
         0.5 * J_motor_pan * (N_pan * N_pan) * omega_gear_pan_sq
         + J_motor_tilt_ratio_tilt_sq * half_omega_tilt_sq
@@ -4606,6 +4466,7 @@ def energy(t, x, u, p, m, e):
         - omega_pan_omega_tilt * stored_term_2
     )
     e[1] = i_pan * u_pan + i_tilt * u_tilt
+    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     follower_coupling_tilt = stored_term - stored_term_2
     twice_m_payload = 2.0 * m_payload
     follower_inertia_tilt = (
@@ -4633,34 +4494,28 @@ def energy(t, x, u, p, m, e):
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
     lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
     lowered_tilt = (
-        (-1.0)
-        * lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        -lead_tilt_inverse_lowered_tilt_term
         * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
-    lost_lowering_tilt = (
-        (1.0 - lowered_tilt)
-        * 1.0
-        / (abs(J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt))
+    lost_lowering_tilt = (1.0 - lowered_tilt) / (
+        abs(J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt)
     )
     raised_tilt = (
         lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
         * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
-    lost_raising_tilt = (
-        1.0 / (J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt) * (raised_tilt - 1.0)
+    lost_raising_tilt = (raised_tilt - 1.0) / (
+        J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
     )
     follower_torque_tilt_term = omega_gear_pan - omega_pan
     d_shaft_pan_follower_torque_tilt_term = d_shaft_pan * follower_torque_tilt_term
     k_shaft_pan_stored_term_6 = k_shaft_pan * stored_term_6
+    dissipated_term = a_F_s_pan * slide_pan + 1.0
     length_tilt_by_theta_tilt = (
-        1.0
-        / length_tilt_term
-        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
-    )
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    ) / length_tilt
     ratio_tilt_by_theta_tilt = (
         -math.pi
         * N_tilt
@@ -4670,9 +4525,10 @@ def energy(t, x, u, p, m, e):
         / (length_tilt * length_tilt)
         + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
     )
+    driving_torque_tilt_term = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt
     driving_torque_tilt = (
         -J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
-        + ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt)
+        + driving_torque_tilt_term * ratio_tilt
     )
     cos_tilt_sin_tilt = cos_tilt * sin_tilt
     follower_torque_tilt_term_2 = 2.0 * cos_tilt_sin_tilt * omega_pan_omega_tilt
@@ -4680,12 +4536,13 @@ def energy(t, x, u, p, m, e):
     c_y_payload_m_payload_omega_tilt_sq = c_y_payload_m_payload * omega_tilt_sq
     c_z_payload_sin_tilt = c_z_payload * sin_tilt
     c_x_payload_c_z_payload = c_x_payload * c_z_payload
+    follower_torque_tilt_term_3 = d_shaft_pan_follower_torque_tilt_term + k_shaft_pan_stored_term_6
     follower_torque_tilt = (
         -J_x_payload * follower_torque_tilt_term_2
         - J_x_tilt * follower_torque_tilt_term_2
         + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
         + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + active_pan * (d_shaft_pan_follower_torque_tilt_term + k_shaft_pan_stored_term_6)
+        + active_pan * follower_torque_tilt_term_3
         - b_pan * omega_pan
         + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
         - c_x_payload_c_z_payload * cos_tilt_sq * omega_pan_omega_tilt * twice_m_payload
@@ -4714,32 +4571,25 @@ def energy(t, x, u, p, m, e):
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
     )
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    dissipated_term = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
+    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_decay_pan = math.exp(
+        -omega_gear_pan_sq
+        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    )
+    twist_rate_pan = follower_torque_tilt_term * side_pan_sq
+    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
+    winding_loss_pan = R_pan * i_pan_sq
+    winding_loss_tilt = R_tilt * i_tilt_sq
     e[2] = (
-        R_pan * i_pan_sq
-        + R_tilt * i_tilt_sq
-        + b_motor_tilt * omega_tilt_sq * ratio_tilt_sq
+        b_motor_tilt * omega_tilt_sq * ratio_tilt_sq
         + b_pan * omega_pan_sq
         + b_tilt * omega_tilt_sq
-        + follower_torque_tilt_term
-        * side_pan_sq
-        * (
-            active_pan * d_shaft_pan_follower_torque_tilt_term
-            - k_shaft_pan_stored_term_6 * (1.0 - active_pan)
-        )
         + omega_gear_pan_slide_pan
         * (
-            F_v_pan * omega_gear_pan_slide_pan * (a_F_v_pan * slide_pan + 1.0)
-            + dissipated_term
-            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - dissipated_term)
-            * math.exp(
-                -omega_gear_pan_sq
-                / (
-                    (v_s_pan * v_s_pan)
-                    * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
-                )
-            )
+            coulomb_torque_pan
+            + omega_gear_pan_slide_pan * viscous_coefficient_pan
+            + stribeck_decay_pan * (F_s_pan * dissipated_term - coulomb_torque_pan)
         )
         + omega_tilt
         * slide_tilt
@@ -4747,6 +4597,13 @@ def energy(t, x, u, p, m, e):
             0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
             + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
         )
+        + twist_rate_pan
+        * (
+            active_pan * d_shaft_pan_follower_torque_tilt_term
+            - k_shaft_pan_stored_term_6 * (1.0 - active_pan)
+        )
+        + winding_loss_pan
+        + winding_loss_tilt
     )
 
 
@@ -4812,6 +4669,12 @@ def equation_error(t, x, u, p, m, r):
     slide_tilt = m[1]
     side_pan = m[2]
     active_pan = m[3]
+    shaft_torque_pan_term = omega_gear_pan - omega_pan
+    half_gap_pan = 0.5 * gap_pan
+    shaft_torque_pan_term_2 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
+    shaft_torque_pan = active_pan * (
+        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
+    )
     cos_tilt = math.cos(theta_tilt)
     sin_tilt = math.sin(theta_tilt)
     c_y_payload_m_payload = c_y_payload * m_payload
@@ -4827,11 +4690,7 @@ def equation_error(t, x, u, p, m, r):
     force_pan_term = cos_tilt_sin_tilt * twice_omega_pan_omega_tilt
     omega_tilt_sq = omega_tilt * omega_tilt
     c_x_payload_c_z_payload_m_payload = c_x_payload * c_z_payload * m_payload
-    force_pan_term_2 = active_pan * (
-        d_shaft_pan * (omega_gear_pan - omega_pan)
-        + k_shaft_pan * (-0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan)
-    )
-    force_pan_term_3 = (
+    force_pan = (
         -J_x_payload * force_pan_term
         - J_x_tilt * force_pan_term
         + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
@@ -4843,14 +4702,13 @@ def equation_error(t, x, u, p, m, r):
         + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
         - c_y_payload_m_payload_c_z_payload * omega_tilt_sq * sin_tilt
         - c_z_payload_sq_m_payload * force_pan_term
-        + force_pan_term_2
+        + shaft_torque_pan
     )
-    force_pan = force_pan_term_3
     c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
     mass_pan_term = (c_y_payload * c_y_payload) * m_payload
     c_x_payload_cos_tilt = c_x_payload * cos_tilt
     c_z_payload_sin_tilt = c_z_payload * sin_tilt
-    mass_pan_term_2 = (
+    mass_pan = (
         J_pan
         + J_x_payload * sin_tilt_sq
         + J_x_tilt * sin_tilt_sq
@@ -4862,33 +4720,24 @@ def equation_error(t, x, u, p, m, r):
         + cos_tilt_sq * mass_pan_term
         + mass_pan_term * sin_tilt_sq
     )
-    mass_pan = mass_pan_term_2
-    mass_pan_tilt_term = (
+    mass_pan_tilt = (
         c_x_payload_c_y_payload_m_payload * sin_tilt - c_y_payload_m_payload_c_z_payload * cos_tilt
     )
-    mass_pan_tilt = mass_pan_tilt_term
     r[0] = accel_pan * mass_pan + accel_tilt * mass_pan_tilt - force_pan
-    follower_coupling_tilt = mass_pan_tilt_term
-    follower_inertia_tilt = mass_pan_term_2
-    follower_inertia_tilt_inverse = 1.0 / follower_inertia_tilt
+    mass_pan_inverse = 1.0 / mass_pan
     load_inertia_tilt_term = (
         J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
     )
-    load_inertia_tilt = (
-        -(follower_coupling_tilt * follower_coupling_tilt) * follower_inertia_tilt_inverse
-        + load_inertia_tilt_term
-    )
+    load_inertia_tilt = load_inertia_tilt_term - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
     lead_tilt_inverse = 1.0 / lead_tilt
     lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
     lowered_tilt = (
-        (-1.0)
-        * lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        -lead_tilt_inverse_lowered_tilt_term
         * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
@@ -4904,32 +4753,26 @@ def equation_error(t, x, u, p, m, r):
     ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt_term = math.sqrt(
+    length_tilt = math.sqrt(
         -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
     )
-    length_tilt = length_tilt_term
     ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
     ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
     lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = (
-        (1.0 - lowered_tilt)
-        * 1.0
-        / (abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term))
+    lost_lowering_tilt = (1.0 - lowered_tilt) / (
+        abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
     )
     raised_tilt = (
         lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
         * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
-    lost_raising_tilt = (
-        (raised_tilt - 1.0) * 1.0 / (load_inertia_tilt * raised_tilt + lost_lowering_tilt_term)
+    lost_raising_tilt = (raised_tilt - 1.0) / (
+        load_inertia_tilt * raised_tilt + lost_lowering_tilt_term
     )
     length_tilt_by_theta_tilt = (
-        1.0
-        / length_tilt_term
-        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
-    )
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    ) / length_tilt
     ratio_tilt_by_theta_tilt = (
         -math.pi
         * N_tilt
@@ -4940,9 +4783,10 @@ def equation_error(t, x, u, p, m, r):
         + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
     )
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    driving_torque_tilt_term = (
+    driving_torque_tilt_term = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt_term_2 = (
         J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
-        - ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt)
+        - driving_torque_tilt_term * ratio_tilt
     )
     b_tilt_omega_tilt = b_tilt * omega_tilt
     omega_pan_sq = omega_pan * omega_pan
@@ -4952,8 +4796,7 @@ def equation_error(t, x, u, p, m, r):
     load_torque_tilt_term_2 = c_x_payload_c_z_payload_m_payload * omega_pan_sq
     load_torque_tilt_term_2_sin_tilt_sq = load_torque_tilt_term_2 * sin_tilt_sq
     load_torque_tilt_term_3 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-    driving_torque_tilt = -driving_torque_tilt_term
-    follower_torque_tilt = force_pan_term_3
+    driving_torque_tilt = -driving_torque_tilt_term_2
     load_torque_tilt_term_4 = 9.81 * m_payload
     load_torque_tilt = (
         J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
@@ -4964,7 +4807,7 @@ def equation_error(t, x, u, p, m, r):
         + c_z_payload_sin_tilt * load_torque_tilt_term_4
         + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
         + cos_tilt_sq * load_torque_tilt_term_2
-        - follower_coupling_tilt * follower_inertia_tilt_inverse * follower_torque_tilt
+        - force_pan * mass_pan_inverse * mass_pan_tilt
         - load_torque_tilt_term
         - load_torque_tilt_term_2_sin_tilt_sq
         - load_torque_tilt_term_3
@@ -4982,7 +4825,7 @@ def equation_error(t, x, u, p, m, r):
         + 9.81 * c_x_payload * cos_tilt * m_payload
         + 9.81 * c_z_payload * m_payload * sin_tilt
         + c_z_payload_sq * cos_tilt * m_payload * omega_pan_sq * sin_tilt
-        - driving_torque_tilt_term
+        - driving_torque_tilt_term_2
         - load_torque_tilt_term
         - load_torque_tilt_term_2_sin_tilt_sq
         - load_torque_tilt_term_3
@@ -4994,22 +4837,22 @@ def equation_error(t, x, u, p, m, r):
     )
     mass_tilt = load_inertia_tilt_term + lost_lowering_tilt_term
     r[1] = accel_pan * mass_pan_tilt + accel_tilt * mass_tilt - force_tilt
-    force_gear_pan_term = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
+    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_decay_pan = math.exp(
+        -(omega_gear_pan * omega_gear_pan)
+        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    )
+    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
     force_gear_pan = (
         K_t_pan * N_pan * i_pan
-        - force_pan_term_2
+        - shaft_torque_pan
         - slide_pan
         * (
-            F_v_pan * omega_gear_pan * slide_pan * (a_F_v_pan * slide_pan + 1.0)
-            + force_gear_pan_term
-            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - force_gear_pan_term)
-            * math.exp(
-                -(omega_gear_pan * omega_gear_pan)
-                / (
-                    (v_s_pan * v_s_pan)
-                    * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
-                )
-            )
+            coulomb_torque_pan
+            + omega_gear_pan * slide_pan * viscous_coefficient_pan
+            + stribeck_decay_pan * (F_s_pan * force_gear_pan_term - coulomb_torque_pan)
         )
     )
     mass_gear_pan = J_motor_pan * (N_pan * N_pan)
@@ -5113,4 +4956,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 ed4fc3afa3ce4e5a8ead00a637da91a35892cde9a5b6987865d515e7f62a2efa
+# END sha256 e4b5aa991cea382d91d0a4b8157c60d10111bc336ac3250f3a69db40850c998b

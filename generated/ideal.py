@@ -22,7 +22,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "cfbd648bba0cc6fc"
+MODEL_HASH = "02cbc42f0e5c10e1"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 AXES = ("pan", "tilt")
@@ -125,8 +125,7 @@ def mode_derivative(t, x, u, p, m, dx):
     accel_pan = force_pan * inverse_mass_pan
     dx[2] = accel_pan
     force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
-    mass_tilt = J_y_tilt
-    inverse_mass_tilt = 1.0 / mass_tilt
+    inverse_mass_tilt = 1.0 / J_y_tilt
     accel_tilt = force_tilt * inverse_mass_tilt
     dx[3] = accel_tilt
 
@@ -173,8 +172,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - J_z_tilt * sin_tilt_sq * twice_omega_pan_omega_tilt
         - accel_pan * (J_x_tilt_twice_cos_tilt_sin_tilt - J_z_tilt_twice_cos_tilt_sin_tilt)
     )
-    mass_tilt = J_y_tilt
-    inverse_mass_tilt = 1.0 / mass_tilt
+    inverse_mass_tilt = 1.0 / J_y_tilt
     omega_pan_sq = omega_pan * omega_pan
     fx[3, 1] = inverse_mass_tilt * (
         J_x_tilt * cos_tilt_sq * omega_pan_sq
@@ -302,8 +300,7 @@ def equation_error(t, x, u, p, m, r):
     force_tilt = (
         J_x_tilt * force_tilt_term - J_z_tilt * force_tilt_term - b_tilt * omega_tilt + tau_tilt
     )
-    mass_tilt = J_y_tilt
-    r[1] = accel_tilt * mass_tilt - force_tilt
+    r[1] = J_y_tilt * accel_tilt - force_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -330,4 +327,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 9f01adabfef4634207bd0753666eee01adf8492153cd3a7453f1a4cd3dc6a60e
+# END sha256 fb9349a9429f38f5cdaadda68d0bc317502d9fc4b9de6ddf0474a5a5de176854

@@ -14,7 +14,7 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       1))*exp(-omega_gear_pan**2/(v_s_pan**2*(a_v_s_pan*slide_pan + 1)**2))
   i_pan' = (-K_t_pan*N_pan*omega_gear_pan - R_pan*i_pan + u_pan)/L_pan
 
-Operations of the state derivative: 65 as derived, 53 as written.
+Operations of the state derivative: 65 as derived, 54 as written.
 
 Effects:
 - rigid_bodies: thesis Eq. 3.8, Table 5.1
@@ -31,7 +31,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "638b572612c618f4"
+MODEL_HASH = "120c3e38e990ab6f"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 AXES = ("pan",)
@@ -251,32 +251,33 @@ def mode_derivative(t, x, u, p, m, dx):
     side_pan = m[1]
     active_pan = m[2]
     dx[0] = omega_pan
-    force_pan_term = active_pan * (
-        d_shaft_pan * (omega_gear_pan - omega_pan)
-        + k_shaft_pan * (-0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan)
+    shaft_torque_pan_term = omega_gear_pan - omega_pan
+    half_gap_pan = 0.5 * gap_pan
+    shaft_torque_pan_term_2 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
+    shaft_torque_pan = active_pan * (
+        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
     )
-    force_pan = -b_pan * omega_pan + force_pan_term
-    mass_pan = J_pan
-    inverse_mass_pan = 1.0 / mass_pan
+    force_pan = -b_pan * omega_pan + shaft_torque_pan
+    inverse_mass_pan = 1.0 / J_pan
     accel_pan = force_pan * inverse_mass_pan
     dx[1] = accel_pan
     dx[2] = omega_gear_pan
-    force_gear_pan_term = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
+    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_decay_pan = math.exp(
+        -(omega_gear_pan * omega_gear_pan)
+        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    )
+    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
     force_gear_pan = (
         K_t_pan * N_pan * i_pan
-        - force_pan_term
+        - shaft_torque_pan
         - slide_pan
         * (
-            F_v_pan * omega_gear_pan * slide_pan * (a_F_v_pan * slide_pan + 1.0)
-            + force_gear_pan_term
-            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - force_gear_pan_term)
-            * math.exp(
-                -(omega_gear_pan * omega_gear_pan)
-                / (
-                    (v_s_pan * v_s_pan)
-                    * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
-                )
-            )
+            coulomb_torque_pan
+            + omega_gear_pan * slide_pan * viscous_coefficient_pan
+            + stribeck_decay_pan * (F_s_pan * force_gear_pan_term - coulomb_torque_pan)
         )
     )
     mass_gear_pan = J_motor_pan * (N_pan * N_pan)
@@ -316,8 +317,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     slide_pan = m[0]
     side_pan = m[1]
     active_pan = m[2]
-    mass_pan = J_pan
-    inverse_mass_pan = 1.0 / mass_pan
+    inverse_mass_pan = 1.0 / J_pan
     active_pan_inverse_mass_pan = active_pan * inverse_mass_pan
     active_pan_inverse_mass_pan_k_shaft_pan = active_pan_inverse_mass_pan * k_shaft_pan
     fx[1, 0] = -active_pan_inverse_mass_pan_k_shaft_pan
@@ -336,37 +336,28 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fx[3, 2] = -accel_gear_pan_by_theta_pan_term_3
     fx[1, 3] = active_pan_d_shaft_pan * inverse_mass_pan
     fx[2, 3] = 1.0
-    accel_gear_pan_by_omega_gear_pan_term = a_F_v_pan * slide_pan + 1.0
-    accel_gear_pan_by_omega_gear_pan_term_2 = (
-        F_v_pan * accel_gear_pan_by_omega_gear_pan_term * slide_pan
-    )
-    accel_gear_pan_by_omega_gear_pan_term_3 = 1.0 / (v_s_pan * v_s_pan)
-    accel_gear_pan_by_omega_gear_pan_term_4 = a_v_s_pan * slide_pan + 1.0
-    accel_gear_pan_by_omega_gear_pan_term_5 = 1.0 / (
-        accel_gear_pan_by_omega_gear_pan_term_4 * accel_gear_pan_by_omega_gear_pan_term_4
-    )
-    accel_gear_pan_by_omega_gear_pan_term_6 = (
-        accel_gear_pan_by_omega_gear_pan_term_3 * accel_gear_pan_by_omega_gear_pan_term_5
-    )
-    accel_gear_pan_by_omega_gear_pan_term_7 = a_F_c_pan * slide_pan + 1.0
-    accel_gear_pan_by_omega_gear_pan_term_8 = F_c_pan * accel_gear_pan_by_omega_gear_pan_term_7
-    accel_gear_pan_by_omega_gear_pan_term_9 = a_F_s_pan * slide_pan + 1.0
+    viscous_coefficient_pan_term = a_F_v_pan * slide_pan + 1.0
+    viscous_coefficient_pan = F_v_pan * viscous_coefficient_pan_term
+    slide_pan_viscous_coefficient_pan = slide_pan * viscous_coefficient_pan
+    stribeck_decay_pan_term = 1.0 / (v_s_pan * v_s_pan)
+    stribeck_decay_pan_term_2 = a_v_s_pan * slide_pan + 1.0
+    stribeck_decay_pan_term_3 = 1.0 / (stribeck_decay_pan_term_2 * stribeck_decay_pan_term_2)
+    stribeck_decay_pan_term_4 = stribeck_decay_pan_term * stribeck_decay_pan_term_3
+    coulomb_torque_pan_term = a_F_c_pan * slide_pan + 1.0
+    coulomb_torque_pan = F_c_pan * coulomb_torque_pan_term
+    accel_gear_pan_by_omega_gear_pan_term = a_F_s_pan * slide_pan + 1.0
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    accel_gear_pan_by_omega_gear_pan_term_10 = math.exp(
-        -accel_gear_pan_by_omega_gear_pan_term_6 * omega_gear_pan_sq
+    stribeck_decay_pan = math.exp(-omega_gear_pan_sq * stribeck_decay_pan_term_4)
+    accel_gear_pan_by_omega_gear_pan_term_2 = stribeck_decay_pan * (
+        F_s_pan * accel_gear_pan_by_omega_gear_pan_term - coulomb_torque_pan
     )
-    accel_gear_pan_by_omega_gear_pan_term_11 = accel_gear_pan_by_omega_gear_pan_term_10 * (
-        F_s_pan * accel_gear_pan_by_omega_gear_pan_term_9 - accel_gear_pan_by_omega_gear_pan_term_8
-    )
-    accel_gear_pan_by_omega_gear_pan_term_12 = 2.0 * accel_gear_pan_by_omega_gear_pan_term_11
+    accel_gear_pan_by_omega_gear_pan_term_3 = 2.0 * accel_gear_pan_by_omega_gear_pan_term_2
     fx[3, 3] = accel_gear_pan_by_theta_pan_term * (
         -active_pan_d_shaft_pan
         - slide_pan
         * (
-            -accel_gear_pan_by_omega_gear_pan_term_12
-            * accel_gear_pan_by_omega_gear_pan_term_6
-            * omega_gear_pan
-            + accel_gear_pan_by_omega_gear_pan_term_2
+            -accel_gear_pan_by_omega_gear_pan_term_3 * omega_gear_pan * stribeck_decay_pan_term_4
+            + slide_pan_viscous_coefficient_pan
         )
     )
     L_pan_inverse = 1.0 / L_pan
@@ -375,73 +366,52 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fx[3, 4] = K_t_pan_N_pan * accel_gear_pan_by_theta_pan_term
     fx[4, 4] = -L_pan_inverse * R_pan
     fu[4, 0] = L_pan_inverse
-    force_pan_term = omega_gear_pan - omega_pan
-    half_side_pan = 0.5 * side_pan
-    force_pan_term_2 = -gap_pan * half_side_pan + theta_gear_pan - theta_pan
-    force_pan_term_3 = active_pan * (d_shaft_pan * force_pan_term + force_pan_term_2 * k_shaft_pan)
-    force_pan = -b_pan * omega_pan + force_pan_term_3
+    shaft_torque_pan_term = omega_gear_pan - omega_pan
+    half_gap_pan = 0.5 * gap_pan
+    shaft_torque_pan_term_2 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
+    shaft_torque_pan = active_pan * (
+        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
+    )
+    force_pan = -b_pan * omega_pan + shaft_torque_pan
     accel_pan = force_pan * inverse_mass_pan
     fp[1, 0] = -accel_pan * inverse_mass_pan
     fp[1, 1] = -inverse_mass_pan * omega_pan
-    accel_gear_pan_by_F_c_pan_term = inverse_mass_gear_pan * (slide_pan * slide_pan * slide_pan)
-    fp[3, 2] = (
-        (-1.0)
-        * accel_gear_pan_by_F_c_pan_term
-        * (
-            -accel_gear_pan_by_omega_gear_pan_term_10 * accel_gear_pan_by_omega_gear_pan_term_7
-            + accel_gear_pan_by_omega_gear_pan_term_7
-        )
+    inverse_mass_gear_pan_slide_pan = inverse_mass_gear_pan * slide_pan
+    fp[3, 2] = -inverse_mass_gear_pan_slide_pan * (
+        -coulomb_torque_pan_term * stribeck_decay_pan + coulomb_torque_pan_term
     )
     fp[3, 3] = (
-        (-1.0)
-        * accel_gear_pan_by_F_c_pan_term
-        * accel_gear_pan_by_omega_gear_pan_term_10
-        * accel_gear_pan_by_omega_gear_pan_term_9
+        -accel_gear_pan_by_omega_gear_pan_term
+        * inverse_mass_gear_pan_slide_pan
+        * stribeck_decay_pan
     )
-    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_12 * omega_gear_pan_sq
+    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_3 * omega_gear_pan_sq
     fp[3, 4] = (
-        (-1.0)
-        * accel_gear_pan_by_F_c_pan_term
-        * accel_gear_pan_by_omega_gear_pan_term_5
-        * accel_gear_pan_by_v_s_pan_term
-        * 1.0
+        -accel_gear_pan_by_v_s_pan_term
+        * inverse_mass_gear_pan_slide_pan
+        * stribeck_decay_pan_term_3
         / (v_s_pan * v_s_pan * v_s_pan)
     )
-    accel_gear_pan_by_F_v_pan_term = inverse_mass_gear_pan * (
-        slide_pan * slide_pan * slide_pan * slide_pan
-    )
-    fp[3, 5] = (
-        (-1.0)
-        * accel_gear_pan_by_F_v_pan_term
-        * accel_gear_pan_by_omega_gear_pan_term
-        * omega_gear_pan
-    )
+    fp[3, 5] = -accel_gear_pan_by_theta_pan_term * omega_gear_pan * viscous_coefficient_pan_term
     F_c_pan_slide_pan = F_c_pan * slide_pan
-    fp[3, 6] = (
-        (-1.0)
-        * accel_gear_pan_by_F_c_pan_term
-        * (-F_c_pan_slide_pan * accel_gear_pan_by_omega_gear_pan_term_10 + F_c_pan_slide_pan)
+    fp[3, 6] = -inverse_mass_gear_pan_slide_pan * (
+        -F_c_pan_slide_pan * stribeck_decay_pan + F_c_pan_slide_pan
     )
-    fp[3, 7] = -F_s_pan * accel_gear_pan_by_F_v_pan_term * accel_gear_pan_by_omega_gear_pan_term_10
+    fp[3, 7] = -F_s_pan * accel_gear_pan_by_theta_pan_term * stribeck_decay_pan
     fp[3, 8] = (
-        (-1.0)
-        * accel_gear_pan_by_F_v_pan_term
-        * accel_gear_pan_by_omega_gear_pan_term_3
-        * 1.0
-        / (
-            accel_gear_pan_by_omega_gear_pan_term_4
-            * accel_gear_pan_by_omega_gear_pan_term_4
-            * accel_gear_pan_by_omega_gear_pan_term_4
-        )
+        -accel_gear_pan_by_theta_pan_term
         * accel_gear_pan_by_v_s_pan_term
+        * stribeck_decay_pan_term
+        / (stribeck_decay_pan_term_2 * stribeck_decay_pan_term_2 * stribeck_decay_pan_term_2)
     )
-    fp[3, 9] = -F_v_pan * inverse_mass_gear_pan * omega_gear_pan * slide_pan**5.0
+    fp[3, 9] = -F_v_pan * inverse_mass_gear_pan_slide_pan * omega_gear_pan
+    half_side_pan = 0.5 * side_pan
     fp[1, 10] = -active_pan_inverse_mass_pan_k_shaft_pan * half_side_pan
     fp[3, 10] = accel_gear_pan_by_theta_pan_term_3 * half_side_pan
-    fp[1, 11] = active_pan_inverse_mass_pan * force_pan_term_2
-    fp[3, 11] = -accel_gear_pan_by_theta_pan_term_2 * force_pan_term_2
-    fp[1, 12] = active_pan_inverse_mass_pan * force_pan_term
-    fp[3, 12] = -accel_gear_pan_by_theta_pan_term_2 * force_pan_term
+    fp[1, 11] = active_pan_inverse_mass_pan * shaft_torque_pan_term_2
+    fp[3, 11] = -accel_gear_pan_by_theta_pan_term_2 * shaft_torque_pan_term_2
+    fp[1, 12] = active_pan_inverse_mass_pan * shaft_torque_pan_term
+    fp[3, 12] = -accel_gear_pan_by_theta_pan_term_2 * shaft_torque_pan_term
     fp[4, 13] = -(-K_t_pan_N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / (L_pan * L_pan)
     fp[4, 14] = -L_pan_inverse * i_pan
     fp[3, 15] = N_pan * accel_gear_pan_by_theta_pan_term * i_pan
@@ -449,12 +419,12 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[4, 15] = -L_pan_inverse_omega_gear_pan * N_pan
     force_gear_pan = (
         K_t_pan * N_pan * i_pan
-        - force_pan_term_3
+        - shaft_torque_pan
         - slide_pan
         * (
-            accel_gear_pan_by_omega_gear_pan_term_11
-            + accel_gear_pan_by_omega_gear_pan_term_2 * omega_gear_pan
-            + accel_gear_pan_by_omega_gear_pan_term_8
+            accel_gear_pan_by_omega_gear_pan_term_2
+            + coulomb_torque_pan
+            + omega_gear_pan * slide_pan_viscous_coefficient_pan
         )
     )
     accel_gear_pan = accel_gear_pan_by_theta_pan_term * force_gear_pan
@@ -482,20 +452,24 @@ def guards(t, x, u, p, m, g):
     N_pan = p[17]
     side_pan = m[1]
     active_pan = m[2]
-    holding_pan_term = d_shaft_pan * (omega_gear_pan - omega_pan)
+    shaft_torque_pan_term = omega_gear_pan - omega_pan
+    d_shaft_pan_shaft_torque_pan_term = d_shaft_pan * shaft_torque_pan_term
     half_gap_pan = 0.5 * gap_pan
-    holding_pan_term_2 = -theta_gear_pan + theta_pan
-    holding_pan_term_3 = active_pan * (
-        holding_pan_term + k_shaft_pan * (-half_gap_pan * side_pan - holding_pan_term_2)
+    shaft_torque_pan_term_2 = -theta_gear_pan + theta_pan
+    shaft_torque_pan_term_3 = -half_gap_pan * side_pan - shaft_torque_pan_term_2
+    shaft_torque_pan = active_pan * (
+        d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_3
     )
-    g[0] = K_t_pan * N_pan * i_pan - holding_pan_term_3
+    g[0] = K_t_pan * N_pan * i_pan - shaft_torque_pan
     g[1] = F_s_pan * (a_F_s_pan + 1.0)
     g[2] = F_s_pan * (1.0 - a_F_s_pan)
     separation_pan_term = theta_gear_pan - theta_pan
     g[3] = separation_pan_term
     g[4] = half_gap_pan
-    g[5] = holding_pan_term + k_shaft_pan * (-half_gap_pan - holding_pan_term_2)
-    g[6] = holding_pan_term + k_shaft_pan * (half_gap_pan + separation_pan_term)
+    g[5] = d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * (
+        -half_gap_pan - shaft_torque_pan_term_2
+    )
+    g[6] = d_shaft_pan_shaft_torque_pan_term + k_shaft_pan * (half_gap_pan + separation_pan_term)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -602,11 +576,12 @@ def energy(t, x, u, p, m, e):
     slide_pan = m[0]
     side_pan = m[1]
     active_pan = m[2]
-    omega_pan_sq = omega_pan * omega_pan
+    side_pan_sq = side_pan * side_pan
+    half_gap_pan = 0.5 * gap_pan
+    stored_term = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
     i_pan_sq = i_pan * i_pan
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    side_pan_sq = side_pan * side_pan
-    stored_term = -0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan
+    omega_pan_sq = omega_pan * omega_pan
     e[0] = (
         0.5 * J_motor_pan * (N_pan * N_pan) * omega_gear_pan_sq
         + 0.5 * J_pan * omega_pan_sq
@@ -614,31 +589,31 @@ def energy(t, x, u, p, m, e):
         + 0.5 * k_shaft_pan * side_pan_sq * (stored_term * stored_term)
     )
     e[1] = i_pan * u_pan
+    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     dissipated_term = omega_gear_pan - omega_pan
-    dissipated_term_2 = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    d_shaft_pan_dissipated_term = d_shaft_pan * dissipated_term
+    k_shaft_pan_stored_term = k_shaft_pan * stored_term
+    dissipated_term_2 = a_F_s_pan * slide_pan + 1.0
     omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
+    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_decay_pan = math.exp(
+        -omega_gear_pan_sq
+        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    )
+    twist_rate_pan = dissipated_term * side_pan_sq
+    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
+    winding_loss_pan = R_pan * i_pan_sq
     e[2] = (
-        R_pan * i_pan_sq
-        + b_pan * omega_pan_sq
-        + dissipated_term
-        * side_pan_sq
-        * (
-            active_pan * d_shaft_pan * dissipated_term
-            - k_shaft_pan * stored_term * (1.0 - active_pan)
-        )
+        b_pan * omega_pan_sq
         + omega_gear_pan_slide_pan
         * (
-            F_v_pan * omega_gear_pan_slide_pan * (a_F_v_pan * slide_pan + 1.0)
-            + dissipated_term_2
-            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - dissipated_term_2)
-            * math.exp(
-                -omega_gear_pan_sq
-                / (
-                    (v_s_pan * v_s_pan)
-                    * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
-                )
-            )
+            coulomb_torque_pan
+            + omega_gear_pan_slide_pan * viscous_coefficient_pan
+            + stribeck_decay_pan * (F_s_pan * dissipated_term_2 - coulomb_torque_pan)
         )
+        + twist_rate_pan
+        * (active_pan * d_shaft_pan_dissipated_term - k_shaft_pan_stored_term * (1.0 - active_pan))
+        + winding_loss_pan
     )
 
 
@@ -674,29 +649,30 @@ def equation_error(t, x, u, p, m, r):
     slide_pan = m[0]
     side_pan = m[1]
     active_pan = m[2]
-    force_pan_term = active_pan * (
-        d_shaft_pan * (omega_gear_pan - omega_pan)
-        + k_shaft_pan * (-0.5 * gap_pan * side_pan + theta_gear_pan - theta_pan)
+    shaft_torque_pan_term = omega_gear_pan - omega_pan
+    half_gap_pan = 0.5 * gap_pan
+    shaft_torque_pan_term_2 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
+    shaft_torque_pan = active_pan * (
+        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
     )
-    force_pan = -b_pan * omega_pan + force_pan_term
-    mass_pan = J_pan
-    r[0] = accel_pan * mass_pan - force_pan
-    force_gear_pan_term = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    force_pan = -b_pan * omega_pan + shaft_torque_pan
+    r[0] = J_pan * accel_pan - force_pan
+    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
+    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_decay_pan = math.exp(
+        -(omega_gear_pan * omega_gear_pan)
+        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    )
+    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
     force_gear_pan = (
         K_t_pan * N_pan * i_pan
-        - force_pan_term
+        - shaft_torque_pan
         - slide_pan
         * (
-            F_v_pan * omega_gear_pan * slide_pan * (a_F_v_pan * slide_pan + 1.0)
-            + force_gear_pan_term
-            + (F_s_pan * (a_F_s_pan * slide_pan + 1.0) - force_gear_pan_term)
-            * math.exp(
-                -(omega_gear_pan * omega_gear_pan)
-                / (
-                    (v_s_pan * v_s_pan)
-                    * ((a_v_s_pan * slide_pan + 1.0) * (a_v_s_pan * slide_pan + 1.0))
-                )
-            )
+            coulomb_torque_pan
+            + omega_gear_pan * slide_pan * viscous_coefficient_pan
+            + stribeck_decay_pan * (F_s_pan * force_gear_pan_term - coulomb_torque_pan)
         )
     )
     mass_gear_pan = J_motor_pan * (N_pan * N_pan)
@@ -751,4 +727,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 d83a693abaa1be3af3928a42dc51b212fc765644592f174c6266cbb3b9a40a87
+# END sha256 dee7474732db9b3cb201f9d081b2b2d0164e3e74a51633dbb38d691687c97b97

@@ -45,7 +45,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "5768e2e7ab6d4fcf"
+MODEL_HASH = "364c84fe0a8e49b4"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 AXES = ("pan", "tilt")
@@ -205,6 +205,9 @@ def mode_derivative(t, x, u, p, m, dx):
         + gravity_sin_tilt * sin_tilt
         + tau_tilt
     )
+    inertia_tilt = (
+        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
+    )
     inertia_pan = (
         J_pan
         + J_z_payload
@@ -214,12 +217,8 @@ def mode_derivative(t, x, u, p, m, dx):
     )
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
-    inertia_tilt = (
-        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    )
-    mass_tilt = inertia_tilt
-    inverse_determinant = 1.0 / (mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt))
-    accel_pan = inverse_determinant * (force_pan * mass_tilt - force_tilt * mass_pan_tilt)
+    inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
+    accel_pan = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
     dx[2] = accel_pan
     accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
     dx[3] = accel_tilt
@@ -805,4 +804,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 1d6ebe8a583104ba31ea85f79ca1dcc775abc5539006ea4e1995658f18954a11
+# END sha256 4d330c4a10d1abf42377335d1bfb9d9340bcb2a958ec977b3ef1ce8c6827dddf

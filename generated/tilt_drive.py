@@ -54,7 +54,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "24bc5ba9fa2cdb51"
+MODEL_HASH = "5b1d5f902f0545bf"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
 AXES = ("tilt",)
@@ -201,27 +201,22 @@ def mode_derivative(t, x, u, p, m, dx):
     slide_tilt = m[0]
     dx[0] = omega_tilt
     gravity_cos_tilt_term = 9.81 * m_payload
-    c_x_payload_gravity_cos_tilt_term = c_x_payload * gravity_cos_tilt_term
-    gravity_cos_tilt = c_x_payload_gravity_cos_tilt_term
-    c_z_payload_gravity_cos_tilt_term = c_z_payload * gravity_cos_tilt_term
-    gravity_sin_tilt = c_z_payload_gravity_cos_tilt_term
-    load_inertia_tilt_term = (
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
+    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    inertia_tilt = (
         J_y_payload
         + (c_x_payload * c_x_payload) * m_payload
         + (c_z_payload * c_z_payload) * m_payload
     )
-    load_inertia_tilt = load_inertia_tilt_term
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
     lead_tilt_inverse = 1.0 / lead_tilt
     lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
     lowered_tilt = (
-        (-1.0)
-        * lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        -lead_tilt_inverse_lowered_tilt_term
         * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
@@ -239,32 +234,24 @@ def mode_derivative(t, x, u, p, m, dx):
     ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt_term = math.sqrt(
+    length_tilt = math.sqrt(
         -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
     )
-    length_tilt = length_tilt_term
     ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
     ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
     lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = (
-        (1.0 - lowered_tilt)
-        * 1.0
-        / (abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term))
+    lost_lowering_tilt = (1.0 - lowered_tilt) / (
+        abs(inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
     )
     raised_tilt = (
         lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
         * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
-    lost_raising_tilt = (
-        (raised_tilt - 1.0) * 1.0 / (load_inertia_tilt * raised_tilt + lost_lowering_tilt_term)
-    )
+    lost_raising_tilt = (raised_tilt - 1.0) / (inertia_tilt * raised_tilt + lost_lowering_tilt_term)
     length_tilt_by_theta_tilt = (
-        1.0
-        / length_tilt_term
-        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
-    )
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    ) / length_tilt
     ratio_tilt_by_theta_tilt = (
         -math.pi
         * N_tilt
@@ -275,26 +262,22 @@ def mode_derivative(t, x, u, p, m, dx):
         + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
     )
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    driving_torque_tilt_term = J_motor_tilt * (
-        omega_tilt * omega_tilt
-    ) * ratio_tilt * ratio_tilt_by_theta_tilt - ratio_tilt * (
-        K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt_term = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt_term_2 = (
+        J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
+        - driving_torque_tilt_term * ratio_tilt
     )
     b_tilt_omega_tilt = b_tilt * omega_tilt
-    driving_torque_tilt = -driving_torque_tilt_term
+    driving_torque_tilt = -driving_torque_tilt_term_2
     load_torque_tilt = (
-        -b_tilt_omega_tilt
-        + c_x_payload_gravity_cos_tilt_term * cos_tilt
-        + c_z_payload_gravity_cos_tilt_term * sin_tilt
+        -b_tilt_omega_tilt + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
     )
-    carried_tilt = (
-        driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
-    )
+    carried_tilt = driving_torque_tilt * inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
     force_tilt = (
         -b_tilt_omega_tilt
         + cos_tilt * gravity_cos_tilt
-        - driving_torque_tilt_term
+        - driving_torque_tilt_term_2
         + gravity_sin_tilt * sin_tilt
         - slide_tilt
         * (
@@ -302,7 +285,6 @@ def mode_derivative(t, x, u, p, m, dx):
             + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
         )
     )
-    inertia_tilt = load_inertia_tilt_term
     mass_tilt = inertia_tilt + lost_lowering_tilt_term
     inverse_mass_tilt = 1.0 / mass_tilt
     accel_tilt = force_tilt * inverse_mass_tilt * (slide_tilt * slide_tilt)
@@ -345,17 +327,15 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     cos_tilt = math.cos(theta_tilt)
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
-    linkage_sin_tilt_term_2 = math.sqrt(
+    linkage_sin_tilt = math.sqrt(
         l_ground_tilt_sq * linkage_sin_tilt_term - (linkage_cos_tilt * linkage_cos_tilt)
     )
-    linkage_sin_tilt = linkage_sin_tilt_term_2
     sin_tilt = math.sin(theta_tilt)
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
     length_tilt_term = (
         -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
     )
-    length_tilt_term_2 = math.sqrt(length_tilt_term)
-    length_tilt = length_tilt_term_2
+    length_tilt = math.sqrt(length_tilt_term)
     length_tilt_inverse = 1.0 / length_tilt
     lead_tilt_inverse = 1.0 / lead_tilt
     ratio_tilt_by_theta_tilt_term = math.pi * lead_tilt_inverse
@@ -371,8 +351,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     length_tilt_by_theta_tilt_term = (
         -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
     )
-    length_tilt_term_2_inverse = 1.0 / length_tilt_term_2
-    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_term_2_inverse
+    length_tilt_inverse_2 = 1.0 / length_tilt
+    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_inverse_2
     ratio_tilt_by_theta_tilt_term_6 = 1.0 / (length_tilt * length_tilt)
     ratio_tilt_by_theta_tilt_term_7 = (
         ratio_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt_term_6
@@ -387,7 +367,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     length_tilt_by_theta_tilt_by_theta_tilt = (
         -length_tilt_by_theta_tilt_by_theta_tilt_term * length_tilt_by_theta_tilt_term
-        + length_tilt_term_2_inverse
+        + length_tilt_inverse_2
         * (0.5 * cos_tilt_linkage_cos_tilt + 0.5 * linkage_sin_tilt_sin_tilt)
     )
     N_tilt_ratio_tilt_by_theta_tilt_term_2 = N_tilt * ratio_tilt_by_theta_tilt_term_2
@@ -415,8 +395,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - length_tilt_by_theta_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
     )
     omega_tilt_sq = omega_tilt * omega_tilt
-    ratio_tilt_term = ratio_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt_term_5
-    ratio_tilt = N_tilt * ratio_tilt_term
+    ratio_tilt_by_N_tilt = ratio_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt_term_5
+    ratio_tilt = N_tilt * ratio_tilt_by_N_tilt
     J_motor_tilt_ratio_tilt = J_motor_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_omega_tilt_sq = J_motor_tilt_ratio_tilt * omega_tilt_sq
     omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
@@ -435,22 +415,20 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     driving_torque_tilt_by_theta_tilt = -driving_torque_tilt_by_theta_tilt_term_3
     c_x_payload_sq = c_x_payload * c_x_payload
     c_z_payload_sq = c_z_payload * c_z_payload
-    load_inertia_tilt_term = J_y_payload + c_x_payload_sq * m_payload + c_z_payload_sq * m_payload
-    load_inertia_tilt = load_inertia_tilt_term
-    load_torque_tilt_by_theta_tilt_term = 9.81 * sin_tilt
-    load_torque_tilt_by_theta_tilt_term_2 = load_torque_tilt_by_theta_tilt_term * m_payload
-    load_torque_tilt_by_theta_tilt_term_3 = (
-        c_x_payload * load_torque_tilt_by_theta_tilt_term_2
-        - 9.81 * c_z_payload * cos_tilt * m_payload
+    load_inertia_tilt = J_y_payload + c_x_payload_sq * m_payload + c_z_payload_sq * m_payload
+    load_torque_tilt_by_c_z_payload_term = 9.81 * sin_tilt
+    load_torque_tilt_by_c_z_payload = load_torque_tilt_by_c_z_payload_term * m_payload
+    load_torque_tilt_by_theta_tilt_term = (
+        c_x_payload * load_torque_tilt_by_c_z_payload - 9.81 * c_z_payload * cos_tilt * m_payload
     )
-    load_torque_tilt_by_theta_tilt = -load_torque_tilt_by_theta_tilt_term_3
+    load_torque_tilt_by_theta_tilt = -load_torque_tilt_by_theta_tilt_term
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
     twice_ratio_tilt_by_theta_tilt = 2.0 * ratio_tilt_by_theta_tilt
     b_tilt_omega_tilt = b_tilt * omega_tilt
     load_torque_tilt_term = 9.81 * cos_tilt
     c_x_payload_load_torque_tilt_term = c_x_payload * load_torque_tilt_term
-    load_torque_tilt_term_2 = c_z_payload * load_torque_tilt_by_theta_tilt_term
+    load_torque_tilt_term_2 = c_z_payload * load_torque_tilt_by_c_z_payload_term
     load_torque_tilt = (
         -b_tilt_omega_tilt
         + c_x_payload_load_torque_tilt_term * m_payload
@@ -477,19 +455,18 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     lost_lowering_tilt_by_theta_tilt_term_3 = (
         lost_lowering_tilt_by_theta_tilt_term
-        * 1.0
-        / (lost_lowering_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_theta_tilt_term_2)
         * (
             0.0
             if lost_lowering_tilt_by_theta_tilt_term_2 == 0
             else math.copysign(1, lost_lowering_tilt_by_theta_tilt_term_2)
         )
+        / (lost_lowering_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_theta_tilt_term_2)
     )
     lost_lowering_tilt_by_theta_tilt_term_4 = (
         J_motor_tilt_ratio_tilt * lost_lowering_tilt_by_theta_tilt_term_3
     )
     lost_lowering_tilt_by_theta_tilt = (
-        (-1.0) * lost_lowering_tilt_by_theta_tilt_term_4 * twice_ratio_tilt_by_theta_tilt
+        -lost_lowering_tilt_by_theta_tilt_term_4 * twice_ratio_tilt_by_theta_tilt
     )
     raised_tilt_term = f_screw_tilt_lowered_tilt_term + lead_tilt
     raised_tilt_term_2 = -f_screw_tilt_lead_tilt + lowered_tilt_term
@@ -501,18 +478,16 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_by_theta_tilt_term_2 = (
         J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
     )
-    lost_raising_tilt_by_theta_tilt_term_3 = (
-        lost_raising_tilt_by_theta_tilt_term
-        * 1.0
-        / (lost_raising_tilt_by_theta_tilt_term_2 * lost_raising_tilt_by_theta_tilt_term_2)
+    lost_raising_tilt_by_theta_tilt_term_3 = lost_raising_tilt_by_theta_tilt_term / (
+        lost_raising_tilt_by_theta_tilt_term_2 * lost_raising_tilt_by_theta_tilt_term_2
     )
     lost_raising_tilt_by_theta_tilt_term_4 = (
         J_motor_tilt_ratio_tilt * lost_raising_tilt_by_theta_tilt_term_3
     )
     lost_raising_tilt_by_theta_tilt = (
-        (-1.0) * lost_raising_tilt_by_theta_tilt_term_4 * twice_ratio_tilt_by_theta_tilt
+        -lost_raising_tilt_by_theta_tilt_term_4 * twice_ratio_tilt_by_theta_tilt
     )
-    mass_tilt = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt_term
+    mass_tilt = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt
     inverse_mass_tilt = 1.0 / mass_tilt
     accel_tilt_term = inverse_mass_tilt * (slide_tilt * slide_tilt)
     lost_lowering_tilt_term = 1.0 / (abs(lost_lowering_tilt_by_theta_tilt_term_2))
@@ -522,10 +497,11 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         lost_raising_tilt_by_theta_tilt_term * lost_raising_tilt_by_theta_tilt_term_2_inverse
     )
     accel_tilt_by_theta_tilt_term = lost_lowering_tilt + lost_raising_tilt
-    driving_torque_tilt_term = driving_torque_tilt_by_theta_tilt_term * ratio_tilt - ratio_tilt * (
-        K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
+    driving_torque_tilt_term = K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
+    driving_torque_tilt_term_2 = (
+        driving_torque_tilt_by_theta_tilt_term * ratio_tilt - driving_torque_tilt_term * ratio_tilt
     )
-    driving_torque_tilt = -driving_torque_tilt_term
+    driving_torque_tilt = -driving_torque_tilt_term_2
     carried_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
     )
@@ -551,7 +527,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         -b_tilt_omega_tilt
         + 9.81 * c_x_payload * cos_tilt * m_payload
         + 9.81 * c_z_payload * m_payload * sin_tilt
-        - driving_torque_tilt_term
+        - driving_torque_tilt_term_2
         - slide_tilt
         * (
             accel_tilt_by_theta_tilt_term * half_accel_tilt_by_theta_tilt_term_4
@@ -566,7 +542,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_theta_tilt
         - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_theta_tilt
         - driving_torque_tilt_by_theta_tilt_term_3
-        - load_torque_tilt_by_theta_tilt_term_3
+        - load_torque_tilt_by_theta_tilt_term
     )
     L_tilt_inverse = 1.0 / L_tilt
     K_t_tilt_L_tilt_inverse_omega_tilt = K_t_tilt * L_tilt_inverse * omega_tilt
@@ -587,17 +563,15 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - b_tilt
         - driving_torque_tilt_by_omega_tilt_term
     )
-    K_t_tilt_ratio_tilt = K_t_tilt * ratio_tilt
-    fx[2, 1] = -K_t_tilt_ratio_tilt * L_tilt_inverse
-    driving_torque_tilt_by_i_tilt = K_t_tilt_ratio_tilt
+    driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
+    fx[2, 1] = -L_tilt_inverse * driving_torque_tilt_by_i_tilt
     carried_tilt_by_i_tilt = driving_torque_tilt_by_i_tilt * load_inertia_tilt
     fx[1, 2] = accel_tilt_term * (
-        K_t_tilt_ratio_tilt - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_i_tilt
+        -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_i_tilt + driving_torque_tilt_by_i_tilt
     )
     fx[2, 2] = -L_tilt_inverse * R_tilt
     fu[2, 0] = L_tilt_inverse
-    c_x_payload_sq_plus_c_z_payload_sq = c_x_payload_sq + c_z_payload_sq
-    load_inertia_tilt_by_m_payload = c_x_payload_sq_plus_c_z_payload_sq
+    load_inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
     load_torque_tilt_by_m_payload = c_x_payload_load_torque_tilt_term + load_torque_tilt_term_2
     carried_tilt_by_m_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_m_payload
@@ -605,14 +579,14 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     lost_lowering_tilt_by_m_payload_term = lost_lowering_tilt_by_theta_tilt_term_3 * lowered_tilt
     lost_lowering_tilt_by_m_payload = (
-        (-1.0) * load_inertia_tilt_by_m_payload * lost_lowering_tilt_by_m_payload_term
+        -load_inertia_tilt_by_m_payload * lost_lowering_tilt_by_m_payload_term
     )
     lost_raising_tilt_by_m_payload_term = lost_raising_tilt_by_theta_tilt_term_3 * raised_tilt
     lost_raising_tilt_by_m_payload = (
-        (-1.0) * load_inertia_tilt_by_m_payload * lost_raising_tilt_by_m_payload_term
+        -load_inertia_tilt_by_m_payload * lost_raising_tilt_by_m_payload_term
     )
     fp[1, 0] = accel_tilt_term * (
-        -accel_tilt * c_x_payload_sq_plus_c_z_payload_sq
+        -accel_tilt * load_inertia_tilt_by_m_payload
         - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_m_payload
         - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_m_payload
         - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_m_payload
@@ -622,10 +596,10 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     load_inertia_tilt_by_J_y_payload = 1.0
     carried_tilt_by_J_y_payload = driving_torque_tilt * load_inertia_tilt_by_J_y_payload
     lost_lowering_tilt_by_J_y_payload = (
-        (-1.0) * load_inertia_tilt_by_J_y_payload * lost_lowering_tilt_by_m_payload_term
+        -load_inertia_tilt_by_J_y_payload * lost_lowering_tilt_by_m_payload_term
     )
     lost_raising_tilt_by_J_y_payload = (
-        (-1.0) * load_inertia_tilt_by_J_y_payload * lost_raising_tilt_by_m_payload_term
+        -load_inertia_tilt_by_J_y_payload * lost_raising_tilt_by_m_payload_term
     )
     fp[1, 1] = accel_tilt_term * (
         -accel_tilt
@@ -634,41 +608,38 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_J_y_payload
     )
     twice_m_payload = 2.0 * m_payload
-    c_x_payload_twice_m_payload = c_x_payload * twice_m_payload
-    load_inertia_tilt_by_c_x_payload = c_x_payload_twice_m_payload
+    load_inertia_tilt_by_c_x_payload = c_x_payload * twice_m_payload
     load_torque_tilt_by_c_x_payload = load_torque_tilt_term * m_payload
     carried_tilt_by_c_x_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_x_payload
         + driving_torque_tilt * load_inertia_tilt_by_c_x_payload
     )
     lost_lowering_tilt_by_c_x_payload = (
-        (-1.0) * load_inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_m_payload_term
+        -load_inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_m_payload_term
     )
     lost_raising_tilt_by_c_x_payload = (
-        (-1.0) * load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_m_payload_term
+        -load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_m_payload_term
     )
     fp[1, 2] = accel_tilt_term * (
-        -accel_tilt * c_x_payload_twice_m_payload
+        -accel_tilt * load_inertia_tilt_by_c_x_payload
         - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_c_x_payload
         - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_c_x_payload
         - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_c_x_payload
         + 9.81 * cos_tilt * m_payload
     )
-    c_z_payload_twice_m_payload = c_z_payload * twice_m_payload
-    load_inertia_tilt_by_c_z_payload = c_z_payload_twice_m_payload
-    load_torque_tilt_by_c_z_payload = load_torque_tilt_by_theta_tilt_term_2
+    load_inertia_tilt_by_c_z_payload = c_z_payload * twice_m_payload
     carried_tilt_by_c_z_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_z_payload
         + driving_torque_tilt * load_inertia_tilt_by_c_z_payload
     )
     lost_lowering_tilt_by_c_z_payload = (
-        (-1.0) * load_inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_m_payload_term
+        -load_inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_m_payload_term
     )
     lost_raising_tilt_by_c_z_payload = (
-        (-1.0) * load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_m_payload_term
+        -load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_m_payload_term
     )
     fp[1, 3] = accel_tilt_term * (
-        -accel_tilt * c_z_payload_twice_m_payload
+        -accel_tilt * load_inertia_tilt_by_c_z_payload
         - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_c_z_payload
         - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_c_z_payload
         - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_c_z_payload
@@ -679,7 +650,9 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[1, 4] = accel_tilt_term * (
         -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_b_tilt - omega_tilt
     )
-    fp[2, 5] = -(-K_t_tilt_ratio_tilt * omega_tilt - R_tilt * i_tilt + u_tilt) / (L_tilt * L_tilt)
+    fp[2, 5] = -(-R_tilt * i_tilt - driving_torque_tilt_by_i_tilt * omega_tilt + u_tilt) / (
+        L_tilt * L_tilt
+    )
     fp[2, 6] = -L_tilt_inverse * i_tilt
     driving_torque_tilt_by_K_t_tilt = i_tilt * ratio_tilt
     carried_tilt_by_K_t_tilt = driving_torque_tilt_by_K_t_tilt * load_inertia_tilt
@@ -707,7 +680,6 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[1, 9] = accel_tilt_term * (
         -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_b_motor_tilt - omega_tilt_ratio_tilt_sq
     )
-    ratio_tilt_by_N_tilt = ratio_tilt_term
     ratio_tilt_by_theta_tilt_by_N_tilt = (
         ratio_tilt_by_theta_tilt_term_4
         - ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_theta_tilt_term_8
@@ -738,7 +710,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     ratio_tilt_by_lead_tilt_term = 1.0 / (lead_tilt * lead_tilt)
     ratio_tilt_by_lead_tilt_term_2 = math.pi * length_tilt_inverse * ratio_tilt_by_lead_tilt_term
     ratio_tilt_by_lead_tilt = (
-        (-1.0) * N_tilt_ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_lead_tilt_term_2
+        -N_tilt_ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_lead_tilt_term_2
     )
     ratio_tilt_by_theta_tilt_by_lead_tilt = (
         math.pi
@@ -846,19 +818,19 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_f_screw_tilt
     )
     linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
-    linkage_sin_tilt_term_2_inverse = 1.0 / linkage_sin_tilt_term_2
-    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_term_2_inverse
+    linkage_sin_tilt_inverse = 1.0 / linkage_sin_tilt
+    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_inverse
     linkage_sin_tilt_by_l_ground_tilt = (
-        l_ground_tilt * linkage_sin_tilt_term * linkage_sin_tilt_term_2_inverse
+        l_ground_tilt * linkage_sin_tilt_inverse * linkage_sin_tilt_term
         - linkage_cos_tilt_by_l_ground_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
-    half_length_tilt_term_2_inverse = 0.5 * length_tilt_term_2_inverse
-    cos_tilt_half_length_tilt_term_2_inverse = cos_tilt * half_length_tilt_term_2_inverse
-    half_length_tilt_term_2_inverse_sin_tilt = half_length_tilt_term_2_inverse * sin_tilt
+    half_length_tilt_inverse_2 = 0.5 * length_tilt_inverse_2
+    cos_tilt_half_length_tilt_inverse_2 = cos_tilt * half_length_tilt_inverse_2
+    half_length_tilt_inverse_2_sin_tilt = half_length_tilt_inverse_2 * sin_tilt
     length_tilt_by_l_ground_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_ground_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
-        + l_ground_tilt * length_tilt_term_2_inverse
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_l_ground_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
+        + l_ground_tilt * length_tilt_inverse_2
     )
     ratio_tilt_by_l_ground_tilt_term = N_tilt_ratio_tilt_by_theta_tilt_term_2 * cos_tilt
     ratio_tilt_by_l_ground_tilt = (
@@ -876,10 +848,10 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
         cos_tilt * length_tilt_by_theta_tilt_by_l_ground_tilt_term
-        + half_length_tilt_term_2_inverse_sin_tilt
+        + half_length_tilt_inverse_2_sin_tilt
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 = (
-        -cos_tilt_half_length_tilt_term_2_inverse
+        -cos_tilt_half_length_tilt_inverse_2
         + length_tilt_by_theta_tilt_by_l_ground_tilt_term * sin_tilt
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt = (
@@ -911,10 +883,10 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + driving_torque_tilt_by_l_ground_tilt * load_inertia_tilt
     )
     lost_lowering_tilt_by_l_ground_tilt = (
-        (-1.0) * lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
     )
     lost_raising_tilt_by_l_ground_tilt = (
-        (-1.0) * lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
+        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
     )
     fp[1, 14] = accel_tilt_term * (
         -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_l_ground_tilt
@@ -924,33 +896,32 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - ratio_tilt_by_l_ground_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
     fp[2, 14] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_l_ground_tilt
-    linkage_cos_tilt_by_l_min_tilt_term = -2.0 * l_min_tilt - 2.0 * s_start_tilt
-    linkage_cos_tilt_by_l_min_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    linkage_cos_tilt_by_s_start_tilt = -2.0 * l_min_tilt - 2.0 * s_start_tilt
     linkage_sin_tilt_by_l_min_tilt = (
-        (-1.0) * linkage_cos_tilt_by_l_min_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+        -linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_l_min_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_min_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_min_tilt
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_s_start_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_l_min_tilt
     )
     ratio_tilt_by_l_min_tilt = (
         math.pi
         * N_tilt
         * lead_tilt_inverse
         * length_tilt_inverse
-        * linkage_cos_tilt_by_l_min_tilt
+        * linkage_cos_tilt_by_s_start_tilt
         * sin_tilt
         - length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         - linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_theta_tilt_by_l_min_tilt = (
-        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_min_tilt
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_s_start_tilt
         + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_min_tilt
     )
     ratio_tilt_by_theta_tilt_by_l_min_tilt = (
         length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
         - length_tilt_by_theta_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        + linkage_cos_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
     driving_torque_tilt_by_l_min_tilt_term = (
@@ -974,13 +945,13 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[2, 15] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_l_min_tilt
     linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
     linkage_sin_tilt_by_r_arm_tilt = (
-        4.0 * l_ground_tilt_sq * linkage_sin_tilt_term_2_inverse * r_arm_tilt
+        4.0 * l_ground_tilt_sq * linkage_sin_tilt_inverse * r_arm_tilt
         - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_r_arm_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_r_arm_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
-        + length_tilt_term_2_inverse * r_arm_tilt
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_r_arm_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
+        + length_tilt_inverse_2 * r_arm_tilt
     )
     ratio_tilt_by_r_arm_tilt = (
         math.pi
@@ -1022,13 +993,12 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - ratio_tilt_by_r_arm_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
     fp[2, 16] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_r_arm_tilt
-    linkage_cos_tilt_by_s_start_tilt = linkage_cos_tilt_by_l_min_tilt_term
     linkage_sin_tilt_by_s_start_tilt = (
-        (-1.0) * linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+        -linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_s_start_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_s_start_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_s_start_tilt
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_s_start_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_s_start_tilt
     )
     ratio_tilt_by_s_start_tilt = (
         math.pi
@@ -1060,10 +1030,10 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + driving_torque_tilt_by_s_start_tilt * load_inertia_tilt
     )
     lost_lowering_tilt_by_s_start_tilt = (
-        (-1.0) * lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+        -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
     )
     lost_raising_tilt_by_s_start_tilt = (
-        (-1.0) * lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
+        -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
     )
     fp[1, 17] = accel_tilt_term * (
         -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_s_start_tilt
@@ -1096,34 +1066,38 @@ def guards(t, x, u, p, m, g):
     l_min_tilt = p[15]
     r_arm_tilt = p[16]
     s_start_tilt = p[17]
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    b_tilt_omega_tilt = b_tilt * omega_tilt
+    load_torque_tilt_term = 9.81 * m_payload
+    load_torque_tilt = (
+        -b_tilt_omega_tilt
+        + c_x_payload * cos_tilt * load_torque_tilt_term
+        + c_z_payload * load_torque_tilt_term * sin_tilt
+    )
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
     l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
     linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
         (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
     )
-    sin_tilt = math.sin(theta_tilt)
     linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
     linkage_sin_tilt = math.sqrt(
         4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
     )
-    cos_tilt = math.cos(theta_tilt)
     cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
     ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt_term = math.sqrt(
+    length_tilt = math.sqrt(
         -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
     )
-    length_tilt = length_tilt_term
     lead_tilt_inverse = 1.0 / lead_tilt
     ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
     ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
     length_tilt_by_theta_tilt = (
-        1.0
-        / length_tilt_term
-        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
-    )
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    ) / length_tilt
     ratio_tilt_by_theta_tilt = (
         -math.pi
         * N_tilt
@@ -1136,32 +1110,22 @@ def guards(t, x, u, p, m, g):
     holding_tilt_term = (
         J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
     )
-    holding_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt
-    b_tilt_omega_tilt = b_tilt * omega_tilt
-    holding_tilt_term_3 = 9.81 * m_payload
-    holding_tilt_term_4 = (
-        -b_tilt_omega_tilt
-        + c_x_payload * cos_tilt * holding_tilt_term_3
-        + c_z_payload * holding_tilt_term_3 * sin_tilt
-    )
-    g[0] = -holding_tilt_term + holding_tilt_term_2 * ratio_tilt + holding_tilt_term_4
-    load_torque_tilt = holding_tilt_term_4
+    transmitted_torque_tilt_term = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt
+    transmitted_torque_tilt = ratio_tilt * transmitted_torque_tilt_term
+    g[0] = -holding_tilt_term + load_torque_tilt + transmitted_torque_tilt
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
     lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
     lowered_tilt = (
-        (-1.0)
-        * lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        -lead_tilt_inverse_lowered_tilt_term
         * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
     raised_tilt = (
         lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
         * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
     forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
     forward_tilt_term_2 = abs(load_torque_tilt)
@@ -1200,17 +1164,15 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     cos_tilt = math.cos(theta_tilt)
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt_term = 4.0 * r_arm_tilt_sq
-    linkage_sin_tilt_term_2 = math.sqrt(
+    linkage_sin_tilt = math.sqrt(
         l_ground_tilt_sq * linkage_sin_tilt_term - (linkage_cos_tilt * linkage_cos_tilt)
     )
-    linkage_sin_tilt = linkage_sin_tilt_term_2
     sin_tilt = math.sin(theta_tilt)
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
     length_tilt_term = (
         -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
     )
-    length_tilt_term_2 = math.sqrt(length_tilt_term)
-    length_tilt = length_tilt_term_2
+    length_tilt = math.sqrt(length_tilt_term)
     length_tilt_inverse = 1.0 / length_tilt
     lead_tilt_inverse = 1.0 / lead_tilt
     ratio_tilt_by_theta_tilt_term = math.pi * lead_tilt_inverse
@@ -1226,8 +1188,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     length_tilt_by_theta_tilt_term = (
         -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
     )
-    length_tilt_term_2_inverse = 1.0 / length_tilt_term_2
-    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_term_2_inverse
+    length_tilt_inverse_2 = 1.0 / length_tilt
+    length_tilt_by_theta_tilt = length_tilt_by_theta_tilt_term * length_tilt_inverse_2
     ratio_tilt_by_theta_tilt_term_6 = 1.0 / (length_tilt * length_tilt)
     ratio_tilt_by_theta_tilt_term_7 = (
         ratio_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt_term_6
@@ -1242,7 +1204,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     length_tilt_by_theta_tilt_by_theta_tilt = (
         -length_tilt_by_theta_tilt_by_theta_tilt_term * length_tilt_by_theta_tilt_term
-        + length_tilt_term_2_inverse
+        + length_tilt_inverse_2
         * (0.5 * cos_tilt_linkage_cos_tilt + 0.5 * linkage_sin_tilt_sin_tilt)
     )
     N_tilt_ratio_tilt_by_theta_tilt_term_2 = N_tilt * ratio_tilt_by_theta_tilt_term_2
@@ -1270,8 +1232,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         - length_tilt_by_theta_tilt_by_theta_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
     )
     omega_tilt_sq = omega_tilt * omega_tilt
-    ratio_tilt_term = ratio_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt_term_5
-    ratio_tilt = N_tilt * ratio_tilt_term
+    ratio_tilt_by_N_tilt = ratio_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt_term_5
+    ratio_tilt = N_tilt * ratio_tilt_by_N_tilt
     J_motor_tilt_ratio_tilt = J_motor_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_omega_tilt_sq = J_motor_tilt_ratio_tilt * omega_tilt_sq
     omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
@@ -1287,17 +1249,17 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
         - holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt
     )
-    holding_tilt_by_theta_tilt_term_4 = 9.81 * sin_tilt
-    holding_tilt_by_theta_tilt_term_5 = holding_tilt_by_theta_tilt_term_4 * m_payload
-    holding_tilt_by_theta_tilt_term_6 = (
-        c_x_payload * holding_tilt_by_theta_tilt_term_5 - 9.81 * c_z_payload * cos_tilt * m_payload
+    load_torque_tilt_by_c_z_payload_term = 9.81 * sin_tilt
+    load_torque_tilt_by_c_z_payload = load_torque_tilt_by_c_z_payload_term * m_payload
+    holding_tilt_by_theta_tilt_term_4 = (
+        c_x_payload * load_torque_tilt_by_c_z_payload - 9.81 * c_z_payload * cos_tilt * m_payload
     )
-    gx[0, 0] = -holding_tilt_by_theta_tilt_term_3 - holding_tilt_by_theta_tilt_term_6
-    load_torque_tilt_by_theta_tilt = -holding_tilt_by_theta_tilt_term_6
+    gx[0, 0] = -holding_tilt_by_theta_tilt_term_3 - holding_tilt_by_theta_tilt_term_4
+    load_torque_tilt_by_theta_tilt = -holding_tilt_by_theta_tilt_term_4
     b_tilt_omega_tilt = b_tilt * omega_tilt
     load_torque_tilt_term = 9.81 * cos_tilt
     c_x_payload_load_torque_tilt_term = c_x_payload * load_torque_tilt_term
-    load_torque_tilt_term_2 = c_z_payload * holding_tilt_by_theta_tilt_term_4
+    load_torque_tilt_term_2 = c_z_payload * load_torque_tilt_by_c_z_payload_term
     load_torque_tilt = (
         -b_tilt_omega_tilt
         + c_x_payload_load_torque_tilt_term * m_payload
@@ -1343,47 +1305,42 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     load_torque_tilt_by_omega_tilt = -b_tilt
     gx[1, 1] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_omega_tilt
     gx[2, 1] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_omega_tilt
-    K_t_tilt_ratio_tilt = K_t_tilt * ratio_tilt
-    gx[0, 2] = K_t_tilt_ratio_tilt
-    holding_tilt_by_m_payload_term = c_x_payload_load_torque_tilt_term + load_torque_tilt_term_2
-    gp[0, 0] = holding_tilt_by_m_payload_term
-    load_torque_tilt_by_m_payload = holding_tilt_by_m_payload_term
+    driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
+    gx[0, 2] = driving_torque_tilt_by_i_tilt
+    load_torque_tilt_by_m_payload = c_x_payload_load_torque_tilt_term + load_torque_tilt_term_2
+    gp[0, 0] = load_torque_tilt_by_m_payload
     gp[1, 0] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_m_payload
     gp[2, 0] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_m_payload
-    load_torque_tilt_term_m_payload = load_torque_tilt_term * m_payload
-    gp[0, 2] = load_torque_tilt_term_m_payload
-    load_torque_tilt_by_c_x_payload = load_torque_tilt_term_m_payload
+    load_torque_tilt_by_c_x_payload = load_torque_tilt_term * m_payload
+    gp[0, 2] = load_torque_tilt_by_c_x_payload
     gp[1, 2] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_c_x_payload
     gp[2, 2] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_c_x_payload
-    gp[0, 3] = holding_tilt_by_theta_tilt_term_5
-    load_torque_tilt_by_c_z_payload = holding_tilt_by_theta_tilt_term_5
+    gp[0, 3] = load_torque_tilt_by_c_z_payload
     gp[1, 3] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_c_z_payload
     gp[2, 3] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_c_z_payload
-    minus_omega_tilt = -omega_tilt
-    gp[0, 4] = minus_omega_tilt
-    load_torque_tilt_by_b_tilt = minus_omega_tilt
+    load_torque_tilt_by_b_tilt = -omega_tilt
+    gp[0, 4] = load_torque_tilt_by_b_tilt
     gp[1, 4] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_b_tilt
     gp[2, 4] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_b_tilt
-    i_tilt_ratio_tilt = i_tilt * ratio_tilt
-    gp[0, 7] = i_tilt_ratio_tilt
-    holding_tilt_by_J_motor_tilt_term = -omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
-    gp[0, 8] = holding_tilt_by_J_motor_tilt_term
-    minus_omega_tilt_ratio_tilt_sq = -omega_tilt * ratio_tilt_sq
-    gp[0, 9] = minus_omega_tilt_ratio_tilt_sq
-    ratio_tilt_by_N_tilt = ratio_tilt_term
+    driving_torque_tilt_by_K_t_tilt = i_tilt * ratio_tilt
+    gp[0, 7] = driving_torque_tilt_by_K_t_tilt
+    driving_torque_tilt_by_J_motor_tilt = -omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
+    gp[0, 8] = driving_torque_tilt_by_J_motor_tilt
+    driving_torque_tilt_by_b_motor_tilt = -omega_tilt * ratio_tilt_sq
+    gp[0, 9] = driving_torque_tilt_by_b_motor_tilt
     ratio_tilt_by_theta_tilt_by_N_tilt = (
         ratio_tilt_by_theta_tilt_term_4
         - ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_theta_tilt_term_8
     )
-    holding_tilt_by_N_tilt_term = (
+    driving_torque_tilt_by_N_tilt = (
         -J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_N_tilt
         + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_N_tilt
     )
-    gp[0, 10] = holding_tilt_by_N_tilt_term
+    gp[0, 10] = driving_torque_tilt_by_N_tilt
     ratio_tilt_by_lead_tilt_term = 1.0 / (lead_tilt * lead_tilt)
     ratio_tilt_by_lead_tilt_term_2 = math.pi * length_tilt_inverse * ratio_tilt_by_lead_tilt_term
     ratio_tilt_by_lead_tilt = (
-        (-1.0) * N_tilt_ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_lead_tilt_term_2
+        -N_tilt_ratio_tilt_by_theta_tilt_term_5 * ratio_tilt_by_lead_tilt_term_2
     )
     ratio_tilt_by_theta_tilt_by_lead_tilt = (
         math.pi
@@ -1394,11 +1351,11 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         * ratio_tilt_by_theta_tilt_term_6
         - N_tilt_ratio_tilt_by_theta_tilt_term_3 * ratio_tilt_by_lead_tilt_term_2
     )
-    holding_tilt_by_lead_tilt_term = (
+    driving_torque_tilt_by_lead_tilt = (
         -J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_lead_tilt
         + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_lead_tilt
     )
-    gp[0, 11] = holding_tilt_by_lead_tilt_term
+    gp[0, 11] = driving_torque_tilt_by_lead_tilt
     lowered_tilt_by_lead_tilt_term = lowered_tilt_term * ratio_tilt_by_lead_tilt_term
     lowered_tilt_by_lead_tilt_term_2 = f_screw_tilt_lowered_tilt_term * lead_tilt_inverse
     lowered_tilt_by_lead_tilt_term_3 = lowered_tilt_term_2 * lowered_tilt_term_3_inverse
@@ -1474,19 +1431,19 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + forward_tilt_by_lead_tilt_term_3 * lowered_tilt_by_f_screw_tilt
     )
     linkage_cos_tilt_by_l_ground_tilt = 2.0 * l_ground_tilt
-    linkage_sin_tilt_term_2_inverse = 1.0 / linkage_sin_tilt_term_2
-    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_term_2_inverse
+    linkage_sin_tilt_inverse = 1.0 / linkage_sin_tilt
+    linkage_sin_tilt_by_l_ground_tilt_term = linkage_cos_tilt * linkage_sin_tilt_inverse
     linkage_sin_tilt_by_l_ground_tilt = (
-        l_ground_tilt * linkage_sin_tilt_term * linkage_sin_tilt_term_2_inverse
+        l_ground_tilt * linkage_sin_tilt_inverse * linkage_sin_tilt_term
         - linkage_cos_tilt_by_l_ground_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
-    half_length_tilt_term_2_inverse = 0.5 * length_tilt_term_2_inverse
-    cos_tilt_half_length_tilt_term_2_inverse = cos_tilt * half_length_tilt_term_2_inverse
-    half_length_tilt_term_2_inverse_sin_tilt = half_length_tilt_term_2_inverse * sin_tilt
+    half_length_tilt_inverse_2 = 0.5 * length_tilt_inverse_2
+    cos_tilt_half_length_tilt_inverse_2 = cos_tilt * half_length_tilt_inverse_2
+    half_length_tilt_inverse_2_sin_tilt = half_length_tilt_inverse_2 * sin_tilt
     length_tilt_by_l_ground_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_ground_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
-        + l_ground_tilt * length_tilt_term_2_inverse
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_l_ground_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_l_ground_tilt
+        + l_ground_tilt * length_tilt_inverse_2
     )
     ratio_tilt_by_l_ground_tilt_term = N_tilt_ratio_tilt_by_theta_tilt_term_2 * cos_tilt
     ratio_tilt_by_l_ground_tilt = (
@@ -1504,10 +1461,10 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 = (
         cos_tilt * length_tilt_by_theta_tilt_by_l_ground_tilt_term
-        + half_length_tilt_term_2_inverse_sin_tilt
+        + half_length_tilt_inverse_2_sin_tilt
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 = (
-        -cos_tilt_half_length_tilt_term_2_inverse
+        -cos_tilt_half_length_tilt_inverse_2
         + length_tilt_by_theta_tilt_by_l_ground_tilt_term * sin_tilt
     )
     length_tilt_by_theta_tilt_by_l_ground_tilt = (
@@ -1529,54 +1486,53 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + linkage_cos_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_l_ground_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
-    holding_tilt_by_l_ground_tilt_term = (
+    driving_torque_tilt_by_l_ground_tilt = (
         -J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_ground_tilt
         + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_l_ground_tilt
     )
-    gp[0, 14] = holding_tilt_by_l_ground_tilt_term
-    linkage_cos_tilt_by_l_min_tilt_term = -2.0 * l_min_tilt - 2.0 * s_start_tilt
-    linkage_cos_tilt_by_l_min_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    gp[0, 14] = driving_torque_tilt_by_l_ground_tilt
+    linkage_cos_tilt_by_s_start_tilt = -2.0 * l_min_tilt - 2.0 * s_start_tilt
     linkage_sin_tilt_by_l_min_tilt = (
-        (-1.0) * linkage_cos_tilt_by_l_min_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+        -linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_l_min_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_l_min_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_l_min_tilt
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_s_start_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_l_min_tilt
     )
     ratio_tilt_by_l_min_tilt = (
         math.pi
         * N_tilt
         * lead_tilt_inverse
         * length_tilt_inverse
-        * linkage_cos_tilt_by_l_min_tilt
+        * linkage_cos_tilt_by_s_start_tilt
         * sin_tilt
         - length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
         - linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_theta_tilt_by_l_min_tilt = (
-        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_l_min_tilt
+        length_tilt_by_theta_tilt_by_l_ground_tilt_term_2 * linkage_cos_tilt_by_s_start_tilt
         + length_tilt_by_theta_tilt_by_l_ground_tilt_term_3 * linkage_sin_tilt_by_l_min_tilt
     )
     ratio_tilt_by_theta_tilt_by_l_min_tilt = (
         length_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term_3
         - length_tilt_by_theta_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_theta_tilt_term
-        + linkage_cos_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
+        + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_l_min_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
-    holding_tilt_by_l_min_tilt_term = (
+    driving_torque_tilt_by_l_min_tilt = (
         -J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_l_min_tilt
         + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_l_min_tilt
     )
-    gp[0, 15] = holding_tilt_by_l_min_tilt_term
+    gp[0, 15] = driving_torque_tilt_by_l_min_tilt
     linkage_cos_tilt_by_r_arm_tilt = 2.0 * r_arm_tilt
     linkage_sin_tilt_by_r_arm_tilt = (
-        4.0 * l_ground_tilt_sq * linkage_sin_tilt_term_2_inverse * r_arm_tilt
+        4.0 * l_ground_tilt_sq * linkage_sin_tilt_inverse * r_arm_tilt
         - linkage_cos_tilt_by_r_arm_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_r_arm_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_r_arm_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
-        + length_tilt_term_2_inverse * r_arm_tilt
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_r_arm_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_r_arm_tilt
+        + length_tilt_inverse_2 * r_arm_tilt
     )
     ratio_tilt_by_r_arm_tilt = (
         math.pi
@@ -1599,18 +1555,17 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + linkage_cos_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_r_arm_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
-    holding_tilt_by_r_arm_tilt_term = (
+    driving_torque_tilt_by_r_arm_tilt = (
         -J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_r_arm_tilt
         + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_r_arm_tilt
     )
-    gp[0, 16] = holding_tilt_by_r_arm_tilt_term
-    linkage_cos_tilt_by_s_start_tilt = linkage_cos_tilt_by_l_min_tilt_term
+    gp[0, 16] = driving_torque_tilt_by_r_arm_tilt
     linkage_sin_tilt_by_s_start_tilt = (
-        (-1.0) * linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
+        -linkage_cos_tilt_by_s_start_tilt * linkage_sin_tilt_by_l_ground_tilt_term
     )
     length_tilt_by_s_start_tilt = (
-        -cos_tilt_half_length_tilt_term_2_inverse * linkage_cos_tilt_by_s_start_tilt
-        - half_length_tilt_term_2_inverse_sin_tilt * linkage_sin_tilt_by_s_start_tilt
+        -cos_tilt_half_length_tilt_inverse_2 * linkage_cos_tilt_by_s_start_tilt
+        - half_length_tilt_inverse_2_sin_tilt * linkage_sin_tilt_by_s_start_tilt
     )
     ratio_tilt_by_s_start_tilt = (
         math.pi
@@ -1632,11 +1587,11 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + linkage_cos_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term_2
         + linkage_sin_tilt_by_s_start_tilt * ratio_tilt_by_theta_tilt_by_l_ground_tilt_term
     )
-    holding_tilt_by_s_start_tilt_term = (
+    driving_torque_tilt_by_s_start_tilt = (
         -J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_s_start_tilt
         + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_s_start_tilt
     )
-    gp[0, 17] = holding_tilt_by_s_start_tilt_term
+    gp[0, 17] = driving_torque_tilt_by_s_start_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -1702,18 +1657,17 @@ def energy(t, x, u, p, m, e):
     ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt_term = math.sqrt(
+    length_tilt = math.sqrt(
         -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
     )
-    length_tilt = length_tilt_term
     lead_tilt_inverse = 1.0 / lead_tilt
     ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
     ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
+    i_tilt_sq = i_tilt * i_tilt
     omega_tilt_sq = omega_tilt * omega_tilt
     half_omega_tilt_sq = 0.5 * omega_tilt_sq
-    i_tilt_sq = i_tilt * i_tilt
     e[0] = (
         J_motor_tilt_ratio_tilt_sq * half_omega_tilt_sq
         + J_y_payload * half_omega_tilt_sq
@@ -1730,31 +1684,24 @@ def energy(t, x, u, p, m, e):
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
     lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
     lowered_tilt = (
-        (-1.0)
-        * lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        -lead_tilt_inverse_lowered_tilt_term
         * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
-    lost_lowering_tilt = (
-        (1.0 - lowered_tilt)
-        * 1.0
-        / (abs(J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt))
+    lost_lowering_tilt = (1.0 - lowered_tilt) / (
+        abs(J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt)
     )
     raised_tilt = (
         lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
         * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
-    lost_raising_tilt = (
-        1.0 / (J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt) * (raised_tilt - 1.0)
+    lost_raising_tilt = (raised_tilt - 1.0) / (
+        J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
     )
     length_tilt_by_theta_tilt = (
-        1.0
-        / length_tilt_term
-        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
-    )
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    ) / length_tilt
     ratio_tilt_by_theta_tilt = (
         -math.pi
         * N_tilt
@@ -1764,9 +1711,10 @@ def energy(t, x, u, p, m, e):
         / (length_tilt * length_tilt)
         + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
     )
+    driving_torque_tilt_term = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt
     driving_torque_tilt = (
         -J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
-        + ratio_tilt * (K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt)
+        + driving_torque_tilt_term * ratio_tilt
     )
     load_torque_tilt = (
         -b_tilt * omega_tilt
@@ -1777,9 +1725,9 @@ def energy(t, x, u, p, m, e):
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
     )
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    winding_loss_tilt = R_tilt * i_tilt_sq
     e[2] = (
-        R_tilt * i_tilt_sq
-        + b_motor_tilt * omega_tilt_sq * ratio_tilt_sq
+        b_motor_tilt * omega_tilt_sq * ratio_tilt_sq
         + b_tilt * omega_tilt_sq
         + omega_tilt
         * slide_tilt
@@ -1787,6 +1735,7 @@ def energy(t, x, u, p, m, e):
             0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
             + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
         )
+        + winding_loss_tilt
     )
 
 
@@ -1817,23 +1766,20 @@ def equation_error(t, x, u, p, m, r):
     r_arm_tilt = p[16]
     s_start_tilt = p[17]
     slide_tilt = m[0]
-    load_inertia_tilt_term = (
+    load_inertia_tilt = (
         J_y_payload
         + (c_x_payload * c_x_payload) * m_payload
         + (c_z_payload * c_z_payload) * m_payload
     )
-    load_inertia_tilt = load_inertia_tilt_term
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
     lead_tilt_inverse = 1.0 / lead_tilt
     lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
     lowered_tilt = (
-        (-1.0)
-        * lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+        -lead_tilt_inverse_lowered_tilt_term
         * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
@@ -1851,32 +1797,26 @@ def equation_error(t, x, u, p, m, r):
     ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
     cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
     linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
-    length_tilt_term = math.sqrt(
+    length_tilt = math.sqrt(
         -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
     )
-    length_tilt = length_tilt_term
     ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
     ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
     lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
-    lost_lowering_tilt = (
-        (1.0 - lowered_tilt)
-        * 1.0
-        / (abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term))
+    lost_lowering_tilt = (1.0 - lowered_tilt) / (
+        abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
     )
     raised_tilt = (
         lead_tilt_inverse_lowered_tilt_term
-        * 1.0
-        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
         * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
-    lost_raising_tilt = (
-        (raised_tilt - 1.0) * 1.0 / (load_inertia_tilt * raised_tilt + lost_lowering_tilt_term)
+    lost_raising_tilt = (raised_tilt - 1.0) / (
+        load_inertia_tilt * raised_tilt + lost_lowering_tilt_term
     )
     length_tilt_by_theta_tilt = (
-        1.0
-        / length_tilt_term
-        * (-0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt)
-    )
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    ) / length_tilt
     ratio_tilt_by_theta_tilt = (
         -math.pi
         * N_tilt
@@ -1887,13 +1827,13 @@ def equation_error(t, x, u, p, m, r):
         + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
     )
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    driving_torque_tilt_term = J_motor_tilt * (
-        omega_tilt * omega_tilt
-    ) * ratio_tilt * ratio_tilt_by_theta_tilt - ratio_tilt * (
-        K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt_term = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt_term_2 = (
+        J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
+        - driving_torque_tilt_term * ratio_tilt
     )
     b_tilt_omega_tilt = b_tilt * omega_tilt
-    driving_torque_tilt = -driving_torque_tilt_term
+    driving_torque_tilt = -driving_torque_tilt_term_2
     load_torque_tilt_term = 9.81 * m_payload
     load_torque_tilt = (
         -b_tilt_omega_tilt
@@ -1908,14 +1848,14 @@ def equation_error(t, x, u, p, m, r):
         -b_tilt_omega_tilt
         + 9.81 * c_x_payload * cos_tilt * m_payload
         + 9.81 * c_z_payload * m_payload * sin_tilt
-        - driving_torque_tilt_term
+        - driving_torque_tilt_term_2
         - slide_tilt
         * (
             0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
             + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
         )
     )
-    mass_tilt = load_inertia_tilt_term + lost_lowering_tilt_term
+    mass_tilt = load_inertia_tilt + lost_lowering_tilt_term
     r[0] = accel_tilt * mass_tilt - force_tilt
     r[1] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
 
@@ -2012,4 +1952,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 63ad7851ea3e2d7182dbcfa71dc7bffe4744d3b3157aae2734293defd69ed62c
+# END sha256 e50b93d4f5671b89ac51553780078e9482ee1356049e9f2d34d22ba9d2611d0c

@@ -5,7 +5,7 @@ import math
 import pytest
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.sharing import share
+from ptp_symbolic.symbolic.codegen.sharing import Vocabulary, share
 
 Q, N = sp.symbols("q n", real=True)
 
@@ -16,7 +16,7 @@ def test_multiples_of_an_angle_need_no_functions_of_their_own(
     angle: sp.Expr, function: type[sp.Function]
 ) -> None:
     wanted = sp.Add(*(k * function(k * angle) for k in (1, 2, 3)))
-    lines = share((), [("out", wanted)], {})
+    lines = share((), [("out", wanted)], Vocabulary())
     functions = set().union(*(e.atoms(sp.sin, sp.cos) for _, e in lines))
     assert {f.func for f in functions} <= {sp.sin, sp.cos}
     assert len(functions) <= 2
@@ -31,7 +31,7 @@ def test_multiples_of_an_angle_need_no_functions_of_their_own(
 
 
 def test_an_angle_that_stands_alone_stays() -> None:
-    lines = share((), [("out", sp.sin(2 * Q) + sp.cos(3 * N))], {})
+    lines = share((), [("out", sp.sin(2 * Q) + sp.cos(3 * N))], Vocabulary())
     assert set().union(*(e.atoms(sp.sin, sp.cos) for _, e in lines)) == {
         sp.sin(2 * Q),
         sp.cos(3 * N),

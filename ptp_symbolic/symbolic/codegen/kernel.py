@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic.symbolic.codegen.literals import WIDTH
-from ptp_symbolic.symbolic.codegen.printer import print_expression, print_factor
+from ptp_symbolic.symbolic.codegen.printer import print_expression, quotient
 from ptp_symbolic.symbolic.codegen.sharing import Line
 
 MODE_ARGUMENTS = "t, x, u, p, m"
@@ -60,5 +60,8 @@ def _wrapped(target: str, expression: sp.Expr) -> list[str]:
         first, *rest = terms
         signed = [f"- {t[1:].strip()}" if t.startswith("-") else f"+ {t}" for t in rest]
         return [f"{target} = (", f"    {first}", *(f"    {t}" for t in signed), ")"]
-    factors = [print_factor(f) for f in expression.as_ordered_factors()]
-    return [f"{target} = (", f"    {factors[0]}", *(f"    * {f}" for f in factors[1:]), ")"]
+    if not expression.is_Mul:
+        return [f"{target} = {print_expression(expression)}"]
+    negative, above, below = quotient(expression)
+    rows = [f"    {'-' if negative else ''}{above[0]}", *(f"    * {f}" for f in above[1:])]
+    return [f"{target} = (", *rows, *([f"    / {below}"] if below else []), ")"]

@@ -12,7 +12,7 @@ from ptp_symbolic.symbolic.codegen.kernel import MODE_ARGUMENTS, Vectors, kernel
 from ptp_symbolic.symbolic.codegen.metadata import metadata_text
 from ptp_symbolic.symbolic.codegen.sharing import Line, share
 from ptp_symbolic.symbolic.codegen.templates import state_derivative_text
-from ptp_symbolic.symbolic.codegen.term_names import term_names
+from ptp_symbolic.symbolic.codegen.term_names import vocabulary
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.simplify.base_parameters import base_form
@@ -75,7 +75,7 @@ def _shared(
     equations: Equations, definitions: Sequence[Line], outputs: Sequence[Line]
 ) -> list[Line]:
     present = [(t, e) for t, e in outputs if e != 0]
-    return share(definitions, present, term_names(equations))
+    return share(definitions, present, vocabulary(equations))
 
 
 def _mode_derivative(equations: Equations, vectors: Vectors) -> str:
@@ -89,13 +89,30 @@ def _state_lines(equations: Equations) -> list[Line]:
     varying = equations.varying_inertia
     constant = equations.mass_matrix - varying
     form = base_form(equations.rigid_equations, constant, equations.forcing)
+    mass = form.mass_matrix + varying
+    raw, written = (
+        [*matrix, *forcing]
+        for matrix, forcing in ((equations.mass_matrix, equations.forcing), (mass, form.forcing))
+    )
+    terms = tuple((s, _in_base_form(e, raw, written)) for s, e in equations.terms)
     regrouped = dynamics.solve_accelerations(
-        replace(equations, mass_matrix=form.mass_matrix + varying, forcing=form.forcing)
+        replace(equations, mass_matrix=mass, forcing=form.forcing, terms=terms)
     )
     rates = dynamics.state_rates(equations, regrouped)
     outputs = [(f"dx[{i}]", rate) for i, rate in enumerate(rates)]
     named = [(str(s), e) for s, e in (*form.base_parameters, *form.shared_terms) if s != e]
-    return share((*named, *regrouped.definitions), outputs, term_names(equations))
+    return share((*named, *regrouped.definitions), outputs, vocabulary(equations))
+
+
+def _in_base_form(
+    expression: sp.Expr, raw: Sequence[sp.Expr], written: Sequence[sp.Expr]
+) -> sp.Expr:
+    """The expression with a `raw` entry in it as it is `written` instead, where that is shorter."""
+    for entry, form in zip(raw, written, strict=True):
+        other = expression - entry + form
+        if sp.count_ops(other) < sp.count_ops(expression):
+            return other
+    return expression
 
 
 def _columns(
@@ -126,7 +143,7 @@ def _jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> 
 def _guards(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
     outputs = [(f"g[{i}]", e) for i, e in enumerate(dynamics.guard_expressions(equations, solve))]
     doc = "Write holding and breakaway torques, gap separations and contact torques into g."
-    lines = share(solve.definitions, outputs, term_names(equations)) if outputs else []
+    lines = share(solve.definitions, outputs, vocabulary(equations)) if outputs else []
     return kernel_text("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
 
 
@@ -172,7 +189,7 @@ def _impacts(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> l
 
 def _outputs(equations: Equations, vectors: Vectors) -> str:
     outputs = [(f"y[{i}]", e) for i, (_, _, e) in enumerate(equations.outputs)]
-    lines = share((), outputs, term_names(equations))
+    lines = share((), outputs, vocabulary(equations))
     return kernel_text(
         "outputs", "t, x, u, p, y", "Write the measured signals into y.", vectors, lines
     )
@@ -196,7 +213,7 @@ def _energy(equations: Equations, vectors: Vectors) -> str:
     outputs = [("e[0]", ledger.stored), ("e[1]", ledger.power_in), ("e[2]", ledger.dissipated)]
     doc = "Write stored energy in J, power in and dissipated power in W into e."
     terms = [(str(symbol), term) for symbol, term in equations.terms]
-    lines = share(terms, outputs, term_names(equations))
+    lines = share(terms, outputs, vocabulary(equations))
     return kernel_text("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, lines)
 
 
@@ -211,7 +228,7 @@ def _equation_error(equations: Equations, solve: dynamics.Solve, vectors: Vector
     moving = {real(s.name): s.derivative for s in equations.extra_states}
     others = [moving[s] for s in equations.state_symbols if s in moving]
     outputs = [(f"r[{i}]", e) for i, e in enumerate([*torques, *others])]
-    lines = share(definitions, outputs, term_names(equations))
+    lines = share(definitions, outputs, vocabulary(equations))
     extended = replace(vectors, x=(*vectors.x, *given))
     doc = (
         "Write the torque that every row lacks, then rates of other states into r; x ends in accel."
@@ -227,7 +244,7 @@ def _domain(equations: Equations, vectors: Vectors) -> str:
     ]
     doc = "Write lower and upper bound of the state of every row of DOMAIN into bounds."
     return kernel_text(
-        "domain", "p, bounds", doc, vectors, share((), outputs, term_names(equations))
+        "domain", "p, bounds", doc, vectors, share((), outputs, vocabulary(equations))
     )
 
 
@@ -241,7 +258,7 @@ def _samplers(equations: Equations, vectors: Vectors) -> list[str]:
     outputs = [(f"z[{i}]", e) for i, e in enumerate(values)]
     doc = "Write period, offset and phase of every sampler, then what SAMPLED states become into z."
     named = [(str(symbol), term) for symbol, term in (*equations.terms, *terms.items())]
-    lines = share(named, outputs, term_names(equations))
+    lines = share(named, outputs, vocabulary(equations))
     for symbol, term in reversed(terms.items()):
         values = [value.xreplace({symbol: term}) for value in values]
     slopes = [
@@ -266,5 +283,5 @@ def _margins(equations: Equations, vectors: Vectors) -> str:
     ]
     doc = "Write by how much the parameters meet every row of REQUIREMENTS into margin."
     return kernel_text(
-        "margins", "p, margin", doc, vectors, share((), outputs, term_names(equations))
+        "margins", "p, margin", doc, vectors, share((), outputs, vocabulary(equations))
     )

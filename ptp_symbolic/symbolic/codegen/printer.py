@@ -38,19 +38,26 @@ class KernelPrinter(PythonCodePrinter):
         return f"(1.0 if {self._print(expr.args[0])} > 0.0 else 0.0)"
 
     def _print_Mul(self, expr: sp.Mul) -> str:
-        """Products with one division; exponentials stay above it, where they cannot overflow."""
-        coefficient, product = expr.as_coeff_Mul()
-        factors = product.as_ordered_factors()
-        below = [f for f in factors if f.is_Pow and f.exp.is_Integer and f.exp.is_negative]
-        above = [print_factor(f) for f in factors if f not in below]
-        if abs(coefficient) != 1 or not above:
-            above.insert(0, self._print(abs(coefficient)))
-        text = " * ".join(above)
-        if below:
-            under = sp.Mul(*[1 / f for f in below])
-            level = sp.printing.precedence.PRECEDENCE["Atom"]
-            text += f" / {self.parenthesize(under, level, strict=True)}"
-        return f"-{text}" if coefficient.is_negative else text
+        negative, above, below = quotient(expr)
+        text = " * ".join(above) + (f" / {below}" if below else "")
+        return f"-{text}" if negative else text
+
+
+def quotient(expr: sp.Mul) -> tuple[bool, list[str], str | None]:
+    """Whether a product is negative, the factors above its one division, and what is below it.
+
+    Exponentials stay above the division, where they cannot overflow.
+    """
+    printer, atom = KernelPrinter(), sp.printing.precedence.PRECEDENCE["Atom"]
+    coefficient, product = expr.as_coeff_Mul()
+    factors = product.as_ordered_factors()
+    under = [f for f in factors if f.is_Pow and f.exp.is_Integer and f.exp.is_negative]
+    above = [print_factor(f) for f in factors if f not in under]
+    if abs(coefficient) != 1 or not above:
+        above.insert(0, printer.doprint(abs(coefficient)))
+    divisor = sp.Mul(*[1 / f for f in under])
+    below = printer.parenthesize(divisor, atom, strict=True) if under else None
+    return bool(coefficient.is_negative), above, below
 
 
 def print_factor(expression: sp.Expr) -> str:

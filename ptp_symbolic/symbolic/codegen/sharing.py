@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import sympy as sp
 
@@ -12,23 +13,80 @@ MAX_NAME = 40
 MULTIPLES = {2: "twice", 3: "thrice", sp.Rational(1, 2): "half"}
 
 
-def share(
-    definitions: Sequence[Line], outputs: Sequence[Line], words: Mapping[str, str]
-) -> list[Line]:
+@dataclass(frozen=True)
+class Vocabulary:
+    """Names for shared terms, and what is known of some symbols.
+
+    `targets` say what entries of arrays are, ``accel_pan`` for ``dx[2]``; `meanings` are
+    expressions that have a name of their own, such as the torque of a shaft; `signs` are symbols
+    that are -1, 0 or 1, `switches` those that are 0 or 1.
+    """
+
+    targets: Mapping[str, str] = field(default_factory=dict)
+    meanings: Sequence[Line] = ()
+    signs: frozenset[sp.Symbol] = frozenset()
+    switches: frozenset[sp.Symbol] = frozenset()
+
+    def without_powers(self, expression: sp.Expr) -> sp.Expr:
+        """`expression` with powers of signs and switches reduced: the cube of a sign is it."""
+
+        def is_power(e: sp.Expr) -> bool:
+            known = e.is_Pow and e.base in self.signs | self.switches
+            return bool(known and e.exp.is_Integer and e.exp > 1)
+
+        def reduced(power: sp.Expr) -> sp.Expr:
+            even = power.base in self.signs and power.exp % 2 == 0
+            return power.base**2 if even else power.base
+
+        return expression.replace(is_power, reduced)
+
+
+def share(definitions: Sequence[Line], outputs: Sequence[Line], words: Vocabulary) -> list[Line]:
     """Return the assignments that compute `outputs`, each name assigned before it is used.
 
     `definitions` name intermediate results (a determinant, an acceleration) that outputs may use;
-    those that nothing uses are dropped. Targets of outputs keep their text, e.g. ``dx[0]``; `words`
-    say what they are, for the names of shared terms.
+    those that nothing uses are dropped, and those that only rename are put in. Targets of outputs
+    keep their text, e.g. ``dx[0]``.
     """
-    expressions = _in_single_angles([e for _, e in (*definitions, *outputs)])
+    named = [*definitions, *words.meanings]
+    written = [words.without_powers(e) for _, e in (*named, *outputs)]
+    expressions = _in_single_angles(written)
     replacements, reduced = sp.cse(expressions, symbols=_numbered(), order="canonical")
-    named = [(str(symbol), expression) for symbol, expression in replacements]
+    shared = [(str(symbol), expression) for symbol, expression in replacements]
     count = len(definitions)
     defined = [(name, e) for (name, _), e in zip(definitions, reduced[:count], strict=True)]
-    final = [(name, e) for (name, _), e in zip(outputs, reduced[count:], strict=True)]
-    ordered = _ordered([*named, *defined], final)
-    return _renamed(ordered, {name for name, _ in definitions}, words)
+    meant = [(n, e) for (n, _), e in zip(words.meanings, reduced[count:], strict=False)]
+    final = [(name, e) for (name, _), e in zip(outputs, reduced[len(named) :], strict=True)]
+    available, final = _without_aliases(shared, defined, meant, final)
+    ordered = _ordered(available, final)
+    return _renamed(ordered, {name for name, _ in available}, words.targets)
+
+
+def _without_aliases(
+    shared: Sequence[Line], defined: Sequence[Line], meant: Sequence[Line], final: Sequence[Line]
+) -> tuple[list[Line], list[Line]]:
+    """Available lines and `final` ones, without lines that give another name alone: a shared term
+    takes the last name that it is defined under, and what else it is called is replaced by that.
+    """
+    terms = {real(name) for name, _ in shared}
+    names: dict[sp.Symbol, sp.Symbol] = {}
+    kept: list[Line] = []
+    for name, expression in (*reversed(defined), *meant):
+        if expression in terms and expression not in names:
+            names[expression] = real(name)
+        elif expression.is_Symbol:
+            names[real(name)] = expression
+        else:
+            kept.append((name, expression))
+    names = {symbol: _last(symbol, names) for symbol in names}
+    lines = [(str(names.get(real(name), name)), e.xreplace(names)) for name, e in (*shared, *kept)]
+    return lines, [(target, e.xreplace(names)) for target, e in final]
+
+
+def _last(symbol: sp.Symbol, names: Mapping[sp.Symbol, sp.Symbol]) -> sp.Symbol:
+    while symbol in names:
+        symbol = names[symbol]
+    return symbol
 
 
 def _in_single_angles(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:

@@ -2,12 +2,23 @@
 
 from collections.abc import Mapping
 
+from ptp_symbolic.symbolic.codegen.sharing import Vocabulary
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.effect_interface.place import active
 
 SAMPLER_WORDS = ("period", "offset", "phase")
 
 
-def term_names(equations: Equations) -> dict[str, str]:
+def vocabulary(equations: Equations) -> Vocabulary:
+    """Names for the shared terms of the kernels of `equations`."""
+    switched = [contact.active for contact in equations.contacts]
+    switched += [active(switch.name) for switch in equations.switches]
+    switches = frozenset(switched)
+    signs = frozenset(equations.mode_symbols) - switches
+    return Vocabulary(_targets(equations), equations.quantities, signs, switches)
+
+
+def _targets(equations: Equations) -> dict[str, str]:
     """Words by target: ``accel_pan`` for ``dx[2]``, ``accel_pan_by_b_pan`` for ``fp[2, 4]``."""
     rates = _numbered("dx", [_rate(str(s)) for s in equations.state_symbols])
     guards = _numbered("g", _guards(equations))

@@ -25,6 +25,7 @@ from ptp_symbolic.symbolic.effect_interface.conditions import Limit
 from ptp_symbolic.symbolic.effect_interface.contribution import Input, Sampler, State, Switch
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import quantity as quantity_symbol
+from ptp_symbolic.symbolic.effect_interface.place import quantity_name
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
@@ -71,6 +72,7 @@ def assemble(platform: Platform) -> Equations:
         contacts=tuple(contacts),
         switches=_switches(contributions),
         outputs=_outputs(platform, contributions),
+        quantities=_quantities(contributions),
         limits=_limits(contributions),
         requirements=tuple(r for effect, place in placed for r in effect.requires(place)),
         ledger=replace(ledger, power_in=ledger.power_in + power),
@@ -208,6 +210,14 @@ def _extra_states(
             )
         taken.add(state.name)
     return tuple(replace(s, derivative=contributions.resolve(s.derivative)) for s in states)
+
+
+def _quantities(contributions: Contributions) -> tuple[tuple[str, sp.Expr], ...]:
+    """Quantities that are more than a number or a symbol, the last defined first: those of shafts
+    are nearest to the equations.
+    """
+    named = {quantity_name(s): contributions.resolve(s) for s in reversed(contributions.values)}
+    return tuple((name, e) for name, e in named.items() if not (e.is_Symbol or e.is_number))
 
 
 def _samplers(contributions: Contributions) -> tuple[Sampler, ...]:

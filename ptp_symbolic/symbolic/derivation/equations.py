@@ -74,7 +74,8 @@ class Equations:
 
     Set-valued friction and contact enter through mode symbols, so that the equations are smooth
     in every mode. `forcing` holds everything but the friction torques. `terms` are named functions
-    in which they are written, each of those before it. `switches` belong to effects. `samplers` set
+    in which they are written, each of those before it. `switches` belong to effects,
+    `quantities` are what these call expressions in the equations. `samplers` set
     states at instants. `delays`
     gives for every input the time by which it is late, if it can be. The equations hold within
     `limits`, for parameters that meet the `requirements`.
@@ -97,6 +98,7 @@ class Equations:
     contacts: tuple[Contact, ...]
     switches: tuple[Switch, ...]
     outputs: tuple[tuple[str, str, sp.Expr], ...]
+    quantities: tuple[tuple[str, sp.Expr], ...]
     limits: tuple[Limit, ...]
     requirements: tuple[Requirement, ...]
     ledger: Ledger
