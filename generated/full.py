@@ -127,7 +127,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "bfb4dc273b223e3c"
+MODEL_HASH = "dc784586db28ab79"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 AXES = ("pan", "tilt")
@@ -422,7 +422,11 @@ EFFECTS = (
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def mode_derivative(t, x, u, p, m, dx):
-    """Write the time derivative of the state into dx in the modes m."""
+    """Write the time derivative of the state into dx in the modes m.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; dx [8] in STATE_UNITS per s.
+    """
     theta_pan = x[0]
     theta_tilt = x[1]
     omega_pan = x[2]
@@ -656,7 +660,11 @@ def mode_derivative(t, x, u, p, m, dx):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def jacobian(t, x, u, p, m, fx, fu, fp):
-    """Write the non-zero derivatives of mode_derivative by state, input and parameter."""
+    """Write the non-zero derivatives of mode_derivative by state, input and parameter.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; fx [8, 8]; fu [8, 2]; fp [8, 43].
+    """
     theta_pan = x[0]
     theta_tilt = x[1]
     omega_pan = x[2]
@@ -715,45 +723,38 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     active_pan = m[3]
     follower_torque_tilt_by_theta_gear_pan = active_pan * k_shaft_pan
     follower_torque_tilt_by_theta_pan = -follower_torque_tilt_by_theta_gear_pan
-    sin_tilt = math.sin(theta_tilt)
-    c_y_payload_sin_tilt = c_y_payload * sin_tilt
-    c_x_payload_c_y_payload_sin_tilt = c_x_payload * c_y_payload_sin_tilt
-    mass_pan_tilt_term = c_x_payload_c_y_payload_sin_tilt * m_payload
+    coupling_cos_tilt_by_c_z_payload = c_y_payload * m_payload
+    coupling_cos_tilt = c_z_payload * coupling_cos_tilt_by_c_z_payload
+    coupling_sin_tilt_by_m_payload = c_x_payload * c_y_payload
+    coupling_sin_tilt = coupling_sin_tilt_by_m_payload * m_payload
     cos_tilt = math.cos(theta_tilt)
-    c_z_payload_cos_tilt = c_z_payload * cos_tilt
-    c_y_payload_c_z_payload_cos_tilt = c_y_payload * c_z_payload_cos_tilt
-    mass_pan_tilt_term_2 = c_y_payload_c_z_payload_cos_tilt * m_payload
-    mass_pan_tilt = mass_pan_tilt_term - mass_pan_tilt_term_2
-    follower_inertia_tilt_by_J_x_payload = sin_tilt * sin_tilt
-    mass_pan_term = J_x_payload * follower_inertia_tilt_by_J_x_payload
-    mass_pan_term_2 = J_x_tilt * follower_inertia_tilt_by_J_x_payload
-    follower_inertia_tilt_by_J_z_payload = cos_tilt * cos_tilt
-    mass_pan_term_3 = J_z_payload * follower_inertia_tilt_by_J_z_payload
-    mass_pan_term_4 = J_z_tilt * follower_inertia_tilt_by_J_z_payload
+    sin_tilt = math.sin(theta_tilt)
+    mass_pan_tilt_term = cos_tilt * coupling_cos_tilt - coupling_sin_tilt * sin_tilt
+    mass_pan_tilt = -mass_pan_tilt_term
     c_x_payload_sq = c_x_payload * c_x_payload
     c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    mass_pan_term_5 = c_x_payload_sq_m_payload * follower_inertia_tilt_by_J_z_payload
     c_y_payload_sq = c_y_payload * c_y_payload
-    mass_pan_term_6 = c_y_payload_sq * follower_inertia_tilt_by_J_x_payload
-    mass_pan_term_7 = c_y_payload_sq * follower_inertia_tilt_by_J_z_payload
+    inertia_pan = (
+        J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + c_y_payload_sq * m_payload
+    )
+    coupling_sin_tilt_by_c_y_payload = c_x_payload * m_payload
+    inertia_tilt_by_c_x_payload = 2.0 * coupling_sin_tilt_by_c_y_payload
+    inertia_pan_sin_cos_tilt = c_z_payload * inertia_tilt_by_c_x_payload
     c_z_payload_sq = c_z_payload * c_z_payload
     c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
-    mass_pan_term_8 = c_z_payload_sq_m_payload * follower_inertia_tilt_by_J_x_payload
-    m_payload_sin_tilt = m_payload * sin_tilt
-    c_x_payload_m_payload_sin_tilt = c_x_payload * m_payload_sin_tilt
-    twice_c_z_payload_cos_tilt = 2.0 * c_z_payload_cos_tilt
-    mass_pan = (
-        J_pan
-        + c_x_payload_m_payload_sin_tilt * twice_c_z_payload_cos_tilt
-        + m_payload * mass_pan_term_6
-        + m_payload * mass_pan_term_7
-        + mass_pan_term
-        + mass_pan_term_2
-        + mass_pan_term_3
-        + mass_pan_term_4
-        + mass_pan_term_5
-        + mass_pan_term_8
+    inertia_pan_sin_sq_tilt = (
+        J_x_payload
+        + J_x_tilt
+        - J_z_payload
+        - J_z_tilt
+        - c_x_payload_sq_m_payload
+        + c_z_payload_sq_m_payload
     )
+    inertia_pan_per_sin_tilt = (
+        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
+    )
+    inertia_pan_per_sin_tilt_sin_tilt = inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt_sin_tilt
     mass_pan_inverse = 1.0 / mass_pan
     mass_pan_inverse_mass_pan_tilt = mass_pan_inverse * mass_pan_tilt
     load_torque_tilt_by_theta_pan = (
@@ -787,8 +788,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
     carried_tilt_by_theta_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_pan
-    mass_tilt_term = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
-    mass_tilt = J_motor_tilt_ratio_tilt_sq + mass_tilt_term
+    inertia_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
+    mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
     slide_tilt_sq = slide_tilt * slide_tilt
     inverse_determinant = 1.0 / (
         mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt) * slide_tilt_sq
@@ -805,7 +806,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lowered_tilt = -lowered_tilt_term_2 * lowered_tilt_term_lowered_tilt_term_4
     lost_lowering_tilt_term = 1.0 - lowered_tilt
     mass_pan_tilt_sq = mass_pan_tilt * mass_pan_tilt
-    load_inertia_tilt = -mass_pan_inverse * mass_pan_tilt_sq + mass_tilt_term
+    load_inertia_tilt = inertia_tilt - mass_pan_inverse * mass_pan_tilt_sq
     lost_lowering_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
     lost_lowering_tilt_term_3 = 1.0 / (abs(lost_lowering_tilt_term_2))
     lost_lowering_tilt = lost_lowering_tilt_term * lost_lowering_tilt_term_3
@@ -838,13 +839,16 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     omega_tilt_sq = omega_tilt * omega_tilt
     omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
     driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq_ratio_tilt_by_theta_tilt
+    driving_torque_tilt_term_ratio_tilt = driving_torque_tilt_term * ratio_tilt
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
     b_motor_tilt_omega_tilt_ratio_tilt = b_motor_tilt * omega_tilt_ratio_tilt
     driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
-    driving_torque_tilt_term_3 = (
-        driving_torque_tilt_term * ratio_tilt - driving_torque_tilt_term_2 * ratio_tilt
+    driving_torque_tilt = (
+        driving_torque_tilt_term_2 * ratio_tilt - driving_torque_tilt_term_ratio_tilt
     )
-    driving_torque_tilt = -driving_torque_tilt_term_3
+    cos_tilt_inertia_pan_per_sin_tilt = cos_tilt * inertia_pan_per_sin_tilt
+    coriolis_by_omega_pan = 2.0 * cos_tilt_inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt
+    coriolis = coriolis_by_omega_pan * omega_pan
     follower_torque_tilt_by_b_pan = -omega_pan
     shaft_torque_pan_term = follower_torque_tilt_by_b_pan + omega_gear_pan
     half_gap_pan = 0.5 * gap_pan
@@ -852,69 +856,22 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     shaft_torque_pan = active_pan * (
         d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
     )
-    cos_tilt_sin_tilt = cos_tilt * sin_tilt
-    twice_cos_tilt_sin_tilt = 2.0 * cos_tilt_sin_tilt
-    J_x_payload_twice_cos_tilt_sin_tilt = J_x_payload * twice_cos_tilt_sin_tilt
-    omega_pan_omega_tilt = omega_pan * omega_tilt
-    J_x_tilt_twice_cos_tilt_sin_tilt = J_x_tilt * twice_cos_tilt_sin_tilt
-    cos_tilt_m_payload = cos_tilt * m_payload
-    c_y_payload_cos_tilt_m_payload = c_y_payload * cos_tilt_m_payload
-    force_pan_term = c_x_payload * c_y_payload_cos_tilt_m_payload
-    follower_coupling_tilt_by_c_x_payload = c_y_payload_sin_tilt * m_payload
-    force_pan_term_2 = c_z_payload * follower_coupling_tilt_by_c_x_payload
-    twice_m_payload = 2.0 * m_payload
-    c_x_payload_twice_m_payload = c_x_payload * twice_m_payload
-    force_pan_term_3 = c_x_payload_twice_m_payload * follower_inertia_tilt_by_J_z_payload
-    c_z_payload_force_pan_term_3 = c_z_payload * force_pan_term_3
-    force_pan_term_4 = c_z_payload_sq_m_payload * twice_cos_tilt_sin_tilt
-    force_pan = (
-        -J_x_payload_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
-        - J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
-        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        - b_pan * omega_pan
-        + 2.0
-        * c_x_payload
-        * c_z_payload
-        * follower_inertia_tilt_by_J_x_payload
-        * m_payload
-        * omega_pan
-        * omega_tilt
-        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - c_z_payload_force_pan_term_3 * omega_pan_omega_tilt
-        - force_pan_term * omega_tilt_sq
-        - force_pan_term_2 * omega_tilt_sq
-        - force_pan_term_4 * omega_pan_omega_tilt
-        + shaft_torque_pan
+    follower_coupling_tilt_by_theta_tilt = (
+        cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt
     )
-    b_tilt_omega_tilt = b_tilt * omega_tilt
-    load_torque_tilt_term = 9.81 * c_x_payload
-    load_torque_tilt_term_2 = 9.81 * c_z_payload
-    omega_pan_sq = omega_pan * omega_pan
-    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
-    load_torque_tilt_term_3 = J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
-    J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq = J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
-    load_torque_tilt_term_4 = follower_inertia_tilt_by_J_z_payload * omega_pan_sq
-    c_x_payload_c_z_payload = c_x_payload * c_z_payload
-    load_torque_tilt_term_5 = c_x_payload_c_z_payload * load_torque_tilt_term_4
-    load_torque_tilt_term_6 = follower_inertia_tilt_by_J_x_payload * omega_pan_sq
-    load_torque_tilt_term_7 = c_x_payload_c_z_payload * load_torque_tilt_term_6
-    load_torque_tilt_term_7_m_payload = load_torque_tilt_term_7 * m_payload
-    load_torque_tilt_term_8 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-    load_torque_tilt = (
-        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
-        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
-        - b_tilt_omega_tilt
-        + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + cos_tilt_m_payload * load_torque_tilt_term
-        - force_pan * mass_pan_inverse_mass_pan_tilt
-        + load_torque_tilt_term_2 * m_payload_sin_tilt
-        - load_torque_tilt_term_3
-        + load_torque_tilt_term_5 * m_payload
-        - load_torque_tilt_term_7_m_payload
-        - load_torque_tilt_term_8
+    force_pan_term = follower_coupling_tilt_by_theta_tilt * omega_tilt
+    force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_term) + shaft_torque_pan
+    gravity_cos_tilt = 9.81 * coupling_sin_tilt_by_c_y_payload
+    coupling_cos_tilt_by_c_y_payload = c_z_payload * m_payload
+    gravity_sin_tilt = 9.81 * coupling_cos_tilt_by_c_y_payload
+    half_coriolis = 0.5 * coriolis
+    load_torque_tilt_term = (
+        -b_tilt * omega_tilt
+        + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt
+        + half_coriolis * omega_pan
     )
+    load_torque_tilt = -force_pan * mass_pan_inverse_mass_pan_tilt + load_torque_tilt_term
     carried_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
     )
@@ -951,28 +908,16 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fx[5, 0] = accel_gear_pan_by_theta_pan_term_2
     force_tilt_term = abs(carried_tilt_slide_tilt)
     half_force_tilt_term = 0.5 * force_tilt_term
+    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
     force_tilt = (
-        J_x_payload * cos_tilt * omega_pan_sq * sin_tilt
-        + J_x_tilt * cos_tilt * omega_pan_sq * sin_tilt
-        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
-        - b_tilt_omega_tilt
-        + c_x_payload
-        * c_z_payload
-        * follower_inertia_tilt_by_J_z_payload
-        * m_payload
-        * omega_pan_sq
-        + 9.81 * c_x_payload * cos_tilt * m_payload
-        + 9.81 * c_z_payload * m_payload * sin_tilt
-        + c_z_payload_sq * cos_tilt * m_payload * omega_pan_sq * sin_tilt
-        - driving_torque_tilt_term_3
-        - load_torque_tilt_term_3
-        - load_torque_tilt_term_7_m_payload
-        - load_torque_tilt_term_8
+        -driving_torque_tilt_term_ratio_tilt
+        + load_torque_tilt_term
         - slide_tilt
         * (
             accel_pan_by_theta_pan_term_2 * half_force_tilt_term
             + accel_pan_by_theta_pan_term_3 * carried_tilt_slide_tilt
         )
+        + transmitted_torque_tilt
     )
     accel_pan = inverse_determinant * (
         force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
@@ -980,63 +925,24 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     accel_tilt = inverse_determinant_slide_tilt_sq * (
         -force_pan * mass_pan_tilt_slide_tilt_sq + force_tilt * mass_pan
     )
-    follower_coupling_tilt_by_theta_tilt = force_pan_term + force_pan_term_2
-    J_z_payload_twice_cos_tilt_sin_tilt = J_z_payload * twice_cos_tilt_sin_tilt
-    J_z_tilt_twice_cos_tilt_sin_tilt = J_z_tilt * twice_cos_tilt_sin_tilt
-    follower_inertia_tilt_by_theta_tilt_term = (
-        c_x_payload_twice_m_payload * c_z_payload * follower_inertia_tilt_by_J_x_payload
+    inertia_pan_per_sin_tilt_by_theta_tilt = (
+        cos_tilt * inertia_pan_sin_sq_tilt - inertia_pan_sin_cos_tilt * sin_tilt
     )
-    follower_inertia_tilt_by_theta_tilt_term_2 = c_x_payload_sq_m_payload * twice_cos_tilt_sin_tilt
     follower_inertia_tilt_by_theta_tilt = (
-        J_x_payload_twice_cos_tilt_sin_tilt
-        + J_x_tilt_twice_cos_tilt_sin_tilt
-        - J_z_payload_twice_cos_tilt_sin_tilt
-        - J_z_tilt_twice_cos_tilt_sin_tilt
-        + c_z_payload_force_pan_term_3
-        - follower_inertia_tilt_by_theta_tilt_term
-        - follower_inertia_tilt_by_theta_tilt_term_2
-        + force_pan_term_4
+        cos_tilt_inertia_pan_per_sin_tilt + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt
     )
-    twice_omega_pan_omega_tilt = 2.0 * omega_pan_omega_tilt
-    accel_pan_by_theta_tilt_term = follower_inertia_tilt_by_J_z_payload * twice_omega_pan_omega_tilt
-    J_x_payload_accel_pan_by_theta_tilt_term = J_x_payload * accel_pan_by_theta_tilt_term
-    J_x_tilt_accel_pan_by_theta_tilt_term = J_x_tilt * accel_pan_by_theta_tilt_term
+    twice_omega_pan = 2.0 * omega_pan
+    coriolis_by_theta_tilt = (
+        2.0 * cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
+        - inertia_pan_per_sin_tilt_sin_tilt * twice_omega_pan
+    )
+    accel_pan_by_theta_tilt_term = (
+        coriolis_by_theta_tilt * omega_tilt + mass_pan_tilt_term * omega_tilt_sq
+    )
     accel_pan_by_theta_tilt_term_2 = (
-        follower_inertia_tilt_by_J_x_payload * twice_omega_pan_omega_tilt
-    )
-    accel_pan_by_theta_tilt_term_3 = J_z_payload * accel_pan_by_theta_tilt_term_2
-    J_z_tilt_accel_pan_by_theta_tilt_term_2 = J_z_tilt * accel_pan_by_theta_tilt_term_2
-    mass_pan_tilt_term_2_omega_tilt_sq = mass_pan_tilt_term_2 * omega_tilt_sq
-    accel_pan_by_theta_tilt_term_4 = accel_pan_by_theta_tilt_term_2 * c_x_payload_sq_m_payload
-    accel_pan_by_theta_tilt_term_5 = accel_pan_by_theta_tilt_term * c_z_payload_sq_m_payload
-    accel_pan_by_theta_tilt_term_6 = (
-        2.0 * J_x_payload * follower_inertia_tilt_by_J_x_payload * omega_pan * omega_tilt
-        - J_x_payload_accel_pan_by_theta_tilt_term
-        + 2.0 * J_x_tilt * follower_inertia_tilt_by_J_x_payload * omega_pan * omega_tilt
-        - J_x_tilt_accel_pan_by_theta_tilt_term
-        + 2.0 * J_z_payload * follower_inertia_tilt_by_J_z_payload * omega_pan * omega_tilt
-        + 2.0 * J_z_tilt * follower_inertia_tilt_by_J_z_payload * omega_pan * omega_tilt
-        - J_z_tilt_accel_pan_by_theta_tilt_term_2
-        - accel_pan * follower_inertia_tilt_by_theta_tilt
-        - accel_pan_by_theta_tilt_term_3
-        - accel_pan_by_theta_tilt_term_4
-        - accel_pan_by_theta_tilt_term_5
+        -accel_pan * follower_inertia_tilt_by_theta_tilt
+        - accel_pan_by_theta_tilt_term
         - accel_tilt * follower_coupling_tilt_by_theta_tilt
-        + c_x_payload * c_y_payload * m_payload * omega_tilt_sq * sin_tilt
-        + 8.0 * c_x_payload * c_z_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        + 2.0
-        * c_x_payload_sq
-        * follower_inertia_tilt_by_J_z_payload
-        * m_payload
-        * omega_pan
-        * omega_tilt
-        + 2.0
-        * c_z_payload_sq
-        * follower_inertia_tilt_by_J_x_payload
-        * m_payload
-        * omega_pan
-        * omega_tilt
-        - mass_pan_tilt_term_2_omega_tilt_sq
     )
     length_tilt_by_theta_tilt_by_theta_tilt_term = (
         length_tilt_by_theta_tilt_term * length_tilt_term ** (-1.5)
@@ -1087,50 +993,20 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         -follower_coupling_tilt_by_theta_tilt * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_theta_tilt * load_inertia_tilt_by_theta_tilt_term_2
     )
-    follower_torque_tilt_by_theta_tilt_term = c_x_payload_m_payload_sin_tilt * c_z_payload_cos_tilt
-    follower_torque_tilt_by_theta_tilt = (
-        -J_x_payload_accel_pan_by_theta_tilt_term
-        - J_x_tilt_accel_pan_by_theta_tilt_term
-        - J_z_tilt_accel_pan_by_theta_tilt_term_2
-        - accel_pan_by_theta_tilt_term_3
-        - accel_pan_by_theta_tilt_term_4
-        - accel_pan_by_theta_tilt_term_5
-        + 8.0 * follower_torque_tilt_by_theta_tilt_term * omega_pan_omega_tilt
-        + mass_pan_term * twice_omega_pan_omega_tilt
-        + mass_pan_term_2 * twice_omega_pan_omega_tilt
-        + mass_pan_term_3 * twice_omega_pan_omega_tilt
-        + mass_pan_term_4 * twice_omega_pan_omega_tilt
-        + mass_pan_term_5 * twice_omega_pan_omega_tilt
-        + mass_pan_term_8 * twice_omega_pan_omega_tilt
-        + mass_pan_tilt_term * omega_tilt_sq
-        - mass_pan_tilt_term_2_omega_tilt_sq
-    )
+    follower_torque_tilt_by_theta_tilt = -accel_pan_by_theta_tilt_term
+    half_omega_pan = 0.5 * omega_pan
+    gravity_cos_tilt_sin_tilt = gravity_cos_tilt * sin_tilt
     force_pan_mass_pan_inverse = force_pan * mass_pan_inverse
     load_torque_tilt_by_theta_tilt_term = (
-        -J_x_payload * follower_inertia_tilt_by_J_z_payload * omega_pan_sq
-        - J_x_tilt * follower_inertia_tilt_by_J_z_payload * omega_pan_sq
-        - J_z_payload * follower_inertia_tilt_by_J_x_payload * omega_pan_sq
-        - J_z_tilt * follower_inertia_tilt_by_J_x_payload * omega_pan_sq
-        + 9.81 * c_x_payload_m_payload_sin_tilt
-        - c_x_payload_sq * follower_inertia_tilt_by_J_x_payload * m_payload * omega_pan_sq
-        - 9.81 * c_z_payload * cos_tilt * m_payload
-        - c_z_payload_sq * follower_inertia_tilt_by_J_z_payload * m_payload * omega_pan_sq
-        + 4.0 * follower_torque_tilt_by_theta_tilt_term * omega_pan_sq
-        + mass_pan_term * omega_pan_sq
-        + mass_pan_term_2 * omega_pan_sq
-        + mass_pan_term_3 * omega_pan_sq
-        + mass_pan_term_4 * omega_pan_sq
-        + mass_pan_term_5 * omega_pan_sq
-        + mass_pan_term_8 * omega_pan_sq
+        force_pan * load_inertia_tilt_by_theta_tilt_term * mass_pan_tilt
     )
     load_torque_tilt_by_theta_tilt = (
-        -follower_coupling_tilt_by_theta_tilt * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_theta_tilt
-        * force_pan
-        * load_inertia_tilt_by_theta_tilt_term
-        * mass_pan_tilt
+        coriolis_by_theta_tilt * half_omega_pan
+        + cos_tilt * gravity_sin_tilt
+        - follower_coupling_tilt_by_theta_tilt * force_pan_mass_pan_inverse
+        + follower_inertia_tilt_by_theta_tilt * load_torque_tilt_by_theta_tilt_term
         - follower_torque_tilt_by_theta_tilt * mass_pan_inverse_mass_pan_tilt
-        - load_torque_tilt_by_theta_tilt_term
+        - gravity_cos_tilt_sin_tilt
     )
     twice_ratio_tilt_by_theta_tilt = 2.0 * ratio_tilt_by_theta_tilt
     J_motor_tilt_ratio_tilt_load_torque_tilt = J_motor_tilt_ratio_tilt * load_torque_tilt
@@ -1165,29 +1041,31 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - lost_raising_tilt_by_theta_tilt_term_3 * twice_ratio_tilt_by_theta_tilt
     )
     half_carried_tilt_slide_tilt = 0.5 * carried_tilt_slide_tilt
-    accel_pan_by_theta_tilt_term_7 = slide_tilt * (
+    accel_pan_by_theta_tilt_term_3 = slide_tilt * (
         0.5 * force_tilt_term - half_carried_tilt_slide_tilt
     )
-    accel_pan_by_theta_tilt_term_8 = slide_tilt * (
+    accel_pan_by_theta_tilt_term_4 = slide_tilt * (
         half_carried_tilt_slide_tilt + half_force_tilt_term
     )
     J_motor_tilt_ratio_tilt_accel_tilt = J_motor_tilt_ratio_tilt * accel_tilt
-    accel_pan_by_theta_tilt_term_9 = (
+    accel_pan_by_theta_tilt_term_5 = (
         -J_motor_tilt_ratio_tilt_accel_tilt * twice_ratio_tilt_by_theta_tilt
         - accel_pan * follower_coupling_tilt_by_theta_tilt
         - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_theta_tilt
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_theta_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_theta_tilt
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_theta_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_theta_tilt
+        + 0.5 * coriolis_by_theta_tilt * omega_pan
+        + cos_tilt * gravity_sin_tilt
         - driving_torque_tilt_by_theta_tilt_term_2
-        - load_torque_tilt_by_theta_tilt_term
+        - gravity_cos_tilt_sin_tilt
     )
     fx[2, 1] = inverse_determinant * (
-        accel_pan_by_theta_tilt_term_6 * mass_tilt
-        - accel_pan_by_theta_tilt_term_9 * mass_pan_tilt_slide_tilt_sq
+        accel_pan_by_theta_tilt_term_2 * mass_tilt
+        - accel_pan_by_theta_tilt_term_5 * mass_pan_tilt_slide_tilt_sq
     )
     fx[3, 1] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_theta_tilt_term_6 * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_theta_tilt_term_9 * mass_pan
+        -accel_pan_by_theta_tilt_term_2 * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_theta_tilt_term_5 * mass_pan
     )
     L_tilt_inverse = 1.0 / L_tilt
     K_t_tilt_L_tilt_inverse_omega_tilt = K_t_tilt * L_tilt_inverse * omega_tilt
@@ -1195,48 +1073,17 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fx[0, 2] = 1.0
     follower_torque_tilt_by_omega_gear_pan = active_pan * d_shaft_pan
     follower_torque_tilt_by_omega_pan = (
-        -J_x_payload_twice_cos_tilt_sin_tilt * omega_tilt
-        - J_x_tilt_twice_cos_tilt_sin_tilt * omega_tilt
-        + 2.0 * J_z_payload * cos_tilt * omega_tilt * sin_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_tilt * sin_tilt
-        - b_pan
-        + 2.0
-        * c_x_payload
-        * c_z_payload
-        * follower_inertia_tilt_by_J_x_payload
-        * m_payload
-        * omega_tilt
-        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_tilt * sin_tilt
-        - c_z_payload_force_pan_term_3 * omega_tilt
-        - follower_torque_tilt_by_omega_gear_pan
-        - force_pan_term_4 * omega_tilt
+        -b_pan - coriolis_by_omega_pan * omega_tilt - follower_torque_tilt_by_omega_gear_pan
     )
-    load_torque_tilt_by_omega_pan_term = J_x_payload_twice_cos_tilt_sin_tilt * omega_pan
-    load_torque_tilt_by_omega_pan_term_2 = J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan
-    load_torque_tilt_by_omega_pan_term_3 = J_z_payload_twice_cos_tilt_sin_tilt * omega_pan
-    load_torque_tilt_by_omega_pan_term_4 = J_z_tilt_twice_cos_tilt_sin_tilt * omega_pan
-    load_torque_tilt_by_omega_pan_term_5 = follower_inertia_tilt_by_theta_tilt_term * omega_pan
-    c_z_payload_force_pan_term_3_omega_pan = c_z_payload_force_pan_term_3 * omega_pan
-    load_torque_tilt_by_omega_pan_term_6 = follower_inertia_tilt_by_theta_tilt_term_2 * omega_pan
-    force_pan_term_4_omega_pan = force_pan_term_4 * omega_pan
-    load_torque_tilt_by_omega_pan_term_7 = (
-        -c_z_payload_force_pan_term_3_omega_pan
-        - force_pan_term_4_omega_pan
-        - load_torque_tilt_by_omega_pan_term
-        - load_torque_tilt_by_omega_pan_term_2
-        + load_torque_tilt_by_omega_pan_term_3
-        + load_torque_tilt_by_omega_pan_term_4
-        + load_torque_tilt_by_omega_pan_term_5
-        + load_torque_tilt_by_omega_pan_term_6
-    )
+    load_torque_tilt_by_omega_pan_term = coriolis_by_omega_pan * half_omega_pan + half_coriolis
     load_torque_tilt_by_omega_pan = (
         -follower_torque_tilt_by_omega_pan * mass_pan_inverse_mass_pan_tilt
-        - load_torque_tilt_by_omega_pan_term_7
+        + load_torque_tilt_by_omega_pan_term
     )
     carried_tilt_by_omega_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_pan
     accel_pan_by_omega_pan_term = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_omega_pan
-        - load_torque_tilt_by_omega_pan_term_7
+        + load_torque_tilt_by_omega_pan_term
     )
     fx[2, 2] = inverse_determinant * (
         -accel_pan_by_omega_pan_term * mass_pan_tilt_slide_tilt_sq
@@ -1248,19 +1095,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     fx[5, 2] = accel_gear_pan_by_theta_pan_term * follower_torque_tilt_by_omega_gear_pan
     fx[1, 3] = 1.0
-    twice_omega_tilt = 2.0 * omega_tilt
-    follower_torque_tilt_by_omega_tilt = (
-        -c_z_payload_force_pan_term_3_omega_pan
-        - force_pan_term * twice_omega_tilt
-        - force_pan_term_2 * twice_omega_tilt
-        - force_pan_term_4_omega_pan
-        - load_torque_tilt_by_omega_pan_term
-        - load_torque_tilt_by_omega_pan_term_2
-        + load_torque_tilt_by_omega_pan_term_3
-        + load_torque_tilt_by_omega_pan_term_4
-        + load_torque_tilt_by_omega_pan_term_5
-        + load_torque_tilt_by_omega_pan_term_6
-    )
+    follower_torque_tilt_by_omega_tilt = -coriolis - 2.0 * force_pan_term
     driving_torque_tilt_by_omega_tilt_term = (
         J_motor_tilt * omega_tilt_ratio_tilt * twice_ratio_tilt_by_theta_tilt
         + b_motor_tilt * ratio_tilt_sq
@@ -1363,14 +1198,9 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fx[7, 7] = -L_tilt_inverse * R_tilt
     fu[6, 0] = L_pan_inverse
     fu[7, 1] = L_tilt_inverse
-    follower_inertia_tilt_by_J_pan = 1.0
-    load_inertia_tilt_by_J_pan = (
-        follower_inertia_tilt_by_J_pan * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    load_torque_tilt_by_J_pan_term = (
-        force_pan * load_inertia_tilt_by_theta_tilt_term * mass_pan_tilt
-    )
-    load_torque_tilt_by_J_pan = follower_inertia_tilt_by_J_pan * load_torque_tilt_by_J_pan_term
+    accel_pan_by_J_pan_term = accel_pan
+    load_inertia_tilt_by_J_pan = load_inertia_tilt_by_theta_tilt_term_2
+    load_torque_tilt_by_J_pan = load_torque_tilt_by_theta_tilt_term
     carried_tilt_by_J_pan = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_pan
         + driving_torque_tilt * load_inertia_tilt_by_J_pan
@@ -1381,30 +1211,34 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_by_J_pan = (
         -load_inertia_tilt_by_J_pan * lost_raising_tilt_by_theta_tilt_term_2
     )
-    accel_pan_by_J_pan_term = (
+    accel_pan_by_J_pan_term_2 = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_pan
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_pan
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_pan
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_pan
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_pan
     )
     fp[2, 0] = inverse_determinant * (
-        -accel_pan * mass_tilt - accel_pan_by_J_pan_term * mass_pan_tilt_slide_tilt_sq
+        -accel_pan_by_J_pan_term * mass_tilt
+        - accel_pan_by_J_pan_term_2 * mass_pan_tilt_slide_tilt_sq
     )
     fp[3, 0] = inverse_determinant_slide_tilt_sq * (
-        accel_pan * mass_pan_tilt_slide_tilt_sq + accel_pan_by_J_pan_term * mass_pan
+        accel_pan_by_J_pan_term * mass_pan_tilt_slide_tilt_sq + accel_pan_by_J_pan_term_2 * mass_pan
     )
-    follower_torque_tilt_by_J_z_payload = omega_pan_omega_tilt * twice_cos_tilt_sin_tilt
+    inertia_pan_per_sin_tilt_by_J_x_tilt = sin_tilt
+    follower_inertia_tilt_by_J_x_tilt = inertia_pan_per_sin_tilt_by_J_x_tilt * sin_tilt
+    cos_tilt_twice_omega_pan = cos_tilt * twice_omega_pan
+    coriolis_by_J_x_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_tilt
+    coriolis_by_J_x_tilt_omega_tilt = coriolis_by_J_x_tilt * omega_tilt
     accel_pan_by_J_x_tilt_term = (
-        -accel_pan * follower_inertia_tilt_by_J_x_payload - follower_torque_tilt_by_J_z_payload
+        -accel_pan * follower_inertia_tilt_by_J_x_tilt - coriolis_by_J_x_tilt_omega_tilt
     )
-    accel_pan_by_J_x_tilt_term_2 = -accel_pan_by_J_x_tilt_term * mass_tilt
     load_inertia_tilt_by_J_x_tilt = (
-        follower_inertia_tilt_by_J_x_payload * load_inertia_tilt_by_theta_tilt_term_2
+        follower_inertia_tilt_by_J_x_tilt * load_inertia_tilt_by_theta_tilt_term_2
     )
-    follower_torque_tilt_by_J_x_payload = -follower_torque_tilt_by_J_z_payload
+    follower_torque_tilt_by_J_x_tilt = -coriolis_by_J_x_tilt_omega_tilt
     load_torque_tilt_by_J_x_tilt = (
-        cos_tilt_sin_tilt_omega_pan_sq
-        + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_J_pan_term
-        - follower_torque_tilt_by_J_x_payload * mass_pan_inverse_mass_pan_tilt
+        coriolis_by_J_x_tilt * half_omega_pan
+        + follower_inertia_tilt_by_J_x_tilt * load_torque_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_J_x_tilt * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_x_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_tilt
@@ -1416,50 +1250,46 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_by_J_x_tilt = (
         -load_inertia_tilt_by_J_x_tilt * lost_raising_tilt_by_theta_tilt_term_2
     )
-    minus_cos_tilt_sin_tilt_omega_pan_sq = -cos_tilt_sin_tilt_omega_pan_sq
-    accel_pan_by_J_x_tilt_term_3 = (
+    accel_pan_by_J_x_tilt_term_2 = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_x_tilt
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_x_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_x_tilt
-        - minus_cos_tilt_sin_tilt_omega_pan_sq
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_x_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_x_tilt
+        + 0.5 * coriolis_by_J_x_tilt * omega_pan
     )
     fp[2, 1] = inverse_determinant * (
-        -accel_pan_by_J_x_tilt_term_2 - accel_pan_by_J_x_tilt_term_3 * mass_pan_tilt_slide_tilt_sq
+        accel_pan_by_J_x_tilt_term * mass_tilt
+        - accel_pan_by_J_x_tilt_term_2 * mass_pan_tilt_slide_tilt_sq
     )
-    accel_tilt_by_J_x_tilt_term = -accel_pan_by_J_x_tilt_term * mass_pan_tilt_slide_tilt_sq
     fp[3, 1] = inverse_determinant_slide_tilt_sq * (
-        accel_pan_by_J_x_tilt_term_3 * mass_pan + accel_tilt_by_J_x_tilt_term
+        -accel_pan_by_J_x_tilt_term * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_J_x_tilt_term_2 * mass_pan
     )
-    load_inertia_tilt_by_J_y_tilt = 1.0
-    carried_tilt_by_J_y_tilt = driving_torque_tilt * load_inertia_tilt_by_J_y_tilt
-    lost_lowering_tilt_by_J_y_tilt = (
-        -load_inertia_tilt_by_J_y_tilt * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_y_tilt = (
-        -load_inertia_tilt_by_J_y_tilt * lost_raising_tilt_by_theta_tilt_term_2
-    )
+    carried_tilt_by_J_y_tilt = driving_torque_tilt
+    lost_lowering_tilt_by_J_y_tilt = -lost_lowering_tilt_by_theta_tilt_term_2
+    lost_raising_tilt_by_J_y_tilt = -lost_raising_tilt_by_theta_tilt_term_2
     accel_pan_by_J_y_tilt_term = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_y_tilt
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_y_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_y_tilt
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_y_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_y_tilt
         - accel_tilt
     )
     fp[2, 2] = -accel_pan_by_J_y_tilt_term * accel_pan_by_i_tilt_term_2
     fp[3, 2] = accel_pan_by_J_y_tilt_term * accel_tilt_by_i_tilt_term
+    inertia_pan_per_sin_tilt_by_J_z_tilt = -sin_tilt
+    follower_inertia_tilt_by_J_z_tilt = inertia_pan_per_sin_tilt_by_J_z_tilt * sin_tilt + 1.0
+    coriolis_by_J_z_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_tilt
+    coriolis_by_J_z_tilt_omega_tilt = coriolis_by_J_z_tilt * omega_tilt
     accel_pan_by_J_z_tilt_term = (
-        -accel_pan * follower_inertia_tilt_by_J_z_payload - follower_torque_tilt_by_J_x_payload
+        -accel_pan * follower_inertia_tilt_by_J_z_tilt - coriolis_by_J_z_tilt_omega_tilt
     )
-    accel_pan_by_J_z_tilt_term_2 = -accel_pan_by_J_z_tilt_term * mass_tilt
     load_inertia_tilt_by_J_z_tilt = (
-        follower_inertia_tilt_by_J_z_payload * load_inertia_tilt_by_theta_tilt_term_2
+        follower_inertia_tilt_by_J_z_tilt * load_inertia_tilt_by_theta_tilt_term_2
     )
+    follower_torque_tilt_by_J_z_tilt = -coriolis_by_J_z_tilt_omega_tilt
     load_torque_tilt_by_J_z_tilt = (
-        -cos_tilt_sin_tilt_omega_pan_sq
-        + follower_inertia_tilt_by_J_z_payload
-        * force_pan
-        * load_inertia_tilt_by_theta_tilt_term
-        * mass_pan_tilt
-        - follower_torque_tilt_by_J_z_payload * mass_pan_inverse_mass_pan_tilt
+        coriolis_by_J_z_tilt * half_omega_pan
+        + follower_inertia_tilt_by_J_z_tilt * load_torque_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_J_z_tilt * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_z_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_tilt
@@ -1471,67 +1301,66 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_by_J_z_tilt = (
         -load_inertia_tilt_by_J_z_tilt * lost_raising_tilt_by_theta_tilt_term_2
     )
-    accel_pan_by_J_z_tilt_term_3 = (
+    accel_pan_by_J_z_tilt_term_2 = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_z_tilt
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_z_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_z_tilt
-        - cos_tilt_sin_tilt_omega_pan_sq
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_z_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_z_tilt
+        + 0.5 * coriolis_by_J_z_tilt * omega_pan
     )
     fp[2, 3] = inverse_determinant * (
-        -accel_pan_by_J_z_tilt_term_2 - accel_pan_by_J_z_tilt_term_3 * mass_pan_tilt_slide_tilt_sq
+        accel_pan_by_J_z_tilt_term * mass_tilt
+        - accel_pan_by_J_z_tilt_term_2 * mass_pan_tilt_slide_tilt_sq
     )
-    accel_tilt_by_J_z_tilt_term = -accel_pan_by_J_z_tilt_term * mass_pan_tilt_slide_tilt_sq
     fp[3, 3] = inverse_determinant_slide_tilt_sq * (
-        accel_pan_by_J_z_tilt_term_3 * mass_pan + accel_tilt_by_J_z_tilt_term
+        -accel_pan_by_J_z_tilt_term * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_J_z_tilt_term_2 * mass_pan
     )
+    coupling_cos_tilt_by_m_payload = c_y_payload * c_z_payload
     follower_coupling_tilt_by_m_payload = (
-        c_x_payload_c_y_payload_sin_tilt - c_y_payload_c_z_payload_cos_tilt
+        -cos_tilt * coupling_cos_tilt_by_m_payload + coupling_sin_tilt_by_m_payload * sin_tilt
+    )
+    inertia_pan_by_m_payload = c_x_payload_sq + c_y_payload_sq
+    inertia_pan_sin_cos_tilt_by_m_payload = 2.0 * c_x_payload * c_z_payload
+    inertia_pan_sin_sq_tilt_by_m_payload = -c_x_payload_sq + c_z_payload_sq
+    inertia_pan_per_sin_tilt_by_m_payload = (
+        cos_tilt * inertia_pan_sin_cos_tilt_by_m_payload
+        + inertia_pan_sin_sq_tilt_by_m_payload * sin_tilt
     )
     follower_inertia_tilt_by_m_payload = (
-        c_x_payload * sin_tilt * twice_c_z_payload_cos_tilt
-        + c_x_payload_sq * follower_inertia_tilt_by_J_z_payload
-        + c_z_payload_sq * follower_inertia_tilt_by_J_x_payload
-        + mass_pan_term_6
-        + mass_pan_term_7
+        inertia_pan_by_m_payload + inertia_pan_per_sin_tilt_by_m_payload * sin_tilt
     )
-    c_x_payload_omega_tilt_sq = c_x_payload * omega_tilt_sq
-    c_z_payload_omega_tilt_sq = c_z_payload * omega_tilt_sq
+    coriolis_by_m_payload = (
+        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_m_payload
+        - inertia_pan_sin_cos_tilt_by_m_payload * omega_pan
+    )
+    omega_tilt_sq_sin_tilt = omega_tilt_sq * sin_tilt
+    cos_tilt_omega_tilt_sq = cos_tilt * omega_tilt_sq
     accel_pan_by_m_payload_term = (
-        accel_pan_by_theta_tilt_term * c_x_payload_c_z_payload
-        - 2.0
-        * c_x_payload
-        * c_z_payload
-        * follower_inertia_tilt_by_J_x_payload
-        * omega_pan
-        * omega_tilt
-        + c_x_payload_omega_tilt_sq * c_y_payload * cos_tilt
-        - 2.0 * c_x_payload_sq * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + c_y_payload_sin_tilt * c_z_payload_omega_tilt_sq
-        + c_z_payload_sq * follower_torque_tilt_by_J_z_payload
+        coriolis_by_m_payload * omega_tilt
+        + cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_m_payload
+        + coupling_cos_tilt_by_m_payload * omega_tilt_sq_sin_tilt
     )
     accel_pan_by_m_payload_term_2 = (
         -accel_pan * follower_inertia_tilt_by_m_payload
         - accel_pan_by_m_payload_term
         - accel_tilt * follower_coupling_tilt_by_m_payload
     )
-    c_x_payload_sq_plus_c_z_payload_sq = c_x_payload_sq + c_z_payload_sq
+    inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
     load_inertia_tilt_by_m_payload = (
-        c_x_payload_sq_plus_c_z_payload_sq
-        - follower_coupling_tilt_by_m_payload * twice_mass_pan_inverse_mass_pan_tilt
+        -follower_coupling_tilt_by_m_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_m_payload * load_inertia_tilt_by_theta_tilt_term_2
+        + inertia_tilt_by_m_payload
     )
     follower_torque_tilt_by_m_payload = -accel_pan_by_m_payload_term
-    load_torque_tilt_by_m_payload_term = c_x_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
+    gravity_cos_tilt_by_m_payload = 9.81 * c_x_payload
+    gravity_sin_tilt_by_m_payload = 9.81 * c_z_payload
     load_torque_tilt_by_m_payload = (
-        c_z_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
-        + cos_tilt * load_torque_tilt_term
+        coriolis_by_m_payload * half_omega_pan
+        + cos_tilt * gravity_cos_tilt_by_m_payload
         - follower_coupling_tilt_by_m_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_m_payload * load_torque_tilt_by_J_pan_term
+        + follower_inertia_tilt_by_m_payload * load_torque_tilt_by_theta_tilt_term
         - follower_torque_tilt_by_m_payload * mass_pan_inverse_mass_pan_tilt
-        - load_torque_tilt_by_m_payload_term
-        + load_torque_tilt_term_2 * sin_tilt
-        + load_torque_tilt_term_5
-        - load_torque_tilt_term_7
+        + gravity_sin_tilt_by_m_payload * sin_tilt
     )
     carried_tilt_by_m_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_m_payload
@@ -1546,15 +1375,12 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     accel_pan_by_m_payload_term_3 = (
         -accel_pan * follower_coupling_tilt_by_m_payload
         - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_m_payload
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_m_payload
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_m_payload
-        - accel_tilt * c_x_payload_sq_plus_c_z_payload_sq
-        + c_x_payload * c_z_payload * follower_inertia_tilt_by_J_z_payload * omega_pan_sq
-        + 9.81 * c_x_payload * cos_tilt
-        + 9.81 * c_z_payload * sin_tilt
-        + c_z_payload_sq * cos_tilt * omega_pan_sq * sin_tilt
-        - load_torque_tilt_by_m_payload_term
-        - load_torque_tilt_term_7
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_m_payload
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_m_payload
+        - accel_tilt * inertia_tilt_by_m_payload
+        + 0.5 * coriolis_by_m_payload * omega_pan
+        + cos_tilt * gravity_cos_tilt_by_m_payload
+        + gravity_sin_tilt_by_m_payload * sin_tilt
     )
     fp[2, 4] = inverse_determinant * (
         accel_pan_by_m_payload_term_2 * mass_tilt
@@ -1564,12 +1390,20 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         -accel_pan_by_m_payload_term_2 * mass_pan_tilt_slide_tilt_sq
         + accel_pan_by_m_payload_term_3 * mass_pan
     )
+    inertia_pan_per_sin_tilt_by_J_x_payload = sin_tilt
+    follower_inertia_tilt_by_J_x_payload = inertia_pan_per_sin_tilt_by_J_x_payload * sin_tilt
+    coriolis_by_J_x_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_payload
+    coriolis_by_J_x_payload_omega_tilt = coriolis_by_J_x_payload * omega_tilt
+    accel_pan_by_J_x_payload_term = (
+        -accel_pan * follower_inertia_tilt_by_J_x_payload - coriolis_by_J_x_payload_omega_tilt
+    )
     load_inertia_tilt_by_J_x_payload = (
         follower_inertia_tilt_by_J_x_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
+    follower_torque_tilt_by_J_x_payload = -coriolis_by_J_x_payload_omega_tilt
     load_torque_tilt_by_J_x_payload = (
-        cos_tilt_sin_tilt_omega_pan_sq
-        + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_J_pan_term
+        coriolis_by_J_x_payload * half_omega_pan
+        + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_theta_tilt_term
         - follower_torque_tilt_by_J_x_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_x_payload = (
@@ -1582,43 +1416,45 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_by_J_x_payload = (
         -load_inertia_tilt_by_J_x_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
-    accel_pan_by_J_x_payload_term = (
+    accel_pan_by_J_x_payload_term_2 = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_x_payload
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_x_payload
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_x_payload
-        - minus_cos_tilt_sin_tilt_omega_pan_sq
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_x_payload
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_x_payload
+        + 0.5 * coriolis_by_J_x_payload * omega_pan
     )
     fp[2, 5] = inverse_determinant * (
-        -accel_pan_by_J_x_payload_term * mass_pan_tilt_slide_tilt_sq - accel_pan_by_J_x_tilt_term_2
+        accel_pan_by_J_x_payload_term * mass_tilt
+        - accel_pan_by_J_x_payload_term_2 * mass_pan_tilt_slide_tilt_sq
     )
     fp[3, 5] = inverse_determinant_slide_tilt_sq * (
-        accel_pan_by_J_x_payload_term * mass_pan + accel_tilt_by_J_x_tilt_term
+        -accel_pan_by_J_x_payload_term * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_J_x_payload_term_2 * mass_pan
     )
-    load_inertia_tilt_by_J_y_payload = 1.0
-    carried_tilt_by_J_y_payload = driving_torque_tilt * load_inertia_tilt_by_J_y_payload
-    lost_lowering_tilt_by_J_y_payload = (
-        -load_inertia_tilt_by_J_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_y_payload = (
-        -load_inertia_tilt_by_J_y_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
+    carried_tilt_by_J_y_payload = driving_torque_tilt
+    lost_lowering_tilt_by_J_y_payload = -lost_lowering_tilt_by_theta_tilt_term_2
+    lost_raising_tilt_by_J_y_payload = -lost_raising_tilt_by_theta_tilt_term_2
     accel_pan_by_J_y_payload_term = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_y_payload
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_y_payload
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_y_payload
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_y_payload
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_y_payload
         - accel_tilt
     )
     fp[2, 6] = -accel_pan_by_J_y_payload_term * accel_pan_by_i_tilt_term_2
     fp[3, 6] = accel_pan_by_J_y_payload_term * accel_tilt_by_i_tilt_term
+    inertia_pan_per_sin_tilt_by_J_z_payload = -sin_tilt
+    follower_inertia_tilt_by_J_z_payload = inertia_pan_per_sin_tilt_by_J_z_payload * sin_tilt + 1.0
+    coriolis_by_J_z_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_payload
+    coriolis_by_J_z_payload_omega_tilt = coriolis_by_J_z_payload * omega_tilt
+    accel_pan_by_J_z_payload_term = (
+        -accel_pan * follower_inertia_tilt_by_J_z_payload - coriolis_by_J_z_payload_omega_tilt
+    )
     load_inertia_tilt_by_J_z_payload = (
         follower_inertia_tilt_by_J_z_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
+    follower_torque_tilt_by_J_z_payload = -coriolis_by_J_z_payload_omega_tilt
     load_torque_tilt_by_J_z_payload = (
-        -cos_tilt_sin_tilt_omega_pan_sq
-        + follower_inertia_tilt_by_J_z_payload
-        * force_pan
-        * load_inertia_tilt_by_theta_tilt_term
-        * mass_pan_tilt
+        coriolis_by_J_z_payload * half_omega_pan
+        + follower_inertia_tilt_by_J_z_payload * load_torque_tilt_by_theta_tilt_term
         - follower_torque_tilt_by_J_z_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_z_payload = (
@@ -1631,71 +1467,55 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_by_J_z_payload = (
         -load_inertia_tilt_by_J_z_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
-    accel_pan_by_J_z_payload_term = (
+    accel_pan_by_J_z_payload_term_2 = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_z_payload
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_z_payload
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_z_payload
-        - cos_tilt_sin_tilt_omega_pan_sq
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_z_payload
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_z_payload
+        + 0.5 * coriolis_by_J_z_payload * omega_pan
     )
     fp[2, 7] = inverse_determinant * (
-        -accel_pan_by_J_z_payload_term * mass_pan_tilt_slide_tilt_sq - accel_pan_by_J_z_tilt_term_2
+        accel_pan_by_J_z_payload_term * mass_tilt
+        - accel_pan_by_J_z_payload_term_2 * mass_pan_tilt_slide_tilt_sq
     )
     fp[3, 7] = inverse_determinant_slide_tilt_sq * (
-        accel_pan_by_J_z_payload_term * mass_pan + accel_tilt_by_J_z_tilt_term
+        -accel_pan_by_J_z_payload_term * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_J_z_payload_term_2 * mass_pan
     )
-    follower_inertia_tilt_by_c_x_payload_term = m_payload_sin_tilt * twice_c_z_payload_cos_tilt
+    follower_coupling_tilt_by_c_x_payload = coupling_cos_tilt_by_c_z_payload * sin_tilt
+    inertia_pan_sin_sq_tilt_by_c_x_payload = -inertia_tilt_by_c_x_payload
+    inertia_tilt_by_c_z_payload = 2.0 * coupling_cos_tilt_by_c_y_payload
+    inertia_pan_per_sin_tilt_by_c_x_payload = (
+        cos_tilt * inertia_tilt_by_c_z_payload + inertia_pan_sin_sq_tilt_by_c_x_payload * sin_tilt
+    )
     follower_inertia_tilt_by_c_x_payload = (
-        follower_inertia_tilt_by_c_x_payload_term + force_pan_term_3
+        inertia_pan_per_sin_tilt_by_c_x_payload * sin_tilt + inertia_tilt_by_c_x_payload
     )
-    accel_pan_by_c_x_payload_term = c_y_payload_cos_tilt_m_payload * omega_tilt_sq
-    c_z_payload_twice_m_payload = c_z_payload * twice_m_payload
+    coriolis_by_c_x_payload = (
+        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_x_payload
+        - inertia_tilt_by_c_z_payload * omega_pan
+    )
+    accel_pan_by_c_x_payload_term = (
+        coriolis_by_c_x_payload * omega_tilt
+        + cos_tilt_omega_tilt_sq * coupling_cos_tilt_by_c_z_payload
+    )
     accel_pan_by_c_x_payload_term_2 = (
-        c_z_payload_twice_m_payload * follower_inertia_tilt_by_J_z_payload * omega_pan_omega_tilt
-    )
-    accel_pan_by_c_x_payload_term_3 = (
         -accel_pan * follower_inertia_tilt_by_c_x_payload
         - accel_pan_by_c_x_payload_term
-        - accel_pan_by_c_x_payload_term_2
         - accel_tilt * follower_coupling_tilt_by_c_x_payload
-        + 4.0 * c_x_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        + 2.0
-        * c_z_payload
-        * follower_inertia_tilt_by_J_x_payload
-        * m_payload
-        * omega_pan
-        * omega_tilt
     )
     load_inertia_tilt_by_c_x_payload = (
-        c_x_payload_twice_m_payload
-        - follower_coupling_tilt_by_c_x_payload * twice_mass_pan_inverse_mass_pan_tilt
+        -follower_coupling_tilt_by_c_x_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_c_x_payload * load_inertia_tilt_by_theta_tilt_term_2
+        + inertia_tilt_by_c_x_payload
     )
-    follower_torque_tilt_by_c_x_payload_term = (
-        c_z_payload_twice_m_payload * follower_inertia_tilt_by_J_x_payload
-    )
-    c_x_payload_m_payload_sin_tilt_cos_tilt = c_x_payload_m_payload_sin_tilt * cos_tilt
-    follower_torque_tilt_by_c_x_payload_term_2 = 4.0 * omega_pan_omega_tilt
-    follower_torque_tilt_by_c_x_payload = (
-        -accel_pan_by_c_x_payload_term
-        - accel_pan_by_c_x_payload_term_2
-        + c_x_payload_m_payload_sin_tilt_cos_tilt * follower_torque_tilt_by_c_x_payload_term_2
-        + follower_torque_tilt_by_c_x_payload_term * omega_pan_omega_tilt
-    )
-    load_torque_tilt_by_c_x_payload_term = 2.0 * c_x_payload_m_payload_sin_tilt_cos_tilt
-    load_torque_tilt_by_c_x_payload_term_2 = (
-        -c_z_payload * follower_inertia_tilt_by_J_z_payload * m_payload * omega_pan_sq
-        + c_z_payload * load_torque_tilt_term_6 * m_payload
-        - 9.81 * cos_tilt * m_payload
-        + load_torque_tilt_by_c_x_payload_term * omega_pan_sq
-    )
+    follower_torque_tilt_by_c_x_payload = -accel_pan_by_c_x_payload_term
+    gravity_cos_tilt_by_c_x_payload = 9.81 * m_payload
     load_torque_tilt_by_c_x_payload = (
-        -follower_coupling_tilt_by_c_x_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_c_x_payload
-        * force_pan
-        * load_inertia_tilt_by_theta_tilt_term
-        * mass_pan_tilt
+        coriolis_by_c_x_payload * half_omega_pan
+        + cos_tilt * gravity_cos_tilt_by_c_x_payload
+        - follower_coupling_tilt_by_c_x_payload * force_pan_mass_pan_inverse
+        + follower_inertia_tilt_by_c_x_payload * load_torque_tilt_by_theta_tilt_term
         - follower_torque_tilt_by_c_x_payload * mass_pan_inverse_mass_pan_tilt
-        - load_torque_tilt_by_c_x_payload_term_2
     )
     carried_tilt_by_c_x_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_x_payload
@@ -1707,51 +1527,48 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_by_c_x_payload = (
         -load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
-    accel_pan_by_c_x_payload_term_4 = (
+    accel_pan_by_c_x_payload_term_3 = (
         -accel_pan * follower_coupling_tilt_by_c_x_payload
         - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_c_x_payload
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_c_x_payload
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_c_x_payload
-        - accel_tilt * c_x_payload_twice_m_payload
-        - load_torque_tilt_by_c_x_payload_term_2
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_c_x_payload
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_c_x_payload
+        - accel_tilt * inertia_tilt_by_c_x_payload
+        + 0.5 * coriolis_by_c_x_payload * omega_pan
+        + cos_tilt * gravity_cos_tilt_by_c_x_payload
     )
     fp[2, 8] = inverse_determinant * (
-        accel_pan_by_c_x_payload_term_3 * mass_tilt
-        - accel_pan_by_c_x_payload_term_4 * mass_pan_tilt_slide_tilt_sq
+        accel_pan_by_c_x_payload_term_2 * mass_tilt
+        - accel_pan_by_c_x_payload_term_3 * mass_pan_tilt_slide_tilt_sq
     )
     fp[3, 8] = inverse_determinant_slide_tilt_sq * (
-        -accel_pan_by_c_x_payload_term_3 * mass_pan_tilt_slide_tilt_sq
-        + accel_pan_by_c_x_payload_term_4 * mass_pan
+        -accel_pan_by_c_x_payload_term_2 * mass_pan_tilt_slide_tilt_sq
+        + accel_pan_by_c_x_payload_term_3 * mass_pan
     )
     follower_coupling_tilt_by_c_y_payload = (
-        c_x_payload_m_payload_sin_tilt - c_z_payload_cos_tilt * m_payload
+        -cos_tilt * coupling_cos_tilt_by_c_y_payload + coupling_sin_tilt_by_c_y_payload * sin_tilt
     )
-    c_y_payload_twice_m_payload = c_y_payload * twice_m_payload
-    follower_inertia_tilt_by_c_y_payload = (
-        c_y_payload_twice_m_payload * follower_inertia_tilt_by_J_x_payload
-        + c_y_payload_twice_m_payload * follower_inertia_tilt_by_J_z_payload
-    )
+    inertia_pan_by_c_y_payload = 2.0 * coupling_cos_tilt_by_c_z_payload
     accel_pan_by_c_y_payload_term = (
-        c_x_payload_omega_tilt_sq * cos_tilt_m_payload
-        + c_z_payload_omega_tilt_sq * m_payload_sin_tilt
+        cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_c_y_payload
+        + coupling_cos_tilt_by_c_y_payload * omega_tilt_sq_sin_tilt
     )
     accel_pan_by_c_y_payload_term_2 = (
-        -accel_pan * follower_inertia_tilt_by_c_y_payload
+        -accel_pan * inertia_pan_by_c_y_payload
         - accel_pan_by_c_y_payload_term
         - accel_tilt * follower_coupling_tilt_by_c_y_payload
     )
     load_inertia_tilt_by_c_y_payload = (
         -follower_coupling_tilt_by_c_y_payload * twice_mass_pan_inverse_mass_pan_tilt
-        + follower_inertia_tilt_by_c_y_payload * load_inertia_tilt_by_theta_tilt_term_2
+        + inertia_pan_by_c_y_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
     follower_torque_tilt_by_c_y_payload = -accel_pan_by_c_y_payload_term
     load_torque_tilt_by_c_y_payload = (
         -follower_coupling_tilt_by_c_y_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_c_y_payload
-        * force_pan
+        - follower_torque_tilt_by_c_y_payload * mass_pan_inverse_mass_pan_tilt
+        + force_pan
+        * inertia_pan_by_c_y_payload
         * load_inertia_tilt_by_theta_tilt_term
         * mass_pan_tilt
-        - follower_torque_tilt_by_c_y_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_c_y_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_y_payload
@@ -1766,8 +1583,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     accel_pan_by_c_y_payload_term_3 = (
         -accel_pan * follower_coupling_tilt_by_c_y_payload
         - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_c_y_payload
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_c_y_payload
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_c_y_payload
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_c_y_payload
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_c_y_payload
     )
     fp[2, 9] = inverse_determinant * (
         accel_pan_by_c_y_payload_term_2 * mass_tilt
@@ -1777,42 +1594,36 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         -accel_pan_by_c_y_payload_term_2 * mass_pan_tilt_slide_tilt_sq
         + accel_pan_by_c_y_payload_term_3 * mass_pan
     )
-    follower_inertia_tilt_by_c_z_payload = (
-        follower_torque_tilt_by_c_x_payload_term + load_torque_tilt_by_c_x_payload_term
+    inertia_pan_per_sin_tilt_by_c_z_payload = (
+        cos_tilt * inertia_tilt_by_c_x_payload + inertia_tilt_by_c_z_payload * sin_tilt
+    )
+    follower_inertia_tilt_by_c_z_payload = inertia_pan_per_sin_tilt_by_c_z_payload * sin_tilt
+    coriolis_by_c_z_payload = (
+        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_z_payload
+        - inertia_tilt_by_c_x_payload * omega_pan
     )
     accel_pan_by_c_z_payload_term = (
-        -2.0
-        * c_x_payload
-        * follower_inertia_tilt_by_J_x_payload
-        * m_payload
-        * omega_pan
-        * omega_tilt
-        + c_z_payload_cos_tilt * follower_torque_tilt_by_c_x_payload_term_2 * m_payload_sin_tilt
-        + follower_coupling_tilt_by_c_x_payload * omega_tilt_sq
-        + force_pan_term_3 * omega_pan_omega_tilt
+        coriolis_by_c_z_payload * omega_tilt
+        + coupling_cos_tilt_by_c_z_payload * omega_tilt_sq_sin_tilt
     )
     accel_pan_by_c_z_payload_term_2 = (
         -accel_pan * follower_inertia_tilt_by_c_z_payload
         - accel_pan_by_c_z_payload_term
-        + accel_tilt * c_y_payload * cos_tilt * m_payload
+        + accel_tilt * cos_tilt * coupling_cos_tilt_by_c_z_payload
     )
-    follower_coupling_tilt_by_c_z_payload = -c_y_payload_cos_tilt_m_payload
+    follower_coupling_tilt_by_c_z_payload = -cos_tilt * coupling_cos_tilt_by_c_z_payload
     load_inertia_tilt_by_c_z_payload = (
-        c_z_payload_twice_m_payload
-        - follower_coupling_tilt_by_c_z_payload * twice_mass_pan_inverse_mass_pan_tilt
+        -follower_coupling_tilt_by_c_z_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_c_z_payload * load_inertia_tilt_by_theta_tilt_term_2
+        + inertia_tilt_by_c_z_payload
     )
     follower_torque_tilt_by_c_z_payload = -accel_pan_by_c_z_payload_term
-    c_x_payload_m_payload = c_x_payload * m_payload
-    load_torque_tilt_by_c_z_payload_term = c_x_payload_m_payload * load_torque_tilt_term_6
     load_torque_tilt_by_c_z_payload = (
-        c_x_payload_m_payload * load_torque_tilt_term_4
+        coriolis_by_c_z_payload * half_omega_pan
         - follower_coupling_tilt_by_c_z_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_c_x_payload_term * omega_pan_sq
-        + follower_inertia_tilt_by_c_z_payload * load_torque_tilt_by_J_pan_term
+        + follower_inertia_tilt_by_c_z_payload * load_torque_tilt_by_theta_tilt_term
         - follower_torque_tilt_by_c_z_payload * mass_pan_inverse_mass_pan_tilt
-        - load_torque_tilt_by_c_z_payload_term
-        + 9.81 * m_payload_sin_tilt
+        + gravity_cos_tilt_by_c_x_payload * sin_tilt
     )
     carried_tilt_by_c_z_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_z_payload
@@ -1825,15 +1636,13 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         -load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
     accel_pan_by_c_z_payload_term_3 = (
-        accel_pan * c_y_payload * cos_tilt * m_payload
+        accel_pan * cos_tilt * coupling_cos_tilt_by_c_z_payload
         - accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_c_z_payload
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_c_z_payload
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_c_z_payload
-        - accel_tilt * c_z_payload_twice_m_payload
-        + c_x_payload * follower_inertia_tilt_by_J_z_payload * m_payload * omega_pan_sq
-        + 2.0 * c_z_payload * cos_tilt * m_payload * omega_pan_sq * sin_tilt
-        - load_torque_tilt_by_c_z_payload_term
-        + 9.81 * m_payload * sin_tilt
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_c_z_payload
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_c_z_payload
+        - accel_tilt * inertia_tilt_by_c_z_payload
+        + 0.5 * coriolis_by_c_z_payload * omega_pan
+        + gravity_cos_tilt_by_c_x_payload * sin_tilt
     )
     fp[2, 10] = inverse_determinant * (
         accel_pan_by_c_z_payload_term_2 * mass_tilt
@@ -1978,8 +1787,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term * ratio_tilt_sq
     accel_pan_by_J_motor_tilt_term = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_J_motor_tilt
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_J_motor_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_J_motor_tilt
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_J_motor_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_J_motor_tilt
         - accel_tilt * ratio_tilt_sq
         - driving_torque_tilt_by_J_motor_tilt_term
     )
@@ -2015,8 +1824,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     twice_J_motor_tilt_ratio_tilt_accel_tilt = 2.0 * J_motor_tilt_ratio_tilt_accel_tilt
     accel_pan_by_N_tilt_term = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_N_tilt
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_N_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_N_tilt
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_N_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_N_tilt
         - driving_torque_tilt_by_N_tilt_term
         - ratio_tilt_by_N_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
@@ -2076,8 +1885,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     accel_pan_by_lead_tilt_term = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_lead_tilt
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_lead_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_lead_tilt
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_lead_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_lead_tilt
         - driving_torque_tilt_by_lead_tilt_term
         - ratio_tilt_by_lead_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
@@ -2108,8 +1917,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_d_screw_tilt
     )
     accel_pan_by_d_screw_tilt_term = (
-        -accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_d_screw_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_d_screw_tilt
+        -accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_d_screw_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_d_screw_tilt
     )
     fp[2, 36] = -accel_pan_by_d_screw_tilt_term * accel_pan_by_i_tilt_term_2
     fp[3, 36] = accel_pan_by_d_screw_tilt_term * accel_tilt_by_i_tilt_term
@@ -2131,8 +1940,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         lost_raising_tilt_by_lead_tilt_term * raised_tilt_by_f_screw_tilt
     )
     accel_pan_by_f_screw_tilt_term = (
-        -accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_f_screw_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_f_screw_tilt
+        -accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_f_screw_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_f_screw_tilt
     )
     fp[2, 37] = -accel_pan_by_f_screw_tilt_term * accel_pan_by_i_tilt_term_2
     fp[3, 37] = accel_pan_by_f_screw_tilt_term * accel_tilt_by_i_tilt_term
@@ -2209,8 +2018,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     accel_pan_by_l_ground_tilt_term = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_l_ground_tilt
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_l_ground_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_l_ground_tilt
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_l_ground_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_l_ground_tilt
         - driving_torque_tilt_by_l_ground_tilt_term
         - ratio_tilt_by_l_ground_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
@@ -2258,8 +2067,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_by_l_min_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
     accel_pan_by_l_min_tilt_term = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_l_min_tilt
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_l_min_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_l_min_tilt
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_l_min_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_l_min_tilt
         - driving_torque_tilt_by_l_min_tilt_term
         - ratio_tilt_by_l_min_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
@@ -2310,8 +2119,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_by_r_arm_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
     accel_pan_by_r_arm_tilt_term = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_r_arm_tilt
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_r_arm_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_r_arm_tilt
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_r_arm_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_r_arm_tilt
         - driving_torque_tilt_by_r_arm_tilt_term
         - ratio_tilt_by_r_arm_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
@@ -2362,8 +2171,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     accel_pan_by_s_start_tilt_term = (
         -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_s_start_tilt
-        - accel_pan_by_theta_tilt_term_7 * lost_lowering_tilt_by_s_start_tilt
-        - accel_pan_by_theta_tilt_term_8 * lost_raising_tilt_by_s_start_tilt
+        - accel_pan_by_theta_tilt_term_3 * lost_lowering_tilt_by_s_start_tilt
+        - accel_pan_by_theta_tilt_term_4 * lost_raising_tilt_by_s_start_tilt
         - driving_torque_tilt_by_s_start_tilt_term
         - ratio_tilt_by_s_start_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
@@ -2374,7 +2183,11 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guards(t, x, u, p, m, g):
-    """Write holding and breakaway torques, gap separations and contact torques into g."""
+    """Write holding and breakaway torques, gap separations and contact torques into g.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; g [10] in N m and rad.
+    """
     theta_pan = x[0]
     theta_tilt = x[1]
     omega_pan = x[2]
@@ -2429,59 +2242,46 @@ def guards(t, x, u, p, m, g):
     g[0] = K_t_pan * N_pan * i_pan + minus_shaft_torque_pan
     g[1] = F_s_pan * (a_F_s_pan + 1.0)
     g[2] = F_s_pan * (1.0 - a_F_s_pan)
+    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
+    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
+    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
+    inertia_pan_sin_sq_tilt = (
+        J_x_payload
+        + J_x_tilt
+        - J_z_payload
+        - J_z_tilt
+        - inertia_pan_sin_sq_tilt_term
+        + inertia_pan_sin_sq_tilt_term_2
+    )
     cos_tilt = math.cos(theta_tilt)
     sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = (
+        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
+    )
+    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
     c_y_payload_m_payload = c_y_payload * m_payload
-    c_x_payload_c_y_payload_m_payload = c_x_payload * c_y_payload_m_payload
-    c_y_payload_m_payload_c_z_payload = c_y_payload_m_payload * c_z_payload
-    sin_tilt_sq = sin_tilt * sin_tilt
-    cos_tilt_sq = cos_tilt * cos_tilt
-    c_x_payload_sq = c_x_payload * c_x_payload
-    c_z_payload_sq = c_z_payload * c_z_payload
-    c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
-    twice_omega_pan_omega_tilt = 2.0 * omega_pan * omega_tilt
-    cos_tilt_sin_tilt = cos_tilt * sin_tilt
-    force_pan_term = cos_tilt_sin_tilt * twice_omega_pan_omega_tilt
-    omega_tilt_sq = omega_tilt * omega_tilt
-    c_x_payload_c_z_payload_m_payload = c_x_payload * c_z_payload * m_payload
+    coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
+    coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
     force_pan = (
-        -J_x_payload * force_pan_term
-        - J_x_tilt * force_pan_term
-        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        - b_pan * omega_pan
-        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_x_payload_c_y_payload_m_payload * cos_tilt * omega_tilt_sq
-        - c_x_payload_c_z_payload_m_payload * cos_tilt_sq * twice_omega_pan_omega_tilt
-        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - c_y_payload_m_payload_c_z_payload * omega_tilt_sq * sin_tilt
-        - c_z_payload_sq_m_payload * force_pan_term
+        -b_pan * omega_pan
         - minus_shaft_torque_pan
+        - omega_tilt
+        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
     )
-    mass_pan_tilt = (
-        c_x_payload_c_y_payload_m_payload * sin_tilt - c_y_payload_m_payload_c_z_payload * cos_tilt
+    inertia_tilt = (
+        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
     )
-    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    mass_pan_term = (c_y_payload * c_y_payload) * m_payload
-    c_x_payload_cos_tilt = c_x_payload * cos_tilt
-    c_z_payload_sin_tilt = c_z_payload * sin_tilt
-    mass_pan = (
+    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
+    inertia_pan = (
         J_pan
-        + J_x_payload * sin_tilt_sq
-        + J_x_tilt * sin_tilt_sq
-        + J_z_payload * cos_tilt_sq
-        + J_z_tilt * cos_tilt_sq
-        + 2.0 * c_x_payload_cos_tilt * c_z_payload_sin_tilt * m_payload
-        + c_x_payload_sq_m_payload * cos_tilt_sq
-        + c_z_payload_sq_m_payload * sin_tilt_sq
-        + cos_tilt_sq * mass_pan_term
-        + mass_pan_term * sin_tilt_sq
+        + J_z_payload
+        + J_z_tilt
+        + (c_y_payload * c_y_payload) * m_payload
+        + inertia_pan_sin_sq_tilt_term
     )
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     mass_pan_inverse = 1.0 / mass_pan
-    load_inertia_tilt_term = (
-        J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
-    )
-    load_inertia_tilt = load_inertia_tilt_term - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
+    load_inertia_tilt = inertia_tilt - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
@@ -2535,58 +2335,32 @@ def guards(t, x, u, p, m, g):
         / (length_tilt * length_tilt)
         + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
     )
-    driving_torque_tilt_term = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt
-    driving_torque_tilt_term_2 = (
-        J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
-        - driving_torque_tilt_term * ratio_tilt
+    driving_torque_tilt_term = (
+        J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
     )
-    driving_torque_tilt = -driving_torque_tilt_term_2
-    b_tilt_omega_tilt = b_tilt * omega_tilt
-    load_torque_tilt_term = 9.81 * m_payload
-    omega_pan_sq = omega_pan * omega_pan
-    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
-    load_torque_tilt_term_2 = J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
-    J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq = J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
-    load_torque_tilt_term_3 = c_x_payload_c_z_payload_m_payload * omega_pan_sq
-    load_torque_tilt_term_3_sin_tilt_sq = load_torque_tilt_term_3 * sin_tilt_sq
-    load_torque_tilt_term_4 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-    load_torque_tilt = (
-        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
-        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
-        - b_tilt_omega_tilt
-        + c_x_payload_cos_tilt * load_torque_tilt_term
-        + c_z_payload_sin_tilt * load_torque_tilt_term
-        + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + cos_tilt_sq * load_torque_tilt_term_3
-        - force_pan * mass_pan_inverse * mass_pan_tilt
-        - load_torque_tilt_term_2
-        - load_torque_tilt_term_3_sin_tilt_sq
-        - load_torque_tilt_term_4
+    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt
+    driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
+    gravity_cos_tilt_term = 9.81 * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
+    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    load_torque_tilt_term = (
+        -b_tilt * omega_tilt
+        + 0.5 * coriolis * omega_pan
+        + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt
     )
+    load_torque_tilt = -force_pan * mass_pan_inverse * mass_pan_tilt + load_torque_tilt_term
     carried_tilt = (
         driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
     )
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
-    force_tilt_term = (
-        -J_x_payload * cos_tilt * omega_pan_sq * sin_tilt
-        - J_x_tilt * cos_tilt * omega_pan_sq * sin_tilt
-        + J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
-        + b_tilt_omega_tilt
-        - c_x_payload * c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
-        - 9.81 * c_x_payload * cos_tilt * m_payload
-        - 9.81 * c_z_payload * m_payload * sin_tilt
-        - c_z_payload_sq * cos_tilt * m_payload * omega_pan_sq * sin_tilt
-        + driving_torque_tilt_term_2
-        + load_torque_tilt_term_2
-        + load_torque_tilt_term_3_sin_tilt_sq
-        + load_torque_tilt_term_4
-    )
-    force_tilt = -force_tilt_term - slide_tilt * (
+    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
+    force_tilt_term = -driving_torque_tilt_term + load_torque_tilt_term + transmitted_torque_tilt
+    force_tilt = force_tilt_term - slide_tilt * (
         0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
         + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
     )
-    mass_tilt = load_inertia_tilt_term + lost_lowering_tilt_term
+    mass_tilt = inertia_tilt + lost_lowering_tilt_term
     slide_tilt_sq = slide_tilt * slide_tilt
     inverse_determinant = 1.0 / (
         mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt) * slide_tilt_sq
@@ -2595,7 +2369,7 @@ def guards(t, x, u, p, m, g):
     accel_pan = inverse_determinant * (
         force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
     )
-    g[3] = -accel_pan * mass_pan_tilt - force_tilt_term
+    g[3] = -accel_pan * mass_pan_tilt + force_tilt_term
     forward_tilt_term = 0.5 * load_torque_tilt * (lowered_tilt + raised_tilt - 2.0)
     forward_tilt_term_2 = abs(load_torque_tilt)
     forward_tilt_term_3 = -lowered_tilt + raised_tilt
@@ -2612,7 +2386,11 @@ def guards(t, x, u, p, m, g):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guard_jacobian(t, x, u, p, m, gx, gp):
-    """Write the non-zero derivatives of guards by state and parameter."""
+    """Write the non-zero derivatives of guards by state and parameter.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; gx [10, 8]; gp [10, 43].
+    """
     theta_pan = x[0]
     theta_tilt = x[1]
     omega_pan = x[2]
@@ -2658,45 +2436,38 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     follower_torque_tilt_by_theta_gear_pan = active_pan * k_shaft_pan
     gx[0, 0] = follower_torque_tilt_by_theta_gear_pan
     follower_torque_tilt_by_theta_pan = -follower_torque_tilt_by_theta_gear_pan
-    sin_tilt = math.sin(theta_tilt)
-    c_y_payload_sin_tilt = c_y_payload * sin_tilt
-    c_x_payload_c_y_payload_sin_tilt = c_x_payload * c_y_payload_sin_tilt
-    mass_pan_tilt_term = c_x_payload_c_y_payload_sin_tilt * m_payload
+    coupling_cos_tilt_by_c_z_payload = c_y_payload * m_payload
+    coupling_cos_tilt = c_z_payload * coupling_cos_tilt_by_c_z_payload
+    coupling_sin_tilt_by_m_payload = c_x_payload * c_y_payload
+    coupling_sin_tilt = coupling_sin_tilt_by_m_payload * m_payload
     cos_tilt = math.cos(theta_tilt)
-    c_z_payload_cos_tilt = c_z_payload * cos_tilt
-    c_y_payload_c_z_payload_cos_tilt = c_y_payload * c_z_payload_cos_tilt
-    mass_pan_tilt_term_2 = c_y_payload_c_z_payload_cos_tilt * m_payload
-    mass_pan_tilt = mass_pan_tilt_term - mass_pan_tilt_term_2
-    follower_inertia_tilt_by_J_x_payload = sin_tilt * sin_tilt
-    mass_pan_term = J_x_payload * follower_inertia_tilt_by_J_x_payload
-    mass_pan_term_2 = J_x_tilt * follower_inertia_tilt_by_J_x_payload
-    follower_inertia_tilt_by_J_z_payload = cos_tilt * cos_tilt
-    mass_pan_term_3 = J_z_payload * follower_inertia_tilt_by_J_z_payload
-    mass_pan_term_4 = J_z_tilt * follower_inertia_tilt_by_J_z_payload
+    sin_tilt = math.sin(theta_tilt)
+    mass_pan_tilt_term = cos_tilt * coupling_cos_tilt - coupling_sin_tilt * sin_tilt
+    mass_pan_tilt = -mass_pan_tilt_term
     c_x_payload_sq = c_x_payload * c_x_payload
     c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    mass_pan_term_5 = c_x_payload_sq_m_payload * follower_inertia_tilt_by_J_z_payload
     c_y_payload_sq = c_y_payload * c_y_payload
-    mass_pan_term_6 = c_y_payload_sq * follower_inertia_tilt_by_J_x_payload
-    mass_pan_term_7 = c_y_payload_sq * follower_inertia_tilt_by_J_z_payload
+    inertia_pan = (
+        J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + c_y_payload_sq * m_payload
+    )
+    coupling_sin_tilt_by_c_y_payload = c_x_payload * m_payload
+    inertia_tilt_by_c_x_payload = 2.0 * coupling_sin_tilt_by_c_y_payload
+    inertia_pan_sin_cos_tilt = c_z_payload * inertia_tilt_by_c_x_payload
     c_z_payload_sq = c_z_payload * c_z_payload
     c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
-    mass_pan_term_8 = c_z_payload_sq_m_payload * follower_inertia_tilt_by_J_x_payload
-    m_payload_sin_tilt = m_payload * sin_tilt
-    c_x_payload_m_payload_sin_tilt = c_x_payload * m_payload_sin_tilt
-    twice_c_z_payload_cos_tilt = 2.0 * c_z_payload_cos_tilt
-    mass_pan = (
-        J_pan
-        + c_x_payload_m_payload_sin_tilt * twice_c_z_payload_cos_tilt
-        + m_payload * mass_pan_term_6
-        + m_payload * mass_pan_term_7
-        + mass_pan_term
-        + mass_pan_term_2
-        + mass_pan_term_3
-        + mass_pan_term_4
-        + mass_pan_term_5
-        + mass_pan_term_8
+    inertia_pan_sin_sq_tilt = (
+        J_x_payload
+        + J_x_tilt
+        - J_z_payload
+        - J_z_tilt
+        - c_x_payload_sq_m_payload
+        + c_z_payload_sq_m_payload
     )
+    inertia_pan_per_sin_tilt = (
+        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
+    )
+    inertia_pan_per_sin_tilt_sin_tilt = inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt_sin_tilt
     mass_pan_inverse = 1.0 / mass_pan
     mass_pan_inverse_mass_pan_tilt = mass_pan_inverse * mass_pan_tilt
     load_torque_tilt_by_theta_pan = (
@@ -2730,8 +2501,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
     carried_tilt_by_theta_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_pan
-    mass_tilt_term = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
-    mass_tilt = J_motor_tilt_ratio_tilt_sq + mass_tilt_term
+    inertia_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
+    mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
     holding_tilt_by_theta_pan_term = follower_torque_tilt_by_theta_gear_pan * mass_tilt
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
@@ -2744,7 +2515,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     lowered_tilt = -lowered_tilt_term_2 * lowered_tilt_term_lowered_tilt_term_4
     lost_lowering_tilt_term = 1.0 - lowered_tilt
     mass_pan_tilt_sq = mass_pan_tilt * mass_pan_tilt
-    load_inertia_tilt = -mass_pan_inverse * mass_pan_tilt_sq + mass_tilt_term
+    load_inertia_tilt = inertia_tilt - mass_pan_inverse * mass_pan_tilt_sq
     lost_lowering_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
     lost_lowering_tilt_term_3 = 1.0 / (abs(lost_lowering_tilt_term_2))
     lost_lowering_tilt = lost_lowering_tilt_term * lost_lowering_tilt_term_3
@@ -2777,13 +2548,16 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     omega_tilt_sq = omega_tilt * omega_tilt
     omega_tilt_sq_ratio_tilt_by_theta_tilt = omega_tilt_sq * ratio_tilt_by_theta_tilt
     driving_torque_tilt_term = J_motor_tilt * omega_tilt_sq_ratio_tilt_by_theta_tilt
+    driving_torque_tilt_term_ratio_tilt = driving_torque_tilt_term * ratio_tilt
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
     b_motor_tilt_omega_tilt_ratio_tilt = b_motor_tilt * omega_tilt_ratio_tilt
     driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt_omega_tilt_ratio_tilt
-    driving_torque_tilt_term_3 = (
-        driving_torque_tilt_term * ratio_tilt - driving_torque_tilt_term_2 * ratio_tilt
+    driving_torque_tilt = (
+        driving_torque_tilt_term_2 * ratio_tilt - driving_torque_tilt_term_ratio_tilt
     )
-    driving_torque_tilt = -driving_torque_tilt_term_3
+    cos_tilt_inertia_pan_per_sin_tilt = cos_tilt * inertia_pan_per_sin_tilt
+    coriolis_by_omega_pan = 2.0 * cos_tilt_inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt
+    coriolis = coriolis_by_omega_pan * omega_pan
     follower_torque_tilt_by_b_pan = -omega_pan
     shaft_torque_pan_term = follower_torque_tilt_by_b_pan + omega_gear_pan
     half_gap_pan = 0.5 * gap_pan
@@ -2792,69 +2566,22 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     shaft_torque_pan = active_pan * (
         d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_3
     )
-    cos_tilt_sin_tilt = cos_tilt * sin_tilt
-    twice_cos_tilt_sin_tilt = 2.0 * cos_tilt_sin_tilt
-    J_x_payload_twice_cos_tilt_sin_tilt = J_x_payload * twice_cos_tilt_sin_tilt
-    omega_pan_omega_tilt = omega_pan * omega_tilt
-    J_x_tilt_twice_cos_tilt_sin_tilt = J_x_tilt * twice_cos_tilt_sin_tilt
-    cos_tilt_m_payload = cos_tilt * m_payload
-    c_y_payload_cos_tilt_m_payload = c_y_payload * cos_tilt_m_payload
-    force_pan_term = c_x_payload * c_y_payload_cos_tilt_m_payload
-    follower_coupling_tilt_by_c_x_payload = c_y_payload_sin_tilt * m_payload
-    force_pan_term_2 = c_z_payload * follower_coupling_tilt_by_c_x_payload
-    twice_m_payload = 2.0 * m_payload
-    c_x_payload_twice_m_payload = c_x_payload * twice_m_payload
-    force_pan_term_3 = c_x_payload_twice_m_payload * follower_inertia_tilt_by_J_z_payload
-    c_z_payload_force_pan_term_3 = c_z_payload * force_pan_term_3
-    force_pan_term_4 = c_z_payload_sq_m_payload * twice_cos_tilt_sin_tilt
-    force_pan = (
-        -J_x_payload_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
-        - J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
-        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        - b_pan * omega_pan
-        + 2.0
-        * c_x_payload
-        * c_z_payload
-        * follower_inertia_tilt_by_J_x_payload
-        * m_payload
-        * omega_pan
-        * omega_tilt
-        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - c_z_payload_force_pan_term_3 * omega_pan_omega_tilt
-        - force_pan_term * omega_tilt_sq
-        - force_pan_term_2 * omega_tilt_sq
-        - force_pan_term_4 * omega_pan_omega_tilt
-        + shaft_torque_pan
+    follower_coupling_tilt_by_theta_tilt = (
+        cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt
     )
-    b_tilt_omega_tilt = b_tilt * omega_tilt
-    load_torque_tilt_term = 9.81 * c_x_payload
-    load_torque_tilt_term_2 = 9.81 * c_z_payload
-    omega_pan_sq = omega_pan * omega_pan
-    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
-    load_torque_tilt_term_3 = J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
-    J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq = J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
-    load_torque_tilt_term_4 = follower_inertia_tilt_by_J_z_payload * omega_pan_sq
-    c_x_payload_c_z_payload = c_x_payload * c_z_payload
-    load_torque_tilt_term_5 = c_x_payload_c_z_payload * load_torque_tilt_term_4
-    load_torque_tilt_term_6 = follower_inertia_tilt_by_J_x_payload * omega_pan_sq
-    load_torque_tilt_term_7 = c_x_payload_c_z_payload * load_torque_tilt_term_6
-    load_torque_tilt_term_7_m_payload = load_torque_tilt_term_7 * m_payload
-    load_torque_tilt_term_8 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-    load_torque_tilt = (
-        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
-        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
-        - b_tilt_omega_tilt
-        + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + cos_tilt_m_payload * load_torque_tilt_term
-        - force_pan * mass_pan_inverse_mass_pan_tilt
-        + load_torque_tilt_term_2 * m_payload_sin_tilt
-        - load_torque_tilt_term_3
-        + load_torque_tilt_term_5 * m_payload
-        - load_torque_tilt_term_7_m_payload
-        - load_torque_tilt_term_8
+    force_pan_term = follower_coupling_tilt_by_theta_tilt * omega_tilt
+    force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_term) + shaft_torque_pan
+    gravity_cos_tilt = 9.81 * coupling_sin_tilt_by_c_y_payload
+    coupling_cos_tilt_by_c_y_payload = c_z_payload * m_payload
+    gravity_sin_tilt = 9.81 * coupling_cos_tilt_by_c_y_payload
+    half_coriolis = 0.5 * coriolis
+    load_torque_tilt_term = (
+        -b_tilt * omega_tilt
+        + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt
+        + half_coriolis * omega_pan
     )
+    load_torque_tilt = -force_pan * mass_pan_inverse_mass_pan_tilt + load_torque_tilt_term
     carried_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
     )
@@ -2896,28 +2623,16 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     gx[9, 0] = minus_k_shaft_pan
     force_tilt_term = abs(carried_tilt_slide_tilt)
     half_force_tilt_term = 0.5 * force_tilt_term
+    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
     force_tilt = (
-        J_x_payload * cos_tilt * omega_pan_sq * sin_tilt
-        + J_x_tilt * cos_tilt * omega_pan_sq * sin_tilt
-        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
-        - b_tilt_omega_tilt
-        + c_x_payload
-        * c_z_payload
-        * follower_inertia_tilt_by_J_z_payload
-        * m_payload
-        * omega_pan_sq
-        + 9.81 * c_x_payload * cos_tilt * m_payload
-        + 9.81 * c_z_payload * m_payload * sin_tilt
-        + c_z_payload_sq * cos_tilt * m_payload * omega_pan_sq * sin_tilt
-        - driving_torque_tilt_term_3
-        - load_torque_tilt_term_3
-        - load_torque_tilt_term_7_m_payload
-        - load_torque_tilt_term_8
+        -driving_torque_tilt_term_ratio_tilt
+        + load_torque_tilt_term
         - slide_tilt
         * (
             carried_tilt_slide_tilt * holding_tilt_by_theta_pan_term_3
             + half_force_tilt_term * holding_tilt_by_theta_pan_term_2
         )
+        + transmitted_torque_tilt
     )
     mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
     accel_pan = inverse_determinant * (
@@ -2970,22 +2685,11 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         - driving_torque_tilt_by_theta_tilt_term * ratio_tilt_by_theta_tilt
     )
     driving_torque_tilt_by_theta_tilt = -driving_torque_tilt_by_theta_tilt_term_2
-    follower_coupling_tilt_by_theta_tilt = force_pan_term + force_pan_term_2
-    J_z_payload_twice_cos_tilt_sin_tilt = J_z_payload * twice_cos_tilt_sin_tilt
-    J_z_tilt_twice_cos_tilt_sin_tilt = J_z_tilt * twice_cos_tilt_sin_tilt
-    follower_inertia_tilt_by_theta_tilt_term = (
-        c_x_payload_twice_m_payload * c_z_payload * follower_inertia_tilt_by_J_x_payload
+    inertia_pan_per_sin_tilt_by_theta_tilt = (
+        cos_tilt * inertia_pan_sin_sq_tilt - inertia_pan_sin_cos_tilt * sin_tilt
     )
-    follower_inertia_tilt_by_theta_tilt_term_2 = c_x_payload_sq_m_payload * twice_cos_tilt_sin_tilt
     follower_inertia_tilt_by_theta_tilt = (
-        J_x_payload_twice_cos_tilt_sin_tilt
-        + J_x_tilt_twice_cos_tilt_sin_tilt
-        - J_z_payload_twice_cos_tilt_sin_tilt
-        - J_z_tilt_twice_cos_tilt_sin_tilt
-        + c_z_payload_force_pan_term_3
-        - follower_inertia_tilt_by_theta_tilt_term
-        - follower_inertia_tilt_by_theta_tilt_term_2
-        + force_pan_term_4
+        cos_tilt_inertia_pan_per_sin_tilt + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt
     )
     twice_mass_pan_inverse_mass_pan_tilt = 2.0 * mass_pan_inverse_mass_pan_tilt
     load_inertia_tilt_by_theta_tilt_term = 1.0 / (mass_pan * mass_pan)
@@ -2994,74 +2698,28 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         -follower_coupling_tilt_by_theta_tilt * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_theta_tilt * load_inertia_tilt_by_theta_tilt_term_2
     )
-    twice_omega_pan_omega_tilt = 2.0 * omega_pan_omega_tilt
+    twice_omega_pan = 2.0 * omega_pan
+    coriolis_by_theta_tilt = (
+        2.0 * cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
+        - inertia_pan_per_sin_tilt_sin_tilt * twice_omega_pan
+    )
     follower_torque_tilt_by_theta_tilt_term = (
-        follower_inertia_tilt_by_J_z_payload * twice_omega_pan_omega_tilt
+        coriolis_by_theta_tilt * omega_tilt + mass_pan_tilt_term * omega_tilt_sq
     )
-    follower_torque_tilt_by_theta_tilt_term_2 = (
-        J_x_payload * follower_torque_tilt_by_theta_tilt_term
-    )
-    follower_torque_tilt_by_theta_tilt_term_3 = J_x_tilt * follower_torque_tilt_by_theta_tilt_term
-    follower_torque_tilt_by_theta_tilt_term_4 = (
-        follower_inertia_tilt_by_J_x_payload * twice_omega_pan_omega_tilt
-    )
-    follower_torque_tilt_by_theta_tilt_term_5 = (
-        J_z_payload * follower_torque_tilt_by_theta_tilt_term_4
-    )
-    follower_torque_tilt_by_theta_tilt_term_6 = J_z_tilt * follower_torque_tilt_by_theta_tilt_term_4
-    mass_pan_tilt_term_2_omega_tilt_sq = mass_pan_tilt_term_2 * omega_tilt_sq
-    follower_torque_tilt_by_theta_tilt_term_7 = (
-        c_x_payload_m_payload_sin_tilt * c_z_payload_cos_tilt
-    )
-    follower_torque_tilt_by_theta_tilt_term_8 = (
-        c_x_payload_sq_m_payload * follower_torque_tilt_by_theta_tilt_term_4
-    )
-    follower_torque_tilt_by_theta_tilt_term_9 = (
-        c_z_payload_sq_m_payload * follower_torque_tilt_by_theta_tilt_term
-    )
-    follower_torque_tilt_by_theta_tilt = (
-        -follower_torque_tilt_by_theta_tilt_term_2
-        - follower_torque_tilt_by_theta_tilt_term_3
-        - follower_torque_tilt_by_theta_tilt_term_5
-        - follower_torque_tilt_by_theta_tilt_term_6
-        + 8.0 * follower_torque_tilt_by_theta_tilt_term_7 * omega_pan_omega_tilt
-        - follower_torque_tilt_by_theta_tilt_term_8
-        - follower_torque_tilt_by_theta_tilt_term_9
-        + mass_pan_term * twice_omega_pan_omega_tilt
-        + mass_pan_term_2 * twice_omega_pan_omega_tilt
-        + mass_pan_term_3 * twice_omega_pan_omega_tilt
-        + mass_pan_term_4 * twice_omega_pan_omega_tilt
-        + mass_pan_term_5 * twice_omega_pan_omega_tilt
-        + mass_pan_term_8 * twice_omega_pan_omega_tilt
-        + mass_pan_tilt_term * omega_tilt_sq
-        - mass_pan_tilt_term_2_omega_tilt_sq
-    )
+    follower_torque_tilt_by_theta_tilt = -follower_torque_tilt_by_theta_tilt_term
+    half_omega_pan = 0.5 * omega_pan
+    gravity_cos_tilt_sin_tilt = gravity_cos_tilt * sin_tilt
     force_pan_mass_pan_inverse = force_pan * mass_pan_inverse
     load_torque_tilt_by_theta_tilt_term = (
-        -J_x_payload * follower_inertia_tilt_by_J_z_payload * omega_pan_sq
-        - J_x_tilt * follower_inertia_tilt_by_J_z_payload * omega_pan_sq
-        - J_z_payload * follower_inertia_tilt_by_J_x_payload * omega_pan_sq
-        - J_z_tilt * follower_inertia_tilt_by_J_x_payload * omega_pan_sq
-        + 9.81 * c_x_payload_m_payload_sin_tilt
-        - c_x_payload_sq * follower_inertia_tilt_by_J_x_payload * m_payload * omega_pan_sq
-        - 9.81 * c_z_payload * cos_tilt * m_payload
-        - c_z_payload_sq * follower_inertia_tilt_by_J_z_payload * m_payload * omega_pan_sq
-        + 4.0 * follower_torque_tilt_by_theta_tilt_term_7 * omega_pan_sq
-        + mass_pan_term * omega_pan_sq
-        + mass_pan_term_2 * omega_pan_sq
-        + mass_pan_term_3 * omega_pan_sq
-        + mass_pan_term_4 * omega_pan_sq
-        + mass_pan_term_5 * omega_pan_sq
-        + mass_pan_term_8 * omega_pan_sq
+        force_pan * load_inertia_tilt_by_theta_tilt_term * mass_pan_tilt
     )
     load_torque_tilt_by_theta_tilt = (
-        -follower_coupling_tilt_by_theta_tilt * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_theta_tilt
-        * force_pan
-        * load_inertia_tilt_by_theta_tilt_term
-        * mass_pan_tilt
+        coriolis_by_theta_tilt * half_omega_pan
+        + cos_tilt * gravity_sin_tilt
+        - follower_coupling_tilt_by_theta_tilt * force_pan_mass_pan_inverse
+        + follower_inertia_tilt_by_theta_tilt * load_torque_tilt_by_theta_tilt_term
         - follower_torque_tilt_by_theta_tilt * mass_pan_inverse_mass_pan_tilt
-        - load_torque_tilt_by_theta_tilt_term
+        - gravity_cos_tilt_sin_tilt
     )
     twice_ratio_tilt_by_theta_tilt = 2.0 * ratio_tilt_by_theta_tilt
     J_motor_tilt_ratio_tilt_load_torque_tilt = J_motor_tilt_ratio_tilt * load_torque_tilt
@@ -3106,8 +2764,10 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     J_motor_tilt_ratio_tilt_accel_tilt = J_motor_tilt_ratio_tilt * accel_tilt
     holding_tilt_by_theta_tilt_term_4 = (
         accel_pan * follower_coupling_tilt_by_theta_tilt
+        - 0.5 * coriolis_by_theta_tilt * omega_pan
+        - cos_tilt * gravity_sin_tilt
         + driving_torque_tilt_by_theta_tilt_term_2
-        + load_torque_tilt_by_theta_tilt_term
+        + gravity_cos_tilt_sin_tilt
     )
     gx[3, 1] = -holding_tilt_by_theta_tilt_term_4 - inverse_determinant_mass_pan_tilt * (
         -mass_pan_tilt_slide_tilt_sq
@@ -3120,40 +2780,9 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         )
         + mass_tilt
         * (
-            2.0 * J_x_payload * follower_inertia_tilt_by_J_x_payload * omega_pan * omega_tilt
-            + 2.0 * J_x_tilt * follower_inertia_tilt_by_J_x_payload * omega_pan * omega_tilt
-            + 2.0 * J_z_payload * follower_inertia_tilt_by_J_z_payload * omega_pan * omega_tilt
-            + 2.0 * J_z_tilt * follower_inertia_tilt_by_J_z_payload * omega_pan * omega_tilt
-            - accel_pan * follower_inertia_tilt_by_theta_tilt
+            -accel_pan * follower_inertia_tilt_by_theta_tilt
             - accel_tilt * follower_coupling_tilt_by_theta_tilt
-            + c_x_payload * c_y_payload * m_payload * omega_tilt_sq * sin_tilt
-            + 8.0
-            * c_x_payload
-            * c_z_payload
-            * cos_tilt
-            * m_payload
-            * omega_pan
-            * omega_tilt
-            * sin_tilt
-            + 2.0
-            * c_x_payload_sq
-            * follower_inertia_tilt_by_J_z_payload
-            * m_payload
-            * omega_pan
-            * omega_tilt
-            + 2.0
-            * c_z_payload_sq
-            * follower_inertia_tilt_by_J_x_payload
-            * m_payload
-            * omega_pan
-            * omega_tilt
-            - follower_torque_tilt_by_theta_tilt_term_2
-            - follower_torque_tilt_by_theta_tilt_term_3
-            - follower_torque_tilt_by_theta_tilt_term_5
-            - follower_torque_tilt_by_theta_tilt_term_6
-            - follower_torque_tilt_by_theta_tilt_term_8
-            - follower_torque_tilt_by_theta_tilt_term_9
-            - mass_pan_tilt_term_2_omega_tilt_sq
+            - follower_torque_tilt_by_theta_tilt_term
         )
     )
     gx[4, 1] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_theta_tilt
@@ -3161,43 +2790,12 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     follower_torque_tilt_by_omega_gear_pan = active_pan * d_shaft_pan
     gx[0, 2] = follower_torque_tilt_by_omega_gear_pan
     follower_torque_tilt_by_omega_pan = (
-        -J_x_payload_twice_cos_tilt_sin_tilt * omega_tilt
-        - J_x_tilt_twice_cos_tilt_sin_tilt * omega_tilt
-        + 2.0 * J_z_payload * cos_tilt * omega_tilt * sin_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_tilt * sin_tilt
-        - b_pan
-        + 2.0
-        * c_x_payload
-        * c_z_payload
-        * follower_inertia_tilt_by_J_x_payload
-        * m_payload
-        * omega_tilt
-        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_tilt * sin_tilt
-        - c_z_payload_force_pan_term_3 * omega_tilt
-        - follower_torque_tilt_by_omega_gear_pan
-        - force_pan_term_4 * omega_tilt
+        -b_pan - coriolis_by_omega_pan * omega_tilt - follower_torque_tilt_by_omega_gear_pan
     )
-    load_torque_tilt_by_omega_pan_term = J_x_payload_twice_cos_tilt_sin_tilt * omega_pan
-    load_torque_tilt_by_omega_pan_term_2 = J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan
-    load_torque_tilt_by_omega_pan_term_3 = J_z_payload_twice_cos_tilt_sin_tilt * omega_pan
-    load_torque_tilt_by_omega_pan_term_4 = J_z_tilt_twice_cos_tilt_sin_tilt * omega_pan
-    load_torque_tilt_by_omega_pan_term_5 = follower_inertia_tilt_by_theta_tilt_term * omega_pan
-    c_z_payload_force_pan_term_3_omega_pan = c_z_payload_force_pan_term_3 * omega_pan
-    load_torque_tilt_by_omega_pan_term_6 = follower_inertia_tilt_by_theta_tilt_term_2 * omega_pan
-    force_pan_term_4_omega_pan = force_pan_term_4 * omega_pan
-    load_torque_tilt_by_omega_pan_term_7 = (
-        -c_z_payload_force_pan_term_3_omega_pan
-        - force_pan_term_4_omega_pan
-        - load_torque_tilt_by_omega_pan_term
-        - load_torque_tilt_by_omega_pan_term_2
-        + load_torque_tilt_by_omega_pan_term_3
-        + load_torque_tilt_by_omega_pan_term_4
-        + load_torque_tilt_by_omega_pan_term_5
-        + load_torque_tilt_by_omega_pan_term_6
-    )
+    load_torque_tilt_by_omega_pan_term = coriolis_by_omega_pan * half_omega_pan + half_coriolis
     load_torque_tilt_by_omega_pan = (
         -follower_torque_tilt_by_omega_pan * mass_pan_inverse_mass_pan_tilt
-        - load_torque_tilt_by_omega_pan_term_7
+        + load_torque_tilt_by_omega_pan_term
     )
     carried_tilt_by_omega_pan = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_pan
     gx[3, 2] = (
@@ -3207,10 +2805,10 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
             - mass_pan_tilt_slide_tilt_sq
             * (
                 -carried_tilt_by_omega_pan * holding_tilt_by_theta_tilt_term
-                - load_torque_tilt_by_omega_pan_term_7
+                + load_torque_tilt_by_omega_pan_term
             )
         )
-        - load_torque_tilt_by_omega_pan_term_7
+        + load_torque_tilt_by_omega_pan_term
     )
     gx[4, 2] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_omega_pan
     gx[5, 2] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_omega_pan
@@ -3222,19 +2820,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + b_motor_tilt * ratio_tilt_sq
     )
     driving_torque_tilt_by_omega_tilt = -driving_torque_tilt_by_omega_tilt_term
-    twice_omega_tilt = 2.0 * omega_tilt
-    follower_torque_tilt_by_omega_tilt = (
-        -c_z_payload_force_pan_term_3_omega_pan
-        - force_pan_term * twice_omega_tilt
-        - force_pan_term_2 * twice_omega_tilt
-        - force_pan_term_4_omega_pan
-        - load_torque_tilt_by_omega_pan_term
-        - load_torque_tilt_by_omega_pan_term_2
-        + load_torque_tilt_by_omega_pan_term_3
-        + load_torque_tilt_by_omega_pan_term_4
-        + load_torque_tilt_by_omega_pan_term_5
-        + load_torque_tilt_by_omega_pan_term_6
-    )
+    follower_torque_tilt_by_omega_tilt = -coriolis - 2.0 * force_pan_term
     load_torque_tilt_by_omega_tilt = (
         -b_tilt - follower_torque_tilt_by_omega_tilt * mass_pan_inverse_mass_pan_tilt
     )
@@ -3292,14 +2878,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     gx[3, 7] = driving_torque_tilt_by_i_tilt + holding_tilt_by_i_tilt_term * (
         -carried_tilt_by_i_tilt * holding_tilt_by_theta_tilt_term + driving_torque_tilt_by_i_tilt
     )
-    follower_inertia_tilt_by_J_pan = 1.0
-    load_inertia_tilt_by_J_pan = (
-        follower_inertia_tilt_by_J_pan * load_inertia_tilt_by_theta_tilt_term_2
-    )
-    load_torque_tilt_by_J_pan_term = (
-        force_pan * load_inertia_tilt_by_theta_tilt_term * mass_pan_tilt
-    )
-    load_torque_tilt_by_J_pan = follower_inertia_tilt_by_J_pan * load_torque_tilt_by_J_pan_term
+    load_inertia_tilt_by_J_pan = load_inertia_tilt_by_theta_tilt_term_2
+    load_torque_tilt_by_J_pan = load_torque_tilt_by_theta_tilt_term
     carried_tilt_by_J_pan = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_pan
         + driving_torque_tilt * load_inertia_tilt_by_J_pan
@@ -3321,15 +2901,20 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     gp[4, 0] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_pan
     gp[5, 0] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_pan
+    inertia_pan_per_sin_tilt_by_J_x_tilt = sin_tilt
+    follower_inertia_tilt_by_J_x_tilt = inertia_pan_per_sin_tilt_by_J_x_tilt * sin_tilt
     load_inertia_tilt_by_J_x_tilt = (
-        follower_inertia_tilt_by_J_x_payload * load_inertia_tilt_by_theta_tilt_term_2
+        follower_inertia_tilt_by_J_x_tilt * load_inertia_tilt_by_theta_tilt_term_2
     )
-    follower_torque_tilt_by_J_z_payload = omega_pan_omega_tilt * twice_cos_tilt_sin_tilt
-    follower_torque_tilt_by_J_x_payload = -follower_torque_tilt_by_J_z_payload
+    cos_tilt_twice_omega_pan = cos_tilt * twice_omega_pan
+    coriolis_by_J_x_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_tilt
+    coriolis_by_J_x_tilt_omega_tilt = coriolis_by_J_x_tilt * omega_tilt
+    follower_torque_tilt_by_J_x_tilt = -coriolis_by_J_x_tilt_omega_tilt
+    coriolis_by_J_x_tilt_half_omega_pan = coriolis_by_J_x_tilt * half_omega_pan
     load_torque_tilt_by_J_x_tilt = (
-        cos_tilt_sin_tilt_omega_pan_sq
-        + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_J_pan_term
-        - follower_torque_tilt_by_J_x_payload * mass_pan_inverse_mass_pan_tilt
+        coriolis_by_J_x_tilt_half_omega_pan
+        + follower_inertia_tilt_by_J_x_tilt * load_torque_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_J_x_tilt * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_x_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_x_tilt
@@ -3341,50 +2926,41 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     lost_raising_tilt_by_J_x_tilt = (
         -load_inertia_tilt_by_J_x_tilt * lost_raising_tilt_by_theta_tilt_term_2
     )
-    minus_cos_tilt_sin_tilt_omega_pan_sq = -cos_tilt_sin_tilt_omega_pan_sq
-    holding_tilt_by_J_x_tilt_term = -mass_tilt * (
-        -accel_pan * follower_inertia_tilt_by_J_x_payload - follower_torque_tilt_by_J_z_payload
-    )
-    gp[3, 1] = (
-        -inverse_determinant_mass_pan_tilt
+    gp[3, 1] = coriolis_by_J_x_tilt_half_omega_pan - inverse_determinant_mass_pan_tilt * (
+        -mass_pan_tilt_slide_tilt_sq
         * (
-            -holding_tilt_by_J_x_tilt_term
-            - mass_pan_tilt_slide_tilt_sq
-            * (
-                -carried_tilt_by_J_x_tilt * holding_tilt_by_theta_tilt_term
-                - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_x_tilt
-                - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_x_tilt
-                - minus_cos_tilt_sin_tilt_omega_pan_sq
-            )
+            -carried_tilt_by_J_x_tilt * holding_tilt_by_theta_tilt_term
+            + 0.5 * coriolis_by_J_x_tilt * omega_pan
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_x_tilt
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_x_tilt
         )
-        - minus_cos_tilt_sin_tilt_omega_pan_sq
+        + mass_tilt
+        * (-accel_pan * follower_inertia_tilt_by_J_x_tilt - coriolis_by_J_x_tilt_omega_tilt)
     )
     gp[4, 1] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_x_tilt
     gp[5, 1] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_x_tilt
-    load_inertia_tilt_by_J_y_tilt = 1.0
-    carried_tilt_by_J_y_tilt = driving_torque_tilt * load_inertia_tilt_by_J_y_tilt
-    lost_lowering_tilt_by_J_y_tilt = (
-        -load_inertia_tilt_by_J_y_tilt * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_y_tilt = (
-        -load_inertia_tilt_by_J_y_tilt * lost_raising_tilt_by_theta_tilt_term_2
-    )
+    carried_tilt_by_J_y_tilt = driving_torque_tilt
+    lost_lowering_tilt_by_J_y_tilt = -lost_lowering_tilt_by_theta_tilt_term_2
+    lost_raising_tilt_by_J_y_tilt = -lost_raising_tilt_by_theta_tilt_term_2
     gp[3, 2] = holding_tilt_by_i_tilt_term * (
         -accel_tilt
         - carried_tilt_by_J_y_tilt * holding_tilt_by_theta_tilt_term
         - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_y_tilt
         - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_y_tilt
     )
+    inertia_pan_per_sin_tilt_by_J_z_tilt = -sin_tilt
+    follower_inertia_tilt_by_J_z_tilt = inertia_pan_per_sin_tilt_by_J_z_tilt * sin_tilt + 1.0
     load_inertia_tilt_by_J_z_tilt = (
-        follower_inertia_tilt_by_J_z_payload * load_inertia_tilt_by_theta_tilt_term_2
+        follower_inertia_tilt_by_J_z_tilt * load_inertia_tilt_by_theta_tilt_term_2
     )
+    coriolis_by_J_z_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_tilt
+    coriolis_by_J_z_tilt_omega_tilt = coriolis_by_J_z_tilt * omega_tilt
+    follower_torque_tilt_by_J_z_tilt = -coriolis_by_J_z_tilt_omega_tilt
+    coriolis_by_J_z_tilt_half_omega_pan = coriolis_by_J_z_tilt * half_omega_pan
     load_torque_tilt_by_J_z_tilt = (
-        -cos_tilt_sin_tilt_omega_pan_sq
-        + follower_inertia_tilt_by_J_z_payload
-        * force_pan
-        * load_inertia_tilt_by_theta_tilt_term
-        * mass_pan_tilt
-        - follower_torque_tilt_by_J_z_payload * mass_pan_inverse_mass_pan_tilt
+        coriolis_by_J_z_tilt_half_omega_pan
+        + follower_inertia_tilt_by_J_z_tilt * load_torque_tilt_by_theta_tilt_term
+        - follower_torque_tilt_by_J_z_tilt * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_z_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_J_z_tilt
@@ -3396,64 +2972,63 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     lost_raising_tilt_by_J_z_tilt = (
         -load_inertia_tilt_by_J_z_tilt * lost_raising_tilt_by_theta_tilt_term_2
     )
-    holding_tilt_by_J_z_tilt_term = -mass_tilt * (
-        -accel_pan * follower_inertia_tilt_by_J_z_payload - follower_torque_tilt_by_J_x_payload
-    )
-    gp[3, 3] = -cos_tilt_sin_tilt_omega_pan_sq - inverse_determinant_mass_pan_tilt * (
-        -holding_tilt_by_J_z_tilt_term
-        - mass_pan_tilt_slide_tilt_sq
+    gp[3, 3] = coriolis_by_J_z_tilt_half_omega_pan - inverse_determinant_mass_pan_tilt * (
+        -mass_pan_tilt_slide_tilt_sq
         * (
             -carried_tilt_by_J_z_tilt * holding_tilt_by_theta_tilt_term
-            - cos_tilt_sin_tilt_omega_pan_sq
+            + 0.5 * coriolis_by_J_z_tilt * omega_pan
             - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_z_tilt
             - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_z_tilt
         )
+        + mass_tilt
+        * (-accel_pan * follower_inertia_tilt_by_J_z_tilt - coriolis_by_J_z_tilt_omega_tilt)
     )
     gp[4, 3] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_z_tilt
     gp[5, 3] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_z_tilt
+    coupling_cos_tilt_by_m_payload = c_y_payload * c_z_payload
     follower_coupling_tilt_by_m_payload = (
-        c_x_payload_c_y_payload_sin_tilt - c_y_payload_c_z_payload_cos_tilt
+        -cos_tilt * coupling_cos_tilt_by_m_payload + coupling_sin_tilt_by_m_payload * sin_tilt
+    )
+    inertia_pan_by_m_payload = c_x_payload_sq + c_y_payload_sq
+    inertia_pan_sin_cos_tilt_by_m_payload = 2.0 * c_x_payload * c_z_payload
+    inertia_pan_sin_sq_tilt_by_m_payload = -c_x_payload_sq + c_z_payload_sq
+    inertia_pan_per_sin_tilt_by_m_payload = (
+        cos_tilt * inertia_pan_sin_cos_tilt_by_m_payload
+        + inertia_pan_sin_sq_tilt_by_m_payload * sin_tilt
     )
     follower_inertia_tilt_by_m_payload = (
-        c_x_payload * sin_tilt * twice_c_z_payload_cos_tilt
-        + c_x_payload_sq * follower_inertia_tilt_by_J_z_payload
-        + c_z_payload_sq * follower_inertia_tilt_by_J_x_payload
-        + mass_pan_term_6
-        + mass_pan_term_7
+        inertia_pan_by_m_payload + inertia_pan_per_sin_tilt_by_m_payload * sin_tilt
     )
-    c_x_payload_sq_plus_c_z_payload_sq = c_x_payload_sq + c_z_payload_sq
+    inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
     load_inertia_tilt_by_m_payload = (
-        c_x_payload_sq_plus_c_z_payload_sq
-        - follower_coupling_tilt_by_m_payload * twice_mass_pan_inverse_mass_pan_tilt
+        -follower_coupling_tilt_by_m_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_m_payload * load_inertia_tilt_by_theta_tilt_term_2
+        + inertia_tilt_by_m_payload
     )
-    c_x_payload_omega_tilt_sq = c_x_payload * omega_tilt_sq
-    c_z_payload_omega_tilt_sq = c_z_payload * omega_tilt_sq
+    coriolis_by_m_payload = (
+        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_m_payload
+        - inertia_pan_sin_cos_tilt_by_m_payload * omega_pan
+    )
+    omega_tilt_sq_sin_tilt = omega_tilt_sq * sin_tilt
+    cos_tilt_omega_tilt_sq = cos_tilt * omega_tilt_sq
     follower_torque_tilt_by_m_payload_term = (
-        -2.0
-        * c_x_payload
-        * c_z_payload
-        * follower_inertia_tilt_by_J_x_payload
-        * omega_pan
-        * omega_tilt
-        + c_x_payload_c_z_payload * follower_torque_tilt_by_theta_tilt_term
-        + c_x_payload_omega_tilt_sq * c_y_payload * cos_tilt
-        - 2.0 * c_x_payload_sq * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + c_y_payload_sin_tilt * c_z_payload_omega_tilt_sq
-        + c_z_payload_sq * follower_torque_tilt_by_J_z_payload
+        coriolis_by_m_payload * omega_tilt
+        + cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_m_payload
+        + coupling_cos_tilt_by_m_payload * omega_tilt_sq_sin_tilt
     )
     follower_torque_tilt_by_m_payload = -follower_torque_tilt_by_m_payload_term
-    load_torque_tilt_by_m_payload_term = c_x_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
+    gravity_cos_tilt_by_m_payload = 9.81 * c_x_payload
+    gravity_sin_tilt_by_m_payload = 9.81 * c_z_payload
+    load_torque_tilt_by_m_payload_term = (
+        coriolis_by_m_payload * half_omega_pan
+        + cos_tilt * gravity_cos_tilt_by_m_payload
+        + gravity_sin_tilt_by_m_payload * sin_tilt
+    )
     load_torque_tilt_by_m_payload = (
-        c_z_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
-        + cos_tilt * load_torque_tilt_term
-        - follower_coupling_tilt_by_m_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_m_payload * load_torque_tilt_by_J_pan_term
+        -follower_coupling_tilt_by_m_payload * force_pan_mass_pan_inverse
+        + follower_inertia_tilt_by_m_payload * load_torque_tilt_by_theta_tilt_term
         - follower_torque_tilt_by_m_payload * mass_pan_inverse_mass_pan_tilt
-        - load_torque_tilt_by_m_payload_term
-        + load_torque_tilt_term_2 * sin_tilt
-        + load_torque_tilt_term_5
-        - load_torque_tilt_term_7
+        + load_torque_tilt_by_m_payload_term
     )
     carried_tilt_by_m_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_m_payload
@@ -3465,39 +3040,45 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     lost_raising_tilt_by_m_payload = (
         -load_inertia_tilt_by_m_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
-    holding_tilt_by_m_payload_term = (
-        accel_pan * follower_coupling_tilt_by_m_payload
-        - c_x_payload * c_z_payload * follower_inertia_tilt_by_J_z_payload * omega_pan_sq
-        - 9.81 * c_x_payload * cos_tilt
-        - 9.81 * c_z_payload * sin_tilt
-        - c_z_payload_sq * cos_tilt * omega_pan_sq * sin_tilt
+    holding_tilt_by_m_payload_term = accel_pan * follower_coupling_tilt_by_m_payload
+    gp[3, 4] = (
+        -holding_tilt_by_m_payload_term
+        - inverse_determinant_mass_pan_tilt
+        * (
+            -mass_pan_tilt_slide_tilt_sq
+            * (
+                -accel_tilt * inertia_tilt_by_m_payload
+                - carried_tilt_by_m_payload * holding_tilt_by_theta_tilt_term
+                + 0.5 * coriolis_by_m_payload * omega_pan
+                + cos_tilt * gravity_cos_tilt_by_m_payload
+                + gravity_sin_tilt_by_m_payload * sin_tilt
+                - holding_tilt_by_m_payload_term
+                - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_m_payload
+                - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_m_payload
+            )
+            + mass_tilt
+            * (
+                -accel_pan * follower_inertia_tilt_by_m_payload
+                - accel_tilt * follower_coupling_tilt_by_m_payload
+                - follower_torque_tilt_by_m_payload_term
+            )
+        )
         + load_torque_tilt_by_m_payload_term
-        + load_torque_tilt_term_7
-    )
-    gp[3, 4] = -holding_tilt_by_m_payload_term - inverse_determinant_mass_pan_tilt * (
-        -mass_pan_tilt_slide_tilt_sq
-        * (
-            -accel_tilt * c_x_payload_sq_plus_c_z_payload_sq
-            - carried_tilt_by_m_payload * holding_tilt_by_theta_tilt_term
-            - holding_tilt_by_m_payload_term
-            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_m_payload
-            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_m_payload
-        )
-        + mass_tilt
-        * (
-            -accel_pan * follower_inertia_tilt_by_m_payload
-            - accel_tilt * follower_coupling_tilt_by_m_payload
-            - follower_torque_tilt_by_m_payload_term
-        )
     )
     gp[4, 4] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_m_payload
     gp[5, 4] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_m_payload
+    inertia_pan_per_sin_tilt_by_J_x_payload = sin_tilt
+    follower_inertia_tilt_by_J_x_payload = inertia_pan_per_sin_tilt_by_J_x_payload * sin_tilt
     load_inertia_tilt_by_J_x_payload = (
         follower_inertia_tilt_by_J_x_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
+    coriolis_by_J_x_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_payload
+    coriolis_by_J_x_payload_omega_tilt = coriolis_by_J_x_payload * omega_tilt
+    follower_torque_tilt_by_J_x_payload = -coriolis_by_J_x_payload_omega_tilt
+    coriolis_by_J_x_payload_half_omega_pan = coriolis_by_J_x_payload * half_omega_pan
     load_torque_tilt_by_J_x_payload = (
-        cos_tilt_sin_tilt_omega_pan_sq
-        + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_J_pan_term
+        coriolis_by_J_x_payload_half_omega_pan
+        + follower_inertia_tilt_by_J_x_payload * load_torque_tilt_by_theta_tilt_term
         - follower_torque_tilt_by_J_x_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_x_payload = (
@@ -3510,45 +3091,40 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     lost_raising_tilt_by_J_x_payload = (
         -load_inertia_tilt_by_J_x_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
-    gp[3, 5] = (
-        -inverse_determinant_mass_pan_tilt
+    gp[3, 5] = coriolis_by_J_x_payload_half_omega_pan - inverse_determinant_mass_pan_tilt * (
+        -mass_pan_tilt_slide_tilt_sq
         * (
-            -holding_tilt_by_J_x_tilt_term
-            - mass_pan_tilt_slide_tilt_sq
-            * (
-                -carried_tilt_by_J_x_payload * holding_tilt_by_theta_tilt_term
-                - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_x_payload
-                - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_x_payload
-                - minus_cos_tilt_sin_tilt_omega_pan_sq
-            )
+            -carried_tilt_by_J_x_payload * holding_tilt_by_theta_tilt_term
+            + 0.5 * coriolis_by_J_x_payload * omega_pan
+            - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_x_payload
+            - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_x_payload
         )
-        - minus_cos_tilt_sin_tilt_omega_pan_sq
+        + mass_tilt
+        * (-accel_pan * follower_inertia_tilt_by_J_x_payload - coriolis_by_J_x_payload_omega_tilt)
     )
     gp[4, 5] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_x_payload
     gp[5, 5] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_x_payload
-    load_inertia_tilt_by_J_y_payload = 1.0
-    carried_tilt_by_J_y_payload = driving_torque_tilt * load_inertia_tilt_by_J_y_payload
-    lost_lowering_tilt_by_J_y_payload = (
-        -load_inertia_tilt_by_J_y_payload * lost_lowering_tilt_by_theta_tilt_term_2
-    )
-    lost_raising_tilt_by_J_y_payload = (
-        -load_inertia_tilt_by_J_y_payload * lost_raising_tilt_by_theta_tilt_term_2
-    )
+    carried_tilt_by_J_y_payload = driving_torque_tilt
+    lost_lowering_tilt_by_J_y_payload = -lost_lowering_tilt_by_theta_tilt_term_2
+    lost_raising_tilt_by_J_y_payload = -lost_raising_tilt_by_theta_tilt_term_2
     gp[3, 6] = holding_tilt_by_i_tilt_term * (
         -accel_tilt
         - carried_tilt_by_J_y_payload * holding_tilt_by_theta_tilt_term
         - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_y_payload
         - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_y_payload
     )
+    inertia_pan_per_sin_tilt_by_J_z_payload = -sin_tilt
+    follower_inertia_tilt_by_J_z_payload = inertia_pan_per_sin_tilt_by_J_z_payload * sin_tilt + 1.0
     load_inertia_tilt_by_J_z_payload = (
         follower_inertia_tilt_by_J_z_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
+    coriolis_by_J_z_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_payload
+    coriolis_by_J_z_payload_omega_tilt = coriolis_by_J_z_payload * omega_tilt
+    follower_torque_tilt_by_J_z_payload = -coriolis_by_J_z_payload_omega_tilt
+    coriolis_by_J_z_payload_half_omega_pan = coriolis_by_J_z_payload * half_omega_pan
     load_torque_tilt_by_J_z_payload = (
-        -cos_tilt_sin_tilt_omega_pan_sq
-        + follower_inertia_tilt_by_J_z_payload
-        * force_pan
-        * load_inertia_tilt_by_theta_tilt_term
-        * mass_pan_tilt
+        coriolis_by_J_z_payload_half_omega_pan
+        + follower_inertia_tilt_by_J_z_payload * load_torque_tilt_by_theta_tilt_term
         - follower_torque_tilt_by_J_z_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_J_z_payload = (
@@ -3561,58 +3137,49 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     lost_raising_tilt_by_J_z_payload = (
         -load_inertia_tilt_by_J_z_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
-    gp[3, 7] = -cos_tilt_sin_tilt_omega_pan_sq - inverse_determinant_mass_pan_tilt * (
-        -holding_tilt_by_J_z_tilt_term
-        - mass_pan_tilt_slide_tilt_sq
+    gp[3, 7] = coriolis_by_J_z_payload_half_omega_pan - inverse_determinant_mass_pan_tilt * (
+        -mass_pan_tilt_slide_tilt_sq
         * (
             -carried_tilt_by_J_z_payload * holding_tilt_by_theta_tilt_term
-            - cos_tilt_sin_tilt_omega_pan_sq
+            + 0.5 * coriolis_by_J_z_payload * omega_pan
             - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_J_z_payload
             - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_J_z_payload
         )
+        + mass_tilt
+        * (-accel_pan * follower_inertia_tilt_by_J_z_payload - coriolis_by_J_z_payload_omega_tilt)
     )
     gp[4, 7] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_J_z_payload
     gp[5, 7] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_z_payload
-    follower_inertia_tilt_by_c_x_payload_term = m_payload_sin_tilt * twice_c_z_payload_cos_tilt
+    follower_coupling_tilt_by_c_x_payload = coupling_cos_tilt_by_c_z_payload * sin_tilt
+    inertia_pan_sin_sq_tilt_by_c_x_payload = -inertia_tilt_by_c_x_payload
+    inertia_tilt_by_c_z_payload = 2.0 * coupling_cos_tilt_by_c_y_payload
+    inertia_pan_per_sin_tilt_by_c_x_payload = (
+        cos_tilt * inertia_tilt_by_c_z_payload + inertia_pan_sin_sq_tilt_by_c_x_payload * sin_tilt
+    )
     follower_inertia_tilt_by_c_x_payload = (
-        follower_inertia_tilt_by_c_x_payload_term + force_pan_term_3
+        inertia_pan_per_sin_tilt_by_c_x_payload * sin_tilt + inertia_tilt_by_c_x_payload
     )
     load_inertia_tilt_by_c_x_payload = (
-        c_x_payload_twice_m_payload
-        - follower_coupling_tilt_by_c_x_payload * twice_mass_pan_inverse_mass_pan_tilt
+        -follower_coupling_tilt_by_c_x_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_c_x_payload * load_inertia_tilt_by_theta_tilt_term_2
+        + inertia_tilt_by_c_x_payload
     )
-    c_z_payload_twice_m_payload = c_z_payload * twice_m_payload
+    coriolis_by_c_x_payload = (
+        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_x_payload
+        - inertia_tilt_by_c_z_payload * omega_pan
+    )
     follower_torque_tilt_by_c_x_payload_term = (
-        c_z_payload_twice_m_payload * follower_inertia_tilt_by_J_x_payload
+        coriolis_by_c_x_payload * omega_tilt
+        + cos_tilt_omega_tilt_sq * coupling_cos_tilt_by_c_z_payload
     )
-    c_x_payload_m_payload_sin_tilt_cos_tilt = c_x_payload_m_payload_sin_tilt * cos_tilt
-    follower_torque_tilt_by_c_x_payload_term_2 = c_y_payload_cos_tilt_m_payload * omega_tilt_sq
-    follower_torque_tilt_by_c_x_payload_term_3 = (
-        c_z_payload_twice_m_payload * follower_inertia_tilt_by_J_z_payload * omega_pan_omega_tilt
-    )
-    follower_torque_tilt_by_c_x_payload_term_4 = 4.0 * omega_pan_omega_tilt
-    follower_torque_tilt_by_c_x_payload = (
-        c_x_payload_m_payload_sin_tilt_cos_tilt * follower_torque_tilt_by_c_x_payload_term_4
-        + follower_torque_tilt_by_c_x_payload_term * omega_pan_omega_tilt
-        - follower_torque_tilt_by_c_x_payload_term_2
-        - follower_torque_tilt_by_c_x_payload_term_3
-    )
-    load_torque_tilt_by_c_x_payload_term = 2.0 * c_x_payload_m_payload_sin_tilt_cos_tilt
-    load_torque_tilt_by_c_x_payload_term_2 = (
-        -c_z_payload * follower_inertia_tilt_by_J_z_payload * m_payload * omega_pan_sq
-        + c_z_payload * load_torque_tilt_term_6 * m_payload
-        - 9.81 * cos_tilt * m_payload
-        + load_torque_tilt_by_c_x_payload_term * omega_pan_sq
-    )
+    follower_torque_tilt_by_c_x_payload = -follower_torque_tilt_by_c_x_payload_term
+    gravity_cos_tilt_by_c_x_payload = 9.81 * m_payload
     load_torque_tilt_by_c_x_payload = (
-        -follower_coupling_tilt_by_c_x_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_c_x_payload
-        * force_pan
-        * load_inertia_tilt_by_theta_tilt_term
-        * mass_pan_tilt
+        coriolis_by_c_x_payload * half_omega_pan
+        + cos_tilt * gravity_cos_tilt_by_c_x_payload
+        - follower_coupling_tilt_by_c_x_payload * force_pan_mass_pan_inverse
+        + follower_inertia_tilt_by_c_x_payload * load_torque_tilt_by_theta_tilt_term
         - follower_torque_tilt_by_c_x_payload * mass_pan_inverse_mass_pan_tilt
-        - load_torque_tilt_by_c_x_payload_term_2
     )
     carried_tilt_by_c_x_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_x_payload
@@ -3625,12 +3192,14 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         -load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
     holding_tilt_by_c_x_payload_term = (
-        accel_pan * follower_coupling_tilt_by_c_x_payload + load_torque_tilt_by_c_x_payload_term_2
+        accel_pan * follower_coupling_tilt_by_c_x_payload
+        - 0.5 * coriolis_by_c_x_payload * omega_pan
+        - cos_tilt * gravity_cos_tilt_by_c_x_payload
     )
     gp[3, 8] = -holding_tilt_by_c_x_payload_term - inverse_determinant_mass_pan_tilt * (
         -mass_pan_tilt_slide_tilt_sq
         * (
-            -accel_tilt * c_x_payload_twice_m_payload
+            -accel_tilt * inertia_tilt_by_c_x_payload
             - carried_tilt_by_c_x_payload * holding_tilt_by_theta_tilt_term
             - holding_tilt_by_c_x_payload_term
             - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_c_x_payload
@@ -3640,43 +3209,31 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         * (
             -accel_pan * follower_inertia_tilt_by_c_x_payload
             - accel_tilt * follower_coupling_tilt_by_c_x_payload
-            + 4.0 * c_x_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-            + 2.0
-            * c_z_payload
-            * follower_inertia_tilt_by_J_x_payload
-            * m_payload
-            * omega_pan
-            * omega_tilt
-            - follower_torque_tilt_by_c_x_payload_term_2
-            - follower_torque_tilt_by_c_x_payload_term_3
+            - follower_torque_tilt_by_c_x_payload_term
         )
     )
     gp[4, 8] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_x_payload
     gp[5, 8] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_x_payload
     follower_coupling_tilt_by_c_y_payload = (
-        c_x_payload_m_payload_sin_tilt - c_z_payload_cos_tilt * m_payload
+        -cos_tilt * coupling_cos_tilt_by_c_y_payload + coupling_sin_tilt_by_c_y_payload * sin_tilt
     )
-    c_y_payload_twice_m_payload = c_y_payload * twice_m_payload
-    follower_inertia_tilt_by_c_y_payload = (
-        c_y_payload_twice_m_payload * follower_inertia_tilt_by_J_x_payload
-        + c_y_payload_twice_m_payload * follower_inertia_tilt_by_J_z_payload
-    )
+    inertia_pan_by_c_y_payload = 2.0 * coupling_cos_tilt_by_c_z_payload
     load_inertia_tilt_by_c_y_payload = (
         -follower_coupling_tilt_by_c_y_payload * twice_mass_pan_inverse_mass_pan_tilt
-        + follower_inertia_tilt_by_c_y_payload * load_inertia_tilt_by_theta_tilt_term_2
+        + inertia_pan_by_c_y_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
     follower_torque_tilt_by_c_y_payload_term = (
-        c_x_payload_omega_tilt_sq * cos_tilt_m_payload
-        + c_z_payload_omega_tilt_sq * m_payload_sin_tilt
+        cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_c_y_payload
+        + coupling_cos_tilt_by_c_y_payload * omega_tilt_sq_sin_tilt
     )
     follower_torque_tilt_by_c_y_payload = -follower_torque_tilt_by_c_y_payload_term
     load_torque_tilt_by_c_y_payload = (
         -follower_coupling_tilt_by_c_y_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_c_y_payload
-        * force_pan
+        - follower_torque_tilt_by_c_y_payload * mass_pan_inverse_mass_pan_tilt
+        + force_pan
+        * inertia_pan_by_c_y_payload
         * load_inertia_tilt_by_theta_tilt_term
         * mass_pan_tilt
-        - follower_torque_tilt_by_c_y_payload * mass_pan_inverse_mass_pan_tilt
     )
     carried_tilt_by_c_y_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_y_payload
@@ -3699,47 +3256,41 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         )
         + mass_tilt
         * (
-            -accel_pan * follower_inertia_tilt_by_c_y_payload
+            -accel_pan * inertia_pan_by_c_y_payload
             - accel_tilt * follower_coupling_tilt_by_c_y_payload
             - follower_torque_tilt_by_c_y_payload_term
         )
     )
     gp[4, 9] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_y_payload
     gp[5, 9] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_y_payload
-    follower_coupling_tilt_by_c_z_payload = -c_y_payload_cos_tilt_m_payload
-    follower_inertia_tilt_by_c_z_payload = (
-        follower_torque_tilt_by_c_x_payload_term + load_torque_tilt_by_c_x_payload_term
+    follower_coupling_tilt_by_c_z_payload_term = cos_tilt * coupling_cos_tilt_by_c_z_payload
+    follower_coupling_tilt_by_c_z_payload = -follower_coupling_tilt_by_c_z_payload_term
+    inertia_pan_per_sin_tilt_by_c_z_payload = (
+        cos_tilt * inertia_tilt_by_c_x_payload + inertia_tilt_by_c_z_payload * sin_tilt
     )
+    follower_inertia_tilt_by_c_z_payload = inertia_pan_per_sin_tilt_by_c_z_payload * sin_tilt
     load_inertia_tilt_by_c_z_payload = (
-        c_z_payload_twice_m_payload
-        - follower_coupling_tilt_by_c_z_payload * twice_mass_pan_inverse_mass_pan_tilt
+        -follower_coupling_tilt_by_c_z_payload * twice_mass_pan_inverse_mass_pan_tilt
         + follower_inertia_tilt_by_c_z_payload * load_inertia_tilt_by_theta_tilt_term_2
+        + inertia_tilt_by_c_z_payload
+    )
+    coriolis_by_c_z_payload = (
+        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_z_payload
+        - inertia_tilt_by_c_x_payload * omega_pan
     )
     follower_torque_tilt_by_c_z_payload_term = (
-        -2.0
-        * c_x_payload
-        * follower_inertia_tilt_by_J_x_payload
-        * m_payload
-        * omega_pan
-        * omega_tilt
-        + c_z_payload_cos_tilt * follower_torque_tilt_by_c_x_payload_term_4 * m_payload_sin_tilt
-        + follower_coupling_tilt_by_c_x_payload * omega_tilt_sq
-        + force_pan_term_3 * omega_pan_omega_tilt
+        coriolis_by_c_z_payload * omega_tilt
+        + coupling_cos_tilt_by_c_z_payload * omega_tilt_sq_sin_tilt
     )
     follower_torque_tilt_by_c_z_payload = -follower_torque_tilt_by_c_z_payload_term
-    c_x_payload_m_payload = c_x_payload * m_payload
-    load_torque_tilt_by_c_z_payload_term = c_x_payload_m_payload * load_torque_tilt_term_6
-    load_torque_tilt_by_c_z_payload_term_2 = (
-        c_x_payload_m_payload * load_torque_tilt_term_4
-        + follower_inertia_tilt_by_c_x_payload_term * omega_pan_sq
-        - load_torque_tilt_by_c_z_payload_term
-        + 9.81 * m_payload_sin_tilt
+    load_torque_tilt_by_c_z_payload_term = (
+        coriolis_by_c_z_payload * half_omega_pan + gravity_cos_tilt_by_c_x_payload * sin_tilt
     )
     load_torque_tilt_by_c_z_payload = (
         -follower_coupling_tilt_by_c_z_payload * force_pan_mass_pan_inverse
-        + follower_inertia_tilt_by_c_z_payload * load_torque_tilt_by_J_pan_term
+        + follower_inertia_tilt_by_c_z_payload * load_torque_tilt_by_theta_tilt_term
         - follower_torque_tilt_by_c_z_payload * mass_pan_inverse_mass_pan_tilt
-        + load_torque_tilt_by_c_z_payload_term_2
+        + load_torque_tilt_by_c_z_payload_term
     )
     carried_tilt_by_c_z_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_z_payload
@@ -3752,29 +3303,27 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         -load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_theta_tilt_term_2
     )
     gp[3, 10] = (
-        accel_pan * c_y_payload_cos_tilt_m_payload
+        accel_pan * follower_coupling_tilt_by_c_z_payload_term
         - inverse_determinant_mass_pan_tilt
         * (
             -mass_pan_tilt_slide_tilt_sq
             * (
-                accel_pan * c_y_payload * cos_tilt * m_payload
-                - accel_tilt * c_z_payload_twice_m_payload
-                + c_x_payload * follower_inertia_tilt_by_J_z_payload * m_payload * omega_pan_sq
-                + 2.0 * c_z_payload * cos_tilt * m_payload * omega_pan_sq * sin_tilt
+                accel_pan * cos_tilt * coupling_cos_tilt_by_c_z_payload
+                - accel_tilt * inertia_tilt_by_c_z_payload
                 - carried_tilt_by_c_z_payload * holding_tilt_by_theta_tilt_term
+                + 0.5 * coriolis_by_c_z_payload * omega_pan
+                + gravity_cos_tilt_by_c_x_payload * sin_tilt
                 - holding_tilt_by_theta_tilt_term_2 * lost_lowering_tilt_by_c_z_payload
                 - holding_tilt_by_theta_tilt_term_3 * lost_raising_tilt_by_c_z_payload
-                - load_torque_tilt_by_c_z_payload_term
-                + 9.81 * m_payload * sin_tilt
             )
             + mass_tilt
             * (
                 -accel_pan * follower_inertia_tilt_by_c_z_payload
-                + accel_tilt * c_y_payload * cos_tilt * m_payload
+                + accel_tilt * cos_tilt * coupling_cos_tilt_by_c_z_payload
                 - follower_torque_tilt_by_c_z_payload_term
             )
         )
-        + load_torque_tilt_by_c_z_payload_term_2
+        + load_torque_tilt_by_c_z_payload_term
     )
     gp[4, 10] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_z_payload
     gp[5, 10] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_z_payload
@@ -4305,7 +3854,11 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def outputs(t, x, u, p, y):
-    """Write the measured signals into y."""
+    """Write the measured signals into y.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; y [4] in
+    OUTPUT_UNITS.
+    """
     theta_pan = x[0]
     theta_tilt = x[1]
     i_pan = x[6]
@@ -4318,7 +3871,11 @@ def outputs(t, x, u, p, y):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def output_jacobian(t, x, u, p, yx, yp):
-    """Write the non-zero derivatives of outputs by state and parameter."""
+    """Write the non-zero derivatives of outputs by state and parameter.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; yx [4,
+    8]; yp [4, 43].
+    """
     yx[0, 0] = 1.0
     yx[1, 1] = 1.0
     yx[2, 6] = 1.0
@@ -4327,7 +3884,11 @@ def output_jacobian(t, x, u, p, yx, yp):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def energy(t, x, u, p, m, e):
-    """Write stored energy in J, power in and dissipated power in W into e."""
+    """Write stored energy in J, power in and dissipated power in W into e.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; e [3] in J, W and W.
+    """
     theta_pan = x[0]
     theta_tilt = x[1]
     omega_pan = x[2]
@@ -4609,7 +4170,11 @@ def energy(t, x, u, p, m, e):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel."""
+    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
+
+    t in s; x [11] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; r [5] in N m, then STATE_UNITS per s.
+    """
     theta_pan = x[0]
     theta_tilt = x[1]
     omega_pan = x[2]
@@ -4669,66 +4234,53 @@ def equation_error(t, x, u, p, m, r):
     slide_tilt = m[1]
     side_pan = m[2]
     active_pan = m[3]
+    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
+    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
+    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
+    inertia_pan_sin_sq_tilt = (
+        J_x_payload
+        + J_x_tilt
+        - J_z_payload
+        - J_z_tilt
+        - inertia_pan_sin_sq_tilt_term
+        + inertia_pan_sin_sq_tilt_term_2
+    )
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = (
+        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
+    )
+    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
+    c_y_payload_m_payload = c_y_payload * m_payload
+    coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
+    coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
     shaft_torque_pan_term = omega_gear_pan - omega_pan
     half_gap_pan = 0.5 * gap_pan
     shaft_torque_pan_term_2 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
     shaft_torque_pan = active_pan * (
         d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
     )
-    cos_tilt = math.cos(theta_tilt)
-    sin_tilt = math.sin(theta_tilt)
-    c_y_payload_m_payload = c_y_payload * m_payload
-    c_x_payload_c_y_payload_m_payload = c_x_payload * c_y_payload_m_payload
-    c_y_payload_m_payload_c_z_payload = c_y_payload_m_payload * c_z_payload
-    sin_tilt_sq = sin_tilt * sin_tilt
-    cos_tilt_sq = cos_tilt * cos_tilt
-    c_x_payload_sq = c_x_payload * c_x_payload
-    c_z_payload_sq = c_z_payload * c_z_payload
-    c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
-    twice_omega_pan_omega_tilt = 2.0 * omega_pan * omega_tilt
-    cos_tilt_sin_tilt = cos_tilt * sin_tilt
-    force_pan_term = cos_tilt_sin_tilt * twice_omega_pan_omega_tilt
-    omega_tilt_sq = omega_tilt * omega_tilt
-    c_x_payload_c_z_payload_m_payload = c_x_payload * c_z_payload * m_payload
     force_pan = (
-        -J_x_payload * force_pan_term
-        - J_x_tilt * force_pan_term
-        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        - b_pan * omega_pan
-        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_x_payload_c_y_payload_m_payload * cos_tilt * omega_tilt_sq
-        - c_x_payload_c_z_payload_m_payload * cos_tilt_sq * twice_omega_pan_omega_tilt
-        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - c_y_payload_m_payload_c_z_payload * omega_tilt_sq * sin_tilt
-        - c_z_payload_sq_m_payload * force_pan_term
+        -b_pan * omega_pan
+        - omega_tilt
+        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
         + shaft_torque_pan
     )
-    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    mass_pan_term = (c_y_payload * c_y_payload) * m_payload
-    c_x_payload_cos_tilt = c_x_payload * cos_tilt
-    c_z_payload_sin_tilt = c_z_payload * sin_tilt
-    mass_pan = (
+    inertia_pan = (
         J_pan
-        + J_x_payload * sin_tilt_sq
-        + J_x_tilt * sin_tilt_sq
-        + J_z_payload * cos_tilt_sq
-        + J_z_tilt * cos_tilt_sq
-        + 2.0 * c_x_payload_cos_tilt * c_z_payload_sin_tilt * m_payload
-        + c_x_payload_sq_m_payload * cos_tilt_sq
-        + c_z_payload_sq_m_payload * sin_tilt_sq
-        + cos_tilt_sq * mass_pan_term
-        + mass_pan_term * sin_tilt_sq
+        + J_z_payload
+        + J_z_tilt
+        + (c_y_payload * c_y_payload) * m_payload
+        + inertia_pan_sin_sq_tilt_term
     )
-    mass_pan_tilt = (
-        c_x_payload_c_y_payload_m_payload * sin_tilt - c_y_payload_m_payload_c_z_payload * cos_tilt
-    )
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
     r[0] = accel_pan * mass_pan + accel_tilt * mass_pan_tilt - force_pan
-    mass_pan_inverse = 1.0 / mass_pan
-    load_inertia_tilt_term = (
-        J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
+    inertia_tilt = (
+        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
     )
-    load_inertia_tilt = load_inertia_tilt_term - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
+    mass_pan_inverse = 1.0 / mass_pan
+    load_inertia_tilt = inertia_tilt - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
@@ -4782,60 +4334,38 @@ def equation_error(t, x, u, p, m, r):
         / (length_tilt * length_tilt)
         + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
     )
+    driving_torque_tilt_term = (
+        J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
+    )
+    gravity_cos_tilt_term = 9.81 * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
+    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    load_torque_tilt_term = (
+        -b_tilt * omega_tilt
+        + 0.5 * coriolis * omega_pan
+        + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt
+    )
     omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
-    driving_torque_tilt_term = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
-    driving_torque_tilt_term_2 = (
-        J_motor_tilt * omega_tilt_sq * ratio_tilt * ratio_tilt_by_theta_tilt
-        - driving_torque_tilt_term * ratio_tilt
-    )
-    b_tilt_omega_tilt = b_tilt * omega_tilt
-    omega_pan_sq = omega_pan * omega_pan
-    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
-    load_torque_tilt_term = J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
-    J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq = J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
-    load_torque_tilt_term_2 = c_x_payload_c_z_payload_m_payload * omega_pan_sq
-    load_torque_tilt_term_2_sin_tilt_sq = load_torque_tilt_term_2 * sin_tilt_sq
-    load_torque_tilt_term_3 = c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-    driving_torque_tilt = -driving_torque_tilt_term_2
-    load_torque_tilt_term_4 = 9.81 * m_payload
-    load_torque_tilt = (
-        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
-        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
-        - b_tilt_omega_tilt
-        + c_x_payload_cos_tilt * load_torque_tilt_term_4
-        + c_z_payload_sin_tilt * load_torque_tilt_term_4
-        + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + cos_tilt_sq * load_torque_tilt_term_2
-        - force_pan * mass_pan_inverse * mass_pan_tilt
-        - load_torque_tilt_term
-        - load_torque_tilt_term_2_sin_tilt_sq
-        - load_torque_tilt_term_3
-    )
+    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
+    load_torque_tilt = -force_pan * mass_pan_inverse * mass_pan_tilt + load_torque_tilt_term
     carried_tilt = (
         driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
     )
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
     force_tilt = (
-        J_x_payload * cos_tilt * omega_pan_sq * sin_tilt
-        + J_x_tilt * cos_tilt * omega_pan_sq * sin_tilt
-        - J_z_tilt_cos_tilt_sin_tilt_omega_pan_sq
-        - b_tilt_omega_tilt
-        + c_x_payload * c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
-        + 9.81 * c_x_payload * cos_tilt * m_payload
-        + 9.81 * c_z_payload * m_payload * sin_tilt
-        + c_z_payload_sq * cos_tilt * m_payload * omega_pan_sq * sin_tilt
-        - driving_torque_tilt_term_2
-        - load_torque_tilt_term
-        - load_torque_tilt_term_2_sin_tilt_sq
-        - load_torque_tilt_term_3
+        -driving_torque_tilt_term
+        + load_torque_tilt_term
         - slide_tilt
         * (
             0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
             + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
         )
+        + transmitted_torque_tilt
     )
-    mass_tilt = load_inertia_tilt_term + lost_lowering_tilt_term
+    mass_tilt = inertia_tilt + lost_lowering_tilt_term
     r[1] = accel_pan * mass_pan_tilt + accel_tilt * mass_tilt - force_tilt
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
@@ -4863,7 +4393,10 @@ def equation_error(t, x, u, p, m, r):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def domain(p, bounds):
-    """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
+    """Write lower and upper bound of the state of every row of DOMAIN into bounds.
+
+    p [43] in the units of PARAMETERS; bounds [2, 2] in STATE_UNITS: lower, upper.
+    """
     l_ground_tilt = p[38]
     l_min_tilt = p[39]
     r_arm_tilt = p[40]
@@ -4902,7 +4435,10 @@ def domain(p, bounds):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def margins(p, margin):
-    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin.
+
+    p [43] in the units of PARAMETERS; margin [4] in units of what is compared.
+    """
     F_c_pan = p[13]
     F_s_pan = p[14]
     lead_tilt = p[35]
@@ -4956,4 +4492,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 e4b5aa991cea382d91d0a4b8157c60d10111bc336ac3250f3a69db40850c998b
+# END sha256 7edd54c2e77f9d7fa6cad7c30405036416d835ea9b1f93a949a504311ec73045

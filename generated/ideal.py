@@ -22,7 +22,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "02cbc42f0e5c10e1"
+MODEL_HASH = "cc8ad4697b277973"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 AXES = ("pan", "tilt")
@@ -100,7 +100,11 @@ EFFECTS = (
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def mode_derivative(t, x, u, p, m, dx):
-    """Write the time derivative of the state into dx in the modes m."""
+    """Write the time derivative of the state into dx in the modes m.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+    MODE_NAMES; dx [4] in STATE_UNITS per s.
+    """
     theta_tilt = x[1]
     omega_pan = x[2]
     omega_tilt = x[3]
@@ -132,7 +136,11 @@ def mode_derivative(t, x, u, p, m, dx):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def jacobian(t, x, u, p, m, fx, fu, fp):
-    """Write the non-zero derivatives of mode_derivative by state, input and parameter."""
+    """Write the non-zero derivatives of mode_derivative by state, input and parameter.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+    MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 6].
+    """
     theta_tilt = x[1]
     omega_pan = x[2]
     omega_tilt = x[3]
@@ -144,91 +152,89 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     J_z_tilt = p[3]
     b_pan = p[4]
     b_tilt = p[5]
+    inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
     sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
     cos_tilt = math.cos(theta_tilt)
-    cos_tilt_sin_tilt = cos_tilt * sin_tilt
-    twice_cos_tilt_sin_tilt = 2.0 * cos_tilt_sin_tilt
-    J_x_tilt_twice_cos_tilt_sin_tilt = J_x_tilt * twice_cos_tilt_sin_tilt
-    omega_pan_omega_tilt = omega_pan * omega_tilt
-    force_pan = (
-        -J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        - b_pan * omega_pan
-        + tau_pan
-    )
-    sin_tilt_sq = sin_tilt * sin_tilt
-    J_x_tilt_sin_tilt_sq = J_x_tilt * sin_tilt_sq
-    cos_tilt_sq = cos_tilt * cos_tilt
-    J_z_tilt_cos_tilt_sq = J_z_tilt * cos_tilt_sq
-    mass_pan = J_pan + J_x_tilt_sin_tilt_sq + J_z_tilt_cos_tilt_sq
+    coriolis_by_omega_pan = cos_tilt * inertia_pan_per_sin_tilt
+    coriolis = coriolis_by_omega_pan * omega_pan
+    twice_omega_tilt = 2.0 * omega_tilt
+    force_pan = -b_pan * omega_pan - coriolis * twice_omega_tilt + tau_pan
+    inertia_pan = J_pan + J_z_tilt
+    inertia_pan_per_sin_tilt_sin_tilt = inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt_sin_tilt
     inverse_mass_pan = 1.0 / mass_pan
     accel_pan = force_pan * inverse_mass_pan
-    twice_omega_pan_omega_tilt = 2.0 * omega_pan_omega_tilt
-    J_z_tilt_twice_cos_tilt_sin_tilt = J_z_tilt * twice_cos_tilt_sin_tilt
+    inertia_pan_per_sin_tilt_by_theta_tilt = cos_tilt * inertia_pan_sin_sq_tilt
+    coriolis_by_theta_tilt = (
+        cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
+        - inertia_pan_per_sin_tilt_sin_tilt * omega_pan
+    )
     fx[2, 1] = inverse_mass_pan * (
-        -J_x_tilt * cos_tilt_sq * twice_omega_pan_omega_tilt
-        + 2.0 * J_x_tilt * omega_pan * omega_tilt * sin_tilt_sq
-        + 2.0 * J_z_tilt * cos_tilt_sq * omega_pan * omega_tilt
-        - J_z_tilt * sin_tilt_sq * twice_omega_pan_omega_tilt
-        - accel_pan * (J_x_tilt_twice_cos_tilt_sin_tilt - J_z_tilt_twice_cos_tilt_sin_tilt)
+        -accel_pan * (coriolis_by_omega_pan + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt)
+        - coriolis_by_theta_tilt * twice_omega_tilt
     )
     inverse_mass_tilt = 1.0 / J_y_tilt
-    omega_pan_sq = omega_pan * omega_pan
-    fx[3, 1] = inverse_mass_tilt * (
-        J_x_tilt * cos_tilt_sq * omega_pan_sq
-        - J_x_tilt_sin_tilt_sq * omega_pan_sq
-        + J_z_tilt * omega_pan_sq * sin_tilt_sq
-        - J_z_tilt_cos_tilt_sq * omega_pan_sq
-    )
+    inverse_mass_tilt_omega_pan = inverse_mass_tilt * omega_pan
+    fx[3, 1] = coriolis_by_theta_tilt * inverse_mass_tilt_omega_pan
     fx[0, 2] = 1.0
-    fx[2, 2] = inverse_mass_pan * (
-        -J_x_tilt_twice_cos_tilt_sin_tilt * omega_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_tilt * sin_tilt
-        - b_pan
-    )
-    accel_tilt_by_omega_pan_term = (
-        J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan - J_z_tilt_twice_cos_tilt_sin_tilt * omega_pan
-    )
-    fx[3, 2] = accel_tilt_by_omega_pan_term * inverse_mass_tilt
+    fx[2, 2] = inverse_mass_pan * (-b_pan - coriolis_by_omega_pan * twice_omega_tilt)
+    fx[3, 2] = inverse_mass_tilt * (coriolis + coriolis_by_omega_pan * omega_pan)
     fx[1, 3] = 1.0
-    fx[2, 3] = -accel_tilt_by_omega_pan_term * inverse_mass_pan
+    fx[2, 3] = -2.0 * coriolis * inverse_mass_pan
     fx[3, 3] = -b_tilt * inverse_mass_tilt
     fu[2, 0] = inverse_mass_pan
     fu[3, 1] = inverse_mass_tilt
     fp[2, 0] = -accel_pan * inverse_mass_pan
-    accel_pan_by_J_x_tilt_term = omega_pan_omega_tilt * twice_cos_tilt_sin_tilt
-    fp[2, 1] = inverse_mass_pan * (-accel_pan * sin_tilt_sq - accel_pan_by_J_x_tilt_term)
-    accel_tilt_by_J_x_tilt_term = cos_tilt_sin_tilt * inverse_mass_tilt * omega_pan_sq
-    fp[3, 1] = accel_tilt_by_J_x_tilt_term
-    force_tilt = (
-        J_x_tilt * cos_tilt_sin_tilt * omega_pan_sq
-        - J_z_tilt * cos_tilt_sin_tilt * omega_pan_sq
-        - b_tilt * omega_tilt
-        + tau_tilt
+    inertia_pan_per_sin_tilt_by_J_x_tilt = sin_tilt
+    cos_tilt_omega_pan = cos_tilt * omega_pan
+    coriolis_by_J_x_tilt = cos_tilt_omega_pan * inertia_pan_per_sin_tilt_by_J_x_tilt
+    fp[2, 1] = inverse_mass_pan * (
+        -accel_pan * inertia_pan_per_sin_tilt_by_J_x_tilt * sin_tilt
+        - coriolis_by_J_x_tilt * twice_omega_tilt
     )
+    fp[3, 1] = coriolis_by_J_x_tilt * inverse_mass_tilt_omega_pan
+    force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
     accel_tilt = force_tilt * inverse_mass_tilt
     fp[3, 2] = -accel_tilt * inverse_mass_tilt
-    fp[2, 3] = inverse_mass_pan * (-accel_pan * cos_tilt_sq + accel_pan_by_J_x_tilt_term)
-    fp[3, 3] = -accel_tilt_by_J_x_tilt_term
+    inertia_pan_per_sin_tilt_by_J_z_tilt = -sin_tilt
+    coriolis_by_J_z_tilt = cos_tilt_omega_pan * inertia_pan_per_sin_tilt_by_J_z_tilt
+    fp[2, 3] = inverse_mass_pan * (
+        -accel_pan * (inertia_pan_per_sin_tilt_by_J_z_tilt * sin_tilt + 1.0)
+        - coriolis_by_J_z_tilt * twice_omega_tilt
+    )
+    fp[3, 3] = coriolis_by_J_z_tilt * inverse_mass_tilt_omega_pan
     fp[2, 4] = -inverse_mass_pan * omega_pan
     fp[3, 5] = -inverse_mass_tilt * omega_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guards(t, x, u, p, m, g):
-    """Write holding and breakaway torques, gap separations and contact torques into g."""
+    """Write holding and breakaway torques, gap separations and contact torques into g.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+    MODE_NAMES; g [0] in N m and rad.
+    """
     return
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guard_jacobian(t, x, u, p, m, gx, gp):
-    """Write the non-zero derivatives of guards by state and parameter."""
+    """Write the non-zero derivatives of guards by state and parameter.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+    MODE_NAMES; gx [0, 4]; gp [0, 6].
+    """
     return
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def outputs(t, x, u, p, y):
-    """Write the measured signals into y."""
+    """Write the measured signals into y.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; y [2] in
+    OUTPUT_UNITS.
+    """
     theta_pan = x[0]
     theta_tilt = x[1]
     y[0] = theta_pan
@@ -237,14 +243,22 @@ def outputs(t, x, u, p, y):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def output_jacobian(t, x, u, p, yx, yp):
-    """Write the non-zero derivatives of outputs by state and parameter."""
+    """Write the non-zero derivatives of outputs by state and parameter.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; yx [2, 4];
+    yp [2, 6].
+    """
     yx[0, 0] = 1.0
     yx[1, 1] = 1.0
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def energy(t, x, u, p, m, e):
-    """Write stored energy in J, power in and dissipated power in W into e."""
+    """Write stored energy in J, power in and dissipated power in W into e.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+    MODE_NAMES; e [3] in J, W and W.
+    """
     theta_tilt = x[1]
     omega_pan = x[2]
     omega_tilt = x[3]
@@ -271,7 +285,11 @@ def energy(t, x, u, p, m, e):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel."""
+    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
+
+    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
+    MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    """
     theta_tilt = x[1]
     omega_pan = x[2]
     omega_tilt = x[3]
@@ -285,33 +303,33 @@ def equation_error(t, x, u, p, m, r):
     J_z_tilt = p[3]
     b_pan = p[4]
     b_tilt = p[5]
+    inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
     sin_tilt = math.sin(theta_tilt)
-    cos_tilt = math.cos(theta_tilt)
-    cos_tilt_sin_tilt = cos_tilt * sin_tilt
-    force_pan = (
-        -2.0 * J_x_tilt * cos_tilt_sin_tilt * omega_pan * omega_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        - b_pan * omega_pan
-        + tau_pan
-    )
-    mass_pan = J_pan + J_x_tilt * (sin_tilt * sin_tilt) + J_z_tilt * (cos_tilt * cos_tilt)
+    inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
+    coriolis = inertia_pan_per_sin_tilt * omega_pan * math.cos(theta_tilt)
+    force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
+    inertia_pan = J_pan + J_z_tilt
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     r[0] = accel_pan * mass_pan - force_pan
-    force_tilt_term = cos_tilt_sin_tilt * (omega_pan * omega_pan)
-    force_tilt = (
-        J_x_tilt * force_tilt_term - J_z_tilt * force_tilt_term - b_tilt * omega_tilt + tau_tilt
-    )
+    force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
     r[1] = J_y_tilt * accel_tilt - force_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def domain(p, bounds):
-    """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
+    """Write lower and upper bound of the state of every row of DOMAIN into bounds.
+
+    p [6] in the units of PARAMETERS; bounds [0, 2] in STATE_UNITS: lower, upper.
+    """
     return
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def margins(p, margin):
-    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin.
+
+    p [6] in the units of PARAMETERS; margin [0] in units of what is compared.
+    """
     return
 
 
@@ -327,4 +345,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 fb9349a9429f38f5cdaadda68d0bc317502d9fc4b9de6ddf0474a5a5de176854
+# END sha256 547a3ee33755097c1e3e2fe6c171611aa3aaa5e5c33f62c93b0f3061e72c7118

@@ -31,7 +31,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "120c3e38e990ab6f"
+MODEL_HASH = "a24dc577e1486bb5"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 AXES = ("pan",)
@@ -222,7 +222,11 @@ EFFECTS = (
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def mode_derivative(t, x, u, p, m, dx):
-    """Write the time derivative of the state into dx in the modes m."""
+    """Write the time derivative of the state into dx in the modes m.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+    see MODE_NAMES; dx [5] in STATE_UNITS per s.
+    """
     theta_pan = x[0]
     omega_pan = x[1]
     theta_gear_pan = x[2]
@@ -289,7 +293,11 @@ def mode_derivative(t, x, u, p, m, dx):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def jacobian(t, x, u, p, m, fx, fu, fp):
-    """Write the non-zero derivatives of mode_derivative by state, input and parameter."""
+    """Write the non-zero derivatives of mode_derivative by state, input and parameter.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+    see MODE_NAMES; fx [5, 5]; fu [5, 1]; fp [5, 18].
+    """
     theta_pan = x[0]
     omega_pan = x[1]
     theta_gear_pan = x[2]
@@ -437,7 +445,11 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guards(t, x, u, p, m, g):
-    """Write holding and breakaway torques, gap separations and contact torques into g."""
+    """Write holding and breakaway torques, gap separations and contact torques into g.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+    see MODE_NAMES; g [7] in N m and rad.
+    """
     theta_pan = x[0]
     omega_pan = x[1]
     theta_gear_pan = x[2]
@@ -474,7 +486,11 @@ def guards(t, x, u, p, m, g):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guard_jacobian(t, x, u, p, m, gx, gp):
-    """Write the non-zero derivatives of guards by state and parameter."""
+    """Write the non-zero derivatives of guards by state and parameter.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+    see MODE_NAMES; gx [7, 5]; gp [7, 18].
+    """
     theta_pan = x[0]
     omega_pan = x[1]
     theta_gear_pan = x[2]
@@ -533,7 +549,11 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def outputs(t, x, u, p, y):
-    """Write the measured signals into y."""
+    """Write the measured signals into y.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; y [2] in
+    OUTPUT_UNITS.
+    """
     theta_pan = x[0]
     i_pan = x[4]
     y[0] = theta_pan
@@ -542,14 +562,22 @@ def outputs(t, x, u, p, y):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def output_jacobian(t, x, u, p, yx, yp):
-    """Write the non-zero derivatives of outputs by state and parameter."""
+    """Write the non-zero derivatives of outputs by state and parameter.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; yx [2,
+    5]; yp [2, 18].
+    """
     yx[0, 0] = 1.0
     yx[1, 4] = 1.0
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def energy(t, x, u, p, m, e):
-    """Write stored energy in J, power in and dissipated power in W into e."""
+    """Write stored energy in J, power in and dissipated power in W into e.
+
+    t in s; x [5] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+    see MODE_NAMES; e [3] in J, W and W.
+    """
     theta_pan = x[0]
     omega_pan = x[1]
     theta_gear_pan = x[2]
@@ -619,7 +647,11 @@ def energy(t, x, u, p, m, e):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel."""
+    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
+
+    t in s; x [7] in STATE_UNITS; u [1] in INPUT_UNITS; p [18] in the units of PARAMETERS; m [3],
+    see MODE_NAMES; r [3] in N m, then STATE_UNITS per s.
+    """
     theta_pan = x[0]
     omega_pan = x[1]
     theta_gear_pan = x[2]
@@ -682,13 +714,19 @@ def equation_error(t, x, u, p, m, r):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def domain(p, bounds):
-    """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
+    """Write lower and upper bound of the state of every row of DOMAIN into bounds.
+
+    p [18] in the units of PARAMETERS; bounds [0, 2] in STATE_UNITS: lower, upper.
+    """
     return
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def margins(p, margin):
-    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin.
+
+    p [18] in the units of PARAMETERS; margin [1] in units of what is compared.
+    """
     F_c_pan = p[2]
     F_s_pan = p[3]
     margin[0] = -F_c_pan + F_s_pan
@@ -727,4 +765,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 dee7474732db9b3cb201f9d081b2b2d0164e3e74a51633dbb38d691687c97b97
+# END sha256 44df2f6b6647aace5f667762f8ee17be11446f0c9fc1744ea43efe2ba5cce92f

@@ -45,7 +45,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "364c84fe0a8e49b4"
+MODEL_HASH = "13f36cca963fe1a3"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 AXES = ("pan", "tilt")
@@ -148,7 +148,11 @@ EFFECTS = (
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def mode_derivative(t, x, u, p, m, dx):
-    """Write the time derivative of the state into dx in the modes m."""
+    """Write the time derivative of the state into dx in the modes m.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; dx [4] in STATE_UNITS per s.
+    """
     theta_tilt = x[1]
     omega_pan = x[2]
     omega_tilt = x[3]
@@ -226,7 +230,11 @@ def mode_derivative(t, x, u, p, m, dx):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def jacobian(t, x, u, p, m, fx, fu, fp):
-    """Write the non-zero derivatives of mode_derivative by state, input and parameter."""
+    """Write the non-zero derivatives of mode_derivative by state, input and parameter.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 13].
+    """
     theta_tilt = x[1]
     omega_pan = x[2]
     omega_tilt = x[3]
@@ -245,351 +253,300 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     c_z_payload = p[10]
     b_pan = p[11]
     b_tilt = p[12]
-    sin_tilt = math.sin(theta_tilt)
-    sin_tilt_sq = sin_tilt * sin_tilt
-    J_x_payload_sin_tilt_sq = J_x_payload * sin_tilt_sq
-    J_x_tilt_sin_tilt_sq = J_x_tilt * sin_tilt_sq
-    cos_tilt = math.cos(theta_tilt)
-    cos_tilt_sq = cos_tilt * cos_tilt
-    J_z_payload_cos_tilt_sq = J_z_payload * cos_tilt_sq
-    J_z_tilt_cos_tilt_sq = J_z_tilt * cos_tilt_sq
     c_x_payload_sq = c_x_payload * c_x_payload
     c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    c_x_payload_sq_m_payload_cos_tilt_sq = c_x_payload_sq_m_payload * cos_tilt_sq
-    c_y_payload_sq = c_y_payload * c_y_payload
-    c_y_payload_sq_sin_tilt_sq = c_y_payload_sq * sin_tilt_sq
-    c_y_payload_sq_cos_tilt_sq = c_y_payload_sq * cos_tilt_sq
     c_z_payload_sq = c_z_payload * c_z_payload
     c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
-    c_z_payload_sq_m_payload_sin_tilt_sq = c_z_payload_sq_m_payload * sin_tilt_sq
-    c_x_payload_sin_tilt = c_x_payload * sin_tilt
-    c_x_payload_sin_tilt_m_payload = c_x_payload_sin_tilt * m_payload
-    c_z_payload_cos_tilt = c_z_payload * cos_tilt
-    twice_c_z_payload_cos_tilt = 2.0 * c_z_payload_cos_tilt
-    mass_pan = (
-        J_pan
-        + J_x_payload_sin_tilt_sq
-        + J_x_tilt_sin_tilt_sq
-        + J_z_payload_cos_tilt_sq
-        + J_z_tilt_cos_tilt_sq
-        + c_x_payload_sin_tilt_m_payload * twice_c_z_payload_cos_tilt
-        + c_x_payload_sq_m_payload_cos_tilt_sq
-        + c_y_payload_sq_cos_tilt_sq * m_payload
-        + c_y_payload_sq_sin_tilt_sq * m_payload
-        + c_z_payload_sq_m_payload_sin_tilt_sq
+    inertia_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
+    c_y_payload_sq = c_y_payload * c_y_payload
+    inertia_pan = (
+        J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + c_y_payload_sq * m_payload
     )
-    c_x_payload_sin_tilt_c_y_payload = c_x_payload_sin_tilt * c_y_payload
-    c_y_payload_c_z_payload_cos_tilt = c_y_payload * c_z_payload_cos_tilt
-    mass_pan_tilt_term = c_y_payload_c_z_payload_cos_tilt * m_payload
-    mass_pan_tilt = c_x_payload_sin_tilt_c_y_payload * m_payload - mass_pan_tilt_term
-    mass_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
-    inverse_determinant = 1.0 / (mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt))
-    cos_tilt_sin_tilt = cos_tilt * sin_tilt
-    twice_cos_tilt_sin_tilt = 2.0 * cos_tilt_sin_tilt
-    J_x_payload_twice_cos_tilt_sin_tilt = J_x_payload * twice_cos_tilt_sin_tilt
-    omega_pan_omega_tilt = omega_pan * omega_tilt
-    J_x_tilt_twice_cos_tilt_sin_tilt = J_x_tilt * twice_cos_tilt_sin_tilt
-    omega_tilt_sq = omega_tilt * omega_tilt
-    c_y_payload_m_payload = c_y_payload * m_payload
-    c_x_payload_cos_tilt = c_x_payload * cos_tilt
-    force_pan_term = c_x_payload_cos_tilt * c_y_payload_m_payload
-    c_z_payload_sin_tilt = c_z_payload * sin_tilt
-    force_pan_term_2 = c_y_payload_m_payload * c_z_payload_sin_tilt
-    twice_cos_tilt_sq = 2.0 * cos_tilt_sq
-    c_x_payload_c_z_payload = c_x_payload * c_z_payload
-    c_x_payload_c_z_payload_m_payload = c_x_payload_c_z_payload * m_payload
-    force_pan_term_3 = c_x_payload_c_z_payload_m_payload * twice_cos_tilt_sq
-    force_pan_term_4 = c_z_payload_sq_m_payload * twice_cos_tilt_sin_tilt
-    force_pan = (
-        -J_x_payload_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
-        - J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan_omega_tilt
-        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        - b_pan * omega_pan
-        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - force_pan_term * omega_tilt_sq
-        - force_pan_term_2 * omega_tilt_sq
-        - force_pan_term_3 * omega_pan_omega_tilt
-        - force_pan_term_4 * omega_pan_omega_tilt
-        + tau_pan
+    coupling_sin_tilt_by_c_y_payload = c_x_payload * m_payload
+    inertia_tilt_by_c_x_payload = 2.0 * coupling_sin_tilt_by_c_y_payload
+    inertia_pan_sin_cos_tilt = c_z_payload * inertia_tilt_by_c_x_payload
+    inertia_pan_sin_sq_tilt = (
+        J_x_payload
+        + J_x_tilt
+        - J_z_payload
+        - J_z_tilt
+        - c_x_payload_sq_m_payload
+        + c_z_payload_sq_m_payload
     )
-    force_tilt_term = 9.81 * sin_tilt
-    omega_pan_sq = omega_pan * omega_pan
-    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
-    cos_tilt_sq_omega_pan_sq = cos_tilt_sq * omega_pan_sq
-    omega_pan_sq_sin_tilt_sq = omega_pan_sq * sin_tilt_sq
-    force_tilt_term_2 = c_x_payload_c_z_payload * omega_pan_sq_sin_tilt_sq
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = (
+        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
+    )
+    inertia_pan_per_sin_tilt_sin_tilt = inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt_sin_tilt
+    coupling_cos_tilt_by_c_z_payload = c_y_payload * m_payload
+    coupling_cos_tilt = c_z_payload * coupling_cos_tilt_by_c_z_payload
+    coupling_sin_tilt_by_m_payload = c_x_payload * c_y_payload
+    coupling_sin_tilt = coupling_sin_tilt_by_m_payload * m_payload
+    mass_pan_tilt_term = cos_tilt * coupling_cos_tilt - coupling_sin_tilt * sin_tilt
+    mass_pan_tilt = -mass_pan_tilt_term
+    inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
+    cos_tilt_inertia_pan_per_sin_tilt = cos_tilt * inertia_pan_per_sin_tilt
+    coriolis_by_omega_pan = 2.0 * cos_tilt_inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt
+    coriolis = coriolis_by_omega_pan * omega_pan
+    force_pan_term = cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt
+    force_pan_term_omega_tilt = force_pan_term * omega_tilt
+    force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_term_omega_tilt) + tau_pan
+    gravity_cos_tilt = 9.81 * coupling_sin_tilt_by_c_y_payload
+    coupling_cos_tilt_by_c_y_payload = c_z_payload * m_payload
+    gravity_sin_tilt = 9.81 * coupling_cos_tilt_by_c_y_payload
+    half_coriolis = 0.5 * coriolis
     force_tilt = (
-        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
-        - J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
-        - J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
-        - b_tilt * omega_tilt
-        + 9.81 * c_x_payload * cos_tilt * m_payload
-        + c_x_payload_c_z_payload * cos_tilt_sq_omega_pan_sq * m_payload
-        - c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + c_z_payload * force_tilt_term * m_payload
-        + c_z_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-        - force_tilt_term_2 * m_payload
+        -b_tilt * omega_tilt
+        + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt
+        + half_coriolis * omega_pan
         + tau_tilt
     )
-    accel_pan = inverse_determinant * (force_pan * mass_tilt - force_tilt * mass_pan_tilt)
-    force_pan_term_plus_force_pan_term_2 = force_pan_term + force_pan_term_2
+    accel_pan = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
+    inertia_pan_per_sin_tilt_by_theta_tilt = (
+        cos_tilt * inertia_pan_sin_sq_tilt - inertia_pan_sin_cos_tilt * sin_tilt
+    )
+    twice_omega_pan = 2.0 * omega_pan
+    coriolis_by_theta_tilt = (
+        2.0 * cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
+        - inertia_pan_per_sin_tilt_sin_tilt * twice_omega_pan
+    )
     accel_pan_by_theta_tilt_term = (
-        J_x_payload * cos_tilt_sq * omega_pan_sq
-        - J_x_payload_sin_tilt_sq * omega_pan_sq
-        + J_x_tilt * cos_tilt_sq * omega_pan_sq
-        - J_x_tilt_sin_tilt_sq * omega_pan_sq
-        + J_z_payload * omega_pan_sq * sin_tilt_sq
-        - J_z_payload_cos_tilt_sq * omega_pan_sq
-        + J_z_tilt * omega_pan_sq * sin_tilt_sq
-        - J_z_tilt_cos_tilt_sq * omega_pan_sq
-        - accel_pan * force_pan_term_plus_force_pan_term_2
-        - 4.0 * c_x_payload_sin_tilt_m_payload * c_z_payload_cos_tilt * omega_pan_sq
-        - 9.81 * c_x_payload_sin_tilt_m_payload
-        + c_x_payload_sq * m_payload * omega_pan_sq * sin_tilt_sq
-        - c_x_payload_sq_m_payload_cos_tilt_sq * omega_pan_sq
-        + 9.81 * c_z_payload * cos_tilt * m_payload
-        + c_z_payload_sq * cos_tilt_sq * m_payload * omega_pan_sq
-        - c_z_payload_sq_m_payload_sin_tilt_sq * omega_pan_sq
+        -accel_pan * force_pan_term
+        + 0.5 * coriolis_by_theta_tilt * omega_pan
+        + cos_tilt * gravity_sin_tilt
+        - gravity_cos_tilt * sin_tilt
     )
     accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
-    omega_pan_omega_tilt_twice_cos_tilt_sq = omega_pan_omega_tilt * twice_cos_tilt_sq
-    twice_sin_tilt_sq = 2.0 * sin_tilt_sq
-    omega_pan_omega_tilt_twice_sin_tilt_sq = omega_pan_omega_tilt * twice_sin_tilt_sq
-    J_z_payload_twice_cos_tilt_sin_tilt = J_z_payload * twice_cos_tilt_sin_tilt
-    J_z_tilt_twice_cos_tilt_sin_tilt = J_z_tilt * twice_cos_tilt_sin_tilt
-    accel_pan_by_theta_tilt_term_2 = c_x_payload_c_z_payload_m_payload * twice_sin_tilt_sq
-    accel_pan_by_theta_tilt_term_3 = c_x_payload_sq_m_payload * twice_cos_tilt_sin_tilt
-    accel_pan_by_theta_tilt_term_4 = (
-        2.0 * J_x_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - J_x_payload * omega_pan_omega_tilt_twice_cos_tilt_sq
-        + 2.0 * J_x_tilt * omega_pan * omega_tilt * sin_tilt_sq
-        - J_x_tilt * omega_pan_omega_tilt_twice_cos_tilt_sq
-        + 2.0 * J_z_payload * cos_tilt_sq * omega_pan * omega_tilt
-        - J_z_payload * omega_pan_omega_tilt_twice_sin_tilt_sq
-        + 2.0 * J_z_tilt * cos_tilt_sq * omega_pan * omega_tilt
-        - J_z_tilt * omega_pan_omega_tilt_twice_sin_tilt_sq
-        - accel_pan
-        * (
-            J_x_payload_twice_cos_tilt_sin_tilt
-            + J_x_tilt_twice_cos_tilt_sin_tilt
-            - J_z_payload_twice_cos_tilt_sin_tilt
-            - J_z_tilt_twice_cos_tilt_sin_tilt
-            - accel_pan_by_theta_tilt_term_2
-            - accel_pan_by_theta_tilt_term_3
-            + force_pan_term_3
-            + force_pan_term_4
-        )
-        - accel_tilt * force_pan_term_plus_force_pan_term_2
-        + c_x_payload * c_y_payload * m_payload * omega_tilt_sq * sin_tilt
-        + 8.0 * c_x_payload * c_z_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        + 2.0 * c_x_payload_sq * cos_tilt_sq * m_payload * omega_pan * omega_tilt
-        - c_x_payload_sq_m_payload * omega_pan_omega_tilt_twice_sin_tilt_sq
-        + 2.0 * c_z_payload_sq * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_z_payload_sq_m_payload * omega_pan_omega_tilt_twice_cos_tilt_sq
+    omega_tilt_sq = omega_tilt * omega_tilt
+    accel_pan_by_theta_tilt_term_2 = (
+        -accel_pan
+        * (cos_tilt_inertia_pan_per_sin_tilt + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt)
+        - accel_tilt * force_pan_term
+        - coriolis_by_theta_tilt * omega_tilt
         - mass_pan_tilt_term * omega_tilt_sq
     )
     fx[2, 1] = inverse_determinant * (
-        -accel_pan_by_theta_tilt_term * mass_pan_tilt + accel_pan_by_theta_tilt_term_4 * mass_tilt
+        -accel_pan_by_theta_tilt_term * mass_pan_tilt
+        + accel_pan_by_theta_tilt_term_2 * inertia_tilt
     )
     fx[3, 1] = inverse_determinant * (
-        accel_pan_by_theta_tilt_term * mass_pan - accel_pan_by_theta_tilt_term_4 * mass_pan_tilt
+        accel_pan_by_theta_tilt_term * mass_pan - accel_pan_by_theta_tilt_term_2 * mass_pan_tilt
     )
     fx[0, 2] = 1.0
-    accel_pan_by_omega_pan_term = (
-        J_x_payload_twice_cos_tilt_sin_tilt * omega_pan
-        + J_x_tilt_twice_cos_tilt_sin_tilt * omega_pan
-        - J_z_payload_twice_cos_tilt_sin_tilt * omega_pan
-        - J_z_tilt_twice_cos_tilt_sin_tilt * omega_pan
-        - accel_pan_by_theta_tilt_term_2 * omega_pan
-        - accel_pan_by_theta_tilt_term_3 * omega_pan
-        + force_pan_term_3 * omega_pan
-        + force_pan_term_4 * omega_pan
-    )
-    accel_pan_by_omega_pan_term_2 = (
-        -J_x_payload_twice_cos_tilt_sin_tilt * omega_tilt
-        - J_x_tilt_twice_cos_tilt_sin_tilt * omega_tilt
-        + 2.0 * J_z_payload * cos_tilt * omega_tilt * sin_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_tilt * sin_tilt
-        - b_pan
-        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_tilt * sin_tilt_sq
-        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_tilt * sin_tilt
-        - force_pan_term_3 * omega_tilt
-        - force_pan_term_4 * omega_tilt
-    )
+    half_omega_pan = 0.5 * omega_pan
+    accel_pan_by_omega_pan_term = coriolis_by_omega_pan * half_omega_pan + half_coriolis
+    accel_pan_by_omega_pan_term_2 = -b_pan - coriolis_by_omega_pan * omega_tilt
     fx[2, 2] = inverse_determinant * (
-        -accel_pan_by_omega_pan_term * mass_pan_tilt + accel_pan_by_omega_pan_term_2 * mass_tilt
+        -accel_pan_by_omega_pan_term * mass_pan_tilt + accel_pan_by_omega_pan_term_2 * inertia_tilt
     )
     fx[3, 2] = inverse_determinant * (
         accel_pan_by_omega_pan_term * mass_pan - accel_pan_by_omega_pan_term_2 * mass_pan_tilt
     )
     fx[1, 3] = 1.0
-    twice_omega_tilt = 2.0 * omega_tilt
-    accel_pan_by_omega_tilt_term = (
-        -accel_pan_by_omega_pan_term
-        - force_pan_term * twice_omega_tilt
-        - force_pan_term_2 * twice_omega_tilt
-    )
+    accel_pan_by_omega_tilt_term = -coriolis - 2.0 * force_pan_term_omega_tilt
     fx[2, 3] = inverse_determinant * (
-        accel_pan_by_omega_tilt_term * mass_tilt + b_tilt * mass_pan_tilt
+        accel_pan_by_omega_tilt_term * inertia_tilt + b_tilt * mass_pan_tilt
     )
     fx[3, 3] = inverse_determinant * (
         -accel_pan_by_omega_tilt_term * mass_pan_tilt - b_tilt * mass_pan
     )
-    inverse_determinant_mass_tilt = inverse_determinant * mass_tilt
-    fu[2, 0] = inverse_determinant_mass_tilt
+    inertia_tilt_inverse_determinant = inertia_tilt * inverse_determinant
+    fu[2, 0] = inertia_tilt_inverse_determinant
     inverse_determinant_mass_pan_tilt = inverse_determinant * mass_pan_tilt
     minus_inverse_determinant_mass_pan_tilt = -inverse_determinant_mass_pan_tilt
     fu[3, 0] = minus_inverse_determinant_mass_pan_tilt
     fu[2, 1] = minus_inverse_determinant_mass_pan_tilt
     inverse_determinant_mass_pan = inverse_determinant * mass_pan
     fu[3, 1] = inverse_determinant_mass_pan
-    fp[2, 0] = -accel_pan * inverse_determinant_mass_tilt
-    fp[3, 0] = accel_pan * inverse_determinant_mass_pan_tilt
-    accel_pan_by_J_x_tilt_term = cos_tilt_sin_tilt_omega_pan_sq * mass_pan_tilt
-    accel_pan_by_J_x_tilt_term_2 = omega_pan_omega_tilt * twice_cos_tilt_sin_tilt
-    accel_pan_by_J_x_tilt_term_3 = -accel_pan * sin_tilt_sq - accel_pan_by_J_x_tilt_term_2
-    accel_pan_by_J_x_tilt_term_4 = inverse_determinant * (
-        -accel_pan_by_J_x_tilt_term + accel_pan_by_J_x_tilt_term_3 * mass_tilt
+    accel_pan_by_J_pan_term = accel_pan
+    fp[2, 0] = -accel_pan_by_J_pan_term * inertia_tilt_inverse_determinant
+    fp[3, 0] = accel_pan_by_J_pan_term * inverse_determinant_mass_pan_tilt
+    inertia_pan_per_sin_tilt_by_J_x_tilt = sin_tilt
+    cos_tilt_twice_omega_pan = cos_tilt * twice_omega_pan
+    coriolis_by_J_x_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_tilt
+    coriolis_by_J_x_tilt_half_omega_pan = coriolis_by_J_x_tilt * half_omega_pan
+    accel_pan_sin_tilt = accel_pan * sin_tilt
+    accel_pan_by_J_x_tilt_term = (
+        -accel_pan_sin_tilt * inertia_pan_per_sin_tilt_by_J_x_tilt
+        - coriolis_by_J_x_tilt * omega_tilt
     )
-    fp[2, 1] = accel_pan_by_J_x_tilt_term_4
-    cos_tilt_sin_tilt_omega_pan_sq_mass_pan = cos_tilt_sin_tilt_omega_pan_sq * mass_pan
-    accel_tilt_by_J_x_tilt_term = inverse_determinant * (
-        -accel_pan_by_J_x_tilt_term_3 * mass_pan_tilt + cos_tilt_sin_tilt_omega_pan_sq_mass_pan
+    fp[2, 1] = inverse_determinant * (
+        accel_pan_by_J_x_tilt_term * inertia_tilt
+        - coriolis_by_J_x_tilt_half_omega_pan * mass_pan_tilt
     )
-    fp[3, 1] = accel_tilt_by_J_x_tilt_term
-    accel_pan_by_J_y_tilt_term = accel_tilt * inverse_determinant_mass_pan_tilt
-    fp[2, 2] = accel_pan_by_J_y_tilt_term
-    accel_tilt_by_J_y_tilt_term = -accel_tilt * inverse_determinant_mass_pan
-    fp[3, 2] = accel_tilt_by_J_y_tilt_term
-    accel_pan_by_J_z_tilt_term = -accel_pan * cos_tilt_sq + accel_pan_by_J_x_tilt_term_2
-    accel_pan_by_J_z_tilt_term_2 = inverse_determinant * (
-        accel_pan_by_J_x_tilt_term + accel_pan_by_J_z_tilt_term * mass_tilt
+    fp[3, 1] = inverse_determinant * (
+        -accel_pan_by_J_x_tilt_term * mass_pan_tilt + coriolis_by_J_x_tilt_half_omega_pan * mass_pan
     )
-    fp[2, 3] = accel_pan_by_J_z_tilt_term_2
-    accel_tilt_by_J_z_tilt_term = inverse_determinant * (
-        -accel_pan_by_J_z_tilt_term * mass_pan_tilt - cos_tilt_sin_tilt_omega_pan_sq_mass_pan
+    accel_pan_by_J_y_tilt_term = accel_tilt
+    fp[2, 2] = accel_pan_by_J_y_tilt_term * inverse_determinant_mass_pan_tilt
+    fp[3, 2] = -accel_pan_by_J_y_tilt_term * inverse_determinant_mass_pan
+    inertia_pan_per_sin_tilt_by_J_z_tilt = -sin_tilt
+    coriolis_by_J_z_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_tilt
+    coriolis_by_J_z_tilt_half_omega_pan = coriolis_by_J_z_tilt * half_omega_pan
+    accel_pan_by_J_z_tilt_term = (
+        -accel_pan * (inertia_pan_per_sin_tilt_by_J_z_tilt * sin_tilt + 1.0)
+        - coriolis_by_J_z_tilt * omega_tilt
     )
-    fp[3, 3] = accel_tilt_by_J_z_tilt_term
+    fp[2, 3] = inverse_determinant * (
+        accel_pan_by_J_z_tilt_term * inertia_tilt
+        - coriolis_by_J_z_tilt_half_omega_pan * mass_pan_tilt
+    )
+    fp[3, 3] = inverse_determinant * (
+        -accel_pan_by_J_z_tilt_term * mass_pan_tilt + coriolis_by_J_z_tilt_half_omega_pan * mass_pan
+    )
+    inertia_pan_sin_cos_tilt_by_m_payload = 2.0 * c_x_payload * c_z_payload
+    inertia_pan_sin_sq_tilt_by_m_payload = -c_x_payload_sq + c_z_payload_sq
+    inertia_pan_per_sin_tilt_by_m_payload = (
+        cos_tilt * inertia_pan_sin_cos_tilt_by_m_payload
+        + inertia_pan_sin_sq_tilt_by_m_payload * sin_tilt
+    )
+    coriolis_by_m_payload = (
+        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_m_payload
+        - inertia_pan_sin_cos_tilt_by_m_payload * omega_pan
+    )
+    gravity_cos_tilt_by_m_payload = 9.81 * c_x_payload
+    gravity_sin_tilt_by_m_payload = 9.81 * c_z_payload
+    inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
+    coupling_cos_tilt_by_m_payload = c_y_payload * c_z_payload
     accel_pan_by_m_payload_term = (
-        c_x_payload_sin_tilt_c_y_payload - c_y_payload_c_z_payload_cos_tilt
+        -cos_tilt * coupling_cos_tilt_by_m_payload + coupling_sin_tilt_by_m_payload * sin_tilt
     )
     accel_pan_by_m_payload_term_2 = (
         -accel_pan * accel_pan_by_m_payload_term
-        - accel_tilt * (c_x_payload_sq + c_z_payload_sq)
-        + c_x_payload * c_z_payload * cos_tilt_sq * omega_pan_sq
-        + 9.81 * c_x_payload * cos_tilt
-        - c_x_payload_sq * cos_tilt_sin_tilt_omega_pan_sq
-        + 9.81 * c_z_payload * sin_tilt
-        + c_z_payload_sq * cos_tilt * omega_pan_sq * sin_tilt
-        - force_tilt_term_2
+        - accel_tilt * inertia_tilt_by_m_payload
+        + coriolis_by_m_payload * half_omega_pan
+        + cos_tilt * gravity_cos_tilt_by_m_payload
+        + gravity_sin_tilt_by_m_payload * sin_tilt
     )
-    c_y_payload_omega_tilt_sq = c_y_payload * omega_tilt_sq
+    inertia_pan_by_m_payload = c_x_payload_sq + c_y_payload_sq
+    omega_tilt_sq_sin_tilt = omega_tilt_sq * sin_tilt
+    cos_tilt_omega_tilt_sq = cos_tilt * omega_tilt_sq
     accel_pan_by_m_payload_term_3 = (
-        -accel_pan
-        * (
-            c_x_payload_sin_tilt * twice_c_z_payload_cos_tilt
-            + c_x_payload_sq * cos_tilt_sq
-            + c_y_payload_sq_cos_tilt_sq
-            + c_y_payload_sq_sin_tilt_sq
-            + c_z_payload_sq * sin_tilt_sq
-        )
-        - accel_pan_by_J_x_tilt_term_2 * c_z_payload_sq
+        -accel_pan * (inertia_pan_by_m_payload + inertia_pan_per_sin_tilt_by_m_payload * sin_tilt)
         - accel_pan_by_m_payload_term * accel_tilt
-        + 2.0 * c_x_payload * c_z_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_x_payload_c_z_payload * omega_pan_omega_tilt_twice_cos_tilt_sq
-        - c_x_payload_cos_tilt * c_y_payload_omega_tilt_sq
-        + 2.0 * c_x_payload_sq * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        - c_y_payload_omega_tilt_sq * c_z_payload_sin_tilt
+        - coriolis_by_m_payload * omega_tilt
+        - cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_m_payload
+        - coupling_cos_tilt_by_m_payload * omega_tilt_sq_sin_tilt
     )
     fp[2, 4] = inverse_determinant * (
-        -accel_pan_by_m_payload_term_2 * mass_pan_tilt + accel_pan_by_m_payload_term_3 * mass_tilt
+        -accel_pan_by_m_payload_term_2 * mass_pan_tilt
+        + accel_pan_by_m_payload_term_3 * inertia_tilt
     )
     fp[3, 4] = inverse_determinant * (
         accel_pan_by_m_payload_term_2 * mass_pan - accel_pan_by_m_payload_term_3 * mass_pan_tilt
     )
-    fp[2, 5] = accel_pan_by_J_x_tilt_term_4
-    fp[3, 5] = accel_tilt_by_J_x_tilt_term
-    fp[2, 6] = accel_pan_by_J_y_tilt_term
-    fp[3, 6] = accel_tilt_by_J_y_tilt_term
-    fp[2, 7] = accel_pan_by_J_z_tilt_term_2
-    fp[3, 7] = accel_tilt_by_J_z_tilt_term
-    c_x_payload_m_payload = c_x_payload * m_payload
-    twice_accel_tilt = 2.0 * accel_tilt
-    c_y_payload_m_payload_sin_tilt = c_y_payload_m_payload * sin_tilt
-    c_z_payload_m_payload = c_z_payload * m_payload
-    accel_pan_by_c_x_payload_term = 2.0 * c_x_payload_sin_tilt_m_payload * cos_tilt
-    accel_pan_by_c_x_payload_term_2 = (
-        -accel_pan * c_y_payload_m_payload_sin_tilt
-        - accel_pan_by_c_x_payload_term * omega_pan_sq
-        - c_x_payload_m_payload * twice_accel_tilt
-        + c_z_payload * cos_tilt_sq * m_payload * omega_pan_sq
-        - c_z_payload_m_payload * omega_pan_sq_sin_tilt_sq
-        + 9.81 * cos_tilt * m_payload
+    inertia_pan_per_sin_tilt_by_J_x_payload = sin_tilt
+    coriolis_by_J_x_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_payload
+    coriolis_by_J_x_payload_half_omega_pan = coriolis_by_J_x_payload * half_omega_pan
+    accel_pan_by_J_x_payload_term = (
+        -accel_pan_sin_tilt * inertia_pan_per_sin_tilt_by_J_x_payload
+        - coriolis_by_J_x_payload * omega_tilt
     )
-    c_y_payload_m_payload_cos_tilt = c_y_payload_m_payload * cos_tilt
-    c_x_payload_m_payload_twice_cos_tilt_sq = c_x_payload_m_payload * twice_cos_tilt_sq
-    c_z_payload_cos_tilt_m_payload = c_z_payload_cos_tilt * m_payload
-    c_z_payload_cos_tilt_m_payload_sin_tilt = c_z_payload_cos_tilt_m_payload * sin_tilt
-    accel_pan_by_c_x_payload_term_3 = 2.0 * c_z_payload_cos_tilt_m_payload_sin_tilt
-    accel_pan_by_c_x_payload_term_4 = (
-        -accel_pan * (accel_pan_by_c_x_payload_term_3 + c_x_payload_m_payload_twice_cos_tilt_sq)
-        - accel_tilt * c_y_payload_m_payload_sin_tilt
-        + 4.0 * c_x_payload * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - c_y_payload_m_payload_cos_tilt * omega_tilt_sq
-        + 2.0 * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_z_payload_m_payload * omega_pan_omega_tilt_twice_cos_tilt_sq
+    fp[2, 5] = inverse_determinant * (
+        accel_pan_by_J_x_payload_term * inertia_tilt
+        - coriolis_by_J_x_payload_half_omega_pan * mass_pan_tilt
+    )
+    fp[3, 5] = inverse_determinant * (
+        -accel_pan_by_J_x_payload_term * mass_pan_tilt
+        + coriolis_by_J_x_payload_half_omega_pan * mass_pan
+    )
+    accel_pan_by_J_y_payload_term = accel_tilt
+    fp[2, 6] = accel_pan_by_J_y_payload_term * inverse_determinant_mass_pan_tilt
+    fp[3, 6] = -accel_pan_by_J_y_payload_term * inverse_determinant_mass_pan
+    inertia_pan_per_sin_tilt_by_J_z_payload = -sin_tilt
+    coriolis_by_J_z_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_payload
+    coriolis_by_J_z_payload_half_omega_pan = coriolis_by_J_z_payload * half_omega_pan
+    accel_pan_by_J_z_payload_term = (
+        -accel_pan * (inertia_pan_per_sin_tilt_by_J_z_payload * sin_tilt + 1.0)
+        - coriolis_by_J_z_payload * omega_tilt
+    )
+    fp[2, 7] = inverse_determinant * (
+        accel_pan_by_J_z_payload_term * inertia_tilt
+        - coriolis_by_J_z_payload_half_omega_pan * mass_pan_tilt
+    )
+    fp[3, 7] = inverse_determinant * (
+        -accel_pan_by_J_z_payload_term * mass_pan_tilt
+        + coriolis_by_J_z_payload_half_omega_pan * mass_pan
+    )
+    inertia_pan_sin_sq_tilt_by_c_x_payload = -inertia_tilt_by_c_x_payload
+    inertia_tilt_by_c_z_payload = 2.0 * coupling_cos_tilt_by_c_y_payload
+    inertia_pan_per_sin_tilt_by_c_x_payload = (
+        cos_tilt * inertia_tilt_by_c_z_payload + inertia_pan_sin_sq_tilt_by_c_x_payload * sin_tilt
+    )
+    coriolis_by_c_x_payload = (
+        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_x_payload
+        - inertia_tilt_by_c_z_payload * omega_pan
+    )
+    gravity_cos_tilt_by_c_x_payload = 9.81 * m_payload
+    accel_pan_by_c_x_payload_term = (
+        -accel_pan_sin_tilt * coupling_cos_tilt_by_c_z_payload
+        - accel_tilt * inertia_tilt_by_c_x_payload
+        + 0.5 * coriolis_by_c_x_payload * omega_pan
+        + cos_tilt * gravity_cos_tilt_by_c_x_payload
+    )
+    accel_pan_by_c_x_payload_term_2 = (
+        -accel_pan
+        * (inertia_pan_per_sin_tilt_by_c_x_payload * sin_tilt + inertia_tilt_by_c_x_payload)
+        - accel_tilt * coupling_cos_tilt_by_c_z_payload * sin_tilt
+        - coriolis_by_c_x_payload * omega_tilt
+        - cos_tilt_omega_tilt_sq * coupling_cos_tilt_by_c_z_payload
     )
     fp[2, 8] = inverse_determinant * (
-        -accel_pan_by_c_x_payload_term_2 * mass_pan_tilt
-        + accel_pan_by_c_x_payload_term_4 * mass_tilt
+        -accel_pan_by_c_x_payload_term * mass_pan_tilt
+        + accel_pan_by_c_x_payload_term_2 * inertia_tilt
     )
     fp[3, 8] = inverse_determinant * (
-        accel_pan_by_c_x_payload_term_2 * mass_pan - accel_pan_by_c_x_payload_term_4 * mass_pan_tilt
+        accel_pan_by_c_x_payload_term * mass_pan - accel_pan_by_c_x_payload_term_2 * mass_pan_tilt
     )
-    accel_pan_by_c_y_payload_term = c_x_payload_sin_tilt_m_payload - c_z_payload_cos_tilt_m_payload
+    accel_pan_by_c_y_payload_term = (
+        -cos_tilt * coupling_cos_tilt_by_c_y_payload + coupling_sin_tilt_by_c_y_payload * sin_tilt
+    )
     accel_pan_accel_pan_by_c_y_payload_term = accel_pan * accel_pan_by_c_y_payload_term
-    m_payload_omega_tilt_sq = m_payload * omega_tilt_sq
+    inertia_pan_by_c_y_payload = 2.0 * coupling_cos_tilt_by_c_z_payload
     accel_pan_by_c_y_payload_term_2 = (
-        -accel_pan
-        * (c_y_payload_m_payload * twice_cos_tilt_sq + c_y_payload_m_payload * twice_sin_tilt_sq)
+        -accel_pan * inertia_pan_by_c_y_payload
         - accel_pan_by_c_y_payload_term * accel_tilt
-        - c_x_payload_cos_tilt * m_payload_omega_tilt_sq
-        - c_z_payload_sin_tilt * m_payload_omega_tilt_sq
+        - cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_c_y_payload
+        - coupling_cos_tilt_by_c_y_payload * omega_tilt_sq_sin_tilt
     )
     fp[2, 9] = inverse_determinant * (
         accel_pan_accel_pan_by_c_y_payload_term * mass_pan_tilt
-        + accel_pan_by_c_y_payload_term_2 * mass_tilt
+        + accel_pan_by_c_y_payload_term_2 * inertia_tilt
     )
     fp[3, 9] = inverse_determinant * (
         -accel_pan_accel_pan_by_c_y_payload_term * mass_pan
         - accel_pan_by_c_y_payload_term_2 * mass_pan_tilt
     )
+    inertia_pan_per_sin_tilt_by_c_z_payload = (
+        cos_tilt * inertia_tilt_by_c_x_payload + inertia_tilt_by_c_z_payload * sin_tilt
+    )
+    coriolis_by_c_z_payload = (
+        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_z_payload
+        - inertia_tilt_by_c_x_payload * omega_pan
+    )
     accel_pan_by_c_z_payload_term = (
-        accel_pan * c_y_payload_m_payload_cos_tilt
-        + accel_pan_by_c_x_payload_term_3 * omega_pan_sq
-        + c_x_payload_m_payload * cos_tilt_sq_omega_pan_sq
-        - c_x_payload_m_payload * omega_pan_sq_sin_tilt_sq
-        - c_z_payload_m_payload * twice_accel_tilt
-        + force_tilt_term * m_payload
+        accel_pan * cos_tilt * coupling_cos_tilt_by_c_z_payload
+        - accel_tilt * inertia_tilt_by_c_z_payload
+        + coriolis_by_c_z_payload * half_omega_pan
+        + gravity_cos_tilt_by_c_x_payload * sin_tilt
     )
     accel_pan_by_c_z_payload_term_2 = (
-        -accel_pan * (accel_pan_by_c_x_payload_term + c_z_payload_m_payload * twice_sin_tilt_sq)
-        + accel_tilt * c_y_payload * cos_tilt * m_payload
-        + 2.0 * c_x_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_x_payload_m_payload_twice_cos_tilt_sq * omega_pan_omega_tilt
-        - c_y_payload_m_payload_sin_tilt * omega_tilt_sq
-        - 4.0 * c_z_payload_cos_tilt_m_payload_sin_tilt * omega_pan_omega_tilt
+        -accel_pan_sin_tilt * inertia_pan_per_sin_tilt_by_c_z_payload
+        + accel_tilt * cos_tilt * coupling_cos_tilt_by_c_z_payload
+        - coriolis_by_c_z_payload * omega_tilt
+        - coupling_cos_tilt_by_c_z_payload * omega_tilt_sq_sin_tilt
     )
     fp[2, 10] = inverse_determinant * (
-        -accel_pan_by_c_z_payload_term * mass_pan_tilt + accel_pan_by_c_z_payload_term_2 * mass_tilt
+        -accel_pan_by_c_z_payload_term * mass_pan_tilt
+        + accel_pan_by_c_z_payload_term_2 * inertia_tilt
     )
     fp[3, 10] = inverse_determinant * (
         accel_pan_by_c_z_payload_term * mass_pan - accel_pan_by_c_z_payload_term_2 * mass_pan_tilt
     )
-    fp[2, 11] = -inverse_determinant_mass_tilt * omega_pan
+    fp[2, 11] = -inertia_tilt_inverse_determinant * omega_pan
     fp[3, 11] = inverse_determinant_mass_pan_tilt * omega_pan
     fp[2, 12] = inverse_determinant_mass_pan_tilt * omega_tilt
     fp[3, 12] = -inverse_determinant_mass_pan * omega_tilt
@@ -597,19 +554,31 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guards(t, x, u, p, m, g):
-    """Write holding and breakaway torques, gap separations and contact torques into g."""
+    """Write holding and breakaway torques, gap separations and contact torques into g.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; g [0] in N m and rad.
+    """
     return
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guard_jacobian(t, x, u, p, m, gx, gp):
-    """Write the non-zero derivatives of guards by state and parameter."""
+    """Write the non-zero derivatives of guards by state and parameter.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; gx [0, 4]; gp [0, 13].
+    """
     return
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def outputs(t, x, u, p, y):
-    """Write the measured signals into y."""
+    """Write the measured signals into y.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; y [2] in
+    OUTPUT_UNITS.
+    """
     theta_pan = x[0]
     theta_tilt = x[1]
     y[0] = theta_pan
@@ -618,14 +587,22 @@ def outputs(t, x, u, p, y):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def output_jacobian(t, x, u, p, yx, yp):
-    """Write the non-zero derivatives of outputs by state and parameter."""
+    """Write the non-zero derivatives of outputs by state and parameter.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; yx [2,
+    4]; yp [2, 13].
+    """
     yx[0, 0] = 1.0
     yx[1, 1] = 1.0
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def energy(t, x, u, p, m, e):
-    """Write stored energy in J, power in and dissipated power in W into e."""
+    """Write stored energy in J, power in and dissipated power in W into e.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; e [3] in J, W and W.
+    """
     theta_tilt = x[1]
     omega_pan = x[2]
     omega_tilt = x[3]
@@ -689,7 +666,11 @@ def energy(t, x, u, p, m, e):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel."""
+    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
+
+    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    """
     theta_tilt = x[1]
     omega_pan = x[2]
     omega_tilt = x[3]
@@ -710,85 +691,73 @@ def equation_error(t, x, u, p, m, r):
     c_z_payload = p[10]
     b_pan = p[11]
     b_tilt = p[12]
-    sin_tilt = math.sin(theta_tilt)
-    sin_tilt_sq = sin_tilt * sin_tilt
+    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
+    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
+    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
+    inertia_pan_sin_sq_tilt = (
+        J_x_payload
+        + J_x_tilt
+        - J_z_payload
+        - J_z_tilt
+        - inertia_pan_sin_sq_tilt_term
+        + inertia_pan_sin_sq_tilt_term_2
+    )
     cos_tilt = math.cos(theta_tilt)
-    cos_tilt_sq = cos_tilt * cos_tilt
-    c_x_payload_sq = c_x_payload * c_x_payload
-    force_pan_term = (c_z_payload * c_z_payload) * m_payload
+    sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = (
+        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
+    )
+    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
     c_y_payload_m_payload = c_y_payload * m_payload
-    c_x_payload_c_y_payload_m_payload = c_x_payload * c_y_payload_m_payload
-    c_y_payload_m_payload_c_z_payload = c_y_payload_m_payload * c_z_payload
-    twice_omega_pan_omega_tilt = 2.0 * omega_pan * omega_tilt
-    cos_tilt_sin_tilt = cos_tilt * sin_tilt
-    force_pan_term_2 = cos_tilt_sin_tilt * twice_omega_pan_omega_tilt
-    omega_tilt_sq = omega_tilt * omega_tilt
-    c_x_payload_c_z_payload_m_payload = c_x_payload * c_z_payload * m_payload
+    coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
+    coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
     force_pan = (
-        -J_x_payload * force_pan_term_2
-        - J_x_tilt * force_pan_term_2
-        + 2.0 * J_z_payload * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        + 2.0 * J_z_tilt * cos_tilt * omega_pan * omega_tilt * sin_tilt
-        - b_pan * omega_pan
-        + 2.0 * c_x_payload * c_z_payload * m_payload * omega_pan * omega_tilt * sin_tilt_sq
-        - c_x_payload_c_y_payload_m_payload * cos_tilt * omega_tilt_sq
-        - c_x_payload_c_z_payload_m_payload * cos_tilt_sq * twice_omega_pan_omega_tilt
-        + 2.0 * c_x_payload_sq * cos_tilt * m_payload * omega_pan * omega_tilt * sin_tilt
-        - c_y_payload_m_payload_c_z_payload * omega_tilt_sq * sin_tilt
-        - force_pan_term * force_pan_term_2
+        -b_pan * omega_pan
+        - omega_tilt
+        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
         + tau_pan
     )
-    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
-    mass_pan_term = (c_y_payload * c_y_payload) * m_payload
-    c_x_payload_cos_tilt = c_x_payload * cos_tilt
-    c_z_payload_sin_tilt = c_z_payload * sin_tilt
-    mass_pan = (
+    inertia_pan = (
         J_pan
-        + J_x_payload * sin_tilt_sq
-        + J_x_tilt * sin_tilt_sq
-        + J_z_payload * cos_tilt_sq
-        + J_z_tilt * cos_tilt_sq
-        + 2.0 * c_x_payload_cos_tilt * c_z_payload_sin_tilt * m_payload
-        + c_x_payload_sq_m_payload * cos_tilt_sq
-        + cos_tilt_sq * mass_pan_term
-        + force_pan_term * sin_tilt_sq
-        + mass_pan_term * sin_tilt_sq
+        + J_z_payload
+        + J_z_tilt
+        + (c_y_payload * c_y_payload) * m_payload
+        + inertia_pan_sin_sq_tilt_term
     )
-    mass_pan_tilt = (
-        c_x_payload_c_y_payload_m_payload * sin_tilt - c_y_payload_m_payload_c_z_payload * cos_tilt
-    )
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
     r[0] = accel_pan * mass_pan + accel_tilt * mass_pan_tilt - force_pan
-    force_tilt_term = 9.81 * m_payload
-    omega_pan_sq = omega_pan * omega_pan
-    cos_tilt_sin_tilt_omega_pan_sq = cos_tilt_sin_tilt * omega_pan_sq
-    force_tilt_term_2 = c_x_payload_c_z_payload_m_payload * omega_pan_sq
+    gravity_cos_tilt_term = 9.81 * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
+    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
     force_tilt = (
-        J_x_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + J_x_tilt * cos_tilt_sin_tilt_omega_pan_sq
-        - J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
-        - J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
-        - b_tilt * omega_tilt
-        + c_x_payload_cos_tilt * force_tilt_term
-        - c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + c_z_payload_sin_tilt * force_tilt_term
-        + cos_tilt_sin_tilt_omega_pan_sq * force_pan_term
-        + cos_tilt_sq * force_tilt_term_2
-        - force_tilt_term_2 * sin_tilt_sq
+        -b_tilt * omega_tilt
+        + 0.5 * coriolis * omega_pan
+        + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt
         + tau_tilt
     )
-    mass_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + force_pan_term
-    r[1] = accel_pan * mass_pan_tilt + accel_tilt * mass_tilt - force_tilt
+    inertia_tilt = (
+        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
+    )
+    r[1] = accel_pan * mass_pan_tilt + accel_tilt * inertia_tilt - force_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def domain(p, bounds):
-    """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
+    """Write lower and upper bound of the state of every row of DOMAIN into bounds.
+
+    p [13] in the units of PARAMETERS; bounds [0, 2] in STATE_UNITS: lower, upper.
+    """
     return
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def margins(p, margin):
-    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin.
+
+    p [13] in the units of PARAMETERS; margin [0] in units of what is compared.
+    """
     return
 
 
@@ -804,4 +773,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 4d330c4a10d1abf42377335d1bfb9d9340bcb2a958ec977b3ef1ce8c6827dddf
+# END sha256 db89a4341a42615fde2749e1d6b16225d1094186fe1fc2db8f2e28d29d341752

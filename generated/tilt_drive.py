@@ -54,7 +54,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "5b1d5f902f0545bf"
+MODEL_HASH = "ffbed8c7dcf38f8a"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
 AXES = ("tilt",)
@@ -175,7 +175,11 @@ EFFECTS = (
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def mode_derivative(t, x, u, p, m, dx):
-    """Write the time derivative of the state into dx in the modes m."""
+    """Write the time derivative of the state into dx in the modes m.
+
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; m [1],
+    see MODE_NAMES; dx [3] in STATE_UNITS per s.
+    """
     theta_tilt = x[0]
     omega_tilt = x[1]
     i_tilt = x[2]
@@ -294,7 +298,11 @@ def mode_derivative(t, x, u, p, m, dx):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def jacobian(t, x, u, p, m, fx, fu, fp):
-    """Write the non-zero derivatives of mode_derivative by state, input and parameter."""
+    """Write the non-zero derivatives of mode_derivative by state, input and parameter.
+
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; m [1],
+    see MODE_NAMES; fx [3, 3]; fu [3, 1]; fp [3, 19].
+    """
     theta_tilt = x[0]
     omega_tilt = x[1]
     i_tilt = x[2]
@@ -415,30 +423,25 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     driving_torque_tilt_by_theta_tilt = -driving_torque_tilt_by_theta_tilt_term_3
     c_x_payload_sq = c_x_payload * c_x_payload
     c_z_payload_sq = c_z_payload * c_z_payload
-    load_inertia_tilt = J_y_payload + c_x_payload_sq * m_payload + c_z_payload_sq * m_payload
-    load_torque_tilt_by_c_z_payload_term = 9.81 * sin_tilt
-    load_torque_tilt_by_c_z_payload = load_torque_tilt_by_c_z_payload_term * m_payload
-    load_torque_tilt_by_theta_tilt_term = (
-        c_x_payload * load_torque_tilt_by_c_z_payload - 9.81 * c_z_payload * cos_tilt * m_payload
-    )
+    inertia_tilt = J_y_payload + c_x_payload_sq * m_payload + c_z_payload_sq * m_payload
+    gravity_cos_tilt_by_c_x_payload = 9.81 * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_by_c_x_payload
+    gravity_sin_tilt_by_m_payload = 9.81 * c_z_payload
+    gravity_sin_tilt = gravity_sin_tilt_by_m_payload * m_payload
+    load_torque_tilt_by_theta_tilt_term = -cos_tilt * gravity_sin_tilt + gravity_cos_tilt * sin_tilt
     load_torque_tilt_by_theta_tilt = -load_torque_tilt_by_theta_tilt_term
     ratio_tilt_sq = ratio_tilt * ratio_tilt
     J_motor_tilt_ratio_tilt_sq = J_motor_tilt * ratio_tilt_sq
     twice_ratio_tilt_by_theta_tilt = 2.0 * ratio_tilt_by_theta_tilt
     b_tilt_omega_tilt = b_tilt * omega_tilt
-    load_torque_tilt_term = 9.81 * cos_tilt
-    c_x_payload_load_torque_tilt_term = c_x_payload * load_torque_tilt_term
-    load_torque_tilt_term_2 = c_z_payload * load_torque_tilt_by_c_z_payload_term
     load_torque_tilt = (
-        -b_tilt_omega_tilt
-        + c_x_payload_load_torque_tilt_term * m_payload
-        + load_torque_tilt_term_2 * m_payload
+        -b_tilt_omega_tilt + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
     )
     J_motor_tilt_ratio_tilt_load_torque_tilt = J_motor_tilt_ratio_tilt * load_torque_tilt
     carried_tilt_by_theta_tilt = (
         -J_motor_tilt_ratio_tilt_load_torque_tilt * twice_ratio_tilt_by_theta_tilt
         - J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_theta_tilt
-        + driving_torque_tilt_by_theta_tilt * load_inertia_tilt
+        + driving_torque_tilt_by_theta_tilt * inertia_tilt
     )
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
@@ -451,7 +454,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lowered_tilt = -lowered_tilt_term_2 * lowered_tilt_term_lowered_tilt_term_4
     lost_lowering_tilt_by_theta_tilt_term = 1.0 - lowered_tilt
     lost_lowering_tilt_by_theta_tilt_term_2 = (
-        J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * lowered_tilt
+        J_motor_tilt_ratio_tilt_sq + inertia_tilt * lowered_tilt
     )
     lost_lowering_tilt_by_theta_tilt_term_3 = (
         lost_lowering_tilt_by_theta_tilt_term
@@ -475,9 +478,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lowered_tilt_term_raised_tilt_term_3 = lowered_tilt_term * raised_tilt_term_3
     raised_tilt = lowered_tilt_term_raised_tilt_term_3 * raised_tilt_term
     lost_raising_tilt_by_theta_tilt_term = raised_tilt - 1.0
-    lost_raising_tilt_by_theta_tilt_term_2 = (
-        J_motor_tilt_ratio_tilt_sq + load_inertia_tilt * raised_tilt
-    )
+    lost_raising_tilt_by_theta_tilt_term_2 = J_motor_tilt_ratio_tilt_sq + inertia_tilt * raised_tilt
     lost_raising_tilt_by_theta_tilt_term_3 = lost_raising_tilt_by_theta_tilt_term / (
         lost_raising_tilt_by_theta_tilt_term_2 * lost_raising_tilt_by_theta_tilt_term_2
     )
@@ -487,7 +488,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     lost_raising_tilt_by_theta_tilt = (
         -lost_raising_tilt_by_theta_tilt_term_4 * twice_ratio_tilt_by_theta_tilt
     )
-    mass_tilt = J_motor_tilt_ratio_tilt_sq + load_inertia_tilt
+    mass_tilt = J_motor_tilt_ratio_tilt_sq + inertia_tilt
     inverse_mass_tilt = 1.0 / mass_tilt
     accel_tilt_term = inverse_mass_tilt * (slide_tilt * slide_tilt)
     lost_lowering_tilt_term = 1.0 / (abs(lost_lowering_tilt_by_theta_tilt_term_2))
@@ -503,7 +504,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     driving_torque_tilt = -driving_torque_tilt_term_2
     carried_tilt = (
-        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
+        -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * inertia_tilt
     )
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
     accel_tilt_by_theta_tilt_term_2 = -0.5 * lost_lowering_tilt + 0.5 * lost_raising_tilt
@@ -525,9 +526,9 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     force_tilt = (
         -b_tilt_omega_tilt
-        + 9.81 * c_x_payload * cos_tilt * m_payload
-        + 9.81 * c_z_payload * m_payload * sin_tilt
+        + cos_tilt * gravity_cos_tilt
         - driving_torque_tilt_term_2
+        + gravity_sin_tilt * sin_tilt
         - slide_tilt
         * (
             accel_tilt_by_theta_tilt_term * half_accel_tilt_by_theta_tilt_term_4
@@ -556,7 +557,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     load_torque_tilt_by_omega_tilt = -b_tilt
     carried_tilt_by_omega_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_omega_tilt
-        + driving_torque_tilt_by_omega_tilt * load_inertia_tilt
+        + driving_torque_tilt_by_omega_tilt * inertia_tilt
     )
     fx[1, 1] = accel_tilt_term * (
         -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_omega_tilt
@@ -565,42 +566,40 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
     fx[2, 1] = -L_tilt_inverse * driving_torque_tilt_by_i_tilt
-    carried_tilt_by_i_tilt = driving_torque_tilt_by_i_tilt * load_inertia_tilt
+    carried_tilt_by_i_tilt = driving_torque_tilt_by_i_tilt * inertia_tilt
     fx[1, 2] = accel_tilt_term * (
         -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_i_tilt + driving_torque_tilt_by_i_tilt
     )
     fx[2, 2] = -L_tilt_inverse * R_tilt
     fu[2, 0] = L_tilt_inverse
-    load_inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
-    load_torque_tilt_by_m_payload = c_x_payload_load_torque_tilt_term + load_torque_tilt_term_2
+    inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
+    gravity_cos_tilt_by_m_payload = 9.81 * c_x_payload
+    load_torque_tilt_by_m_payload = (
+        cos_tilt * gravity_cos_tilt_by_m_payload + gravity_sin_tilt_by_m_payload * sin_tilt
+    )
     carried_tilt_by_m_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_m_payload
-        + driving_torque_tilt * load_inertia_tilt_by_m_payload
+        + driving_torque_tilt * inertia_tilt_by_m_payload
     )
     lost_lowering_tilt_by_m_payload_term = lost_lowering_tilt_by_theta_tilt_term_3 * lowered_tilt
     lost_lowering_tilt_by_m_payload = (
-        -load_inertia_tilt_by_m_payload * lost_lowering_tilt_by_m_payload_term
+        -inertia_tilt_by_m_payload * lost_lowering_tilt_by_m_payload_term
     )
     lost_raising_tilt_by_m_payload_term = lost_raising_tilt_by_theta_tilt_term_3 * raised_tilt
     lost_raising_tilt_by_m_payload = (
-        -load_inertia_tilt_by_m_payload * lost_raising_tilt_by_m_payload_term
+        -inertia_tilt_by_m_payload * lost_raising_tilt_by_m_payload_term
     )
     fp[1, 0] = accel_tilt_term * (
-        -accel_tilt * load_inertia_tilt_by_m_payload
+        -accel_tilt * inertia_tilt_by_m_payload
         - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_m_payload
         - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_m_payload
         - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_m_payload
-        + 9.81 * c_x_payload * cos_tilt
-        + 9.81 * c_z_payload * sin_tilt
+        + cos_tilt * gravity_cos_tilt_by_m_payload
+        + gravity_sin_tilt_by_m_payload * sin_tilt
     )
-    load_inertia_tilt_by_J_y_payload = 1.0
-    carried_tilt_by_J_y_payload = driving_torque_tilt * load_inertia_tilt_by_J_y_payload
-    lost_lowering_tilt_by_J_y_payload = (
-        -load_inertia_tilt_by_J_y_payload * lost_lowering_tilt_by_m_payload_term
-    )
-    lost_raising_tilt_by_J_y_payload = (
-        -load_inertia_tilt_by_J_y_payload * lost_raising_tilt_by_m_payload_term
-    )
+    carried_tilt_by_J_y_payload = driving_torque_tilt
+    lost_lowering_tilt_by_J_y_payload = -lost_lowering_tilt_by_m_payload_term
+    lost_raising_tilt_by_J_y_payload = -lost_raising_tilt_by_m_payload_term
     fp[1, 1] = accel_tilt_term * (
         -accel_tilt
         - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_J_y_payload
@@ -608,42 +607,43 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_J_y_payload
     )
     twice_m_payload = 2.0 * m_payload
-    load_inertia_tilt_by_c_x_payload = c_x_payload * twice_m_payload
-    load_torque_tilt_by_c_x_payload = load_torque_tilt_term * m_payload
+    inertia_tilt_by_c_x_payload = c_x_payload * twice_m_payload
+    load_torque_tilt_by_c_x_payload = cos_tilt * gravity_cos_tilt_by_c_x_payload
     carried_tilt_by_c_x_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_x_payload
-        + driving_torque_tilt * load_inertia_tilt_by_c_x_payload
+        + driving_torque_tilt * inertia_tilt_by_c_x_payload
     )
     lost_lowering_tilt_by_c_x_payload = (
-        -load_inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_m_payload_term
+        -inertia_tilt_by_c_x_payload * lost_lowering_tilt_by_m_payload_term
     )
     lost_raising_tilt_by_c_x_payload = (
-        -load_inertia_tilt_by_c_x_payload * lost_raising_tilt_by_m_payload_term
+        -inertia_tilt_by_c_x_payload * lost_raising_tilt_by_m_payload_term
     )
     fp[1, 2] = accel_tilt_term * (
-        -accel_tilt * load_inertia_tilt_by_c_x_payload
+        -accel_tilt * inertia_tilt_by_c_x_payload
         - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_c_x_payload
         - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_c_x_payload
         - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_c_x_payload
-        + 9.81 * cos_tilt * m_payload
+        + cos_tilt * gravity_cos_tilt_by_c_x_payload
     )
-    load_inertia_tilt_by_c_z_payload = c_z_payload * twice_m_payload
+    inertia_tilt_by_c_z_payload = c_z_payload * twice_m_payload
+    load_torque_tilt_by_c_z_payload = gravity_cos_tilt_by_c_x_payload * sin_tilt
     carried_tilt_by_c_z_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_z_payload
-        + driving_torque_tilt * load_inertia_tilt_by_c_z_payload
+        + driving_torque_tilt * inertia_tilt_by_c_z_payload
     )
     lost_lowering_tilt_by_c_z_payload = (
-        -load_inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_m_payload_term
+        -inertia_tilt_by_c_z_payload * lost_lowering_tilt_by_m_payload_term
     )
     lost_raising_tilt_by_c_z_payload = (
-        -load_inertia_tilt_by_c_z_payload * lost_raising_tilt_by_m_payload_term
+        -inertia_tilt_by_c_z_payload * lost_raising_tilt_by_m_payload_term
     )
     fp[1, 3] = accel_tilt_term * (
-        -accel_tilt * load_inertia_tilt_by_c_z_payload
+        -accel_tilt * inertia_tilt_by_c_z_payload
         - accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_c_z_payload
         - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_c_z_payload
         - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_c_z_payload
-        + 9.81 * m_payload * sin_tilt
+        + gravity_cos_tilt_by_c_x_payload * sin_tilt
     )
     load_torque_tilt_by_b_tilt = -omega_tilt
     carried_tilt_by_b_tilt = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_b_tilt
@@ -655,7 +655,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     fp[2, 6] = -L_tilt_inverse * i_tilt
     driving_torque_tilt_by_K_t_tilt = i_tilt * ratio_tilt
-    carried_tilt_by_K_t_tilt = driving_torque_tilt_by_K_t_tilt * load_inertia_tilt
+    carried_tilt_by_K_t_tilt = driving_torque_tilt_by_K_t_tilt * inertia_tilt
     fp[1, 7] = accel_tilt_term * (
         -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_K_t_tilt + i_tilt * ratio_tilt
     )
@@ -663,7 +663,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     driving_torque_tilt_by_J_motor_tilt_term = omega_tilt_sq_ratio_tilt_by_theta_tilt * ratio_tilt
     driving_torque_tilt_by_J_motor_tilt = -driving_torque_tilt_by_J_motor_tilt_term
     carried_tilt_by_J_motor_tilt = (
-        driving_torque_tilt_by_J_motor_tilt * load_inertia_tilt - load_torque_tilt * ratio_tilt_sq
+        driving_torque_tilt_by_J_motor_tilt * inertia_tilt - load_torque_tilt * ratio_tilt_sq
     )
     lost_lowering_tilt_by_J_motor_tilt = -lost_lowering_tilt_by_theta_tilt_term_3 * ratio_tilt_sq
     lost_raising_tilt_by_J_motor_tilt = -lost_raising_tilt_by_theta_tilt_term_3 * ratio_tilt_sq
@@ -676,7 +676,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     omega_tilt_ratio_tilt_sq = omega_tilt * ratio_tilt_sq
     driving_torque_tilt_by_b_motor_tilt = -omega_tilt_ratio_tilt_sq
-    carried_tilt_by_b_motor_tilt = driving_torque_tilt_by_b_motor_tilt * load_inertia_tilt
+    carried_tilt_by_b_motor_tilt = driving_torque_tilt_by_b_motor_tilt * inertia_tilt
     fp[1, 9] = accel_tilt_term * (
         -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_b_motor_tilt - omega_tilt_ratio_tilt_sq
     )
@@ -692,7 +692,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     carried_tilt_by_N_tilt_term = 2.0 * J_motor_tilt_ratio_tilt_load_torque_tilt
     carried_tilt_by_N_tilt = (
         -carried_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
-        + driving_torque_tilt_by_N_tilt * load_inertia_tilt
+        + driving_torque_tilt_by_N_tilt * inertia_tilt
     )
     lost_lowering_tilt_by_N_tilt_term = 2.0 * lost_lowering_tilt_by_theta_tilt_term_4
     lost_lowering_tilt_by_N_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_N_tilt
@@ -728,7 +728,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     driving_torque_tilt_by_lead_tilt = -driving_torque_tilt_by_lead_tilt_term
     carried_tilt_by_lead_tilt = (
         -carried_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
-        + driving_torque_tilt_by_lead_tilt * load_inertia_tilt
+        + driving_torque_tilt_by_lead_tilt * inertia_tilt
     )
     lowered_tilt_by_lead_tilt_term = lowered_tilt_term * ratio_tilt_by_lead_tilt_term
     lowered_tilt_by_lead_tilt_term_2 = f_screw_tilt_lowered_tilt_term * lead_tilt_inverse
@@ -740,7 +740,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + lowered_tilt_term_lowered_tilt_term_4
     )
     lost_lowering_tilt_by_lead_tilt_term = (
-        -load_inertia_tilt * lost_lowering_tilt_by_theta_tilt_term_3 - lost_lowering_tilt_term
+        -inertia_tilt * lost_lowering_tilt_by_theta_tilt_term_3 - lost_lowering_tilt_term
     )
     lost_lowering_tilt_by_lead_tilt = (
         -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_lead_tilt
@@ -754,7 +754,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + lowered_tilt_term_raised_tilt_term_3
     )
     lost_raising_tilt_by_lead_tilt_term = (
-        -load_inertia_tilt * lost_raising_tilt_by_theta_tilt_term_3
+        -inertia_tilt * lost_raising_tilt_by_theta_tilt_term_3
         + lost_raising_tilt_by_theta_tilt_term_2_inverse
     )
     lost_raising_tilt_by_lead_tilt = (
@@ -880,7 +880,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     driving_torque_tilt_by_l_ground_tilt = -driving_torque_tilt_by_l_ground_tilt_term
     carried_tilt_by_l_ground_tilt = (
         -carried_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
-        + driving_torque_tilt_by_l_ground_tilt * load_inertia_tilt
+        + driving_torque_tilt_by_l_ground_tilt * inertia_tilt
     )
     lost_lowering_tilt_by_l_ground_tilt = (
         -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_ground_tilt
@@ -931,7 +931,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     driving_torque_tilt_by_l_min_tilt = -driving_torque_tilt_by_l_min_tilt_term
     carried_tilt_by_l_min_tilt = (
         -carried_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
-        + driving_torque_tilt_by_l_min_tilt * load_inertia_tilt
+        + driving_torque_tilt_by_l_min_tilt * inertia_tilt
     )
     lost_lowering_tilt_by_l_min_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
     lost_raising_tilt_by_l_min_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_l_min_tilt
@@ -981,7 +981,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     driving_torque_tilt_by_r_arm_tilt = -driving_torque_tilt_by_r_arm_tilt_term
     carried_tilt_by_r_arm_tilt = (
         -carried_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
-        + driving_torque_tilt_by_r_arm_tilt * load_inertia_tilt
+        + driving_torque_tilt_by_r_arm_tilt * inertia_tilt
     )
     lost_lowering_tilt_by_r_arm_tilt = -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
     lost_raising_tilt_by_r_arm_tilt = -lost_raising_tilt_by_N_tilt_term * ratio_tilt_by_r_arm_tilt
@@ -1027,7 +1027,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     driving_torque_tilt_by_s_start_tilt = -driving_torque_tilt_by_s_start_tilt_term
     carried_tilt_by_s_start_tilt = (
         -carried_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
-        + driving_torque_tilt_by_s_start_tilt * load_inertia_tilt
+        + driving_torque_tilt_by_s_start_tilt * inertia_tilt
     )
     lost_lowering_tilt_by_s_start_tilt = (
         -lost_lowering_tilt_by_N_tilt_term * ratio_tilt_by_s_start_tilt
@@ -1047,7 +1047,11 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guards(t, x, u, p, m, g):
-    """Write holding and breakaway torques, gap separations and contact torques into g."""
+    """Write holding and breakaway torques, gap separations and contact torques into g.
+
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; m [1],
+    see MODE_NAMES; g [3] in N m and rad.
+    """
     theta_tilt = x[0]
     omega_tilt = x[1]
     i_tilt = x[2]
@@ -1066,14 +1070,14 @@ def guards(t, x, u, p, m, g):
     l_min_tilt = p[15]
     r_arm_tilt = p[16]
     s_start_tilt = p[17]
+    gravity_cos_tilt_term = 9.81 * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
+    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
     cos_tilt = math.cos(theta_tilt)
     sin_tilt = math.sin(theta_tilt)
     b_tilt_omega_tilt = b_tilt * omega_tilt
-    load_torque_tilt_term = 9.81 * m_payload
     load_torque_tilt = (
-        -b_tilt_omega_tilt
-        + c_x_payload * cos_tilt * load_torque_tilt_term
-        + c_z_payload * load_torque_tilt_term * sin_tilt
+        -b_tilt_omega_tilt + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
     )
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
@@ -1136,7 +1140,11 @@ def guards(t, x, u, p, m, g):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guard_jacobian(t, x, u, p, m, gx, gp):
-    """Write the non-zero derivatives of guards by state and parameter."""
+    """Write the non-zero derivatives of guards by state and parameter.
+
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; m [1],
+    see MODE_NAMES; gx [3, 3]; gp [3, 19].
+    """
     theta_tilt = x[0]
     omega_tilt = x[1]
     i_tilt = x[2]
@@ -1249,21 +1257,16 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
         - holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt
     )
-    load_torque_tilt_by_c_z_payload_term = 9.81 * sin_tilt
-    load_torque_tilt_by_c_z_payload = load_torque_tilt_by_c_z_payload_term * m_payload
-    holding_tilt_by_theta_tilt_term_4 = (
-        c_x_payload * load_torque_tilt_by_c_z_payload - 9.81 * c_z_payload * cos_tilt * m_payload
-    )
+    gravity_cos_tilt_by_c_x_payload = 9.81 * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_by_c_x_payload
+    gravity_sin_tilt_by_m_payload = 9.81 * c_z_payload
+    gravity_sin_tilt = gravity_sin_tilt_by_m_payload * m_payload
+    holding_tilt_by_theta_tilt_term_4 = -cos_tilt * gravity_sin_tilt + gravity_cos_tilt * sin_tilt
     gx[0, 0] = -holding_tilt_by_theta_tilt_term_3 - holding_tilt_by_theta_tilt_term_4
     load_torque_tilt_by_theta_tilt = -holding_tilt_by_theta_tilt_term_4
     b_tilt_omega_tilt = b_tilt * omega_tilt
-    load_torque_tilt_term = 9.81 * cos_tilt
-    c_x_payload_load_torque_tilt_term = c_x_payload * load_torque_tilt_term
-    load_torque_tilt_term_2 = c_z_payload * load_torque_tilt_by_c_z_payload_term
     load_torque_tilt = (
-        -b_tilt_omega_tilt
-        + c_x_payload_load_torque_tilt_term * m_payload
-        + load_torque_tilt_term_2 * m_payload
+        -b_tilt_omega_tilt + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
     )
     forward_tilt_by_theta_tilt_term = (
         0.0 if load_torque_tilt == 0 else math.copysign(1, load_torque_tilt)
@@ -1307,14 +1310,18 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     gx[2, 1] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_omega_tilt
     driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
     gx[0, 2] = driving_torque_tilt_by_i_tilt
-    load_torque_tilt_by_m_payload = c_x_payload_load_torque_tilt_term + load_torque_tilt_term_2
+    gravity_cos_tilt_by_m_payload = 9.81 * c_x_payload
+    load_torque_tilt_by_m_payload = (
+        cos_tilt * gravity_cos_tilt_by_m_payload + gravity_sin_tilt_by_m_payload * sin_tilt
+    )
     gp[0, 0] = load_torque_tilt_by_m_payload
     gp[1, 0] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_m_payload
     gp[2, 0] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_m_payload
-    load_torque_tilt_by_c_x_payload = load_torque_tilt_term * m_payload
+    load_torque_tilt_by_c_x_payload = cos_tilt * gravity_cos_tilt_by_c_x_payload
     gp[0, 2] = load_torque_tilt_by_c_x_payload
     gp[1, 2] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_c_x_payload
     gp[2, 2] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_c_x_payload
+    load_torque_tilt_by_c_z_payload = gravity_cos_tilt_by_c_x_payload * sin_tilt
     gp[0, 3] = load_torque_tilt_by_c_z_payload
     gp[1, 3] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_c_z_payload
     gp[2, 3] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_c_z_payload
@@ -1596,7 +1603,11 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def outputs(t, x, u, p, y):
-    """Write the measured signals into y."""
+    """Write the measured signals into y.
+
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; y [2] in
+    OUTPUT_UNITS.
+    """
     theta_tilt = x[0]
     i_tilt = x[2]
     y[0] = theta_tilt
@@ -1605,14 +1616,22 @@ def outputs(t, x, u, p, y):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def output_jacobian(t, x, u, p, yx, yp):
-    """Write the non-zero derivatives of outputs by state and parameter."""
+    """Write the non-zero derivatives of outputs by state and parameter.
+
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; yx [2,
+    3]; yp [2, 19].
+    """
     yx[0, 0] = 1.0
     yx[1, 2] = 1.0
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def energy(t, x, u, p, m, e):
-    """Write stored energy in J, power in and dissipated power in W into e."""
+    """Write stored energy in J, power in and dissipated power in W into e.
+
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; m [1],
+    see MODE_NAMES; e [3] in J, W and W.
+    """
     theta_tilt = x[0]
     omega_tilt = x[1]
     i_tilt = x[2]
@@ -1741,7 +1760,11 @@ def energy(t, x, u, p, m, e):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def equation_error(t, x, u, p, m, r):
-    """Write the torque that every row lacks, then rates of other states into r; x ends in accel."""
+    """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
+
+    t in s; x [4] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; m [1],
+    see MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
+    """
     theta_tilt = x[0]
     omega_tilt = x[1]
     i_tilt = x[2]
@@ -1766,7 +1789,10 @@ def equation_error(t, x, u, p, m, r):
     r_arm_tilt = p[16]
     s_start_tilt = p[17]
     slide_tilt = m[0]
-    load_inertia_tilt = (
+    gravity_cos_tilt_term = 9.81 * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
+    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    inertia_tilt = (
         J_y_payload
         + (c_x_payload * c_x_payload) * m_payload
         + (c_z_payload * c_z_payload) * m_payload
@@ -1804,16 +1830,14 @@ def equation_error(t, x, u, p, m, r):
     ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
     lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
     lost_lowering_tilt = (1.0 - lowered_tilt) / (
-        abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
+        abs(inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
     )
     raised_tilt = (
         lead_tilt_inverse_lowered_tilt_term
         * (f_screw_tilt_lowered_tilt_term + lead_tilt)
         / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
     )
-    lost_raising_tilt = (raised_tilt - 1.0) / (
-        load_inertia_tilt * raised_tilt + lost_lowering_tilt_term
-    )
+    lost_raising_tilt = (raised_tilt - 1.0) / (inertia_tilt * raised_tilt + lost_lowering_tilt_term)
     length_tilt_by_theta_tilt = (
         -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
     ) / length_tilt
@@ -1834,35 +1858,33 @@ def equation_error(t, x, u, p, m, r):
     )
     b_tilt_omega_tilt = b_tilt * omega_tilt
     driving_torque_tilt = -driving_torque_tilt_term_2
-    load_torque_tilt_term = 9.81 * m_payload
     load_torque_tilt = (
-        -b_tilt_omega_tilt
-        + c_x_payload * cos_tilt * load_torque_tilt_term
-        + c_z_payload * load_torque_tilt_term * sin_tilt
+        -b_tilt_omega_tilt + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
     )
-    carried_tilt = (
-        driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
-    )
+    carried_tilt = driving_torque_tilt * inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
     force_tilt = (
         -b_tilt_omega_tilt
-        + 9.81 * c_x_payload * cos_tilt * m_payload
-        + 9.81 * c_z_payload * m_payload * sin_tilt
+        + cos_tilt * gravity_cos_tilt
         - driving_torque_tilt_term_2
+        + gravity_sin_tilt * sin_tilt
         - slide_tilt
         * (
             0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
             + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
         )
     )
-    mass_tilt = load_inertia_tilt + lost_lowering_tilt_term
+    mass_tilt = inertia_tilt + lost_lowering_tilt_term
     r[0] = accel_tilt * mass_tilt - force_tilt
     r[1] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def domain(p, bounds):
-    """Write lower and upper bound of the state of every row of DOMAIN into bounds."""
+    """Write lower and upper bound of the state of every row of DOMAIN into bounds.
+
+    p [19] in the units of PARAMETERS; bounds [2, 2] in STATE_UNITS: lower, upper.
+    """
     l_ground_tilt = p[14]
     l_min_tilt = p[15]
     r_arm_tilt = p[16]
@@ -1901,7 +1923,10 @@ def domain(p, bounds):
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def margins(p, margin):
-    """Write by how much the parameters meet every row of REQUIREMENTS into margin."""
+    """Write by how much the parameters meet every row of REQUIREMENTS into margin.
+
+    p [19] in the units of PARAMETERS; margin [3] in units of what is compared.
+    """
     lead_tilt = p[11]
     d_screw_tilt = p[12]
     f_screw_tilt = p[13]
@@ -1952,4 +1977,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 e50b93d4f5671b89ac51553780078e9482ee1356049e9f2d34d22ba9d2611d0c
+# END sha256 f5298ed99a1c5eba9079bc7bb22345246571ed6775ea633de73c424d5434c206

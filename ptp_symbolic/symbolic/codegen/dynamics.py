@@ -204,10 +204,9 @@ def derivative_of(
     result = solve.chain.derivative(expression, variable)
     for acceleration, by in zip(solve.accelerations, acceleration_by, strict=True):
         result += derivative(expression, acceleration) * by
-    for symbol in sorted(expression.free_symbols, key=str):
-        if str(symbol).startswith("mass_"):
-            slope = solve.chain.derivative(values[str(symbol)], variable)
-            result += derivative(expression, symbol) * slope
+    for symbol in sorted(solve.mass.free_symbols & expression.free_symbols, key=str):
+        slope = solve.chain.derivative(values[str(symbol)], variable)
+        result += derivative(expression, symbol) * slope
     return result
 
 

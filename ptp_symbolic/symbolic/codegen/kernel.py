@@ -1,8 +1,8 @@
 """The source of one compiled function: what it unpacks, its named terms, what it writes."""
 
 import textwrap
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import sympy as sp
 
@@ -11,16 +11,39 @@ from ptp_symbolic.symbolic.codegen.printer import print_expression, quotient
 from ptp_symbolic.symbolic.codegen.sharing import Line
 
 MODE_ARGUMENTS = "t, x, u, p, m"
+DOC_WIDTH = WIDTH - 4
 
 
 @dataclass(frozen=True)
 class Vectors:
-    """Names of the entries of the argument arrays of a kernel."""
+    """Names of the entries of the argument arrays of a kernel, and what it writes.
+
+    `rows` has shape and unit by array; those of derivatives have the
+    letter of the variable appended, ``gx`` to ``g``.
+    """
 
     x: tuple[str, ...]
     u: tuple[str, ...]
     p: tuple[str, ...]
     m: tuple[str, ...]
+    rows: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+
+    def describe(self, argument: str) -> str:
+        """Shape and unit of an argument of a kernel."""
+        given = {
+            "t": "t in s",
+            "x": f"x [{len(self.x)}] in STATE_UNITS",
+            "u": f"u [{len(self.u)}] in INPUT_UNITS",
+            "p": f"p [{len(self.p)}] in the units of PARAMETERS",
+            "m": f"m [{len(self.m)}], see MODE_NAMES",
+        }
+        if argument in given:
+            return given[argument]
+        if argument in self.rows:
+            shape, unit = self.rows[argument]
+            return f"{argument} [{shape}] in {unit}"
+        array, variable = argument[:-1], argument[-1]
+        return f"{argument} [{self.rows[array][0]}, {len(getattr(self, variable))}]"
 
     def unpack(self, lines: Sequence[Line]) -> list[str]:
         """Assignments that unpack what `lines` use, states first."""
@@ -37,7 +60,9 @@ def kernel_text(
     name: str, arguments: str, doc: str, vectors: Vectors, lines: Sequence[Line]
 ) -> str:
     """A compiled function that unpacks what it uses and assigns `lines` in turn."""
-    rows = [f'"""{doc}"""', *vectors.unpack(lines)]
+    shapes = "; ".join(vectors.describe(argument) for argument in arguments.split(", "))
+    shapes = textwrap.fill(f"{shapes}.", DOC_WIDTH)
+    rows = [f'"""{doc}\n\n{shapes}\n"""', *vectors.unpack(lines)]
     for target, expression in lines:
         rows.append(_assignment(target, expression))
     if not lines:

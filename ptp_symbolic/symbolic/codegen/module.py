@@ -7,6 +7,7 @@ from dataclasses import replace
 import sympy as sp
 
 from ptp_symbolic.symbolic.codegen import dynamics
+from ptp_symbolic.symbolic.codegen.grouped import in_base_parameters
 from ptp_symbolic.symbolic.codegen.impacts import impact_expressions
 from ptp_symbolic.symbolic.codegen.kernel import MODE_ARGUMENTS, Vectors, kernel_text
 from ptp_symbolic.symbolic.codegen.metadata import metadata_text
@@ -15,7 +16,6 @@ from ptp_symbolic.symbolic.codegen.templates import state_derivative_text
 from ptp_symbolic.symbolic.codegen.term_names import vocabulary
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.simplify.base_parameters import base_form
 from ptp_symbolic.symbolic.symbols import real
 
 SEAL = "# END sha256 "
@@ -27,24 +27,26 @@ def module_text(equations: Equations) -> str:
     The text depends on the mathematics alone: the same bytes on every machine. It ends with the
     SHA-256 of everything above, which the loader verifies.
     """
-    solve = dynamics.solve_accelerations(equations)
+    grouped = in_base_parameters(equations)
+    solve = dynamics.solve_accelerations(grouped)
     vectors = Vectors(
         tuple(map(str, equations.state_symbols)),
         tuple(i.name for i in equations.inputs),
         tuple(p.name for p in equations.parameters),
         tuple(map(str, equations.mode_symbols)),
+        _rows(equations),
     )
     body = "\n\n\n".join(
         [
-            _mode_derivative(equations, vectors),
-            _jacobian(equations, solve, vectors),
-            _guards(equations, solve, vectors),
-            _guard_jacobian(equations, solve, vectors),
-            *_impacts(equations, solve, vectors),
+            _mode_derivative(grouped, solve, vectors),
+            _jacobian(grouped, solve, vectors),
+            _guards(grouped, solve, vectors),
+            _guard_jacobian(grouped, solve, vectors),
+            *_impacts(grouped, solve, vectors),
             _outputs(equations, vectors),
             _output_jacobian(equations, vectors),
             _energy(equations, vectors),
-            _equation_error(equations, solve, vectors),
+            _equation_error(grouped, solve, vectors),
             _domain(equations, vectors),
             _margins(equations, vectors),
             *_samplers(equations, vectors),
@@ -52,8 +54,29 @@ def module_text(equations: Equations) -> str:
         ]
     )
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
-    operations = _operations(equations, solve)
+    operations = _operations(equations, _state_lines(grouped, solve))
     return sealed(f"{metadata_text(equations, digest, operations)}\n\n\n{body}\n")
+
+
+def _rows(equations: Equations) -> dict[str, tuple[str, str]]:
+    """Shape of the arrays that kernels write, and their units."""
+    states, contacts = len(equations.state_symbols), len(equations.contacts)
+    guards = 3 * len(equations.frictions) + 4 * (contacts + len(equations.switches))
+    rates = "STATE_UNITS per s"
+    further = len(equations.extra_states)
+    samples = 3 * len(equations.samplers) + len(equations.updates)
+    return {
+        "dx": (f"{states}", rates),
+        "f": (f"{states}", rates),
+        "g": (f"{guards}", "N m and rad"),
+        "strike": (f"{contacts * (states + 2)}", "STATE_UNITS, 1 and J"),
+        "y": (f"{len(equations.outputs)}", "OUTPUT_UNITS"),
+        "e": ("3", "J, W and W"),
+        "r": (f"{len(equations.rates) + further}", f"N m, then {rates}"),
+        "z": (f"{samples}", "s, s and 1 per sampler, then STATE_UNITS"),
+        "bounds": (f"{len(equations.limits)}, 2", "STATE_UNITS: lower, upper"),
+        "margin": (f"{len(equations.requirements)}", "units of what is compared"),
+    }
 
 
 def sealed(text: str) -> str:
@@ -62,11 +85,11 @@ def sealed(text: str) -> str:
     return f"{text}{SEAL}{hashlib.sha256(text.encode()).hexdigest()}\n"
 
 
-def _operations(equations: Equations, solve: dynamics.Solve) -> tuple[int, int]:
+def _operations(equations: Equations, lines: Sequence[Line]) -> tuple[int, int]:
     """Operations of the state derivative as derived, and as written with shared terms."""
-    derived = [expression for _, expression in solve.definitions]
+    derived = [e for _, e in dynamics.solve_accelerations(equations).definitions]
     derived += [state.derivative for state in equations.extra_states]
-    written = [expression for _, expression in _state_lines(equations)]
+    written = [expression for _, expression in lines]
     before, after = (sum(int(sp.count_ops(e)) for e in es) for es in (derived, written))
     return before, after
 
@@ -78,41 +101,16 @@ def _shared(
     return share(definitions, present, vocabulary(equations))
 
 
-def _mode_derivative(equations: Equations, vectors: Vectors) -> str:
+def _mode_derivative(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
     doc = "Write the time derivative of the state into dx in the modes m."
-    lines = _state_lines(equations)
+    lines = _state_lines(equations, solve)
     return kernel_text("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
 
 
-def _state_lines(equations: Equations) -> list[Line]:
-    """The state derivative in base parameters, which need the fewest operations."""
-    varying = equations.varying_inertia
-    constant = equations.mass_matrix - varying
-    form = base_form(equations.rigid_equations, constant, equations.forcing)
-    mass = form.mass_matrix + varying
-    raw, written = (
-        [*matrix, *forcing]
-        for matrix, forcing in ((equations.mass_matrix, equations.forcing), (mass, form.forcing))
-    )
-    terms = tuple((s, _in_base_form(e, raw, written)) for s, e in equations.terms)
-    regrouped = dynamics.solve_accelerations(
-        replace(equations, mass_matrix=mass, forcing=form.forcing, terms=terms)
-    )
-    rates = dynamics.state_rates(equations, regrouped)
+def _state_lines(equations: Equations, solve: dynamics.Solve) -> list[Line]:
+    rates = dynamics.state_rates(equations, solve)
     outputs = [(f"dx[{i}]", rate) for i, rate in enumerate(rates)]
-    named = [(str(s), e) for s, e in (*form.base_parameters, *form.shared_terms) if s != e]
-    return share((*named, *regrouped.definitions), outputs, vocabulary(equations))
-
-
-def _in_base_form(
-    expression: sp.Expr, raw: Sequence[sp.Expr], written: Sequence[sp.Expr]
-) -> sp.Expr:
-    """The expression with a `raw` entry in it as it is `written` instead, where that is shorter."""
-    for entry, form in zip(raw, written, strict=True):
-        other = expression - entry + form
-        if sp.count_ops(other) < sp.count_ops(expression):
-            return other
-    return expression
+    return share(solve.definitions, outputs, vocabulary(equations))
 
 
 def _columns(

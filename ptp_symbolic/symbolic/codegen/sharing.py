@@ -69,12 +69,12 @@ def _without_aliases(
     takes the last name that it is defined under, and what else it is called is replaced by that.
     """
     terms = {real(name) for name, _ in shared}
-    names: dict[sp.Symbol, sp.Symbol] = {}
+    names: dict[sp.Symbol, sp.Expr] = {}
     kept: list[Line] = []
     for name, expression in (*reversed(defined), *meant):
         if expression in terms and expression not in names:
             names[expression] = real(name)
-        elif expression.is_Symbol:
+        elif expression.is_Symbol or expression.is_number:
             names[real(name)] = expression
         else:
             kept.append((name, expression))
@@ -83,7 +83,7 @@ def _without_aliases(
     return lines, [(target, e.xreplace(names)) for target, e in final]
 
 
-def _last(symbol: sp.Symbol, names: Mapping[sp.Symbol, sp.Symbol]) -> sp.Symbol:
+def _last(symbol: sp.Expr, names: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
     while symbol in names:
         symbol = names[symbol]
     return symbol
