@@ -25,7 +25,9 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*cos(theta_tilt)**2 -
       c_y_payload*c_z_payload*m_payload*omega_tilt**2*sin(theta_tilt) -
       2*c_z_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt)
-  forcing[omega_tilt] = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
+  forcing[omega_tilt] = 9.81*c_x_payload*m_payload*cos(theta_tilt) +
+      9.81*c_z_payload*m_payload*sin(theta_tilt) -
+      J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
       J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
       J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       J_z_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
@@ -33,10 +35,8 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       c_x_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       c_x_payload*c_z_payload*m_payload*omega_pan**2*sin(theta_tilt)**2 +
       c_x_payload*c_z_payload*m_payload*omega_pan**2*cos(theta_tilt)**2 +
-      981*c_x_payload*m_payload*cos(theta_tilt)/100 +
       c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
-      981*c_z_payload*m_payload*sin(theta_tilt)/100 + ratio_tilt*(K_t_tilt*i_tilt -
-      b_motor_tilt*omega_tilt*ratio_tilt)
+      ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
   forcing[omega_gear_pan] = K_t_pan*N_pan*i_pan - active_pan*(d_shaft_pan*(omega_gear_pan -
       omega_pan) + k_shaft_pan*(-gap_pan*side_pan/2 + theta_gear_pan - theta_pan))
   linkage_cos_tilt = l_ground_tilt**2 + r_arm_tilt**2 - (l_min_tilt + s_start_tilt)**2
@@ -74,16 +74,16 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       2*c_z_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt)
   driving_torque_tilt = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
       ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
-  load_torque_tilt = J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
+  load_torque_tilt = 9.81*c_x_payload*m_payload*cos(theta_tilt) +
+      9.81*c_z_payload*m_payload*sin(theta_tilt) +
+      J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
       J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       J_z_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       J_z_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) - b_tilt*omega_tilt -
       c_x_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       c_x_payload*c_z_payload*m_payload*omega_pan**2*sin(theta_tilt)**2 +
       c_x_payload*c_z_payload*m_payload*omega_pan**2*cos(theta_tilt)**2 +
-      981*c_x_payload*m_payload*cos(theta_tilt)/100 +
-      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
-      981*c_z_payload*m_payload*sin(theta_tilt)/100 -
+      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       follower_coupling_tilt*follower_torque_tilt/follower_inertia_tilt
   load_inertia_tilt = J_y_payload + J_y_tilt + c_x_payload**2*m_payload +
       c_z_payload**2*m_payload - follower_coupling_tilt**2/follower_inertia_tilt
@@ -4492,4 +4492,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 7edd54c2e77f9d7fa6cad7c30405036416d835ea9b1f93a949a504311ec73045
+# END sha256 fa92e9af154021d06c4c6a77d17558da94b2a94206cc7fe95a3b84a254d91c82

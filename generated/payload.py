@@ -21,16 +21,16 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*cos(theta_tilt)**2 -
       c_y_payload*c_z_payload*m_payload*omega_tilt**2*sin(theta_tilt) -
       2*c_z_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) + tau_pan
-  forcing[omega_tilt] = J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
+  forcing[omega_tilt] = 9.81*c_x_payload*m_payload*cos(theta_tilt) +
+      9.81*c_z_payload*m_payload*sin(theta_tilt) +
+      J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
       J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       J_z_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       J_z_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) - b_tilt*omega_tilt -
       c_x_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       c_x_payload*c_z_payload*m_payload*omega_pan**2*sin(theta_tilt)**2 +
       c_x_payload*c_z_payload*m_payload*omega_pan**2*cos(theta_tilt)**2 +
-      981*c_x_payload*m_payload*cos(theta_tilt)/100 +
-      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
-      981*c_z_payload*m_payload*sin(theta_tilt)/100 + tau_tilt
+      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) + tau_tilt
 
 Operations of the state derivative: 238 as derived, 72 as written.
 
@@ -773,4 +773,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 db89a4341a42615fde2749e1d6b16225d1094186fe1fc2db8f2e28d29d341752
+# END sha256 29fc85921edcf7f61218b9646055eaca0157590c65b50e6928678da3ec7950a3

@@ -4,10 +4,10 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
 
   M[0, 0] = J_motor_tilt*ratio_tilt**2 + J_y_payload + c_x_payload**2*m_payload +
       c_z_payload**2*m_payload
-  forcing[omega_tilt] = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt -
-      b_tilt*omega_tilt + 981*c_x_payload*m_payload*cos(theta_tilt)/100 +
-      981*c_z_payload*m_payload*sin(theta_tilt)/100 + ratio_tilt*(K_t_tilt*i_tilt -
-      b_motor_tilt*omega_tilt*ratio_tilt)
+  forcing[omega_tilt] = 9.81*c_x_payload*m_payload*cos(theta_tilt) +
+      9.81*c_z_payload*m_payload*sin(theta_tilt) -
+      J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt - b_tilt*omega_tilt +
+      ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
   linkage_cos_tilt = l_ground_tilt**2 + r_arm_tilt**2 - (l_min_tilt + s_start_tilt)**2
   linkage_sin_tilt = sqrt(4*l_ground_tilt**2*r_arm_tilt**2 - linkage_cos_tilt**2)
   length_tilt = sqrt(l_ground_tilt**2 - linkage_cos_tilt*cos(theta_tilt) -
@@ -23,8 +23,8 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       linkage_sin_tilt*cos(theta_tilt))/(lead_tilt*length_tilt**2)
   driving_torque_tilt = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
       ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
-  load_torque_tilt = -b_tilt*omega_tilt + 981*c_x_payload*m_payload*cos(theta_tilt)/100 +
-      981*c_z_payload*m_payload*sin(theta_tilt)/100
+  load_torque_tilt = 9.81*c_x_payload*m_payload*cos(theta_tilt) +
+      9.81*c_z_payload*m_payload*sin(theta_tilt) - b_tilt*omega_tilt
   load_inertia_tilt = J_y_payload + c_x_payload**2*m_payload + c_z_payload**2*m_payload
   raised_tilt = pi*d_screw_tilt*(pi*d_screw_tilt*f_screw_tilt +
       lead_tilt)/(lead_tilt*(pi*d_screw_tilt - f_screw_tilt*lead_tilt))
@@ -1977,4 +1977,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 f5298ed99a1c5eba9079bc7bb22345246571ed6775ea633de73c424d5434c206
+# END sha256 7b6cda2f7abc5984fcfb5f23f8de448b9eb814c39635ed38a7fbb5e05b5421f3

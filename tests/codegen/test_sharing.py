@@ -36,3 +36,27 @@ def test_an_angle_that_stands_alone_stays() -> None:
         sp.sin(2 * Q),
         sp.cos(3 * N),
     }
+
+
+SIGN, ON = sp.symbols("slide side_on", real=True)
+
+
+@pytest.mark.parametrize(
+    ("power", "same"), [(SIGN**3, SIGN), (SIGN**4, SIGN**2), (SIGN**2, SIGN**2), (ON**2, ON)]
+)
+def test_powers_of_modes_are_reduced(power: sp.Expr, same: sp.Expr) -> None:
+    words = Vocabulary(signs=frozenset({SIGN}), switches=frozenset({ON}))
+    assert share((), [("out", N * power)], words) == [("out", N * same)]
+
+
+def test_a_definition_that_only_renames_leaves_no_line() -> None:
+    mass = sp.Symbol("mass", real=True)
+    assert share([("mass", N)], [("out", Q / mass)], Vocabulary()) == [("out", Q / N)]
+
+
+def test_a_shared_term_takes_the_name_that_it_is_known_under() -> None:
+    twist = sp.exp(-(Q**2)) * N
+    words = Vocabulary(meanings=[("twist", twist)])
+    lines = share((), [("one", twist + 1), ("two", twist + Q)], words)
+    known = sp.Symbol("twist", real=True)
+    assert lines == [("twist", twist), ("one", known + 1), ("two", known + Q)]

@@ -26,6 +26,7 @@ GREEK = {
     "zeta",
 }
 DERIVATIVES = {"dc": r"\Delta c", "dF": r"\Delta F"}
+LARGEST_FRACTION = 2  # larger ones are measured numbers
 LINE_WIDTH = 92
 ARGUMENT_WIDTH = 40  # of a maximum, beside what it is multiplied with
 _SIGN = '<mo form="infix">{}</mo>'
@@ -113,16 +114,20 @@ def _width(term: sp.Expr) -> int:
 
 
 def _with_decimals(expression: sp.Expr) -> sp.Expr:
-    """`expression` with measured numbers such as 981/100 as decimals, and rounding as a floor.
-
-    Simple fractions stay.
+    """`expression` with measured numbers such as 981/100 and 49/5 as decimals, and rounding as a
+    floor. Simple fractions stay.
     """
+
+    def is_measured(number: sp.Rational) -> bool:
+        ends = number.q != 1 and 10**6 % number.q == 0
+        return bool(ends and (number.q % 10 == 0 or abs(number) > LARGEST_FRACTION))
+
     expression = expression.rewrite(sp.floor)
     return expression.xreplace(
         {
             number: sp.sign(number) * sp.Symbol(repr(float(abs(number))))
             for number in expression.atoms(sp.Rational)
-            if number.q % 10 == 0
+            if is_measured(number)
         }
     )
 

@@ -4,6 +4,7 @@ import textwrap
 
 import sympy as sp
 
+from ptp_symbolic.symbolic.codegen.latex import plain_text_of
 from ptp_symbolic.symbolic.codegen.literals import (
     listed,
     long_text,
@@ -131,7 +132,7 @@ def _docstring(equations: Equations, operations: tuple[int, int]) -> str:
 
 
 def _wrapped(name: str, expression: sp.Expr) -> list[str]:
-    text = f"{name} = {sp.sstr(expression, order='lex')}"
+    text = f"{name} = {plain_text_of(expression)}"
     return textwrap.wrap(text, 96, initial_indent="  ", subsequent_indent="      ")
 
 
