@@ -22,7 +22,8 @@ def write_files_atomically(folder: Path, files: Mapping[str, str | bytes]) -> No
     """Write `files` (relative name -> content, text as UTF-8) into `folder`, which may be new.
 
     A new folder appears in one rename, complete; in an existing one each file is replaced in one
-    rename after all of them are safely on disk. Files that are not named stay as they are.
+    rename after all of them are safely on disk. The file named last is removed first and comes
+    last: where it is, those beside it are of the same call. Files that are not named stay.
     Raises InputError if the folder cannot be written, ValueError for a name that leaves it.
     """
     names = [_checked_name(name) for name in files]
@@ -147,6 +148,8 @@ def _put_in_place(temporary: Path, folder: Path, names: list[str], is_new: bool)
         except OSError:
             # Someone else made the folder meanwhile: fill it file by file.
             folder.mkdir(exist_ok=True)
+    if len(names) > 1:
+        (folder / names[-1]).unlink(missing_ok=True)
     for name in names:
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)

@@ -131,7 +131,7 @@ def fit_platform(
         "windows": _windows(task),
         "remarks": list(noted),
     }
-    files = {"fit.json": _json(summary), "platform.toml": platform_text(fitted)}
+    files = {"platform.toml": platform_text(fitted), "fit.json": _json(summary)}
     return Output(summary, files)
 
 
@@ -243,12 +243,12 @@ def _write_up(
         "equations": equations,
     }
     curves = curves_of(parts)
-    files: dict[str, str | bytes] = {"diagnosis.json": _json(summary)}
-    files["platform.toml"] = platform_text(extended)
+    files: dict[str, str | bytes] = {"platform.toml": platform_text(extended)}
     files["equations.tex"] = _equations_tex(equations)
     files[f"{extended.name}.py"] = emission.module_of(extended)
     files["report.html"] = render_diagnosis(summary, curves)
     files.update({f"curves/{name}": text for name, text in write_curves_csv(curves).items()})
+    files["diagnosis.json"] = _json(summary)
     return Output(summary, files)
 
 

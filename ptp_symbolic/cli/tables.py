@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.run import Trajectory
 from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
@@ -15,6 +16,8 @@ from ptp_symbolic.platform import Platform
 
 FloatArray = NDArray[np.float64]
 
+ENERGIES = ("stored", "supplied", "dissipated")
+
 
 def trajectory_columns(
     platform: Platform, model: Model, found: Trajectory, signals: Mapping[str, InputSignal]
@@ -22,13 +25,20 @@ def trajectory_columns(
     """Columns [k] of `found` by heading: time, states, energies, inputs, measured signals.
 
     Inputs and outputs stand under the columns that `platform` declares, so that the file is a log
-    of it; a state of the same name makes room for them.
+    of it; a state of the same name makes room for them. Raises InputError for a column that has the
+    name of an energy.
     """
+    for signal in platform.signals:
+        if signal.column in ENERGIES:
+            raise InputError(
+                f"Column '{signal.column}' of {signal.signal} has the name of an energy in J;"
+                " declare it under another name."
+            )
     columns = {
         name: (model.units[name], values)
         for name, values in zip(model.state_names, found.x.T, strict=True)
     }
-    columns |= {name: ("J", getattr(found, name)) for name in ("stored", "supplied", "dissipated")}
+    columns |= {name: ("J", getattr(found, name)) for name in ENERGIES}
     u = _input_values(model, signals, found.t)
     declared = {s.signal: s for s in platform.signals}
     for name, values in zip(model.input_names, u.T, strict=True):

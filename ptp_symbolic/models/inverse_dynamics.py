@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.committed import COMMITTED
 from ptp_symbolic.models.variants import torque_driven
+from ptp_symbolic.numeric.runtime.loader import load_model
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import ParameterDeclaration, Platform, read_platform
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
@@ -84,9 +85,15 @@ def inverse_dynamics(
     wanted = [real(f"alpha_{axis}") for axis in equations.axes]
     sliding = [slide(axis) for axis in equations.axes]
     arguments = [*equations.coordinates, *equations.rates, *wanted, *sliding, kinematics.TIME]
-    function = sp.lambdify(arguments, _torques(equations, wanted), "numpy", cse=True)
+    forward, backward = (
+        sp.lambdify(arguments, _torques(equations, wanted, sign), "numpy", cse=True)
+        for sign in (1, -1)
+    )
     columns = (*angles.T, *rates.T, *accelerations.T, *ways.T, times)
-    return np.column_stack([np.broadcast_to(row, times.shape) for row in function(*columns)])
+    found = []
+    for plus, minus in zip(forward(*columns), backward(*columns), strict=True):
+        found.append(np.broadcast_to(np.where(plus >= 0.0, plus, minus), times.shape))
+    return np.column_stack(found)
 
 
 def _motion(given: Motion | tuple[ArrayLike, ...]) -> Motion:
@@ -99,24 +106,38 @@ def _motion(given: Motion | tuple[ArrayLike, ...]) -> Motion:
     return Motion(*given)
 
 
-def _torques(equations: Equations, wanted: list[sp.Symbol]) -> list[sp.Expr]:
-    """Joint torques as functions of the motion alone, at the declared parameters."""
-    torques = sp.Matrix(equations.mass_matrix * sp.Matrix(wanted) - equations.forcing)
+def _torques(equations: Equations, wanted: list[sp.Symbol], sign: int) -> list[sp.Expr]:
+    """Joint torques, taken to have this `sign`, as functions of the motion alone, at the declared
+    parameters.
+
+    Friction may grow with the size of the torque that it adds to: linear in it, once its sign is
+    known. It grows by less than the torque, so that one of both signs comes out as it was taken.
+    """
+    lacking = sp.Matrix(equations.mass_matrix * sp.Matrix(wanted) - equations.forcing)
     for friction in equations.frictions:
-        torques[equations.rates.index(friction.rate)] += slide(friction.axis) * friction.level
+        lacking[equations.rates.index(friction.rate)] += slide(friction.axis) * friction.level
     known = {real(p.name): sp.Float(p.default, 17) for p in equations.parameters}
     known |= {real(s.name): sp.Float(s.initial) for s in equations.extra_states}
-    known |= {real(i.name): sp.Float(0) for i in equations.inputs}
-    return [equations.written_out(torque).xreplace(known) for torque in torques]
+    torques = [kinematics.torque(axis) for axis in equations.axes]
+    known |= {real(i.name): sp.Float(0) for i in equations.inputs if real(i.name) not in torques}
+    sizes = {sp.Abs(torque): sign * torque for torque in torques}
+    found = []
+    for torque, row in zip(torques, lacking, strict=True):
+        taken = equations.written_out(row).xreplace(known).xreplace(sizes)
+        slope = sp.diff(taken, torque)
+        found.append(-taken.xreplace({torque: sp.Float(0)}) / slope)
+    return found
 
 
 def _platform(machine: Model | Platform | str | Path) -> Platform:
     if isinstance(machine, Platform):
         return machine
-    name = machine.name if isinstance(machine, Model) else str(machine)
-    if isinstance(machine, Model) and name not in COMMITTED:
+    if not isinstance(machine, Model):
+        return read_platform(COMMITTED.get(str(machine), machine))
+    name = machine.name
+    if name not in COMMITTED or machine.module is not load_model(name).module:
         raise InputError(f"Model '{name}' is not a committed one; give its platform instead.")
-    return read_platform(COMMITTED.get(name, name))
+    return read_platform(COMMITTED[name])
 
 
 def _with_values(platform: Platform, values: Mapping[str, float]) -> Platform:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.data import read_inputs, read_log
-from ptp_symbolic.platform import read_platform
+from ptp_symbolic.platform import platform_file, read_platform
 
 IDEAL = ("simulate", "--platform", "thesis-ideal")
 UNDECLARED = """[platform]
@@ -114,3 +114,13 @@ def test_long_lists_of_defaults_are_cut(call, tmp_path: Path) -> None:
     assert done.code == 0
     assert done.err.count(" = ") == 6
     assert done.err.endswith("m_payload = 4.992 kg, J_x_payload = 0.0053 kg m^2 and 5 more.\n")
+
+
+def test_a_column_with_the_name_of_an_energy_is_refused(call, tmp_path: Path) -> None:
+    text = platform_file("thesis-ideal").read_text(encoding="utf-8")
+    path = tmp_path / "stored.toml"
+    path.write_text(text.replace("pan_angle", "stored"), encoding="utf-8")
+    done = call("simulate", "--platform", path, "--duration", 0.01, "--out", tmp_path / "out")
+    assert done.code == 2
+    assert "Column 'stored' of theta_pan has the name of an energy in J; declare it" in done.err
+    assert not (tmp_path / "out").exists()

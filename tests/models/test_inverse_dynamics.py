@@ -197,3 +197,27 @@ def test_both_joints_prescribed() -> None:
 def test_a_motor_on_a_prescribed_axis_is_refused() -> None:
     with pytest.raises(InputError, match="axis 'pan' is prescribed, and a motor or a shaft works"):
         emission.emit(driven("thesis-pan-drive", "pan"))
+
+
+def test_a_platform_of_ones_own_with_the_name_of_a_committed_model_is_not_taken_for_it() -> None:
+    own = replace(read_platform("thesis-ideal"), name="payload")
+    with pytest.raises(InputError, match="'payload' is not a committed one; give its platform"):
+        ptp_symbolic.inverse_dynamics(emission.emit(own), (np.zeros((1, 2)),) * 3)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_friction_that_grows_with_the_load_adds_to_the_torque_that_carries_it(way: float) -> None:
+    """Tau = J a + (F_c + mu |tau|) sign(w), so tau = (J a + F_c) / (1 - mu) where both push on."""
+    inertia, coulomb, mu = 0.2, 0.3, 0.25
+    effects = ("rigid_bodies", "csvs_friction", "load_dependent_friction")
+    axis = (None, "pan", "pan")
+    declared = tuple(EffectDeclaration(e, a, None) for e, a in zip(effects, axis, strict=True))
+    platform = Platform("carrying", "Friction under load", ("pan",), 9.81, declared, (), ())
+    values = {"J_pan": inertia, "F_c_pan": coulomb, "F_s_pan": coulomb, "F_v_pan": 0.0}
+    rates, accelerations = np.array([[way], [way]]), np.array([[5.0 * way], [-5.0 * way]])
+    found = ptp_symbolic.inverse_dynamics(
+        platform, (np.zeros((2, 1)), rates, accelerations), values | {"mu_load_pan": mu}
+    )
+    driving = (inertia * 5.0 + coulomb) / (1.0 - mu)
+    braking = -(inertia * 5.0 - coulomb) / (1.0 + mu)
+    assert found[:, 0] == pytest.approx([way * driving, way * braking], rel=1e-12)

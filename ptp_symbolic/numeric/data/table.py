@@ -4,7 +4,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,6 +20,7 @@ _MAX_ROWS = 10_000_000
 _MAX_COLUMNS = 1000
 _MAX_LINE = 100_000
 _CHUNK = 1 << 22
+NEW_LINE = b"\n"
 _PLAIN = b"0123456789+-.eE, \t\n"
 _HEADING = re.compile(r"([^\[\]]*?)\s*(?:\[([^\[\]]*)\])?")
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
@@ -155,11 +156,24 @@ def _refuse_cut_number(table: Table, body: bytes) -> None:
     A file cut inside its last number has the right number of cells and a wrong value. With a fixed
     number of decimals, as loggers write, the cut shows.
     """
-    cells = [row.rpartition(b",")[2] for row in body.split(b"\n")]
-    decimals = [len(cell.partition(b".")[2]) for cell in cells]
-    usual = decimals[0]
-    if usual > decimals[-1] and all(count == usual for count in decimals[:-1]):
+    last = _decimals(body[body.rfind(b"\n") + 1 :])
+    usual = _decimals(body.partition(b"\n")[0])
+    if usual > last and all(_decimals(row) == usual for row in _rows_but_last(body)):
         raise InputError(
-            f"{table.path}:{len(cells) + 1}: the last number has {decimals[-1]} decimals where all "
-            f"others have {usual}, and no line end follows; the file is truncated, copy it again."
+            f"{table.path}:{body.count(NEW_LINE) + 2}: the last number has {last} decimals where"
+            f" all others have {usual}, and no line end follows; the file is truncated, copy it"
+            " again."
         )
+
+
+def _decimals(row: bytes) -> int:
+    """Decimals of the last number in a row."""
+    return len(row.rpartition(b",")[2].partition(b".")[2])
+
+
+def _rows_but_last(body: bytes) -> Iterator[bytes]:
+    """One after another: all of ten million at once take a gigabyte."""
+    start = 0
+    while (end := body.find(NEW_LINE, start)) >= 0:
+        yield body[start:end]
+        start = end + 1

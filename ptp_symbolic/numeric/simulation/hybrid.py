@@ -11,19 +11,19 @@ from functools import lru_cache
 
 from numba import njit, types
 
-from ptp_symbolic.numeric.simulation.events.crossing import cross, jump_by_delay
+from ptp_symbolic.numeric.simulation.events.crossing import jump_by_delay
 from ptp_symbolic.numeric.simulation.events.domain import is_finite, is_outside
 from ptp_symbolic.numeric.simulation.events.location import (
     TIME_RESOLUTION,
-    fill_violations,
     first_violation,
     locate_event,
 )
-from ptp_symbolic.numeric.simulation.events.modes import settle
+from ptp_symbolic.numeric.simulation.events.transition import enter, pass_event
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CHATTERING,
     DIVERGED,
     DONE,
+    EXHAUSTED,
     INSTANT,
     INTEGERS,
     KERNEL,
@@ -35,8 +35,10 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     RECORD_TYPE,
     SOURCES,
     STEP_TYPE,
+    STEPS,
     TANGENTS_TYPE,
     TIME,
+    TOO_FAST,
     VECTOR,
     WATCH_TYPE,
     Inputs,
@@ -66,11 +68,7 @@ from ptp_symbolic.numeric.simulation.methods.steps import (
     begin,
     end_slope,
 )
-from ptp_symbolic.numeric.simulation.outputs import (
-    note_strikes,
-    note_switches,
-    write_here,
-)
+from ptp_symbolic.numeric.simulation.outputs import write_here
 from ptp_symbolic.numeric.simulation.sampling import (
     SAMPLING,
     Sampling,
@@ -80,28 +78,9 @@ from ptp_symbolic.numeric.simulation.sampling import (
 )
 from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 
-MAX_INSTANT_EVENTS = 100
 SHORTEST = 1e-11  # s
-INSTANT_STEP = 1e-10  # s
 
 _V, _M, _I = VECTOR, MATRIX, INTEGERS
-
-
-@merged
-def enter(equations, inputs, t, x, watch, tangents, record):
-    """Settle modes that the inputs from t on have ended; False when that does not end."""
-    elements = len(watch.at_end)
-    if elements == 0 or fill_violations(equations, inputs, t, x, watch, watch.at_start) <= 0.0:
-        return True
-    copy(watch.m, watch.m_before)
-    if not settle(equations, t, x, inputs.u, watch, tangents):
-        return False
-    note_switches(
-        t, watch.m, watch.m_before, len(equations.friction_rates), equations.contacts, record
-    )
-    note_strikes(watch, record)
-    fill_violations(equations, inputs, t, x, watch, watch.at_start)
-    return True
 
 
 @merged
@@ -113,13 +92,15 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
         return OUTSIDE
     while stop - clock[TIME] > TIME_RESOLUTION:
         t = clock[TIME]
+        if counts[STEPS] >= limits[2]:
+            return EXHAUSTED
         if not known:
             begin(method, equations, inputs, t, x, watch.m, step)
             known = True
         length = next_length(stop - t, limits[1], clock)
         if not try_step(method, equations, inputs, t, length, x, limits, atol, step, watch, record):
             if clock[LENGTH] < SHORTEST:
-                return DIVERGED
+                return TOO_FAST
             continue
         fraction = 0.0
         if len(watch.at_end) > 0:
@@ -146,21 +127,6 @@ def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tange
             counts[INSTANT] = 0
             copy(watch.at_end, watch.at_start)
     clock[TIME] = stop
-    return DONE
-
-
-@merged
-def pass_event(equations, inputs, t, length, x, watch, tangents, record):
-    """Stop outside the domain, else cross to the next modes; returns a status."""
-    counts = record.counts
-    if is_outside(x, watch):
-        return OUTSIDE
-    counts[INSTANT] = counts[INSTANT] + 1 if length < INSTANT_STEP else 0
-    if counts[INSTANT] > MAX_INSTANT_EVENTS:
-        return CHATTERING
-    if not cross(equations, inputs, t, x, watch, tangents, record):
-        return CHATTERING
-    fill_violations(equations, inputs, t, x, watch, watch.at_start)
     return DONE
 
 
@@ -216,7 +182,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
             _M,  # inputs: now, ahead, before [3, nu]
             _V,  # x, changed in place
             _V,  # stops, the first is the start
-            _V,  # rtol, largest step
+            _V,  # rtol, largest step, most steps
             _V,  # atol
             STEP_TYPE,
             WATCH_TYPE,

@@ -33,6 +33,9 @@ FACE_WIDTH = 1e-9  # rad
 METHODS = {"runge_kutta": RUNGE_KUTTA, "rosenbrock": ROSENBROCK}
 
 
+MOST_STEPS = 50_000_000  # a minute or two
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """What a run left: status, time reached in s, state [n] there, and outputs at the times asked.
@@ -54,11 +57,14 @@ class Solution:
 
 @dataclass(frozen=True, eq=False)
 class Accuracy:
-    """Tolerances of a step, relative and absolute per state [n], and the largest step in s."""
+    """Tolerances of a step, relative and absolute per state [n], the largest step in s, and how
+    many steps may be tried.
+    """
 
     relative: float
     absolute: FloatArray
     largest_step: float
+    most_steps: int = MOST_STEPS
 
 
 def default_method(model: Model) -> str:
@@ -135,7 +141,7 @@ def integrate(
         u,
         x,
         stops,
-        np.array([accuracy.relative, accuracy.largest_step]),
+        np.array([accuracy.relative, accuracy.largest_step, accuracy.most_steps]),
         accuracy.absolute,
         tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)),
         tuple(watch),

@@ -10,12 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.events.names import Event, named_events
 from ptp_symbolic.numeric.simulation.fixed_integration import (
     FixedSolution,
     integrate_in_fixed_steps,
 )
 from ptp_symbolic.numeric.simulation.integration import (
     METHODS,
+    MOST_STEPS,
     Accuracy,
     Solution,
     default_method,
@@ -27,59 +29,34 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     CHATTERING,
     DIVERGED,
     DONE,
+    EXHAUSTED,
     OUTSIDE,
+    TOO_FAST,
     UNDECIDED,
 )
+from ptp_symbolic.numeric.simulation.output_times import output_times
 from ptp_symbolic.numeric.simulation.signals.delays import delayed, delays_of
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, InputTable, constant, stack
 from ptp_symbolic.numeric.simulation.signals.profile_text import as_signals
 
 FloatArray = NDArray[np.float64]
 
-OUTPUT_STEP = 1e-3
-MOST_SAMPLES = 5_000_000
 FIXED_STEP = "fixed_step"
 EVENT_ROOM = 100_000  # events for which there is room at first; a run with more is repeated
 AT_BOUND = 1e-6  # rad; where the equations end, steps can become too short to go on
-SLIDING = {-1.0: "slides backward", 0.0: "sticks", 1.0: "slides forward"}
-SWITCHING = {
-    -2.0: "goes off beyond the lower threshold",
-    -1.0: "goes on at the lower threshold",
-    0.0: "is ready",
-    1.0: "goes on at the upper threshold",
-    2.0: "goes off beyond the upper threshold",
-}
-TOUCHING = {
-    -4.0: "leans on the lower face",
-    -3.0: "bounces off the lower face",
-    -2.0: "lets go of the lower face",
-    -1.0: "touches the lower face",
-    0.0: "is in the gap",
-    1.0: "touches the upper face",
-    2.0: "lets go of the upper face",
-    3.0: "bounces off the upper face",
-    4.0: "leans on the upper face",
-}
+LARGEST_IMBALANCE = 0.1  # of the energy turned over: a motion in steps this rough means nothing
 
 
 class SimulationError(InputError):
     """The simulation left its domain; the message tells time, state and what to do."""
 
 
-@dataclass(frozen=True)
-class Event:
-    """A change of mode: time in s, the element (``friction pan``, ``contact pan``), what it did."""
-
-    time: float
-    element: str
-    mode: str
-
-
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """States x [k, n] at times t [k] in s, the events between them, and the energy ledger in J.
 
-    stored - stored[0] = supplied - dissipated along every trajectory, each [k].
+    stored - stored[0] = supplied - dissipated along every trajectory, each [k], or [0] where no
+    ledger was asked for. `state_names` are those that were saved.
     """
 
     t: FloatArray
@@ -107,23 +84,31 @@ def simulate(
     largest_step: float = 0.1,
     method: str | None = None,
     step: float = 1e-4,
+    ledger: bool = True,
+    save: Sequence[str] | None = None,
+    most_steps: int = MOST_STEPS,
 ) -> Trajectory:
     """Simulate `model` from 0 to a duration in s (output every ms) or at given `times` [k].
 
     Inputs are signals or profiles as text ("step:1@0.5"), zero where not given. rtol and atol bound
     the error of a step, atol in rad for angles (see `tolerance_weights`); `method` is "rosenbrock"
     for stiff machines, "runge_kutta" for smooth ones and where a controller samples faster than a
-    winding settles, "fixed_step" for steps of `step` s, None to let the model choose. Where a
-    controller samples, the state at that instant is the one after it.
+    winding settles, "fixed_step" for steps of `step` s, None to let the model choose. Steps of a
+    fixed length are of order one across events: their error goes with `step`. Where a controller
+    samples, the state at that instant is the one after it.
+
+    `save` names the states to keep (None: all). Without `ledger` no energy is summed up, and a
+    machine with a sampled controller is followed from sample to sample, in less time.
 
     Raises InputError for unknown names, times that do not increase, a tolerance or largest step
-    that is not above zero and a step that does not fit, SimulationError when the state diverges or
-    modes switch without end.
+    that is not above zero and a step that does not fit; SimulationError when the state diverges,
+    modes switch without end, `most_steps` do not reach the end, or steps of fixed length make a
+    motion whose energies do not add up.
     """
     t = output_times(times)
     x, p = start_of(model, initial or {}), checked_parameters(model, parameters or {})
     table = input_table(model, inputs or {}, p, float(t[-1]))
-    chosen = chosen_method(model, method)
+    chosen, kept = chosen_method(model, method), _columns_of(model, save)
     for name, value in (("rtol", rtol), ("atol", atol), ("largest_step", largest_step)):
         if not value > 0.0:
             raise InputError(f"{name} = {value:g}; give a number above zero.")
@@ -131,7 +116,7 @@ def simulate(
     def run(event_room: int) -> Solution | FixedSolution:
         if chosen == FIXED_STEP:
             return integrate_in_fixed_steps(model, p, x, table, t, step, event_room)
-        accuracy = Accuracy(rtol, atol * tolerance_weights(model), largest_step)
+        accuracy = Accuracy(rtol, atol * tolerance_weights(model), largest_step, most_steps)
         return integrate(
             model,
             chosen,
@@ -142,7 +127,7 @@ def simulate(
             table.with_stops(t[[0, -1]]),
             t,
             accuracy,
-            ledger=True,
+            ledger=ledger,
             event_room=event_room,
         )
 
@@ -150,16 +135,39 @@ def simulate(
     if found.event_count > EVENT_ROOM:
         found = run(found.event_count)
     refuse_failure(model, p, found.status, found.reached, found.state)
+    if isinstance(found, FixedSolution):
+        _refuse_unbalanced(found, step)
+    energies = found.ledger if ledger else np.zeros((0, 3))
     return Trajectory(
         t,
-        found.x,
-        model.state_names,
-        _named(model, found.events),
-        found.ledger[:, 0],
-        found.ledger[:, 1],
-        found.ledger[:, 2],
+        found.x[:, kept],
+        tuple(model.state_names[k] for k in kept),
+        named_events(model, found.events),
+        energies[:, 0],
+        energies[:, 1],
+        energies[:, 2],
         found.steps,
     )
+
+
+def _columns_of(model: Model, save: Sequence[str] | None) -> list[int]:
+    """Columns of the states to `save`. Raises InputError for unknown names."""
+    if save is None:
+        return list(range(len(model.state_names)))
+    _refuse_unknown("state", dict.fromkeys(save, None), model.state_names)
+    return [model.state_names.index(name) for name in save]
+
+
+def _refuse_unbalanced(found: FixedSolution, step: float) -> None:
+    """Raise SimulationError where the energies of a run in fixed steps do not add up."""
+    stored, supplied, dissipated = found.ledger.T
+    missing = np.abs(stored - stored[0] - supplied + dissipated)
+    turned_over = np.max(np.abs(stored - stored[0])) + np.max(np.abs(supplied)) + dissipated[-1]
+    if (share := np.max(missing) / max(turned_over, 1e-300)) > LARGEST_IMBALANCE:
+        raise SimulationError(
+            f"Steps of {step:g} s make a motion whose energies are off by {100 * share:.0f} % of"
+            " what is turned over; take shorter steps, or the method rosenbrock."
+        )
 
 
 def input_table(
@@ -183,36 +191,6 @@ def chosen_method(
     if method not in known:
         raise InputError(f"Unknown method '{method}'. Choose from: {', '.join(known)}.")
     return method
-
-
-def output_times(times: float | ArrayLike, every: float = OUTPUT_STEP) -> FloatArray:
-    """Times [k] of the output: from 0 to a duration `every` so many s, its end too, or as given.
-
-    Raises InputError if they decrease and for more than five million of them.
-    """
-    t = np.array(times, dtype=np.float64)
-    if t.ndim == 0:
-        if not 0.0 < t < np.inf:
-            raise InputError(f"Duration {float(t):g} s; give a positive number of seconds.")
-        t = _regular_times(float(t), every)
-    if t.ndim != 1 or len(t) < 2 or not np.all(np.isfinite(t)) or np.any(np.diff(t) <= 0):
-        raise InputError("Output times must be two or more finite, increasing numbers of seconds.")
-    return t
-
-
-def _regular_times(duration: float, every: float) -> FloatArray:
-    if not 0.0 < every < np.inf:
-        raise InputError(f"Output every {every:g} s; give a positive number of seconds.")
-    count = duration / every
-    if count >= MOST_SAMPLES:
-        raise InputError(
-            f"{duration:g} s with an output every {every:g} s make {count:.3g} samples, at most"
-            f" {MOST_SAMPLES} are allowed; shorten the duration, or give output times further"
-            f" apart (--every {1.01 * duration / MOST_SAMPLES:.3g})."
-        )
-    if abs(count - round(count)) < 1e-3 or count < 1.0:
-        return np.linspace(0.0, duration, max(2, round(count) + 1))
-    return np.append(every * np.arange(int(count) + 1), duration)
 
 
 def checked_parameters(model: Model, parameters: Mapping[str, float]) -> FloatArray:
@@ -246,7 +224,7 @@ def refuse_failure(model: Model, p: FloatArray, status: int, reached: float, x: 
         return
     state = ", ".join(f"{n} {v:.3g}" for n, v in zip(model.state_names, x, strict=True))
     limit, past = _nearest_limit(model, p, x)
-    if status == OUTSIDE or (status == DIVERGED and past > -AT_BOUND):
+    if status == OUTSIDE or (status in (DIVERGED, TOO_FAST) and past > -AT_BOUND):
         name, meaning = model.limits[limit]
         (lower, upper), unit = model.domain(p)[limit], model.units[name]
         raise SimulationError(
@@ -256,6 +234,10 @@ def refuse_failure(model: Model, p: FloatArray, status: int, reached: float, x: 
         )
     why = {
         DIVERGED: "the state diverges; check inputs and parameters",
+        EXHAUSTED: "all steps are used up; make the inputs slower, the inertias or inductances"
+        " larger, the tolerances looser, or allow more by most_steps",
+        TOO_FAST: "it changes too fast for steps of 1e-11 s; check for an inertia, an inductance or"
+        " a time constant next to nothing, and for inputs that are too large",
         CHATTERING: "modes switch without end; loosen the tolerance or add damping",
         UNDECIDED: "no set of modes fits the end of the step; take a smaller step",
     }[status]
@@ -276,19 +258,3 @@ def _refuse_unknown(what: str, given: Mapping[str, object], known: Sequence[str]
     for name in given:
         if name not in known:
             raise unknown(what, name, known)
-
-
-def _named(model: Model, rows: FloatArray) -> tuple[Event, ...]:
-    frictions = [n.removeprefix("slide_") for n in model.mode_names if n.startswith("slide_")]
-    contacts = [n.removeprefix("side_") for n in model.mode_names if n.startswith("side_")]
-    events = []
-    for time, element, mode in rows:
-        index = int(element)
-        if index < len(frictions):
-            events.append(Event(float(time), f"friction {frictions[index]}", SLIDING[mode]))
-        else:
-            number = index - len(frictions)
-            is_switch = number >= len(model.module.CONTACT_ANGLES)
-            what, modes = ("switch", SWITCHING) if is_switch else ("contact", TOUCHING)
-            events.append(Event(float(time), f"{what} {contacts[number]}", modes[mode]))
-    return tuple(events)

@@ -1,0 +1,41 @@
+"""The times at which a simulation is written."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ptp_symbolic.errors import InputError
+
+FloatArray = NDArray[np.float64]
+
+OUTPUT_STEP = 1e-3
+MOST_SAMPLES = 5_000_000
+
+
+def output_times(times: float | ArrayLike, every: float = OUTPUT_STEP) -> FloatArray:
+    """Times [k] of the output: from 0 to a duration `every` so many s, its end too, or as given.
+
+    Raises InputError if they decrease and for more than five million of them.
+    """
+    t = np.array(times, dtype=np.float64)
+    if t.ndim == 0:
+        if not 0.0 < t < np.inf:
+            raise InputError(f"Duration {float(t):g} s; give a positive number of seconds.")
+        t = _regular_times(float(t), every)
+    if t.ndim != 1 or len(t) < 2 or not np.all(np.isfinite(t)) or np.any(np.diff(t) <= 0):
+        raise InputError("Output times must be two or more finite, increasing numbers of seconds.")
+    return t
+
+
+def _regular_times(duration: float, every: float) -> FloatArray:
+    if not 0.0 < every < np.inf:
+        raise InputError(f"Output every {every:g} s; give a positive number of seconds.")
+    count = duration / every
+    if count >= MOST_SAMPLES:
+        raise InputError(
+            f"{duration:g} s with an output every {every:g} s make {count:.3g} samples, at most"
+            f" {MOST_SAMPLES} are allowed; shorten the duration, or give output times further"
+            f" apart (--every {1.01 * duration / MOST_SAMPLES:.3g})."
+        )
+    if abs(count - round(count)) < 1e-3 or count < 1.0:
+        return np.linspace(0.0, duration, max(2, round(count) + 1))
+    return np.append(every * np.arange(int(count) + 1), duration)
