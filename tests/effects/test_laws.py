@@ -16,6 +16,7 @@ from ptp_symbolic.symbolic.codegen import dynamics
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.placement import available_quantities, place_effects
+from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 from ptp_symbolic.symbolic.effects import EFFECTS, Effect
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
 
@@ -104,29 +105,55 @@ def test_declared_parameters_are_used_and_have_units(effect: Effect) -> None:
         assert parameter.unit == "1" or to_si(parameter.unit)[0] == 1.0
 
 
-@pytest.mark.parametrize("effect", [e for e in EFFECTS if e.searched], ids=lambda e: e.id)
+def named_expressions(equations: Equations) -> dict[tuple[str, ...], sp.Expr]:
+    """Everything that the equations of a machine say, by what it is."""
+    found: dict[tuple[str, ...], sp.Expr] = {}
+    for i, rate in enumerate(map(str, equations.rates)):
+        found["force", rate] = equations.forcing[i]
+        for j, other in enumerate(map(str, equations.rates)):
+            found["mass", rate, other] = equations.mass_matrix[i, j]
+    for friction in equations.frictions:
+        found["level", str(friction.rate)] = friction.level
+        found["breakaway", str(friction.rate)] = friction.breakaway
+    for contact in equations.contacts:
+        found["separation", contact.axis] = contact.separation
+        found["half gap", contact.axis] = contact.half_gap
+    found |= {("state", state.name): state.derivative for state in equations.extra_states}
+    found |= {("output", name): reading for name, _, reading in equations.outputs}
+    for given, delay in zip(equations.inputs, equations.delays, strict=True):
+        found["delay", given.name] = sp.Integer(0) if delay is None else delay
+    ledger = equations.ledger
+    found |= {("stored",): ledger.stored, ("dissipated",): ledger.dissipated}
+    return {key: equations.written_out(e) for key, e in found.items()} | {
+        ("power in",): equations.written_out(ledger.power_in)
+    }
+
+
+@pytest.mark.parametrize("effect", [e for e in EFFECTS if not e.structural], ids=lambda e: e.id)
 def test_equations_are_unchanged_when_it_is_off(effect: Effect) -> None:
+    """All that the machine says without the effect, it says with the effect switched off; and
+    some of that the effect changes when it is on.
+    """
     platform = with_effect(effect)
-    full = assemble(platform)
-    bare, off = assemble(without(platform, effect)), vanishing(full, effect)
+    full, bare = assemble(platform), assemble(without(platform, effect))
+    off = vanishing(full, effect)
     assert off, "give one of its parameters `vanishes`, or the effect `structural=True`"
     assert effect.separating_experiment
-    opened = {c.active: 1 for c in full.contacts} | {c.side: 0 for c in full.contacts}
-    pairs = [
-        *zip((*full.mass_matrix, *full.forcing), (*bare.mass_matrix, *bare.forcing), strict=True)
-    ]
-    pairs += [
-        (getattr(a, word), getattr(b, word))
-        for a, b in zip(full.frictions, bare.frictions, strict=False)
-        for word in ("level", "breakaway")
-    ]
-    left, right = (sp.Matrix(side).subs(off).subs(opened) for side in zip(*pairs, strict=True))
-    symbols = sorted(left.free_symbols | right.free_symbols, key=str)
+    known = {state.name for state in bare.extra_states}
+    off |= {s.symbol: sp.Float(s.initial) for s in full.extra_states if s.name not in known}
+    touching = {mode: 1 for c in full.contacts for mode in (c.active, c.side)}
+    with_it, without_it = named_expressions(full), named_expressions(bare)
     rng = np.random.default_rng(8)
-    for _ in range(10):
-        point = {symbol: sp.Float(rng.uniform(0.1, 1.0)) for symbol in symbols}
-        a, b = (np.array(side.subs(point), dtype=float) for side in (left, right))
-        assert a == pytest.approx(b, rel=1e-12, abs=1e-12)
+    changed = False
+    for key, expression in without_it.items():
+        sides = with_it[key].subs(off).subs(touching), expression.subs(touching), with_it[key]
+        symbols = sorted(set().union(*(e.free_symbols for e in sides)), key=str)
+        for _ in range(5):
+            point = {symbol: sp.Float(rng.uniform(0.1, 1.0)) for symbol in symbols}
+            switched_off, alone, on = (complex(e.subs(point)) for e in sides)
+            assert switched_off == pytest.approx(alone, rel=1e-12, abs=1e-12), key
+            changed |= on != pytest.approx(alone, rel=1e-9)
+    assert changed, "nothing that was compared depends on the effect"
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=IDS)
@@ -168,27 +195,49 @@ def test_energy_ledger_closes_in_every_mode(effect: Effect) -> None:
     rates = dynamics.state_rates(equations, solve)
     states, ledger = equations.state_symbols, equations.ledger
     stored = equations.written_out(ledger.stored)
-    change = sum(sp.diff(stored, s) * r for s, r in zip(states, rates, strict=True))
-    change += sp.diff(stored, TIME)
-    parts = [change, ledger.power_in, ledger.dissipated]
+    flows = [sp.diff(stored, s) * r for s, r in zip(states, rates, strict=True)]
+    flows.append(sp.diff(stored, TIME))
+    parts = [sp.Add(*flows), ledger.power_in, ledger.dissipated, sp.Add(*map(sp.Abs, flows))]
     for name in reversed(list(definitions)):
         named = {sp.Symbol(name, real=True): definitions[name]}
         parts = [part.subs(named) for part in parts]
     symbols = sorted(set().union(*(part.free_symbols for part in parts)), key=str)
     function = sp.lambdify(symbols, parts, "numpy")
-    for _ in range(20):
-        values = admissible_values(equations, symbols, rng)
-        stored, supplied, dissipated = (float(v) for v in function(*values))
-        size = abs(stored) + abs(supplied) + abs(dissipated)
-        assert abs(stored - supplied + dissipated) <= 1e-9 * size
+    for _ in range(60):
+        modes = random_modes(equations, rng)
+        values = admissible_values(equations, symbols, modes, rng)
+        stored, supplied, dissipated, flowing = (float(v) for v in function(*values))
+        size = flowing + abs(supplied) + abs(dissipated)
+        assert abs(stored - supplied + dissipated) <= 1e-10 * size, modes
+
+
+def random_modes(equations: Equations, rng: np.random.Generator) -> dict[str, float]:
+    """Modes that a machine can be in, and the rates that they force: a friction at rest rests."""
+    modes: dict[str, float] = {}
+    for friction in equations.frictions:
+        direction = float(rng.choice([-1.0, 0.0, 1.0]))
+        modes[str(slide(friction.axis))] = direction
+        if direction == 0.0:
+            modes[str(friction.rate)] = 0.0
+    sides = [(c.side, c.active) for c in equations.contacts if not c.rigid]
+    sides += [(side(switch.name), active(switch.name)) for switch in equations.switches]
+    for where, on in sides:
+        modes[str(where)] = float(rng.choice([-1.0, 0.0, 1.0]))
+        modes[str(on)] = float(rng.choice([0.0, 1.0])) * abs(modes[str(where)])
+    return modes
 
 
 def admissible_values(
-    equations: Equations, symbols: list[sp.Symbol], rng: np.random.Generator
+    equations: Equations,
+    symbols: list[sp.Symbol],
+    modes: dict[str, float],
+    rng: np.random.Generator,
 ) -> list[float]:
     """Random values of `symbols`, drawn until the parameters fit each other."""
     for _ in range(1000):
-        values = [value_of(equations, str(symbol), rng) for symbol in symbols]
+        values = [
+            modes[s.name] if s.name in modes else value_of(equations, s.name, rng) for s in symbols
+        ]
         given = dict(zip(symbols, values, strict=True))
         if all(requirement.holds.subs(given) != sp.false for requirement in equations.requirements):
             return values
@@ -196,9 +245,7 @@ def admissible_values(
 
 
 def value_of(equations: Equations, name: str, rng: np.random.Generator) -> float:
-    """A random value; modes are consistent with sliding forward and touching the upper face."""
-    if name.startswith(("slide_", "side_", "active_")):
-        return 1.0
+    """A random value, of a parameter around its default."""
     for parameter in equations.parameters:
         if parameter.name == name:
             base = parameter.default or 0.1
@@ -260,10 +307,24 @@ def test_other_units_give_the_same_motion(effect: Effect) -> None:
         a * np.array([unit_factor(units[n]) for n in group])
         for a, group in zip((x, u, p), names, strict=True)
     ]
-    dx, other = np.zeros(len(x)), np.zeros(len(x))
-    model.module.mode_derivative(0.0, x, u, p, m, dx)
-    model.module.mode_derivative(0.0, *scaled, m, other)
-    per_second = np.array([unit_factor(units[n]) / unit_factor("s") for n in names[0]])
-    fits = np.isclose(other, dx * per_second, rtol=1e-9, atol=1e-12)
-    wrong = [name for name, fit in zip(names[0], fits, strict=True) if not fit]
-    assert not wrong, f"units of {effect.id} do not fit the derivatives of {wrong}"
+    t, later = 0.7, 0.7 * unit_factor("s")
+    outputs = [unit_factor(units[name]) for name in model.output_names]
+    guards = [unit_factor("N m")] * 3 * len(model.friction_rates)
+    for _ in model.module.CONTACT_ANGLES:
+        guards += [1.0, 1.0, unit_factor("N m"), unit_factor("N m")]
+    guards += [np.nan] * (3 * len(model.friction_rates) + 4 * len(model.contacts) - len(guards))
+    rates = [unit_factor(units[n]) / unit_factor("s") for n in names[0]]
+    powers = [unit_factor("J"), unit_factor("W"), unit_factor("W")]
+    for function, factors, modes in (
+        (model.module.mode_derivative, rates, (m,)),
+        (model.module.guards, guards, (m,)),
+        (model.module.energy, powers, (m,)),
+        (model.module.outputs, outputs, ()),
+    ):
+        here, other = np.zeros((2, len(factors)))
+        function(t, x, u, p, *modes, here)
+        function(later, *scaled, *modes, other)
+        known = np.isfinite(factors)
+        wanted = (here * factors)[known]
+        fits = np.isclose(other[known], wanted, rtol=1e-9, atol=1e-12)
+        assert fits.all(), f"units of {effect.id} do not fit {function.__name__}: {fits}"
