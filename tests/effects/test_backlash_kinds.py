@@ -48,7 +48,7 @@ def platform(kind: str | None, *more: str, site: str | None = None) -> Platform:
     effects += [EffectDeclaration("dc_motor", "pan", None)]
     effects += [EffectDeclaration("backlash", "pan", None, kind)]
     effects += [
-        EffectDeclaration(e, None if e == "payload" else "pan", None if e == "payload" else site)
+        EffectDeclaration(e, None if e == "payload" else "pan", site if "friction" in e else None)
         for e in more
     ]
     axes = ("pan", "tilt") if "payload" in more else ("pan",)
