@@ -14,7 +14,12 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.integration import Accuracy, default_method, integrate
+from ptp_symbolic.numeric.simulation.integration import (
+    Accuracy,
+    default_method,
+    geared_weights,
+    integrate,
+)
 from ptp_symbolic.numeric.simulation.kernels.calls import call, output_addresses
 from ptp_symbolic.numeric.simulation.kernels.records import DONE
 from ptp_symbolic.numeric.simulation.signals.delays import delay_columns, delayed, delays_of
@@ -47,11 +52,7 @@ class Tolerance:
 
     def absolute(self, model: Model) -> FloatArray:
         """Absolute tolerance of every state [n]."""
-        factors = [
-            1.0 if name.startswith("theta") else 100.0 if name.startswith("omega") else 1000.0
-            for name in model.state_names
-        ]
-        return self.angle * np.array(factors)
+        return self.angle * geared_weights(model)
 
 
 @dataclass(frozen=True, eq=False)

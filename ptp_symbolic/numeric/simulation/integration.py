@@ -79,15 +79,20 @@ def default_method(model: Model) -> str:
 
 
 def tolerance_weights(model: Model) -> FloatArray:
-    """Weight [n] of an absolute tolerance in rad for every state.
-
-    In a geared machine an error of a rate (rad/s) counts a hundredth and any other, such as a
-    current, a thousandth: friction forgets it before it reaches an angle. Free bodies do not.
-    """
+    """Weight [n] of an absolute tolerance in rad for every state; free bodies forget no error."""
     if default_method(model) == "runge_kutta":
         return np.ones(len(model.state_names))
-    factors = {"theta": 1.0, "omega": 100.0}
-    return np.array([factors.get(name.partition("_")[0], 1000.0) for name in model.state_names])
+    return geared_weights(model)
+
+
+def geared_weights(model: Model) -> FloatArray:
+    """Weight [n] of an absolute tolerance in rad for every state of a geared machine.
+
+    An error of a rate (rad/s) counts a hundredth and any other, such as a current, a thousandth:
+    friction forgets it before it reaches an angle.
+    """
+    factors = {"rad": 1.0, "rad/s": 100.0}
+    return np.array([factors.get(unit, 1000.0) for unit in model.module.STATE_UNITS])
 
 
 def integrate(
