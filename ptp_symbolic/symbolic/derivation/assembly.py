@@ -7,6 +7,7 @@ import sympy as sp
 
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.symbolic.derivation.contributions import (
+    AXIS_OFFSET,
     BASE_ACCELERATION,
     GRAVITY_QUANTITIES,
     Contributions,
@@ -29,6 +30,8 @@ from ptp_symbolic.symbolic.effect_interface.place import quantity_name
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
+
+ZERO = sp.Integer(0)
 
 
 def assemble(platform: Platform) -> Equations:
@@ -175,7 +178,9 @@ def _rigid_configuration(platform: Platform, contributions: Contributions) -> Ri
         for body in contribution.bodies
     )
     gravity = [g * d - a for d, a in zip(direction, moved, strict=True)]
-    return RigidConfiguration(platform.axes, bodies, sp.ImmutableMatrix(gravity))
+    apart = contributions.resolve(contributions.values.get(quantity_symbol(AXIS_OFFSET), ZERO))
+    offsets = {} if apart == 0 else {"tilt": sp.ImmutableMatrix([apart, 0, 0])}
+    return RigidConfiguration(platform.axes, bodies, sp.ImmutableMatrix(gravity), offsets)
 
 
 def _inputs(platform: Platform, contributions: Contributions) -> list[tuple[Input, str]]:

@@ -25,6 +25,7 @@ from ptp_symbolic.symbolic.symbols import real
 
 GRAVITY_QUANTITIES = ("gravity_tilt", "gravity_azimuth")
 BASE_ACCELERATION = tuple(f"base_acceleration_{k}" for k in "xyz")
+AXIS_OFFSET = "tilt_axis_offset"  # of the tilt axis from the pan axis, along x, in m
 PLATFORM_QUANTITIES = (*GRAVITY_QUANTITIES, *BASE_ACCELERATION)
 
 

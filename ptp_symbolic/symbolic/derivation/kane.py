@@ -23,10 +23,10 @@ def kane(configuration: RigidConfiguration) -> RigidEquations:
     axes = configuration.axes
     angles = [dynamicsymbols(f"theta_{axis}") for axis in axes]
     speeds = [dynamicsymbols(f"omega_{axis}") for axis in axes]
-    base, origin = ReferenceFrame("base"), Point("crossing")
+    base, origin = ReferenceFrame("base"), Point("foot")
     origin.set_vel(base, 0)
-    frames = _frames(axes, base, angles, speeds)
-    bodies = [_rigid_body(body, frames[body.frame], base, origin) for body in configuration.bodies]
+    frames = _frames(configuration, base, origin, angles, speeds)
+    bodies = [_rigid_body(body, *frames[body.frame], base) for body in configuration.bodies]
     down = _vector(configuration.gravity, base)
     loads = [(body.masscenter, body.mass * down) for body in bodies]
     kinematic = [q.diff() - u for q, u in zip(angles, speeds, strict=True)]
@@ -49,24 +49,33 @@ def kane(configuration: RigidConfiguration) -> RigidEquations:
 
 
 def _frames(
-    axes: tuple[str, ...], base: ReferenceFrame, angles: list[sp.Expr], speeds: list[sp.Expr]
-) -> dict[str, ReferenceFrame]:
-    """The pan and the tilt frame; the frame of an absent axis is the one before it."""
-    frames, last = {}, base
+    configuration: RigidConfiguration,
+    base: ReferenceFrame,
+    foot: Point,
+    angles: list[sp.Expr],
+    speeds: list[sp.Expr],
+) -> dict[str, tuple[ReferenceFrame, Point]]:
+    """The pan and the tilt frame, each with its origin; those of an absent axis are the ones
+    before it.
+    """
+    frames, last, origin = {}, base, foot
     for axis in kinematics.AXES:
-        if axis in axes:
-            place = axes.index(axis)
+        if axis in configuration.axes:
+            place = configuration.axes.index(axis)
             frame = ReferenceFrame(f"{axis}_frame")
+            before, offset = origin, _vector(configuration.offset(axis), last)
+            origin = before.locatenew(f"{axis}_origin", offset)
+            origin.v2pt_theory(before, base, last)
             direction = _vector(kinematics.joint_direction(axis), last)
             frame.orient_axis(last, direction, angles[place])
             frame.set_ang_vel(last, speeds[place] * direction)
             last = frame
-        frames[axis] = last
+        frames[axis] = last, origin
     return frames
 
 
 def _rigid_body(
-    body: Body, frame: ReferenceFrame, base: ReferenceFrame, origin: Point
+    body: Body, frame: ReferenceFrame, origin: Point, base: ReferenceFrame
 ) -> RigidBody:
     centre = origin.locatenew(f"{body.name}_centre", _vector(body.com, frame))
     centre.v2pt_theory(origin, base, frame)

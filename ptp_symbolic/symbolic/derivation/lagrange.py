@@ -44,12 +44,25 @@ def _energies(body: Body, configuration: RigidConfiguration) -> tuple[sp.Expr, s
     """Kinetic and potential energy of `body` in J; the potential is zero in the origin."""
     axes = configuration.axes
     rotation = kinematics.rotation_to_base(axes, body.frame)
+    origin = _origin(configuration, body.frame)
     spin = sp.zeros(3, 3)
     for axis in axes:
         spin += rotation.T * rotation.diff(kinematics.angle(axis)) * kinematics.rate(axis)
     spin = spin.applyfunc(normal_form)
     angular = sp.Matrix([spin[2, 1], spin[0, 2], spin[1, 0]])
-    velocity = spin * body.com
+    carried = sp.zeros(3, 1)
+    for axis in axes:
+        carried += rotation.T * origin.diff(kinematics.angle(axis)) * kinematics.rate(axis)
+    velocity = carried.applyfunc(normal_form) + spin * body.com
     kinetic = body.mass * velocity.dot(velocity) + angular.dot(body.inertia * angular)
-    potential = -body.mass * configuration.gravity.dot(rotation * body.com)
+    potential = -body.mass * configuration.gravity.dot(origin + rotation * body.com)
     return sp.expand(kinetic / 2), sp.expand(potential)
+
+
+def _origin(configuration: RigidConfiguration, frame: str) -> sp.Matrix:
+    """Origin [3] of `frame` in the base frame in m."""
+    rotation, origin = sp.eye(3), sp.zeros(3, 1)
+    for axis in kinematics.joints_up_to(configuration.axes, frame):
+        origin += rotation * configuration.offset(axis)
+        rotation = rotation * kinematics.joint_rotation(axis)
+    return origin

@@ -16,14 +16,16 @@ from ptp_symbolic.symbolic.symbols import real
 
 @dataclass(frozen=True)
 class _Motion:
-    """Motion of a frame whose origin rests in the crossing of the axes, in its own coordinates.
-
-    `spin` in rad/s, `spin_rate` in rad/s^2, `gravity` in m/s^2.
+    """Motion of a frame in its own coordinates: `spin` in rad/s, `spin_rate` in rad/s^2, gravity,
+    and `place`, `velocity` and `acceleration` of its origin in m, m/s and m/s^2.
     """
 
     spin: sp.Matrix
     spin_rate: sp.Matrix
     gravity: sp.Matrix
+    place: sp.Matrix
+    velocity: sp.Matrix
+    acceleration: sp.Matrix
 
 
 def newton_euler(configuration: RigidConfiguration) -> RigidEquations:
@@ -45,9 +47,9 @@ def newton_euler(configuration: RigidConfiguration) -> RigidEquations:
     for body in configuration.bodies:
         motion = motions[len(kinematics.joints_up_to(axes, body.frame))]
         momentum = _angular_momentum(body, motion.spin)
-        velocity = motion.spin.cross(body.com)
+        velocity = motion.velocity + motion.spin.cross(body.com)
         kinetic += (motion.spin.dot(momentum) + body.mass * velocity.dot(velocity)) / 2
-        potential -= body.mass * motion.gravity.dot(body.com)
+        potential -= body.mass * motion.gravity.dot(motion.place + body.com)
     return RigidEquations(
         axes,
         coordinates,
@@ -62,7 +64,7 @@ def newton_euler(configuration: RigidConfiguration) -> RigidEquations:
 def _outward(configuration: RigidConfiguration, accelerations: list[sp.Symbol]) -> list[_Motion]:
     """Motion of the base and of the frame behind each joint, base first."""
     still = sp.zeros(3, 1)
-    motions = [_Motion(still, still, sp.Matrix(configuration.gravity))]
+    motions = [_Motion(still, still, sp.Matrix(configuration.gravity), still, still, still)]
     for axis, acceleration in zip(configuration.axes, accelerations, strict=True):
         before = motions[-1]
         inwards = kinematics.joint_rotation(axis).T
@@ -70,7 +72,19 @@ def _outward(configuration: RigidConfiguration, accelerations: list[sp.Symbol]) 
         relative = direction * kinematics.rate(axis)
         carried = inwards * before.spin
         spin_rate = inwards * before.spin_rate + direction * acceleration + carried.cross(relative)
-        motions.append(_Motion(carried + relative, spin_rate, inwards * before.gravity))
+        arm = sp.Matrix(configuration.offset(axis))
+        turning = before.spin.cross(arm)
+        drawn = before.spin_rate.cross(arm) + before.spin.cross(turning)
+        motions.append(
+            _Motion(
+                carried + relative,
+                spin_rate,
+                inwards * before.gravity,
+                inwards * (before.place + arm),
+                inwards * (before.velocity + turning),
+                inwards * (before.acceleration + drawn),
+            )
+        )
     return motions
 
 
@@ -78,23 +92,32 @@ def _inward(configuration: RigidConfiguration, motions: list[_Motion]) -> list[s
     """Moment in N m that each joint must give about its axis, base first."""
     axes = configuration.axes
     moments: list[sp.Expr] = []
-    transmitted = sp.zeros(3, 1)
+    moment, force = sp.zeros(3, 1), sp.zeros(3, 1)
     for place in range(len(axes), 0, -1):
         for body in configuration.bodies:
             if len(kinematics.joints_up_to(axes, body.frame)) == place:
-                transmitted += _moment_about_origin(body, motions[place])
-        moments.append(kinematics.joint_direction(axes[place - 1]).dot(transmitted))
-        transmitted = kinematics.joint_rotation(axes[place - 1]) * transmitted
+                pull = _force(body, motions[place])
+                moment += _moment(body, motions[place]) + sp.Matrix(body.com).cross(pull)
+                force += pull
+        axis = axes[place - 1]
+        moments.append(kinematics.joint_direction(axis).dot(moment))
+        outwards = kinematics.joint_rotation(axis)
+        force = outwards * force
+        moment = outwards * moment + sp.Matrix(configuration.offset(axis)).cross(force)
     return moments[::-1]
 
 
-def _moment_about_origin(body: Body, motion: _Motion) -> sp.Matrix:
-    """Moment [3] in N m about the crossing of the axes that makes `body` follow `motion`."""
-    spin, spin_rate, arm = motion.spin, motion.spin_rate, sp.Matrix(body.com)
-    acceleration = spin_rate.cross(arm) + spin.cross(spin.cross(arm))
-    force = body.mass * (acceleration - motion.gravity)
-    euler = body.inertia * spin_rate + spin.cross(_angular_momentum(body, spin))
-    return euler + arm.cross(force)
+def _force(body: Body, motion: _Motion) -> sp.Matrix:
+    """Force [3] in N that makes the centre of mass of `body` follow `motion`."""
+    spin, arm = motion.spin, sp.Matrix(body.com)
+    turning = motion.spin_rate.cross(arm) + spin.cross(spin.cross(arm))
+    return body.mass * (motion.acceleration + turning - motion.gravity)
+
+
+def _moment(body: Body, motion: _Motion) -> sp.Matrix:
+    """Moment [3] in N m about its centre of mass that makes `body` turn with `motion`."""
+    spin = motion.spin
+    return body.inertia * motion.spin_rate + spin.cross(_angular_momentum(body, spin))
 
 
 def _angular_momentum(body: Body, spin: sp.Matrix) -> sp.Matrix:

@@ -1,6 +1,7 @@
 """The catalogue of effects: one file each, listed here in the order of the catalogue."""
 
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effects.axis_offset import AXIS_OFFSET
 from ptp_symbolic.symbolic.effects.backlash import BACKLASH
 from ptp_symbolic.symbolic.effects.base_motion import BASE_MOTION
 from ptp_symbolic.symbolic.effects.base_tilt import BASE_TILT
@@ -43,6 +44,7 @@ EFFECTS: tuple[Effect, ...] = (
     PAYLOAD,
     PAYLOAD_COM_OFFSET,
     PRODUCT_OF_INERTIA,
+    AXIS_OFFSET,
     BASE_TILT,
     BASE_MOTION,
     VISCOUS_FRICTION,

@@ -27,7 +27,7 @@ def _has(place: Place, parameter: Parameter) -> bool:
 def _contribute(place: Place) -> Contribution:
     symbol = place.parameter
     at_axes = sp.ImmutableMatrix([0, 0, 0])
-    bodies, products = [], {}
+    bodies, defined = [], {}
     if "pan" in place.axes:
         inertia = sp.ImmutableMatrix(sp.diag(0, 0, symbol("J_pan")))
         bodies.append(Body("pan_body", "pan", sp.Integer(0), at_axes, inertia))
@@ -35,14 +35,18 @@ def _contribute(place: Place) -> Contribution:
         full = "pan" in place.axes
         x, z = (symbol("J_x_tilt"), symbol("J_z_tilt")) if full else (0, 0)
         inertia = sp.diag(x, symbol("J_y_tilt"), z)
+        mass: sp.Expr = sp.Integer(0)
         if full:
-            products = {f"tilt_product_{pair}": sp.Integer(0) for pair in ("xy", "xz", "yz")}
+            products = [f"tilt_product_{pair}" for pair in ("xy", "xz", "yz")]
+            names = (*products, "tilt_body_mass", "tilt_axis_offset")
+            defined = dict.fromkeys(names, sp.Integer(0))
+            mass = place.quantity("tilt_body_mass")
             for name in products:
                 i, j = ("xyz".index(letter) for letter in name[-2:])
                 inertia[i, j] = inertia[j, i] = place.quantity(name)
         inertia = sp.ImmutableMatrix(inertia)
-        bodies.append(Body("tilt_body", "tilt", sp.Integer(0), at_axes, inertia))
-    return Contribution(quantities=products, bodies=tuple(bodies))
+        bodies.append(Body("tilt_body", "tilt", mass, at_axes, inertia))
+    return Contribution(quantities=defined, bodies=tuple(bodies))
 
 
 RIGID_BODIES = Effect(

@@ -1,6 +1,7 @@
 """Rigid bodies, the rigid part of a machine, and its equations of motion, as plain data."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import sympy as sp
 
@@ -11,7 +12,7 @@ from ptp_symbolic.symbolic.mechanics.kinematics import AXES
 class Body:
     """A rigid body carried by the pan or the tilt frame.
 
-    `mass` in kg; `com` [3] in m from the crossing of the axes; `inertia` [3, 3] in kg m^2 about the
+    `mass` in kg; `com` [3] in m from the origin of that frame; `inertia` [3, 3] in kg m^2 about the
     body's own centre of mass, a tensor (products with a minus sign); both in the carrying frame.
     """
 
@@ -35,12 +36,18 @@ class RigidConfiguration:
     """The rigid part of a machine: its axes, the bodies they carry, gravity [3] in m/s^2.
 
     `gravity` is given in the base frame; a base that is not level tilts this vector. `axes` is
-    ('pan', 'tilt'), ('pan',) or ('tilt',).
+    ('pan', 'tilt'), ('pan',) or ('tilt',). `offsets` [3] in m are where the origins behind joints
+    lie in the frames before them, in the origin unless given.
     """
 
     axes: tuple[str, ...]
     bodies: tuple[Body, ...]
     gravity: sp.ImmutableMatrix
+    offsets: Mapping[str, sp.ImmutableMatrix] = field(default_factory=dict)
+
+    def offset(self, axis: str) -> sp.ImmutableMatrix:
+        """Where [3] the origin behind the joint of `axis` lies in the frame before it, in m."""
+        return self.offsets.get(axis, sp.ImmutableMatrix([0, 0, 0]))
 
     def __post_init__(self) -> None:
         if not self.axes or self.axes != tuple(axis for axis in AXES if axis in self.axes):

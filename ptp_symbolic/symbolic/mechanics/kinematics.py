@@ -1,16 +1,18 @@
 """Axes, frames and signs: the one place that knows them.
 
-Pan turns about the base z axis (up), tilt about the y axis of the pan body; the two axes cross in
-the origin of every frame. The boresight is the x axis of the tilt frame, so a positive tilt angle
-lowers it. On a platform with the tilt axis alone the pan frame is the base. Source: thesis
-section 3.1.1, Eq. 3.1.
+Pan turns about the base z axis (up), tilt about the y axis of the pan body. The origin of a frame
+lies on the axis behind which it is; the two axes cross unless a platform sets them apart. The
+boresight is the x axis of the tilt frame, so a positive tilt angle lowers it. On a platform with
+the tilt axis alone the pan frame is the base. Source: thesis section 3.1.1, Eq. 3.1.
 """
 
 import sympy as sp
 
 from ptp_symbolic.symbolic.symbols import real
 
-AXES = ("pan", "tilt")
+# Unit vector of every joint axis, base first, the same in the frames before and behind the joint.
+DIRECTIONS = {"pan": sp.ImmutableMatrix([0, 0, 1]), "tilt": sp.ImmutableMatrix([0, 1, 0])}
+AXES = tuple(DIRECTIONS)
 TIME = real("t")
 
 
@@ -41,17 +43,19 @@ def gear_rate(axis: str) -> sp.Symbol:
 
 def joint_direction(axis: str) -> sp.ImmutableMatrix:
     """Unit vector [3] of the joint axis, the same in the frames before and behind the joint."""
-    return sp.ImmutableMatrix({"pan": [0, 0, 1], "tilt": [0, 1, 0]}[axis])
+    return DIRECTIONS[axis]
 
 
 def joint_rotation(axis: str) -> sp.ImmutableMatrix:
-    """Rotation [3, 3] that turns vectors behind the joint of `axis` into the frame before it."""
-    cos, sin = sp.cos(angle(axis)), sp.sin(angle(axis))
-    rows = {
-        "pan": [[cos, -sin, 0], [sin, cos, 0], [0, 0, 1]],
-        "tilt": [[cos, 0, sin], [0, 1, 0], [-sin, 0, cos]],
-    }
-    return sp.ImmutableMatrix(rows[axis])
+    """Rotation [3, 3] that turns vectors behind the joint of `axis` into the frame before it.
+
+    Rodrigues' formula; Murray, Li and Sastry, 1994, Eq. 2.14.
+    """
+    x, y, z = direction = joint_direction(axis)
+    cross = sp.Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    along = direction * direction.T
+    turned = sp.cos(angle(axis)) * (sp.eye(3) - along) + sp.sin(angle(axis)) * cross
+    return sp.ImmutableMatrix(along + turned)
 
 
 def joints_up_to(axes: tuple[str, ...], frame: str) -> tuple[str, ...]:
