@@ -59,8 +59,8 @@ def test_a_prescribed_joint_takes_no_power_for_one_that_sticks() -> None:
     platform = read_platform("tests/platforms/fieldlog_two_axis.toml")
     moved = EffectDeclaration("prescribed_motion", "pan", None)
     model = emission.emit(replace(platform, effects=(*platform.effects, moved)))
-    stuck = {"F_c_tilt": 5.0, "F_s_tilt": 5.0}
-    found = simulate(model, 1.0, {"alpha_pan": constant(0.2)}, stuck)
+    stuck = {"F_c_tilt": 5.0, "F_s_tilt": 5.0, "c_y_payload": 0.05}
+    found = simulate(model, 1.0, {"alpha_pan": constant(0.2)}, stuck, {"theta_tilt": 1.3})
     assert np.all(found["omega_tilt"] == 0.0)
     gained = found.stored[-1] - found.stored[0]
     assert found.supplied[-1] - found.dissipated[-1] == pytest.approx(gained, rel=1e-9)
@@ -69,14 +69,23 @@ def test_a_prescribed_joint_takes_no_power_for_one_that_sticks() -> None:
 
 @pytest.mark.parametrize("method", ["rosenbrock", "fixed_step"])
 def test_time_at_rest_goes_on_until_the_end_of_rest(method: str) -> None:
-    """A rest of one second is one second long, not the step in which it began."""
-    model = emission.emit(pan("csvs_friction", "rate_dependent_breakaway"))
-    found = simulate(model, 2.0, None, {"J_pan": 0.5}, {"omega_pan": 0.02}, method=method)
-    stopped = next(e.time for e in found.events if e.mode == "sticks")
-    assert stopped < 1.0
-    rest = np.maximum(found.t - stopped, 0.0)
-    later = found.t > stopped + 0.01
-    assert found["rest_time_pan"][later] == pytest.approx(rest[later], abs=2e-3)
+    """The tilt joint comes to rest later; the rest of the pan joint does not begin anew with it."""
+    declared = [EffectDeclaration("rigid_bodies", None, None)]
+    declared += [EffectDeclaration("csvs_friction", axis, None) for axis in ("pan", "tilt")]
+    declared += [EffectDeclaration("rate_dependent_breakaway", "pan", None)]
+    model = emission.emit(
+        Platform("rests", "Rests", ("pan", "tilt"), 9.81, tuple(declared), (), ())
+    )
+    heavy = {"J_pan": 0.5, "J_y_tilt": 0.5, "F_v_tilt": 0.0, "F_s_tilt": 0.2401}
+    start = {"omega_pan": 0.02, "omega_tilt": 0.4}
+    found = simulate(model, 2.0, None, heavy, start, method=method)
+    pan_stops, tilt_stops = (
+        next(e.time for e in found.events if (e.element, e.mode) == (f"friction {axis}", "sticks"))
+        for axis in ("pan", "tilt")
+    )
+    assert pan_stops < 0.5 < tilt_stops < 1.5
+    later = found.t > pan_stops + 0.01
+    assert found["rest_time_pan"][later] == pytest.approx(found.t[later] - pan_stops, abs=2e-3)
 
 
 def test_the_slope_of_a_sweep_is_that_of_its_values() -> None:
