@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from ptp_symbolic.numeric.identify.constants import QUOTIENT
+from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_guards, contact_modes
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 
 
@@ -57,8 +58,8 @@ def gear_ahead(addresses, layout, motion, p, resting, given):
     frictions = len(layout.friction_axis)
     x, m = np.zeros(layout.states + layout.rows), np.zeros(layout.modes)
     r = np.zeros(layout.rows + len(layout.further))
-    contacts = (layout.modes - frictions) // 2
-    g = np.zeros(3 * frictions + 4 * contacts)
+    contacts = contact_count(frictions, layout.modes)
+    g = np.zeros(contact_guards(frictions, contacts))
     for k in range(n):
         _fill(layout, motion, k, x, m, resting)
         for e in range(len(layout.further)):
@@ -73,9 +74,9 @@ def gear_ahead(addresses, layout, motion, p, resting, given):
             if side == 0.0:
                 side = 1.0 if r[a] > 0.0 else -1.0
             face[k, a] = side
-            at = 3 * frictions + 4 * c
+            at = contact_guards(frictions, c)
             torque = at + 2 if side > 0.0 else at + 3
-            m[frictions + 2 * c] = side
+            m[contact_modes(frictions, c)] = side
             call(addresses[1], motion.time[k], x, motion.inputs[k], p, m, g)
             if layout.rigid[a] > 0:
                 ahead[k, a] = side * g[at + 1] - g[at]
@@ -208,8 +209,8 @@ def torques_along(addresses, layout, motion, p, resting, ahead, ahead_rate, face
             if layout.contact[a] >= 0:
                 x[layout.gear_angle[a]] += ahead[k, a]
                 x[layout.gear_rate[a]] += ahead_rate[k, a]
-                m[frictions + 2 * layout.contact[a]] = face[k, a]
-                m[frictions + 2 * layout.contact[a] + 1] = 1.0
+                m[contact_modes(frictions, layout.contact[a])] = face[k, a]
+                m[contact_modes(frictions, layout.contact[a]) + 1] = 1.0
         for f in range(frictions):
             m[f] = np.sign(motion.rate[k, layout.friction_axis[f]])
         for e in range(len(layout.further)):

@@ -13,6 +13,7 @@ from ptp_symbolic.numeric.identify.constants import (
     SENSOR_ITERATIONS,
 )
 from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.runtime.element_layout import contact_guards
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.integration import (
     Accuracy,
@@ -144,12 +145,12 @@ def _half_gap(
     model: Model, contact: int, x: FloatArray, u: FloatArray, p: FloatArray
 ) -> tuple[float, FloatArray]:
     frictions = len(model.friction_rates)
-    count = 3 * frictions + 4 * len(model.contacts)
+    count = contact_guards(frictions, len(model.contacts))
     m, g = np.zeros(len(model.mode_names)), np.zeros(count)
     gx, gp = np.zeros((count, len(x))), np.zeros((count, len(p)))
     model.module.guards(0.0, x, u, p, m, g)
     model.module.guard_jacobian(0.0, x, u, p, m, gx, gp)
-    at = 3 * frictions + 4 * contact + 1
+    at = contact_guards(frictions, contact) + 1
     return float(g[at]), gp[at]
 
 

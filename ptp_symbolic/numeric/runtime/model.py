@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.numeric.runtime.element_layout import contact_count
 
 FloatArray = NDArray[np.float64]
 
@@ -157,7 +158,7 @@ class Model:
 
         A module whose contacts are all sprung does not list them.
         """
-        elements = (len(self.mode_names) - len(self.friction_rates)) // 2
+        elements = contact_count(len(self.friction_rates), len(self.mode_names))
         sprung = np.zeros((elements, 3), dtype=np.int64)
         return np.asarray(vars(self.module).get("RIGID_CONTACTS", sprung))
 

@@ -19,6 +19,7 @@ from functools import lru_cache
 import numpy as np
 from numba import njit, types
 
+from ptp_symbolic.numeric.runtime.element_layout import contact_modes
 from ptp_symbolic.numeric.simulation.events.domain import is_finite, is_outside, stop_at_bound
 from ptp_symbolic.numeric.simulation.events.impacts import SETTLING, SPRUNG
 from ptp_symbolic.numeric.simulation.events.modes import largest_violation, settle
@@ -139,7 +140,7 @@ def land(equations, t, x, u, watch, tangents, record):
     if largest_violation(x, m, watch.g, equations.friction_rates) <= 0.0:
         return True
     for contact in range(len(contacts)):
-        contacts[contact, SETTLING] = 1 if m[frictions + 2 * contact] != 0.0 else 0
+        contacts[contact, SETTLING] = 1 if m[contact_modes(frictions, contact)] != 0.0 else 0
     copy(m, watch.m_before)
     if not settle(equations, t, x, u, watch, tangents):
         return False

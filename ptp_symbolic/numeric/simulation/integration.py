@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_guards, contact_modes
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation import hybrid
 from ptp_symbolic.numeric.simulation.events.impacts import HELD
@@ -222,9 +223,9 @@ def new_watch(model: Model, n: int, p: FloatArray) -> Watch:
     """Room for the guards of a machine of n states, with the bounds of its domain at p [np]."""
     parameters = len(p)
     frictions, modes = len(model.friction_rates), len(model.mode_names)
-    elements = frictions + (modes - frictions) // 2
+    elements = frictions + contact_count(frictions, modes)
     watched = elements + len(model.limits)
-    guards, z = 3 * frictions + 4 * (elements - frictions), np.zeros
+    guards, z = contact_guards(frictions, elements - frictions), np.zeros
     strikes = (elements - frictions) * (n + 2)
     return Watch(
         z(guards),
@@ -258,13 +259,13 @@ def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watc
         return
     model.module.guards(0.0, x, u, p, watch.m, watch.g)
     for contact, (_, joint, rule) in enumerate(model.contacts):
-        separation, half_gap = watch.g[3 * frictions + 4 * contact :][:2]
+        separation, half_gap = watch.g[contact_guards(frictions, contact) :][:2]
         if rule and abs(separation) > half_gap + FACE_WIDTH:
             raise InputError(
                 f"The gear output starts {separation:.6g} rad ahead of the joint, beyond a rigid"
                 f" face at {half_gap:.6g} rad; start it within the gap."
             )
-        if rule == HELD and not watch.m[frictions + 2 * contact + 1] and x[joint] != 0.0:
+        if rule == HELD and not watch.m[contact_modes(frictions, contact) + 1] and x[joint] != 0.0:
             raise InputError(
                 f"State '{model.state_names[joint]}' starts at {x[joint]:.6g} rad/s in the gap,"
                 " where friction holds the joint; start it at rest."

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_modes
 from ptp_symbolic.numeric.simulation.events.location import TIME_RESOLUTION
 from ptp_symbolic.numeric.simulation.events.pressed import PRESSED
 from ptp_symbolic.numeric.simulation.kernels.calls import call
@@ -153,8 +154,8 @@ def _write_ledger(equations, inputs, t, m, output, record):
 def note_switches(t, m, m_before, frictions, contacts, record):
     """Note every element whose mode changed; the count goes on past the room for events."""
     events = record.events
-    for element in range(frictions + (len(m) - frictions) // 2):
-        where = element if element < frictions else 2 * element - frictions
+    for element in range(frictions + contact_count(frictions, len(m))):
+        where = element if element < frictions else contact_modes(frictions, element - frictions)
         changed = m[where] != m_before[where]
         mode = m[where]
         if element >= frictions:

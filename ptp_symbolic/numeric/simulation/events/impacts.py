@@ -6,6 +6,7 @@ many. What is cut off are flights no higher than RESTING_SPEED squared over twic
 Bodies that are joined by another rigid contact are struck as one.
 """
 
+from ptp_symbolic.numeric.runtime.element_layout import contact_modes
 from ptp_symbolic.numeric.simulation.events.pressed import HELD, PRESSED, RESTING_SPEED
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import clear, inlined, kernel
@@ -21,7 +22,7 @@ def strike_faces(equations, t, x, u, watch, tangents):
     m, contacts = watch.m, equations.contacts
     for contact in range(len(contacts)):
         gear, joint, rule = contacts[contact, 0], contacts[contact, 1], contacts[contact, 2]
-        where = len(equations.friction_rates) + 2 * contact
+        where = contact_modes(len(equations.friction_rates), contact)
         if rule == SPRUNG:
             continue
         if m[where + 1] == 0.0:
@@ -45,7 +46,7 @@ def hold(joint, equations, t, x, u, watch):
 def strike(contact, equations, t, x, u, watch, tangents):
     """Change the rates by one strike; adds the energy lost to `watch.lost`."""
     n, m, changes = len(x), watch.m, watch.strike
-    where, at = len(equations.friction_rates) + 2 * contact, contact * (n + 2)
+    where, at = contact_modes(len(equations.friction_rates), contact), contact * (n + 2)
     m[where + 1] = 0.0
     call(equations.impacts, t, x, u, equations.p, m, changes)
     speed = abs(x[equations.contacts[contact, 0]] - x[equations.contacts[contact, 1]])
@@ -95,7 +96,7 @@ def rest_together(rate, equations, m, x):
     """Zero the rates of a rigid contact that lasts, when friction has brought `rate` to rest."""
     for contact in range(len(equations.contacts)):
         gear, joint = equations.contacts[contact, 0], equations.contacts[contact, 1]
-        joined = m[len(equations.friction_rates) + 2 * contact + 1] > 0.0
+        joined = m[contact_modes(len(equations.friction_rates), contact) + 1] > 0.0
         if equations.contacts[contact, 2] != SPRUNG and joined and rate in (gear, joint):
             x[gear], x[joint] = 0.0, 0.0
 
@@ -110,7 +111,7 @@ def clear_resting(equations, m, s):
     for contact in range(len(equations.contacts)):
         gear, joint = equations.contacts[contact, 0], equations.contacts[contact, 1]
         rule = equations.contacts[contact, 2]
-        joined = m[frictions + 2 * contact + 1] > 0.0
+        joined = m[contact_modes(frictions, contact) + 1] > 0.0
         if rule == HELD and not joined:
             clear(s[joint])
         if equations.contacts[contact, PRESSED] == 1:

@@ -7,6 +7,12 @@ holding torque, breakaway forward and backward; per contact separation, half gap
 the upper and lower face.
 """
 
+from ptp_symbolic.numeric.runtime.element_layout import (
+    contact_count,
+    contact_guards,
+    contact_modes,
+    friction_guards,
+)
 from ptp_symbolic.numeric.simulation.events.impacts import rest_together, strike_faces
 from ptp_symbolic.numeric.simulation.events.pressed import PRESSED, fill_guards, press
 from ptp_symbolic.numeric.simulation.kernels.records import inlined, kernel
@@ -22,11 +28,11 @@ def violation(element, x, m, g, friction_rates):
         direction = m[element]
         if direction != 0.0:
             return -direction * x[friction_rates[element]] - REVERSAL_DEAD_BAND
-        hold = g[3 * element]
-        return max(hold - g[3 * element + 1], -hold - g[3 * element + 2])
+        hold = g[friction_guards(element)]
+        return max(hold - g[friction_guards(element) + 1], -hold - g[friction_guards(element) + 2])
     contact = element - frictions
-    at = 3 * frictions + 4 * contact
-    side, active = m[frictions + 2 * contact], m[frictions + 2 * contact + 1]
+    at = contact_guards(frictions, contact)
+    side, active = m[contact_modes(frictions, contact)], m[contact_modes(frictions, contact) + 1]
     if side == 0.0:
         return max(g[at] - g[at + 1], -g[at] - g[at + 1])
     pushing = side * (g[at + 2] if side > 0.0 else g[at + 3])
@@ -39,7 +45,7 @@ def violation(element, x, m, g, friction_rates):
 def largest_violation(x, m, g, friction_rates):
     """The largest violation over all elements; negative when every mode holds."""
     worst = -1e300
-    elements = len(friction_rates) + (len(m) - len(friction_rates)) // 2
+    elements = len(friction_rates) + contact_count(len(friction_rates), len(m))
     for element in range(elements):
         worst = max(worst, violation(element, x, m, g, friction_rates))
     return worst
@@ -56,13 +62,13 @@ def _fill_difference(sign, row, limit_sign, limit, derivatives, out):
 def _active_guards(element, m, g, frictions):
     """Sign and row of the two guards whose sum is the violation of a rest or a contact."""
     if element < frictions:
-        at, hold = 3 * element, g[3 * element]
+        at, hold = friction_guards(element), g[friction_guards(element)]
         if hold - g[at + 1] >= -hold - g[at + 2]:
             return 1.0, at, -1.0, at + 1
         return -1.0, at, -1.0, at + 2
     contact = element - frictions
-    at = 3 * frictions + 4 * contact
-    side, active = m[frictions + 2 * contact], m[frictions + 2 * contact + 1]
+    at = contact_guards(frictions, contact)
+    side, active = m[contact_modes(frictions, contact)], m[contact_modes(frictions, contact) + 1]
     if side == 0.0:
         return 1.0 if g[at] >= 0.0 else -1.0, at, -1.0, at + 1
     face = at + 2 if side > 0.0 else at + 3
@@ -92,9 +98,9 @@ def violation_gradient(element, m, g, gx, gp, friction_rates, by_x, by_p):
 def switch_contacts(equations, m, g):
     """Move every violated contact to its next mode."""
     frictions, contacts = len(equations.friction_rates), equations.contacts
-    for contact in range((len(m) - frictions) // 2):
-        at = 3 * frictions + 4 * contact
-        where = frictions + 2 * contact
+    for contact in range(contact_count(frictions, len(m))):
+        at = contact_guards(frictions, contact)
+        where = contact_modes(frictions, contact)
         side = m[where]
         if side == 0.0:
             if abs(g[at]) > g[at + 1]:
@@ -144,9 +150,9 @@ def settle(equations, t, x, u, watch, tangents):
         fill_guards(equations, t, x, u, watch)
         for k in range(frictions):
             if m[k] == 0.0:
-                if g[3 * k] > g[3 * k + 1]:
+                if g[friction_guards(k)] > g[friction_guards(k) + 1]:
                     m[k] = 1.0
-                elif -g[3 * k] > g[3 * k + 2]:
+                elif -g[friction_guards(k)] > g[friction_guards(k) + 2]:
                     m[k] = -1.0
         fill_guards(equations, t, x, u, watch)
         if largest_violation(x, m, g, friction_rates) <= 0.0:

@@ -6,6 +6,7 @@ held, the gear pushed onto it, both driven back. The rest ends when the gear tur
 pushes the joint on. A contact at such a rest is not active, and its flag PRESSED is set.
 """
 
+from ptp_symbolic.numeric.runtime.element_layout import contact_guards, contact_modes
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import clear, copy, inlined, kernel
 
@@ -59,7 +60,7 @@ def fill_guards(equations, t, x, u, watch):
 def fill_guards_of_pressed(contact, equations, t, x, u, watch):
     """Write the guards of a contact that is pressed."""
     frictions = len(equations.friction_rates)
-    at, side = 3 * frictions + 4 * contact, watch.m[frictions + 2 * contact]
+    at, side = contact_guards(frictions, contact), watch.m[contact_modes(frictions, contact)]
     watch.g[at] = side * acceleration(contact, 0.0, equations, t, x, u, watch)
     watch.g[at + 1] = 0.0
     watch.g[at + 2] = side * acceleration(contact, 1.0, equations, t, x, u, watch)
@@ -69,7 +70,7 @@ def fill_guards_of_pressed(contact, equations, t, x, u, watch):
 @kernel
 def acceleration(contact, active, equations, t, x, u, watch):
     """Acceleration of the gear towards its face, alone (0) or with the joint (1), in rad/s^2."""
-    m, where = watch.m, len(equations.friction_rates) + 2 * contact
+    m, where = watch.m, contact_modes(len(equations.friction_rates), contact)
     gear, joint = equations.contacts[contact, 0], equations.contacts[contact, 1]
     copy(m, watch.m_kept)
     m[where + 1] = active
@@ -88,7 +89,7 @@ def press(equations, t, x, u, watch):
     frictions = len(equations.friction_rates)
     for contact in range(len(contacts)):
         gear, joint = contacts[contact, 0], contacts[contact, 1]
-        where = frictions + 2 * contact
+        where = contact_modes(frictions, contact)
         touching = m[where] != 0.0 and m[where + 1] == 0.0 and abs(x[gear]) <= RESTING_SPEED
         if contacts[contact, 2] != HELD or contacts[contact, PRESSED] == 1 or not touching:
             continue

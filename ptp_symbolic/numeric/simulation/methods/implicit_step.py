@@ -9,6 +9,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ptp_symbolic.numeric.runtime.element_layout import (
+    contact_count,
+    contact_guards,
+    contact_modes,
+    friction_guards,
+)
 from ptp_symbolic.numeric.simulation.events.pressed import derivative, jacobian
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.linear import factor, solve
@@ -124,7 +130,7 @@ def correct_a_mode(x, m, g, friction_rates, refused):
                 if other != f:
                     refused[other, 0], refused[other, 1] = 0, 0
             return True
-    for contact in range((len(m) - len(friction_rates)) // 2):
+    for contact in range(contact_count(len(friction_rates), len(m))):
         if correct_contact(contact, len(friction_rates), m, g):
             allow_all(refused)
             return True
@@ -144,9 +150,9 @@ def correct_friction(f, rate, m, g, refused):
         refused[f, 0 if m[f] > 0.0 else 1] = 1
         m[f] = 0.0
         return True
-    if g[3 * f] > g[3 * f + 1] and not refused[f, 0]:
+    if g[friction_guards(f)] > g[friction_guards(f) + 1] and not refused[f, 0]:
         m[f] = 1.0
-    elif -g[3 * f] > g[3 * f + 2] and not refused[f, 1]:
+    elif -g[friction_guards(f)] > g[friction_guards(f) + 2] and not refused[f, 1]:
         m[f] = -1.0
     return m[f] != 0.0
 
@@ -157,7 +163,7 @@ def correct_contact(contact, frictions, m, g):
 
     A face that has let go and the open gap move alike, so that their names change freely.
     """
-    at, where = 3 * frictions + 4 * contact, frictions + 2 * contact
+    at, where = contact_guards(frictions, contact), contact_modes(frictions, contact)
     separation, half_gap, active = g[at], g[at + 1], m[where + 1]
     side = m[where]
     if active == 0.0:
