@@ -81,7 +81,7 @@ def inverse_dynamics(
     equations = assemble(torque_driven(platform))
     refuse_impossible(equations, platform)
     angles, rates, accelerations, times = _motion(motion).arrays(equations.axes)
-    ways = np.where(rates != 0.0, np.sign(rates), np.sign(accelerations))
+    directions = np.where(rates != 0.0, np.sign(rates), np.sign(accelerations))
     wanted = [real(f"alpha_{axis}") for axis in equations.axes]
     sliding = [slide(axis) for axis in equations.axes]
     arguments = [*equations.coordinates, *equations.rates, *wanted, *sliding, kinematics.TIME]
@@ -89,7 +89,7 @@ def inverse_dynamics(
         sp.lambdify(arguments, _torques(equations, wanted, sign), "numpy", cse=True)
         for sign in (1, -1)
     )
-    columns = (*angles.T, *rates.T, *accelerations.T, *ways.T, times)
+    columns = (*angles.T, *rates.T, *accelerations.T, *directions.T, times)
     found = []
     for plus, minus in zip(forward(*columns), backward(*columns), strict=True):
         found.append(np.broadcast_to(np.where(plus >= 0.0, plus, minus), times.shape))

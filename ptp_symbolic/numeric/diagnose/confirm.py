@@ -98,7 +98,7 @@ def answers_to_inputs(task: Task, trial: Trial) -> bool:
     free starts alone follow the logs explains nothing.
     """
     p, none = task.model.parameter_vector(trial.values), np.zeros(0, dtype=np.int64)
-    moved = left = 0.0
+    changed = left = 0.0
     for (run, e), z in zip(trial.fit.pairs(), trial.fit.z, strict=True):
         quiet = np.zeros_like(run.held_inputs)
         idle = replace(
@@ -106,6 +106,6 @@ def answers_to_inputs(task: Task, trial: Trial) -> bool:
         )
         found = evaluate(task.model, idle, p, z, none, False, accuracy(task, SHARP))
         if found.failed is None:
-            moved += float(np.sum((found.residual - e.residual) ** 2))
+            changed += float(np.sum((found.residual - e.residual) ** 2))
             left += float(np.sum(e.residual**2))
-    return moved > left
+    return changed > left

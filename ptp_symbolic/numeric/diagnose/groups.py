@@ -214,10 +214,10 @@ def _instead(
     shift = np.zeros(len(fit.free))
     shift[list(others)] = amounts[: len(others)]
     phi = to_search(fit.free, fit.values) + shift
-    moved = to_values(fit.free, phi)
+    there = to_values(fit.free, phi)
     values = dict(base)
     for k in others:
         f = fit.free[k]
-        values.update(dict.fromkeys(f.names, moved[f.name]))
+        values.update(dict.fromkeys(f.names, there[f.name]))
     values.update(found.values(amounts[len(others) :]))
     return values

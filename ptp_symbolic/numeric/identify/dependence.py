@@ -55,15 +55,15 @@ def dependence_of(
         u = largest * rng.choice([-1.0, 1.0], len(largest))
         here = seen(x, u, base, m)
         for j, step in enumerate(steps if base is p else -steps):
-            moved = base.copy()
-            moved[j] += step
-            there = seen(x, u, moved, m)
+            shifted = base.copy()
+            shifted[j] += step
+            there = seen(x, u, shifted, m)
             found.sensing[j] |= bool(np.any(there[0] != here[0]))
             found.moving[j] |= bool(np.any(there[1] != here[1]))
         for e, state in enumerate(layout.further):
-            moved = x.copy()
-            moved[state] += 1.0
-            other = seen(moved, u, base, m)[2] - here[2]
+            shifted = x.copy()
+            shifted[state] += 1.0
+            other = seen(shifted, u, base, m)[2] - here[2]
             other[layout.rows + e] = 0.0
             found.acting[e] |= bool(np.any(other))
     found.moving[[j for j in model.input_delays if j >= 0 and count]] = True

@@ -85,8 +85,8 @@ def fit_equations(
         )
         new = np.clip(at + step, lower, upper)
         here = {f.name: float(v) for f, v in zip(free, new, strict=True)}
-        moved = np.max(np.abs(new - at) / np.maximum(np.abs(new), 1e-3 * sigma), initial=0.0)
-        if moved < SAME or iteration == iterations - 1:
+        change = np.max(np.abs(new - at) / np.maximum(np.abs(new), 1e-3 * sigma), initial=0.0)
+        if change < SAME or iteration == iterations - 1:
             break
     return linearised(space, free, values, here, executor)
 
@@ -117,9 +117,9 @@ def linearised(
         step = FINITE * max(abs(here[f.name]), FINITE * f.scale)
         if here[f.name] + step > f.upper:
             step = -step
-        moved = base.copy()
-        moved[owned[index]] += step
-        return (space.rows(moved, own) - origin) / step
+        shifted = base.copy()
+        shifted[owned[index]] += step
+        return (space.rows(shifted, own) - origin) / step
 
     quotients = (executor.map if executor else map)(quotient, range(len(free)))
     slopes: list[FloatArray] = list(quotients)

@@ -252,9 +252,9 @@ class EquationSpace:
         result = np.zeros((len(here), inputs + further))
         for j in range(inputs + further):
             if j < inputs or j in shown:
-                moved = none.copy()
-                moved[:, j] = FINITE
-                result[:, j] = (self._torques(0, p, moved)[2][0][middle] - here) / FINITE
+                shifted = none.copy()
+                shifted[:, j] = FINITE
+                result[:, j] = (self._torques(0, p, shifted)[2][0][middle] - here) / FINITE
                 self._states.clear()
         return result
 

@@ -128,17 +128,17 @@ def _put_behind_sensors(
             continue
         axis = signal.removeprefix("theta_")
         names = [name for name in (signal, f"theta_gear_{axis}") if name in model.state_names]
-        moved, shown = [model.state_names.index(name) for name in names], run.outputs[column]
+        angle_states, shown = [model.state_names.index(name) for name in names], run.outputs[column]
         for _ in range(SENSOR_ITERATIONS):
             model.module.outputs(run.time[0], x, run.held_inputs[0], p, y)
             error = run.measured[0, column] - y[shown]
             if error == 0.0:
                 break
-            x[moved] += error
+            x[angle_states] += error
         if len(columns):
             model.module.output_jacobian(run.time[0], x, run.held_inputs[0], p, yx, yp)
-            slope = yp[shown, columns] / yx[shown, moved[0]]
-            s[moved, : len(columns)] -= slope
+            slope = yp[shown, columns] / yx[shown, angle_states[0]]
+            s[angle_states, : len(columns)] -= slope
 
 
 def _half_gap(

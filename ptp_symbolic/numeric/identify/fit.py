@@ -135,9 +135,9 @@ def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
     assert problem.refine is not None
     phi = to_search(fit.free, fit.values)
     here = problem.evaluate(phi, fit.z, True)
-    mended = problem.refine(phi, fit.z, here)
+    refined = problem.refine(phi, fit.z, here)
     chosen = []
-    for at_point, finite in zip(here, mended, strict=True):
+    for at_point, finite in zip(here, refined, strict=True):
         seen, size = (np.linalg.norm(e.by_parameter, axis=0) for e in (at_point, finite))
         columns = np.where(seen < BLIND * size, finite.by_parameter, at_point.by_parameter)
         chosen.append(replace(at_point, by_parameter=columns))

@@ -100,9 +100,9 @@ class _Gap:
             brentq(self._median, here, end, xtol=one_sigma, disp=False)
 
     def _at(self, place: float) -> FloatArray:
-        moved = self.z.copy()
-        moved[self.index] = place
-        return moved
+        shifted = self.z.copy()
+        shifted[self.index] = place
+        return shifted
 
     def _median(self, place: float) -> float:
         """Median of the residual of the joint's angle in units of its noise."""

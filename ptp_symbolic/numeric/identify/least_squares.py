@@ -145,12 +145,12 @@ def minimise(
         return Optimum(at.phi, at.z, np.inf, at.evaluations, why)
     damping, quiet = FIRST_DAMPING, 0
     for _ in range(iterations):
-        mended = at
+        refined = at
         if problem.refine is not None:
-            mended = replace(at, evaluations=problem.refine(at.phi, at.z, at.evaluations))
+            refined = replace(at, evaluations=problem.refine(at.phi, at.z, at.evaluations))
         weights = _weigh(problem, at)
         before = cost_of(problem, at.evaluations, at.z, weights.bend, weights.scale)
-        found = _better(problem, mended, weights, damping, before, rejections)
+        found = _better(problem, refined, weights, damping, before, rejections)
         if found is None:
             cost = before
             break

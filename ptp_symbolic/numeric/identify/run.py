@@ -80,9 +80,9 @@ class Run:
         starts = [self.guess]
         for index, unknown in enumerate(self.unknowns):
             for value in unknown.instead:
-                moved = self.guess
-                moved[index] = value
-                starts.append(moved)
+                shifted = self.guess
+                shifted[index] = value
+                starts.append(shifted)
         return starts
 
 
@@ -180,7 +180,7 @@ def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
     """
     states = list(model.state_names)
     start = np.array(model.module.STATE_INITIAL, dtype=np.float64)
-    rubbing = {states[i] for i in model.friction_rates}
+    friction_rates = {states[i] for i in model.friction_rates}
     unknowns: list[StartUnknown] = []
     for column, signal in enumerate(run.signals):
         if signal not in states:
@@ -196,7 +196,7 @@ def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
         start[[states.index(name) for name in angles]] = run.measured[0, column]
         limit = 10.0 * sigma
         unknowns.append(_unknown(states, signal, angles, limit, sigma))
-        may_rest = bool(rubbing & set(rates))
+        may_rest = bool(friction_rates & set(rates))
         if may_rest and _stays(run, column):
             continue
         start[[states.index(name) for name in rates]] = rate

@@ -38,16 +38,16 @@ class Secants:
     def __call__(
         self, phi: FloatArray, z: Sequence[FloatArray], evaluations: Sequence[Evaluation]
     ) -> list[Evaluation]:
-        """`evaluations` at (phi, z) with their derivatives by phi mended."""
+        """`evaluations` at (phi, z) with their derivatives by phi refined."""
         every = [(r, c) for r in range(len(evaluations)) for c in range(len(phi))]
         shifts = every if self.chosen is None else self.chosen
 
         def difference(shift: Shift) -> FloatArray:
             run, column = shift
             step = self.step if phi[column] + self.step <= self.upper[column] else -self.step
-            moved = phi.copy()
-            moved[column] += step
-            after = self.residual(run, moved, z[run])
+            shifted = phi.copy()
+            shifted[column] += step
+            after = self.residual(run, shifted, z[run])
             if after is None:
                 return evaluations[run].by_parameter[:, column]
             return (after - evaluations[run].residual) / step

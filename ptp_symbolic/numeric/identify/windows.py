@@ -184,8 +184,8 @@ def _moving_edges(run: Run, edges: NDArray[np.int64]) -> NDArray[np.int64]:
     speed = np.abs(rate) / np.maximum(np.sqrt(np.mean(rate**2, axis=0)), 1e-300)
     slowest = np.min(speed, axis=1)
     reach = max(1, int(np.min(np.diff(edges)) // 4))
-    moved = [e - reach + int(np.argmax(slowest[e - reach : e + reach])) for e in edges[1:-1]]
-    return np.array([edges[0], *moved, edges[-1]])
+    placed = [e - reach + int(np.argmax(slowest[e - reach : e + reach])) for e in edges[1:-1]]
+    return np.array([edges[0], *placed, edges[-1]])
 
 
 def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:

@@ -39,7 +39,7 @@ class Solve:
     """Accelerations of a model, solved row by row or pairwise where two joints are coupled.
 
     `definitions` start with the named functions of the equations; `chain` differentiates them.
-    `moved` is the inertia of every row with what is locked to it, `free` 0 where a row is held.
+    `inertias` is the inertia of every row with what is locked to it, `free` 0 where a row is held.
     """
 
     definitions: tuple[Line, ...]
@@ -49,7 +49,7 @@ class Solve:
     free: tuple[sp.Expr, ...]
     inverses: tuple[sp.Expr, ...]
     chain: ChainRule
-    moved: tuple[sp.Expr, ...]
+    inertias: tuple[sp.Expr, ...]
     locks: tuple[Lock, ...]
 
     def solve(self, right: Sequence[sp.Expr]) -> list[sp.Expr]:
@@ -64,7 +64,7 @@ class Solve:
                 result[k] = self.free[k] * right[k] * self.inverses[k]
             else:
                 coupling = self.mass[k, partner] * self.free[k] * self.free[partner]
-                top = self.moved[partner] * right[k] - coupling * right[partner]
+                top = self.inertias[partner] * right[k] - coupling * right[partner]
                 result[k] = self.free[k] * top * self.inverses[k]
         for lock in self.locks:
             apart = (1 - lock.active) * result[lock.gear]
@@ -101,8 +101,8 @@ def solve_accelerations(equations: Equations) -> Solve:
         definitions.append((f"force_{places[i]}", total))
         force[i] = real(f"force_{places[i]}")
     locks = _locks(equations, free)
-    moved = moved_inertias(mass, locks)
-    inverses = _named_inverses(inverse_values(mass, moved, free), places, definitions)
+    inertias = locked_inertias(mass, locks)
+    inverses = _named_inverses(inverse_values(mass, inertias, free), places, definitions)
     solve = Solve(
         tuple(definitions),
         (ZERO,) * n,
@@ -111,7 +111,7 @@ def solve_accelerations(equations: Equations) -> Solve:
         tuple(free),
         tuple(inverses),
         chain,
-        moved,
+        inertias,
         locks,
     )
     accelerations = solve.solve(list(force))
@@ -134,24 +134,26 @@ def _locks(equations: Equations, free: list[sp.Expr]) -> tuple[Lock, ...]:
     return tuple(locks)
 
 
-def moved_inertias(mass: sp.Matrix, locks: Sequence[Lock]) -> tuple[sp.Expr, ...]:
+def locked_inertias(mass: sp.Matrix, locks: Sequence[Lock]) -> tuple[sp.Expr, ...]:
     """The diagonal of `mass`, with the gear outputs that are locked to a joint."""
-    moved = [mass[k, k] for k in range(mass.rows)]
+    inertias = [mass[k, k] for k in range(mass.rows)]
     for lock in locks:
-        moved[lock.joint] += lock.active * mass[lock.gear, lock.gear]
-    return tuple(moved)
+        inertias[lock.joint] += lock.active * mass[lock.gear, lock.gear]
+    return tuple(inertias)
 
 
 def inverse_values(
-    mass: sp.Matrix, moved: Sequence[sp.Expr], free: Sequence[sp.Expr]
+    mass: sp.Matrix, inertias: Sequence[sp.Expr], free: Sequence[sp.Expr]
 ) -> list[tuple[int, sp.Expr]]:
     """Per row its partner (itself where it has none) and 1 / inertia or 1 / determinant."""
     values = []
     for i in range(mass.rows):
         partner = next((j for j in range(mass.rows) if j != i and mass[i, j] != 0), i)
-        product = moved[i]
+        product = inertias[i]
         if partner != i:
-            product = moved[i] * moved[partner] - (mass[i, partner] * free[i] * free[partner]) ** 2
+            product = (
+                inertias[i] * inertias[partner] - (mass[i, partner] * free[i] * free[partner]) ** 2
+            )
         values.append((partner, 1 / product))
     return values
 
@@ -263,8 +265,8 @@ def _push(equations: Equations, solve: Solve, contact: Contact, side: int) -> sp
     if contact.holds:
         lasting: sp.Expr = gear + side * DEAD_BAND
     else:
-        rubbing = {f.rate for f in equations.frictions}
-        row, sign = (gear, 1) if joint in rubbing else (joint, -1)
+        friction_rates = {f.rate for f in equations.frictions}
+        row, sign = (gear, 1) if joint in friction_rates else (joint, -1)
         index = equations.rates.index(row)
         lasting = sign * _torque_at_rest(equations, solve, index)
         lasting -= sign * solve.mass[index, index] * solve.accelerations[index]

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.dynamics import Lock, Solve, inverse_values, moved_inertias
+from ptp_symbolic.symbolic.codegen.dynamics import Lock, Solve, inverse_values, locked_inertias
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.mechanics import kinematics
 
@@ -54,6 +54,8 @@ def _without_friction(equations: Equations, solve: Solve, own: Contact) -> Solve
         joint = equations.rates.index(kinematics.rate(contact.axis))
         locks += [lock for lock in solve.locks if lock.joint == joint]
         free[joint] = contact.active if contact.holds else ONE
-    moved = moved_inertias(mass, locks)
-    inverses = tuple(value for _, value in inverse_values(mass, moved, free))
-    return replace(solve, free=tuple(free), locks=tuple(locks), moved=moved, inverses=inverses)
+    inertias = locked_inertias(mass, locks)
+    inverses = tuple(value for _, value in inverse_values(mass, inertias, free))
+    return replace(
+        solve, free=tuple(free), locks=tuple(locks), inertias=inertias, inverses=inverses
+    )

@@ -152,11 +152,11 @@ def _joints(equations: Equations) -> Iterator[Statement]:
             name = f"entry {i + 1}, {j + 1} of the mass matrix"
             entry = equations.mass_matrix[i, j]
             yield Statement(("mass", str(rate), str(rates[j])), name, symbol, entry, sums=True)
-    rubbing = {friction.rate: friction for friction in equations.frictions}
+    frictions = {friction.rate: friction for friction in equations.frictions}
     for i, rate in enumerate(rates):
         torque = equations.forcing[i]
-        if rate in rubbing:
-            torque -= slide(rubbing[rate].axis) * sliding(rubbing[rate])
+        if rate in frictions:
+            torque -= slide(frictions[rate].axis) * sliding(frictions[rate])
         symbol = real(f"f_{place(rate)}")
         yield Statement(("torque", str(rate)), f"the torque on {rate}", symbol, torque, sums=True)
 

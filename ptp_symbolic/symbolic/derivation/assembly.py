@@ -160,7 +160,7 @@ def _mechanics(
 def _rigid_configuration(platform: Platform, contributions: Contributions) -> RigidConfiguration:
     """Bodies, and gravity in the base frame less the acceleration of the base."""
     tilt, azimuth = (contributions.resolve(quantity_symbol(name)) for name in GRAVITY_QUANTITIES)
-    moved = [contributions.resolve(quantity_symbol(name)) for name in BASE_ACCELERATION]
+    acceleration = [contributions.resolve(quantity_symbol(name)) for name in BASE_ACCELERATION]
     g = sp.Rational(repr(platform.gravity))
     direction = [
         sp.sin(tilt) * sp.cos(azimuth),
@@ -177,7 +177,7 @@ def _rigid_configuration(platform: Platform, contributions: Contributions) -> Ri
         for contribution in contributions.by_effect
         for body in contribution.bodies
     )
-    gravity = [g * d - a for d, a in zip(direction, moved, strict=True)]
+    gravity = [g * d - a for d, a in zip(direction, acceleration, strict=True)]
     apart = contributions.resolve(contributions.values.get(quantity_symbol(AXIS_OFFSET), ZERO))
     offsets = {} if apart == 0 else {"tilt": sp.ImmutableMatrix([apart, 0, 0])}
     return RigidConfiguration(platform.axes, bodies, sp.ImmutableMatrix(gravity), offsets)

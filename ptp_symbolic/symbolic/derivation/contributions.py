@@ -94,8 +94,8 @@ class Contributions:
     @property
     def driven(self) -> set[str]:
         """Axes that take no torque as input: with a drive, or with a prescribed motion."""
-        moved = {str(rate).removeprefix("omega_") for rate in self.prescribed}
-        return moved | {drive.axis for drive in self.drives}
+        prescribed = {str(rate).removeprefix("omega_") for rate in self.prescribed}
+        return prescribed | {drive.axis for drive in self.drives}
 
     def drive_rate(self, drive: Drive) -> sp.Symbol:
         """The rate that `drive` works on: of the gear output if it has its own, else the joint."""

@@ -29,9 +29,9 @@ def transmission(shaft: Shaft, contributions: Contributions) -> Transmission:
     axis = shaft.axis
     gear, joint = kinematics.gear_rate(axis), kinematics.rate(axis)
     error = contributions.resolve(quantity(f"transmission_error_{axis}"))
-    lead = 1 + sp.diff(error, kinematics.gear_angle(axis))
+    ratio = 1 + sp.diff(error, kinematics.gear_angle(axis))
     separation = kinematics.gear_angle(axis) + error - kinematics.angle(axis)
-    speed = gear * lead - joint
+    speed = gear * ratio - joint
     gap = quantity(f"half_gap_{axis}")
     half_gap = contributions.resolve(contributions.values.get(gap, sp.Integer(0)))
     touching: sp.Expr = side(axis) ** 2
@@ -46,7 +46,7 @@ def transmission(shaft: Shaft, contributions: Contributions) -> Transmission:
     transmitted = pushing * torque
     lost = pushing * losses - (1 - pushing) * spring
     return Transmission(
-        torques=((gear, -transmitted * lead), (joint, transmitted)),
+        torques=((gear, -transmitted * ratio), (joint, transmitted)),
         quantities={quantity(f"shaft_torque_{axis}"): transmitted}
         | {symbol: touching * value for symbol, value in here.items()},
         contact=None

@@ -45,5 +45,5 @@ def factor_entry(expression: sp.Expr, state: set[sp.Symbol]) -> sp.Expr:
     collected = sp.Add(
         *(ring.product(key) * sp.factor_terms(ring.expression(c)) for key, c in groups.items())
     )
-    ways = (expression, sp.factor_terms(expression), collected, sp.factor_terms(collected))
-    return min(ways, key=written_operations)
+    candidates = (expression, sp.factor_terms(expression), collected, sp.factor_terms(collected))
+    return min(candidates, key=written_operations)
