@@ -29,11 +29,22 @@ def frames(equations: Equations) -> str:
         base = TILT.format(base=r"base, which is level,")
         text = f"{base[:1].upper()}{base[1:]}.{BORESIGHT}"
     else:
-        text = f"{PAN}; {TILT.format(base='pan frame')}. The axes cross in the origin.{BORESIGHT}"
+        text = f"{PAN}; {TILT.format(base='pan frame')}. {_crossing(equations)}{BORESIGHT}"
         text += BODY_RATES
     gravity = displayed(rf"\mathbf{{g}} = {latex_of(equations.rigid.gravity)}")
     unit = unit_latex("m/s^2")
     return rf"\section{{Frames and signs}}{text} Gravity in the base frame, in {unit}, is{gravity}"
+
+
+def _crossing(equations: Equations) -> str:
+    """Where the axes cross, or how far the second lies from the first."""
+    offset = equations.rigid.offset("tilt")
+    if not any(offset):
+        return "The axes cross in the origin."
+    return (
+        rf"The origin of the tilt frame, on the tilt axis, lies at ${latex_of(offset.T)}$ m in the"
+        " pan frame, whose origin is on the pan axis."
+    )
 
 
 def symbols(equations: Equations, platform: Platform) -> str:

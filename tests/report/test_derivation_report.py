@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.platform import preset_names, read_platform
+from ptp_symbolic.platform import EffectDeclaration, preset_names, read_platform
 from ptp_symbolic.report.derivation import has_warning, render_derivation
 from ptp_symbolic.report.derivation_symbols import CATALOGUE
 from ptp_symbolic.report.latex_text import escaped
@@ -96,3 +96,15 @@ def test_no_page_is_nearly_empty(name: str, tmp_path: Path) -> None:
         words = re.findall(r'yMax="([\d.]+)">(.*?)</word>', page)
         lowest = max(float(y) for y, _ in words[:-1])  # the last word is the page number
         assert lowest > 0.25 * height
+
+
+def test_axes_that_do_not_cross_are_not_said_to() -> None:
+    platform = read_platform("thesis-payload")
+    crossing = str(render_derivation(platform)["derivation.tex"])
+    added = EffectDeclaration("axis_offset", None, None)
+    apart = replace(platform, effects=(*platform.effects, added))
+    text = str(render_derivation(apart)["derivation.tex"])
+    assert "The axes cross in the origin" in crossing
+    assert "The axes cross" not in text
+    assert r"a_{\mathrm{tilt}} & 0 & 0" in text
+    assert "Kane -- Lagrange & $0$" in text
