@@ -1,7 +1,6 @@
 """Logs arrive in SI and in the platform's order, fast, and a bad file is refused with its line."""
 
 import time
-import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,6 @@ from hypothesis import strategies as st
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import Log, read_inputs, read_log, read_logs
-from ptp_symbolic.numeric.data.table import read_numbers, read_table
 from ptp_symbolic.platform import Platform, SignalDeclaration
 
 PLATFORM = Platform(
@@ -295,17 +293,3 @@ def test_a_damaged_log_is_read_or_refused_in_one_line(
         assert np.isfinite(log.inputs).all()
         assert np.isfinite(log.outputs).all()
         assert (np.diff(log.time) > 0).all()
-
-
-def test_a_log_without_a_last_line_end_takes_no_more_memory(tmp_path: Path) -> None:
-    rows = "\n".join(f"{k * 1e-3:.3f},{k % 997}.5" for k in range(200_000))
-    peaks = []
-    for end in ("\n", ""):
-        path = tmp_path / "long.csv"
-        path.write_text(f"time [s],pan_angle [rad]\n{rows}{end}", encoding="utf-8")
-        table = read_table(path)
-        tracemalloc.start()
-        read_numbers(table, (0, 1))
-        peaks.append(tracemalloc.get_traced_memory()[1])
-        tracemalloc.stop()
-    assert peaks[1] < 1.1 * peaks[0]

@@ -11,8 +11,8 @@ from ptp_symbolic.symbolic.codegen.grouped import in_base_parameters
 from ptp_symbolic.symbolic.codegen.impacts import impact_expressions
 from ptp_symbolic.symbolic.codegen.kernel import MODE_ARGUMENTS, Vectors, kernel_text
 from ptp_symbolic.symbolic.codegen.metadata import metadata_text
+from ptp_symbolic.symbolic.codegen.mode_functions import mode_functions_text
 from ptp_symbolic.symbolic.codegen.sharing import Line, share
-from ptp_symbolic.symbolic.codegen.templates import state_derivative_text
 from ptp_symbolic.symbolic.codegen.term_names import vocabulary
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
@@ -50,7 +50,7 @@ def module_text(equations: Equations) -> str:
             _domain(equations, vectors),
             _margins(equations, vectors),
             *_samplers(equations, vectors),
-            state_derivative_text(bool(vectors.m), any(c.rigid for c in equations.contacts)),
+            mode_functions_text(bool(vectors.m), any(c.rigid for c in equations.contacts)),
         ]
     )
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]

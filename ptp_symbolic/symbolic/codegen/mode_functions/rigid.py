@@ -1,17 +1,32 @@
-"""The parts of an emitted module that are the same for every model."""
+"""Modes that a state implies where rigid bodies meet.
 
-STATE_DERIVATIVE_SMOOTH = '''@njit(cache=True, error_model="numpy", nogil=True)
-def initial_modes(t, x, u, p, m):
-    """Leave m alone: this model has no modes."""
-    return
+The text is copied into emitted modules from the mark on; names above the mark stand for what a
+module brings along.
+"""
+
+import numpy as np
+from numba import njit
+
+RIGID_CONTACTS = np.zeros((0, 3), dtype=np.int64)
+FRICTION_RATES = np.zeros(0, dtype=np.int64)
+MODE_NAMES: tuple[str, ...] = ()
+
+
+def guards(t, x, u, p, m, g):
+    """Stand for the one of the module."""
+
+
+def mode_derivative(t, x, u, p, m, dx):
+    """Stand for the one of the module."""
+
+
+# copied from here on
+
+
+FACE_WIDTH, SAME_SPEED = 1e-9, 1e-9  # rad, rad/s: what counts as lasting contact
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def state_derivative(t, x, u, p, dx):
-    """Write the time derivative of the state into dx."""
-    mode_derivative(t, x, u, p, x, dx)'''
-
-_BEGIN_MODES = '''@njit(cache=True, error_model="numpy", nogil=True)
 def initial_modes(t, x, u, p, m):
     """Find the modes of a state: contact from the separation, sticking from the holding torque."""
     frictions = len(FRICTION_RATES)
@@ -19,20 +34,7 @@ def initial_modes(t, x, u, p, m):
     g = np.empty(3 * frictions + 4 * contacts)
     m[:] = 0.0
     guards(t, x, u, p, m, g)
-'''
-
-_SPRUNG_CONTACTS = """    for k in range(contacts):
-        at = 3 * frictions + 4 * k
-        side = 1.0 if g[at] > 0.0 else -1.0
-        if side * g[at] > g[at + 1]:
-            torque = g[at + 2] if side > 0.0 else g[at + 3]
-            m[frictions + 2 * k] = side
-            m[frictions + 2 * k + 1] = 1.0 if side * torque > 0.0 else 0.0
-    for k in range(frictions):
-        m[k] = np.sign(x[FRICTION_RATES[k]])
-"""
-
-_RIGID_CONTACTS = """    for k in range(contacts):
+    for k in range(contacts):
         gear, joint, rule = RIGID_CONTACTS[k]
         at, where = 3 * frictions + 4 * k, frictions + 2 * k
         side = 1.0 if g[at] > 0.0 else -1.0
@@ -51,9 +53,7 @@ _RIGID_CONTACTS = """    for k in range(contacts):
         if RIGID_CONTACTS[k, 2] > 0 and m[where + 1] > 0.0:
             push = m[where] * (g[at + 2] if m[where] > 0.0 else g[at + 3])
             m[where + 1] = 1.0 if push >= 0.0 else 0.0
-"""
-
-_END_MODES = '''    guards(t, x, u, p, m, g)
+    guards(t, x, u, p, m, g)
     for k in range(frictions):
         if m[k] == 0.0 and g[3 * k] > g[3 * k + 1]:
             m[k] = 1.0
@@ -66,17 +66,4 @@ def state_derivative(t, x, u, p, dx):
     """Write the time derivative of the state into dx, in the modes that the state implies."""
     m = np.empty(len(MODE_NAMES))
     initial_modes(t, x, u, p, m)
-    mode_derivative(t, x, u, p, m, dx)'''
-
-_FACES = """FACE_WIDTH, SAME_SPEED = 1e-9, 1e-9  # rad, rad/s: what counts as lasting contact
-
-
-"""
-
-
-def state_derivative_text(modes: bool, rigid: bool) -> str:
-    """The functions that find the modes of a state; `rigid` where rigid bodies meet."""
-    if not modes:
-        return STATE_DERIVATIVE_SMOOTH
-    faces, contacts = (_FACES, _RIGID_CONTACTS) if rigid else ("", _SPRUNG_CONTACTS)
-    return faces + _BEGIN_MODES + contacts + _END_MODES
+    mode_derivative(t, x, u, p, m, dx)
