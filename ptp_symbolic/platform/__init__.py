@@ -1,6 +1,7 @@
 """The declared machine as plain data: read from TOML, checked, written back."""
 
 from ptp_symbolic.platform.declaration import (
+    AXES,
     SITES,
     EffectDeclaration,
     ParameterDeclaration,
@@ -12,6 +13,7 @@ from ptp_symbolic.platform.reader import platform_file, preset_names, read_platf
 from ptp_symbolic.platform.writer import platform_text
 
 __all__ = [
+    "AXES",
     "SITES",
     "EffectDeclaration",
     "ParameterDeclaration",

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from ptp_symbolic.errors import InputError
 
+AXES = ("pan", "tilt")  # that a platform may have, base first
 SITES = ("gear", "joint")  # where on its axis an effect may sit
 
 

@@ -10,6 +10,7 @@ from typing import Any
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.platform import fields
 from ptp_symbolic.platform.declaration import (
+    AXES,
     SITES,
     EffectDeclaration,
     ParameterDeclaration,
@@ -19,7 +20,6 @@ from ptp_symbolic.platform.declaration import (
 from ptp_symbolic.platform.text_file import read_text_bytes
 from ptp_symbolic.platform.units import to_si
 
-AXES = ("pan", "tilt")
 ROLES = ("input", "output")
 STANDARD_GRAVITY = 9.81
 

@@ -1,6 +1,8 @@
-"""The symbols of the equations: all of them real."""
+"""The symbols of the equations, all of them real, and their zero."""
 
 import sympy as sp
+
+ZERO = sp.Integer(0)
 
 
 def real(name: str) -> sp.Symbol:

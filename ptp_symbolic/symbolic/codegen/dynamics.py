@@ -16,10 +16,7 @@ from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
-from ptp_symbolic.symbolic.symbols import real
-
-ZERO = sp.Integer(0)
-
+from ptp_symbolic.symbolic.symbols import ZERO, real
 
 DEAD_BAND = sp.Rational(1, 10**12)  # rad/s, above the rounding of rates that are equal
 FACE_DEPTH = sp.Rational(1, 10**12)  # rad, above the rounding of angles

@@ -11,8 +11,9 @@ import sympy as sp
 from ptp_symbolic.symbolic.codegen.dynamics import Lock, Solve, inverse_values, locked_inertias
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.symbols import ZERO
 
-ZERO, ONE = sp.Integer(0), sp.Integer(1)
+ONE = sp.Integer(1)
 
 
 def impact_expressions(equations: Equations, solve: Solve) -> list[sp.Expr]:

@@ -16,9 +16,9 @@ from ptp_symbolic.symbolic.codegen.latex import (
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Sampler, Switch
 from ptp_symbolic.symbolic.effect_interface.place import slide
+from ptp_symbolic.symbolic.mechanics.kinematics import TIME
 from ptp_symbolic.symbolic.symbols import real
 
-TIME = real("t")
 RELATIONS = {"=": ("=", "=", "="), "<=": (r"\le", "<=", "≤")}
 
 

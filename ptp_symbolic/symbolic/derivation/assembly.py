@@ -30,8 +30,7 @@ from ptp_symbolic.symbolic.effect_interface.place import quantity_name
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
-
-ZERO = sp.Integer(0)
+from ptp_symbolic.symbolic.symbols import ZERO
 
 
 def assemble(platform: Platform) -> Equations:

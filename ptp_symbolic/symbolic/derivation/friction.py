@@ -9,9 +9,8 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.symbolic.derivation.contributions import Contributions, slope_symbol
 from ptp_symbolic.symbolic.effect_interface.contribution import Drive, Friction
 from ptp_symbolic.symbolic.effect_interface.place import LOADS, quantity, slide
-from ptp_symbolic.symbolic.symbols import real
+from ptp_symbolic.symbolic.symbols import ZERO, real
 
-ZERO = sp.Integer(0)
 FOLLOWING = ("follower_coupling", "follower_inertia", "follower_torque")
 Term = tuple[sp.Symbol, sp.Expr]
 

@@ -10,9 +10,7 @@ from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Fr
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
-from ptp_symbolic.symbolic.symbols import real
-
-ZERO = sp.Integer(0)
+from ptp_symbolic.symbolic.symbols import ZERO, real
 
 
 def energy_ledger(

@@ -11,9 +11,7 @@ from ptp_symbolic.symbolic.derivation.friction import Mechanics
 from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Input
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
-from ptp_symbolic.symbolic.symbols import real
-
-ZERO = sp.Integer(0)
+from ptp_symbolic.symbolic.symbols import ZERO, real
 
 
 def released(contributions: Contributions) -> Contributions:

@@ -6,9 +6,8 @@ from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Dr
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
-from ptp_symbolic.symbolic.symbols import real
+from ptp_symbolic.symbolic.symbols import ZERO, real
 
-ZERO = sp.Integer(0)
 WINDING, LOSS = "winding_resistance_{axis}", "winding_loss_{axis}"
 VOLTAGES = ("motor_voltage_{axis}", "drive_voltage_{axis}", "command_{axis}")  # each from the next
 

@@ -8,11 +8,11 @@ the tilt axis alone the pan frame is the base. Source: thesis section 3.1.1, Eq.
 
 import sympy as sp
 
+from ptp_symbolic.platform import AXES
 from ptp_symbolic.symbolic.symbols import real
 
-# Unit vector of every joint axis, base first, the same in the frames before and behind the joint.
+# Unit vector of every joint axis, the same in the frames before and behind the joint.
 DIRECTIONS = {"pan": sp.ImmutableMatrix([0, 0, 1]), "tilt": sp.ImmutableMatrix([0, 1, 0])}
-AXES = tuple(DIRECTIONS)
 TIME = real("t")
 
 
