@@ -10,6 +10,7 @@ from ptp_symbolic.numeric.diagnose.gain import Gain, p_value
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MATERIAL
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
+from ptp_symbolic.numeric.identify.intervals import estimates
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 
@@ -54,6 +55,23 @@ def test_an_effect_needs_an_amount_that_can_be_told_from_zero(
     """The fit is good to 1 / sqrt(600) = 0.04 under noise of one."""
     fit = fit_of(waves(4), [stiffness] * 4, 1.0)
     assert is_amount_known(fit, EFFECT) is is_known
+
+
+def test_parameters_that_trade_for_each_other_have_an_amount_together() -> None:
+    """Columns that differ by a hundredth: each amount is good to 4, their sum to 0.03."""
+    second = free_parameter("k2", 1.0, -5.0, 5.0)
+    pair = Candidate("pair", None, "", "", (SPRING, second), {"k": 0.0, "k2": 0.0})
+    wave = waves(4)
+    columns = [np.column_stack([w, w + 0.01 * np.roll(w, 7)]) for w in wave]
+    rng = np.random.default_rng(8)
+    measured = [c @ [0.5, 0.5] + rng.standard_normal(len(c)) for c in columns]
+    whole, right = np.concatenate(columns), np.concatenate(measured)
+    found = np.linalg.lstsq(whole, right, rcond=None)[0]
+    residuals = [m - c @ found for m, c in zip(measured, columns, strict=True)]
+    slopes = [-c * np.array([SPRING.scale, second.scale]) for c in columns]
+    fit = finished(residuals, slopes, None, (SPRING, second), {"k": found[0], "k2": found[1]})
+    assert not any(e.identified for e in estimates(fit))
+    assert is_amount_known(fit, pair)
 
 
 @pytest.mark.parametrize(("value", "named"), [(4.9999, "k"), (-5.0, "k"), (0.0, None), (2.0, None)])

@@ -9,10 +9,10 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.linear import effect_of, outside, stacked
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, accuracy
 from ptp_symbolic.numeric.identify.blocks import leave_blocks_out, without_outliers
-from ptp_symbolic.numeric.identify.constants import ELSEWHERE, MOST, NEAR_BOUND, SHARP
+from ptp_symbolic.numeric.identify.constants import ELSEWHERE, MOST, NEAR_BOUND, SHARP, UNIDENTIFIED
 from ptp_symbolic.numeric.identify.evaluate import evaluate
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.intervals import estimates
+from ptp_symbolic.numeric.identify.intervals import spread_of_factor
 from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
 
 FloatArray = NDArray[np.float64]
@@ -34,11 +34,13 @@ def why_unconfirmed(task: Task, trial: Trial, fit: Fit, candidate: Candidate) ->
 
 
 def is_amount_known(fit: Fit, candidate: Candidate) -> bool:
-    """Whether the interval of any parameter that switches the candidate on is narrower than its
-    value: a set may need an effect that only makes up for others.
+    """Whether the interval of the candidate's amount, a factor on all parameters that switch it
+    on, leaves out zero: a set may need an effect that only makes up for others.
+
+    Of several such parameters none need be known alone: frictions at low and at high rates trade
+    for each other where the total is clear.
     """
-    own = {f.name for f in candidate.defining}
-    return any(e.identified for e in estimates(fit) if e.name in own)
+    return spread_of_factor(fit, candidate.vanishing) < UNIDENTIFIED
 
 
 def at_bound(fit: Fit, candidate: Candidate) -> str | None:

@@ -198,21 +198,25 @@ def _off_bounds(seeker: Seeker, trial: Trial, fit: Fit) -> Trial | None:
 
 
 def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tuple[Step, str] | None:
-    """The candidate of a trial that is confirmed least, and why not; None where all are."""
-    task = seeker.task
-    weakest = min(steps, key=lambda s: s.gain.share)
-    if not seeker.is_needed(weakest):
-        return weakest, _too_little(weakest.gain)
-    for step in steps:
-        reason = why_unconfirmed(task, trial, fit, step.candidate)
+    """The candidate of a trial that gains least of those that are not confirmed, and why not; None
+    where all are. What is known of the others may change once it is out.
+    """
+    quiet = leaves_noise_alone(trial, floor_of(seeker.task, trial, seeker.carried))
+    by_gain = sorted(steps, key=lambda s: s.gain.share)
+    for step in by_gain:
+        if not seeker.is_needed(step):
+            return step, _too_little(step.gain)
+        reason = why_unconfirmed(seeker.task, trial, fit, step.candidate)
         if reason is not None:
             return step, reason
-    if not answers_to_inputs(task, trial):
-        return weakest, "with it the model no longer answers to its inputs"
-    quiet = leaves_noise_alone(trial, floor_of(task, trial, seeker.carried))
-    if weakest.gain.share < MOST and not quiet:
-        share = f"{100.0 * weakest.gain.share:.0f} %"
-        return weakest, f"takes away {share} of the error, too little where more than noise is left"
+        if step.gain.share < MOST and not quiet:
+            share = f"{100.0 * step.gain.share:.0f} %"
+            return (
+                step,
+                f"takes away {share} of the error, too little where more than noise is left",
+            )
+    if not answers_to_inputs(seeker.task, trial):
+        return by_gain[0], "with it the model no longer answers to its inputs"
     return None
 
 

@@ -6,6 +6,7 @@ time, the unknown starts projected out. Intervals never get narrower than those 
 the declared size.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -85,14 +86,39 @@ def _interval(
     return float(ends[0]), float(ends[1]), width
 
 
+def spread_of_factor(fit: Fit, zero: Mapping[str, float]) -> float:
+    """Half width of the 95 % interval of a factor on how far the parameters in `zero` are from
+    their values there, all of them together; the other parameters stay free.
+    """
+    away = to_search(fit.free, fit.values) - to_search(fit.free, {**fit.values, **zero})
+    own = np.array([f.name in zero for f in fit.free])
+    columns = _columns(fit)
+    along = columns[:, own] @ away[own]
+    covariance, degrees, lost = _covariance(fit, np.column_stack([columns[:, ~own], along]))
+    if np.any(lost[:, -1] ** 2 > SAME):
+        return np.inf
+    return float(stats.t.ppf(0.975, degrees[-1]) * np.sqrt(covariance[-1, -1]))
+
+
 def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Covariance [nf, nf] of the search coordinates, the degrees of freedom [nf] behind each, and
     the directions [2, nf, lost] that the data do not see, in coordinates scaled by what the data
     see of each alone, and in those of the search; it leaves these out.
     """
+    return _covariance(fit, _columns(fit))
+
+
+def _columns(fit: Fit) -> FloatArray:
+    """Derivatives [k, nf] of the residuals by the search coordinates, without what the unknown
+    starts can explain.
+    """
+    return np.vstack([project_out(e.by_parameter, e.by_start) for e in fit.evaluations])
+
+
+def _covariance(fit: Fit, columns: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """See `covariance_of`, of the coordinates by which `columns` are the derivatives."""
     signals = fit.runs[0].measured.shape[1]
     residuals = [project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations]
-    columns = np.vstack([project_out(e.by_parameter, e.by_start) for e in fit.evaluations])
     sums = [r.reshape(-1, signals).sum(axis=1) for r in residuals]
     series = [np.concatenate([sums[k] for k in group]) for group in by_source(fit.runs)]
     label = long_blocks([len(s) for s in series], block_length(series), columns, signals)
