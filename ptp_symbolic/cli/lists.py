@@ -86,11 +86,11 @@ def _explain(name: str, as_json: bool) -> None:
 
 def _described(kind: Any) -> dict[str, Any]:
     """One kind of an effect as data; `<axis>` stands for pan or tilt."""
+    from ptp_symbolic.platform import AXES
     from ptp_symbolic.symbolic.derivation.placement import effects_that_define
     from ptp_symbolic.symbolic.effect_interface.place import Place
 
-    axes = ("pan", "tilt")
-    place = Place(axes, "<axis>" if kind.on_axis else None, None, frozenset())
+    place = Place(AXES, "<axis>" if kind.on_axis else None, None, frozenset())
     return {
         "kind": kind.kind,
         "what": kind.title,
@@ -101,7 +101,7 @@ def _described(kind: Any) -> dict[str, Any]:
         "needs": [
             {
                 "quantity": need.format(axis="<axis>"),
-                "from": effects_that_define(need.format(axis=axes[0]), axes),
+                "from": effects_that_define(need.format(axis=AXES[0]), AXES),
             }
             for need in kind.needs
         ],

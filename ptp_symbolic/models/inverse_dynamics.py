@@ -116,10 +116,10 @@ def _torques(equations: Equations, wanted: list[sp.Symbol], sign: int) -> list[s
     lacking = sp.Matrix(equations.mass_matrix * sp.Matrix(wanted) - equations.forcing)
     for friction in equations.frictions:
         lacking[equations.rates.index(friction.rate)] += slide(friction.axis) * friction.level
-    known = {real(p.name): sp.Float(p.default, 17) for p in equations.parameters}
-    known |= {real(s.name): sp.Float(s.initial) for s in equations.extra_states}
+    known = {p.symbol: sp.Float(p.default, 17) for p in equations.parameters}
+    known |= {s.symbol: sp.Float(s.initial) for s in equations.extra_states}
     torques = [kinematics.torque(axis) for axis in equations.axes]
-    known |= {real(i.name): sp.Float(0) for i in equations.inputs if real(i.name) not in torques}
+    known |= {i.symbol: sp.Float(0) for i in equations.inputs if i.symbol not in torques}
     sizes = {sp.Abs(torque): sign * torque for torque in torques}
     found = []
     for torque, row in zip(torques, lacking, strict=True):

@@ -9,14 +9,13 @@ from numpy.typing import NDArray
 from scipy.interpolate import PPoly
 
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, cubic_transition
-from ptp_symbolic.platform import Platform
+from ptp_symbolic.platform import AXES, Platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.symbols import real
 from ptp_symbolic.thesis.printed import Transition
 
 FloatArray = NDArray[np.float64]
-JOINTS = ("pan", "tilt")
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,14 +72,14 @@ def needed_torques(
     `values` replaces parameters of the platform, SI.
     """
     equations = assemble(platform)
-    accelerations = sp.Matrix([sp.Symbol(f"acceleration_{axis}") for axis in JOINTS])
-    torques = {kinematics.torque(axis): 0 for axis in JOINTS}
+    accelerations = sp.Matrix([sp.Symbol(f"acceleration_{axis}") for axis in AXES])
+    torques = {kinematics.torque(axis): 0 for axis in AXES}
     needed = equations.mass_matrix * accelerations - equations.forcing.xreplace(torques)
     numbers = {p.name: p.default for p in equations.parameters} | dict(values or {})
     needed = needed.subs({real(name): value for name, value in numbers.items()})
-    arguments = [*map(kinematics.angle, JOINTS), *map(kinematics.rate, JOINTS), *accelerations]
+    arguments = [*map(kinematics.angle, AXES), *map(kinematics.rate, AXES), *accelerations]
     function = sp.lambdify(arguments, list(needed), modules="numpy")
-    moves = [motion[axis] for axis in JOINTS]
+    moves = [motion[axis] for axis in AXES]
     pan, tilt = function(
         *(m.angle for m in moves), *(m.rate for m in moves), *(m.acceleration for m in moves)
     )

@@ -7,11 +7,10 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal
-from ptp_symbolic.platform import read_platform
+from ptp_symbolic.platform import AXES, read_platform
 from ptp_symbolic.thesis import printed
 from ptp_symbolic.thesis.items import Item, compared, unprinted
 from ptp_symbolic.thesis.motion import (
-    JOINTS,
     Torques,
     along,
     at_rest,
@@ -33,14 +32,14 @@ ROUGHLY = 0.1
 @cache
 def ideal() -> Torques:
     """Torques of the ideal platform along Table 5.2 (Figs. 5.1 to 5.3)."""
-    motion = {axis: along(TIMES, printed.IDEAL_MOTION[axis]) for axis in JOINTS}
+    motion = {axis: along(TIMES, printed.IDEAL_MOTION[axis]) for axis in AXES}
     return needed_torques(read_platform("thesis-ideal"), TIMES, motion)
 
 
 @cache
 def payload(offset: float) -> Torques:
     """Torques with the payload `offset` m ahead of the axes along Table 5.4 (Figs. 5.4, 5.5)."""
-    motion = {axis: along(TIMES, printed.PAYLOAD_MOTION[axis]) for axis in JOINTS}
+    motion = {axis: along(TIMES, printed.PAYLOAD_MOTION[axis]) for axis in AXES}
     platform = read_platform("thesis-payload")
     return needed_torques(platform, TIMES, motion, {"c_x_payload": offset})
 
@@ -94,7 +93,7 @@ def ideal_items() -> list[Item]:
             "N m",
             "inverse dynamics, Table 5.2",
         )
-        for axis in JOINTS
+        for axis in AXES
     ]
 
 

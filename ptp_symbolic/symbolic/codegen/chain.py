@@ -11,7 +11,6 @@ from ptp_symbolic.symbolic.codegen.sharing import Line
 from ptp_symbolic.symbolic.derivation.contributions import slope_symbol
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.symbols import real
 
 
 @dataclass(frozen=True)
@@ -36,8 +35,8 @@ class ChainRule:
 
 def chain_rule(equations: Equations) -> ChainRule:
     """Differentiate the named functions of `equations` by states, inputs and parameters."""
-    inputs = [real(i.name) for i in equations.inputs]
-    parameters = [real(p.name) for p in equations.parameters]
+    inputs = [i.symbol for i in equations.inputs]
+    parameters = [p.symbol for p in equations.parameters]
     rule, named = ChainRule((), {}), {symbol for symbol, _ in equations.terms}
     for symbol, term in equations.terms:
         for variable in (*equations.state_symbols, *inputs, *parameters):

@@ -173,7 +173,7 @@ def state_rates(equations: Equations, solve: Solve) -> list[sp.Expr]:
     by_state = dict(zip(equations.coordinates, equations.rates, strict=True))
     by_state.update(zip(equations.rates, solve.accelerations, strict=True))
     for state in equations.extra_states:
-        by_state[real(state.name)] = state.derivative
+        by_state[state.symbol] = state.derivative
     return [by_state[symbol] for symbol in equations.state_symbols]
 
 

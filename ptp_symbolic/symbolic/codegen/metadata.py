@@ -112,7 +112,7 @@ def _docstring(equations: Equations, operations: tuple[int, int]) -> str:
         lines += _wrapped(f"sliding friction[{friction.rate}]", friction.level)
     held = {symbol for _, symbol, _ in equations.updates}
     for state in equations.extra_states:
-        if real(state.name) not in held:
+        if state.symbol not in held:
             lines += _wrapped(f"{state.name}'", state.derivative)
     for sampler in equations.samplers:
         start = real("k") + sampler.phase

@@ -16,7 +16,6 @@ from ptp_symbolic.symbolic.codegen.sharing import Line, share
 from ptp_symbolic.symbolic.codegen.term_names import vocabulary
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.symbols import real
 
 SEAL = "# END sha256 "
 
@@ -29,19 +28,20 @@ def module_text(equations: Equations) -> str:
     """
     grouped = in_base_parameters(equations)
     solve = dynamics.solve_accelerations(grouped)
+    rates, guards = _state_lines(grouped, solve), dynamics.guard_expressions(grouped, solve)
     vectors = Vectors(
         tuple(map(str, equations.state_symbols)),
         tuple(i.name for i in equations.inputs),
         tuple(p.name for p in equations.parameters),
         tuple(map(str, equations.mode_symbols)),
-        _rows(equations),
+        _rows(equations, len(guards)),
     )
     body = "\n\n\n".join(
         [
-            _mode_derivative(grouped, solve, vectors),
+            _mode_derivative(rates, vectors),
             _jacobian(grouped, solve, vectors),
-            _guards(grouped, solve, vectors),
-            _guard_jacobian(grouped, solve, vectors),
+            _guards(grouped, solve, guards, vectors),
+            _guard_jacobian(grouped, solve, guards, vectors),
             *_impacts(grouped, solve, vectors),
             _outputs(equations, vectors),
             _output_jacobian(equations, vectors),
@@ -54,14 +54,13 @@ def module_text(equations: Equations) -> str:
         ]
     )
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
-    operations = _operations(equations, _state_lines(grouped, solve))
+    operations = _operations(equations, rates)
     return sealed(f"{metadata_text(equations, digest, operations)}\n\n\n{body}\n")
 
 
-def _rows(equations: Equations) -> dict[str, tuple[str, str]]:
+def _rows(equations: Equations, guards: int) -> dict[str, tuple[str, str]]:
     """Shape of the arrays that kernels write, and their units."""
     states, contacts = len(equations.state_symbols), len(equations.contacts)
-    guards = 3 * len(equations.frictions) + 4 * (contacts + len(equations.switches))
     rates = "STATE_UNITS per s"
     further = len(equations.extra_states)
     samples = 3 * len(equations.samplers) + len(equations.updates)
@@ -101,9 +100,8 @@ def _shared(
     return share(definitions, present, vocabulary(equations))
 
 
-def _mode_derivative(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+def _mode_derivative(lines: Sequence[Line], vectors: Vectors) -> str:
     doc = "Write the time derivative of the state into dx in the modes m."
-    lines = _state_lines(equations, solve)
     return kernel_text("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
 
 
@@ -116,14 +114,14 @@ def _state_lines(equations: Equations, solve: dynamics.Solve) -> list[Line]:
 def _columns(
     equations: Equations,
 ) -> list[tuple[str, tuple[sp.Symbol, ...]]]:
-    parameters = tuple(real(p.name) for p in equations.parameters)
-    inputs = tuple(real(i.name) for i in equations.inputs)
+    parameters = tuple(p.symbol for p in equations.parameters)
+    inputs = tuple(i.symbol for i in equations.inputs)
     return [("x", equations.state_symbols), ("u", inputs), ("p", parameters)]
 
 
 def _jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
     outputs: list[Line] = []
-    extra = {real(s.name): s.derivative for s in equations.extra_states}
+    extra = {s.symbol: s.derivative for s in equations.extra_states}
     for letter, symbols in _columns(equations):
         for j, variable in enumerate(symbols):
             by = dynamics.acceleration_derivative(equations, solve, variable)
@@ -138,15 +136,19 @@ def _jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> 
     return kernel_text("jacobian", f"{MODE_ARGUMENTS}, fx, fu, fp", doc, vectors, lines)
 
 
-def _guards(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
-    outputs = [(f"g[{i}]", e) for i, e in enumerate(dynamics.guard_expressions(equations, solve))]
+def _guards(
+    equations: Equations, solve: dynamics.Solve, guards: Sequence[sp.Expr], vectors: Vectors
+) -> str:
+    outputs = [(f"g[{i}]", e) for i, e in enumerate(guards)]
     doc = "Write holding and breakaway torques, gap separations and contact torques into g."
     lines = share(solve.definitions, outputs, vocabulary(equations)) if outputs else []
     return kernel_text("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
 
 
-def _guard_jacobian(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
-    outputs = _derivatives(equations, solve, "g", dynamics.guard_expressions(equations, solve))
+def _guard_jacobian(
+    equations: Equations, solve: dynamics.Solve, guards: Sequence[sp.Expr], vectors: Vectors
+) -> str:
+    outputs = _derivatives(equations, solve, "g", guards)
     doc = "Write the non-zero derivatives of guards by state and parameter."
     lines = _shared(equations, (*solve.definitions, *solve.chain.lines), outputs)
     return kernel_text("guard_jacobian", f"{MODE_ARGUMENTS}, gx, gp", doc, vectors, lines)
@@ -223,7 +225,7 @@ def _equation_error(equations: Equations, solve: dynamics.Solve, vectors: Vector
     given = [str(acceleration) for acceleration in solve.accelerations]
     definitions = [(name, e) for name, e in solve.definitions if name not in given]
     torques = solve.mass * sp.Matrix(solve.accelerations) - solve.force
-    moving = {real(s.name): s.derivative for s in equations.extra_states}
+    moving = {s.symbol: s.derivative for s in equations.extra_states}
     others = [moving[s] for s in equations.state_symbols if s in moving]
     outputs = [(f"r[{i}]", e) for i, e in enumerate([*torques, *others])]
     lines = share(definitions, outputs, vocabulary(equations))

@@ -16,8 +16,8 @@ from ptp_symbolic.symbolic.codegen.latex import (
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Sampler, Switch
 from ptp_symbolic.symbolic.effect_interface.place import slide
-from ptp_symbolic.symbolic.mechanics.kinematics import TIME
-from ptp_symbolic.symbolic.symbols import real
+from ptp_symbolic.symbolic.mechanics.kinematics import TIME, place_of
+from ptp_symbolic.symbolic.symbols import ZERO, real
 
 RELATIONS = {"=": ("=", "=", "="), "<=": (r"\le", "<=", "≤")}
 
@@ -80,7 +80,7 @@ def statements(equations: Equations) -> list[Statement]:
     ]
 
 
-def by_name(expression: sp.Expr, equations: Equations, defined: sp.Expr = sp.Integer(0)) -> sp.Expr:
+def by_name(expression: sp.Expr, equations: Equations, defined: sp.Expr = ZERO) -> sp.Expr:
     """`expression` with friction and what shafts transmit, however it is written, by its name.
 
     The right side of what is `defined` keeps its own torque written out.
@@ -131,17 +131,12 @@ def with_definitions(shown: Sequence[Statement], found: Sequence[Statement]) -> 
 
 def sliding(friction: Friction) -> sp.Symbol:
     """The name of a friction torque while sliding."""
-    return real(f"F_sliding_{place(friction.rate)}")
+    return real(f"F_sliding_{place_of(friction.rate)}")
 
 
 def shaft_torque(contact: Contact) -> sp.Symbol:
     """The name of what a shaft transmits while it touches a face."""
     return real(f"T_shaft_{contact.axis}")
-
-
-def place(rate: sp.Symbol) -> str:
-    """Where a rate is: ``gear_pan`` of ``omega_gear_pan``."""
-    return str(rate).removeprefix("omega_")
 
 
 def _joints(equations: Equations) -> Iterator[Statement]:
@@ -157,13 +152,13 @@ def _joints(equations: Equations) -> Iterator[Statement]:
         torque = equations.forcing[i]
         if rate in frictions:
             torque -= slide(frictions[rate].axis) * sliding(frictions[rate])
-        symbol = real(f"f_{place(rate)}")
+        symbol = real(f"f_{place_of(rate)}")
         yield Statement(("torque", str(rate)), f"the torque on {rate}", symbol, torque, sums=True)
 
 
 def friction_statements(friction: Friction) -> list[Statement]:
     """The law of a dry friction: sliding, sticking, and where it breaks away."""
-    at, key = place(friction.rate), ("friction", str(friction.rate))
+    at, key = place_of(friction.rate), ("friction", str(friction.rate))
     direction = slide(friction.axis)
     stuck, broken = (real(f"F_{w}_{at}") for w in ("sticking", "breakaway"))
     return [
@@ -236,7 +231,7 @@ def _switch(switch: Switch) -> Iterator[Statement]:
 def _states(equations: Equations) -> Iterator[Statement]:
     held = {symbol for _, symbol, _ in equations.updates}
     for state in equations.extra_states:
-        symbol = real(state.name)
+        symbol = state.symbol
         if symbol not in held:
             name = f"the rate of change of {state.name} ({state.meaning})"
             yield Statement(("state", state.name), name, rate_of(symbol), state.derivative)

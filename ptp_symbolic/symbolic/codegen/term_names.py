@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from ptp_symbolic.symbolic.codegen.sharing import Vocabulary
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.place import active
+from ptp_symbolic.symbolic.mechanics.kinematics import place_of
 
 SAMPLER_WORDS = ("period", "offset", "phase")
 
@@ -39,7 +40,7 @@ def _targets(equations: Equations) -> dict[str, str]:
     timing = [f"{w}_{k}" for k in range(len(equations.samplers)) for w in SAMPLER_WORDS]
     sampled = _numbered("z", [*timing, *(f"next_{state}" for _, state, _ in equations.updates)])
     further = {state.name for state in equations.extra_states}
-    lacking = [f"torque_{str(rate).removeprefix('omega_')}" for rate in equations.rates]
+    lacking = [f"torque_{place_of(rate)}" for rate in equations.rates]
     lacking += [f"rate_of_{s}" for s in map(str, equations.state_symbols) if s in further]
     errors = _numbered("r", lacking)
     words = {

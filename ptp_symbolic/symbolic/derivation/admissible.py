@@ -10,7 +10,6 @@ from ptp_symbolic.platform import Platform, naming_file
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.conditions import Requirement
 from ptp_symbolic.symbolic.mechanics.bodies import Body
-from ptp_symbolic.symbolic.symbols import real
 
 SLACK = 1e-9
 ANGLE = 0.3
@@ -31,7 +30,7 @@ def refuse_impossible(equations: Equations, platform: Platform | None = None) ->
 
 
 def _refuse_impossible(equations: Equations, declared: Collection[str]) -> None:
-    values = {real(p.name): sp.Float(p.default) for p in equations.parameters}
+    values = {p.symbol: sp.Float(p.default) for p in equations.parameters}
     for requirement in equations.requirements:
         _refuse_broken(requirement, equations, values, declared)
     for body in equations.rigid.bodies:

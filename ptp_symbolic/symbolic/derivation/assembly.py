@@ -147,9 +147,7 @@ def _mechanics(
         torques.append((rate, driving_torque(drive, contributions, coordinates[row[rate]])))
     for symbol, torque in torques:
         forcing[row[symbol]] += contributions.resolve(torque)
-    potential = contributions.resolve(
-        sum((c.potential for c in contributions.by_effect), sp.Integer(0))
-    )
+    potential = contributions.resolve(sum((c.potential for c in contributions.by_effect), ZERO))
     for index, coordinate in enumerate(coordinates):
         forcing[index] -= sp.diff(potential, coordinate)
     mass = mass.applyfunc(contributions.resolve)
@@ -185,9 +183,7 @@ def _rigid_configuration(platform: Platform, contributions: Contributions) -> Ri
 def _inputs(platform: Platform, contributions: Contributions) -> list[tuple[Input, str]]:
     """The inputs, each with its axis: of what commands or drives it, else the joint's torque."""
     drives = {drive.axis: drive.inputs for drive in contributions.drives}
-    drives |= {
-        str(w).removeprefix("omega_"): (given,) for w, given in contributions.prescribed.items()
-    }
+    drives |= {kinematics.place_of(w): (given,) for w, given in contributions.prescribed.items()}
     for contribution in contributions.by_effect:
         drives |= contribution.commands
     inputs = []

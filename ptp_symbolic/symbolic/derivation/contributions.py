@@ -21,7 +21,7 @@ from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.place import Place, quantity_name
 from ptp_symbolic.symbolic.effect_interface.place import quantity as quantity_symbol
 from ptp_symbolic.symbolic.mechanics import kinematics
-from ptp_symbolic.symbolic.symbols import real
+from ptp_symbolic.symbolic.symbols import ZERO, real
 
 GRAVITY_QUANTITIES = ("gravity_tilt", "gravity_azimuth")
 BASE_ACCELERATION = tuple(f"base_acceleration_{k}" for k in "xyz")
@@ -94,7 +94,7 @@ class Contributions:
     @property
     def driven(self) -> set[str]:
         """Axes that take no torque as input: with a drive, or with a prescribed motion."""
-        prescribed = {str(rate).removeprefix("omega_") for rate in self.prescribed}
+        prescribed = {kinematics.place_of(rate) for rate in self.prescribed}
         return prescribed | {drive.axis for drive in self.drives}
 
     def drive_rate(self, drive: Drive) -> sp.Symbol:
@@ -130,15 +130,15 @@ def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Cont
     """
     placed = list(placed)
     contributions = tuple(effect.contribute(place) for effect, place in placed)
-    values: dict[str, sp.Expr] = {name: sp.Integer(0) for name in PLATFORM_QUANTITIES}
+    values: dict[str, sp.Expr] = {name: ZERO for name in PLATFORM_QUANTITIES}
     for axis in axes:
         values[f"transmitted_torque_{axis}"] = _transmitted(axis, contributions)
-        values[f"transmission_error_{axis}"] = sp.Integer(0)
+        values[f"transmission_error_{axis}"] = ZERO
         values[f"reading_{kinematics.angle(axis)}"] = kinematics.angle(axis)
     _refuse_second_definitions(placed, contributions)
     for contribution in contributions:
         values.update(contribution.quantities)
-        values.update({f"reading_{s.name}": real(s.name) for s in contribution.states})
+        values.update({f"reading_{s.name}": s.symbol for s in contribution.states})
     changes = [item for c in contributions for item in c.changes.items()]
     _refuse_changes_of_nothing(placed, contributions, values)
     for name, change in changes:

@@ -2,6 +2,8 @@
 
 import sympy as sp
 
+from ptp_symbolic.symbolic.symbols import ZERO
+
 
 class _Sign(sp.Function):
     """The sign of a real number: constant wherever it has a derivative."""
@@ -9,7 +11,7 @@ class _Sign(sp.Function):
     nargs = 1
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        return sp.S.Zero
+        return ZERO
 
 
 class _Magnitude(sp.Function):

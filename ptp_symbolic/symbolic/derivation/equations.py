@@ -17,7 +17,6 @@ from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
-from ptp_symbolic.symbolic.symbols import real
 
 
 @dataclass(frozen=True)
@@ -116,7 +115,7 @@ class Equations:
             for symbol in pair
         ]
         held = {symbol for _, symbol, _ in self.updates}
-        extra = [real(state.name) for state in self.extra_states]
+        extra = [state.symbol for state in self.extra_states]
         extra.sort(key=held.__contains__)
         return (*self.coordinates[:joints], *self.rates[:joints], *gears, *extra)
 

@@ -12,6 +12,7 @@ from sympy.physics.mechanics import (
 
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration, RigidEquations
+from ptp_symbolic.symbolic.symbols import ZERO
 
 
 def kane(configuration: RigidConfiguration) -> RigidEquations:
@@ -35,8 +36,8 @@ def kane(configuration: RigidConfiguration) -> RigidEquations:
     coordinates = tuple(kinematics.angle(axis) for axis in axes)
     rates = tuple(kinematics.rate(axis) for axis in axes)
     plain = dict(zip((*angles, *speeds), (*coordinates, *rates), strict=True))
-    potential = -sum((b.mass * down.dot(b.masscenter.pos_from(origin)) for b in bodies), sp.S.Zero)
-    kinetic = sum((body.kinetic_energy(base) for body in bodies), sp.S.Zero)
+    potential = -sum((b.mass * down.dot(b.masscenter.pos_from(origin)) for b in bodies), ZERO)
+    kinetic = sum((body.kinetic_energy(base) for body in bodies), ZERO)
     return RigidEquations(
         axes,
         coordinates,

@@ -10,7 +10,7 @@ from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Fr
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
-from ptp_symbolic.symbolic.symbols import ZERO, real
+from ptp_symbolic.symbolic.symbols import ZERO
 
 
 def energy_ledger(
@@ -58,7 +58,7 @@ def _charging(contribution: Contribution) -> sp.Expr:
     """Power that flows into the energy of an effect's own states."""
     return sum(
         (
-            sp.diff(contribution.stored, real(state.name)) * state.derivative
+            sp.diff(contribution.stored, state.symbol) * state.derivative
             for state in contribution.states
         ),
         ZERO,

@@ -11,7 +11,7 @@ import sympy as sp
 
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration, RigidEquations
-from ptp_symbolic.symbolic.symbols import real
+from ptp_symbolic.symbolic.symbols import ZERO, real
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ def newton_euler(configuration: RigidConfiguration) -> RigidEquations:
     moments = _inward(configuration, motions)
     mass_matrix = sp.Matrix(moments).jacobian(accelerations)
     at_rest = dict.fromkeys(accelerations, 0)
-    kinetic = potential = sp.Integer(0)
+    kinetic = potential = ZERO
     for body in configuration.bodies:
         motion = motions[len(kinematics.joints_up_to(axes, body.frame))]
         momentum = _angular_momentum(body, motion.spin)

@@ -10,8 +10,9 @@ from ptp_symbolic.symbolic.derivation.contributions import Contributions
 from ptp_symbolic.symbolic.derivation.friction import Mechanics
 from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Input
 from ptp_symbolic.symbolic.effect_interface.place import slide
+from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
-from ptp_symbolic.symbolic.symbols import ZERO, real
+from ptp_symbolic.symbolic.symbols import ZERO
 
 
 def released(contributions: Contributions) -> Contributions:
@@ -20,7 +21,7 @@ def released(contributions: Contributions) -> Contributions:
     Raises InputError where a motor or a shaft works on such a joint.
     """
     rates = contributions.prescribed
-    axes = [str(rate).removeprefix("omega_") for rate in rates]
+    axes = [kinematics.place_of(rate) for rate in rates]
     busy = {drive.axis for drive in contributions.drives} | set(contributions.split_axes)
     for axis in axes:
         if axis in busy:
@@ -46,7 +47,7 @@ def reduced(
     mass, forcing = sp.Matrix(mechanics.mass), sp.Matrix(mechanics.forcing)
     rigid_mass, rigid_forcing = sp.Matrix(rigid.mass_matrix), sp.Matrix(rigid.forcing)
     for rate, given in inputs.items():
-        row, acceleration = mechanics.rates.index(rate), real(given.name)
+        row, acceleration = mechanics.rates.index(rate), given.symbol
         for other in range(mass.rows):
             forcing[other] -= mass[other, row] * acceleration
         forcing[row] = acceleration

@@ -11,6 +11,7 @@ from ptp_symbolic.symbolic.derivation.friction import Mechanics, is_loaded
 from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Play
 from ptp_symbolic.symbolic.effect_interface.place import active, quantity, side
 from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.symbols import ZERO
 
 
 def rigid_contact(play: Play, contributions: Contributions, mechanics: Mechanics) -> Contact:
@@ -37,7 +38,7 @@ def rigid_contact(play: Play, contributions: Contributions, mechanics: Mechanics
         axis=axis,
         separation=kinematics.gear_angle(axis) - kinematics.angle(axis),
         half_gap=contributions.resolve(play.half_gap),
-        torque=sp.Integer(0),
+        torque=ZERO,
         side=side(axis),
         active=active(axis),
         restitution=contributions.resolve(play.restitution),

@@ -10,6 +10,7 @@ from ptp_symbolic.symbolic.derivation.equations import Contact, Ledger
 from ptp_symbolic.symbolic.effect_interface.contribution import Shaft
 from ptp_symbolic.symbolic.effect_interface.place import active, quantity, side
 from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.symbols import ZERO
 
 
 @dataclass(frozen=True)
@@ -33,12 +34,12 @@ def transmission(shaft: Shaft, contributions: Contributions) -> Transmission:
     separation = kinematics.gear_angle(axis) + error - kinematics.angle(axis)
     speed = gear * ratio - joint
     gap = quantity(f"half_gap_{axis}")
-    half_gap = contributions.resolve(contributions.values.get(gap, sp.Integer(0)))
+    half_gap = contributions.resolve(contributions.values.get(gap, ZERO))
     touching: sp.Expr = side(axis) ** 2
     face: sp.Expr = side(axis)
     pushing: sp.Expr = active(axis)
     if half_gap == 0:
-        face, pushing, touching = sp.Integer(0), sp.Integer(1), sp.Integer(1)
+        face, pushing, touching = ZERO, sp.Integer(1), sp.Integer(1)
     twist, twist_rate = (quantity(f"{word}_{axis}") for word in ("twist", "twist_rate"))
     here = {twist: separation - face * half_gap, twist_rate: speed}
     spring, losses = (e.subs(here) for e in (sp.diff(shaft.energy, twist), shaft.losses))
@@ -54,7 +55,7 @@ def transmission(shaft: Shaft, contributions: Contributions) -> Transmission:
         else Contact(axis, separation, half_gap, torque, side(axis), active(axis)),
         ledger=Ledger(
             stored=touching * shaft.energy.subs(here),
-            power_in=sp.Integer(0),
+            power_in=ZERO,
             dissipated=touching * lost * speed,
         ),
     )

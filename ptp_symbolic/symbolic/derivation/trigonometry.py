@@ -12,6 +12,8 @@ from collections.abc import Iterable
 import sympy as sp
 from sympy.polys.rings import PolyRing
 
+from ptp_symbolic.symbolic.symbols import ZERO
+
 Monomial = tuple[int, ...]
 Terms = dict[Monomial, sp.Rational]
 
@@ -81,7 +83,7 @@ def _of_single_angles(expression: sp.Expr) -> sp.Expr:
 
 def without_squares(terms: Terms, square_at: int, other_at: int) -> Terms:
     """Replace the square of one generator by one minus the square of the other."""
-    result: Terms = defaultdict(lambda: sp.Integer(0))
+    result: Terms = defaultdict(lambda: ZERO)
     pending = list(terms.items())
     while pending:
         monomial, value = pending.pop()

@@ -7,7 +7,7 @@ import sympy as sp
 
 from ptp_symbolic.symbolic.effect_interface.conditions import Limit
 from ptp_symbolic.symbolic.mechanics.bodies import Body
-from ptp_symbolic.symbolic.symbols import real
+from ptp_symbolic.symbolic.symbols import ZERO, real
 
 
 def _unchanged(value: sp.Expr) -> sp.Expr:
@@ -22,7 +22,7 @@ class Change:
     """
 
     factor: sp.Expr = sp.Integer(1)
-    addition: sp.Expr = sp.Integer(0)
+    addition: sp.Expr = ZERO
     through: Callable[[sp.Expr], sp.Expr] = _unchanged
 
 
@@ -61,8 +61,8 @@ class Sampler:
 
     period: sp.Expr
     updates: Mapping[sp.Symbol, sp.Expr]
-    offset: sp.Expr = sp.Integer(0)
-    phase: sp.Expr = sp.Integer(0)
+    offset: sp.Expr = ZERO
+    phase: sp.Expr = ZERO
     terms: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
 
@@ -181,8 +181,8 @@ class Contribution:
     changes: Mapping[str, Change] = field(default_factory=dict)
     terms: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     bodies: tuple[Body, ...] = ()
-    potential: sp.Expr = sp.Integer(0)
-    stored: sp.Expr = sp.Integer(0)
+    potential: sp.Expr = ZERO
+    stored: sp.Expr = ZERO
     torques: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     frictions: tuple[Friction, ...] = ()
     shafts: tuple[Shaft, ...] = ()

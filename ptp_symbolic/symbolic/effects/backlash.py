@@ -8,12 +8,11 @@ is finite, does not take part in a strike.
 
 from dataclasses import replace
 
-import sympy as sp
-
 from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution, Play
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
+from ptp_symbolic.symbolic.symbols import ZERO
 
 GAP = Parameter(
     "gap_{axis}",
@@ -43,7 +42,7 @@ def _kind(
 
     def contribute(place: Place) -> Contribution:
         half = place.parameter("gap_{axis}") / 2
-        restitution = place.parameter(RESTITUTION.name) if bounces else sp.Integer(0)
+        restitution = place.parameter(RESTITUTION.name) if bounces else ZERO
         return Contribution(plays=(Play(place.own_axis, half, restitution, holds),))
 
     return Effect(

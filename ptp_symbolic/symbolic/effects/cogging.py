@@ -7,6 +7,7 @@ from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.harmonics import harmonic_members
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter, harmonics
 from ptp_symbolic.symbolic.effect_interface.place import Place
+from ptp_symbolic.symbolic.symbols import ZERO
 
 OF_SINE = "cogging torque that goes with the sine of the gear output's angle"
 OF_COSINE = "cogging torque that goes with the cosine"
@@ -20,7 +21,7 @@ CYCLES = Parameter("n_cog_{axis}", "1", 60.0, 0.5, 1e5, OF_CYCLES, locked_to="an
 
 def _contribute(place: Place) -> Contribution:
     cycles = place.parameter(CYCLES.name)
-    potential = sp.Integer(0)
+    potential = ZERO
     for order, pair in enumerate(AMPLITUDES, start=1):
         sine, cosine = place.symbols(pair)
         waves = order * cycles

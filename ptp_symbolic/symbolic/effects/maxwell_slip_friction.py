@@ -4,13 +4,12 @@ Below breakaway the machine moves against the springs; what it gives back on the
 which of them have slipped (presliding hysteresis with nonlocal memory).
 """
 
-import sympy as sp
-
 from ptp_symbolic.platform import SITES
 from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, State, Switch
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place, active
+from ptp_symbolic.symbolic.symbols import ZERO
 
 ELEMENTS = (1, 2, 3)
 STIFFNESSES = tuple(
@@ -24,7 +23,7 @@ TORQUES = tuple(
 
 
 def _contribute(place: Place) -> Contribution:
-    torque, stored = sp.Integer(0), sp.Integer(0)
+    torque, stored = ZERO, ZERO
     states, switches = [], []
     pairs = zip(ELEMENTS, place.symbols(STIFFNESSES), place.symbols(TORQUES), strict=True)
     for k, stiffness, limit in pairs:

@@ -7,6 +7,7 @@ from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.mechanics.bodies import Body
+from ptp_symbolic.symbolic.symbols import ZERO
 
 INERTIAS = tuple(
     Parameter(
@@ -33,7 +34,7 @@ def _has(place: Place, parameter: Parameter) -> bool:
 
 def _contribute(place: Place) -> Contribution:
     def value(parameter: Parameter) -> sp.Expr:
-        return parameter.symbol if _has(place, parameter) else sp.Integer(0)
+        return parameter.symbol if _has(place, parameter) else ZERO
 
     offset = {f"payload_com_{p.name[2]}": value(p) for p in OFFSETS}
     body = Body(

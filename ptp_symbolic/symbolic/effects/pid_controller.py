@@ -16,6 +16,7 @@ from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects.encoder_quantization import NearestCount
+from ptp_symbolic.symbolic.symbols import ZERO
 
 PARAMETERS = (
     Parameter("K_p_{axis}", "V/rad", 100.0, 0.0, 1e9, "proportional gain"),
@@ -55,7 +56,7 @@ def _contribute(place: Place) -> Contribution:
             place.own_axis: (Input(str(wanted), "rad", f"angle asked of the {place.axis} joint"),)
         },
         states=tuple(
-            State(name.format(axis=place.axis), unit, text.format(axis=place.axis), sp.Integer(0))
+            State(name.format(axis=place.axis), unit, text.format(axis=place.axis), ZERO)
             for name, unit, text in STATES
         ),
         samplers=(

@@ -13,6 +13,7 @@ from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribu
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
+from ptp_symbolic.symbolic.symbols import ZERO
 
 Contributing = Callable[[Place], Contribution]
 SUPPLY = Parameter("u_supply_{axis}", "V", 24.0, 1e-3, 1e6, "supply voltage of the {axis} bridge")
@@ -36,8 +37,8 @@ def _pulses(place: Place, high: sp.Expr, low: sp.Expr, until: sp.Expr) -> Contri
     return Contribution(
         changes={f"drive_voltage_{place.axis}": Change(through=lambda _: bridge)},
         states=(
-            State(str(bridge), "V", f"voltage of the {place.axis} bridge", sp.Integer(0)),
-            State(str(duty), "1", f"duty of the {place.axis} bridge", sp.Integer(0)),
+            State(str(bridge), "V", f"voltage of the {place.axis} bridge", ZERO),
+            State(str(duty), "1", f"duty of the {place.axis} bridge", ZERO),
         ),
         samplers=(
             Sampler(period, {bridge: high, duty: _duty(place)}),
@@ -49,7 +50,7 @@ def _pulses(place: Place, high: sp.Expr, low: sp.Expr, until: sp.Expr) -> Contri
 def _switching(place: Place) -> Contribution:
     supply, duty = place.parameter(SUPPLY.name), place.parameter("duty_{axis}")
     high = sp.Piecewise((supply, _duty(place) >= 0), (-supply, True))
-    return _pulses(place, high, sp.Integer(0), sp.Max(duty, -duty))
+    return _pulses(place, high, ZERO, sp.Max(duty, -duty))
 
 
 def _bipolar(place: Place) -> Contribution:

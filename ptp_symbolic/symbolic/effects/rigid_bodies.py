@@ -7,6 +7,7 @@ from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.mechanics.bodies import Body
+from ptp_symbolic.symbolic.symbols import ZERO
 
 PARAMETERS = (
     Parameter("J_pan", "kg m^2", 5.3e-4, 1e-12, 1e4, "inertia of the pan body about z"),
@@ -30,16 +31,16 @@ def _contribute(place: Place) -> Contribution:
     bodies, defined = [], {}
     if "pan" in place.axes:
         inertia = sp.ImmutableMatrix(sp.diag(0, 0, symbol("J_pan")))
-        bodies.append(Body("pan_body", "pan", sp.Integer(0), at_axes, inertia))
+        bodies.append(Body("pan_body", "pan", ZERO, at_axes, inertia))
     if "tilt" in place.axes:
         full = "pan" in place.axes
         x, z = (symbol("J_x_tilt"), symbol("J_z_tilt")) if full else (0, 0)
         inertia = sp.diag(x, symbol("J_y_tilt"), z)
-        mass: sp.Expr = sp.Integer(0)
+        mass: sp.Expr = ZERO
         if full:
             products = [f"tilt_product_{pair}" for pair in ("xy", "xz", "yz")]
             names = (*products, "tilt_body_mass", "tilt_axis_offset")
-            defined = dict.fromkeys(names, sp.Integer(0))
+            defined = dict.fromkeys(names, ZERO)
             mass = place.quantity("tilt_body_mass")
             for name in products:
                 i, j = ("xyz".index(letter) for letter in name[-2:])

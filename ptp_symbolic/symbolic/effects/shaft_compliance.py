@@ -1,11 +1,10 @@
 """A flexible shaft between the gear output and the load."""
 
-import sympy as sp
-
 from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Shaft
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
+from ptp_symbolic.symbolic.symbols import ZERO
 
 PARAMETERS = (
     Parameter("k_shaft_{axis}", "N m/rad", 5000.0, 1e-3, 1e9, "shaft stiffness"),
@@ -16,7 +15,7 @@ PARAMETERS = (
 def _contribute(place: Place) -> Contribution:
     stiffness, damping = place.symbols(PARAMETERS)
     return Contribution(
-        quantities={f"half_gap_{place.axis}": sp.Integer(0)},
+        quantities={f"half_gap_{place.axis}": ZERO},
         shafts=(Shaft(place.own_axis, stiffness * place.twist**2 / 2, damping * place.twist_rate),),
     )
 

@@ -41,6 +41,11 @@ def gear_rate(axis: str) -> sp.Symbol:
     return real(f"omega_gear_{axis}")
 
 
+def place_of(rate: sp.Symbol) -> str:
+    """Where a rate of a joint or gear output is: ``pan``, or ``gear_pan``."""
+    return _PLACES[rate]
+
+
 def joint_direction(axis: str) -> sp.ImmutableMatrix:
     """Unit vector [3] of the joint axis, the same in the frames before and behind the joint."""
     return DIRECTIONS[axis]
@@ -69,3 +74,6 @@ def rotation_to_base(axes: tuple[str, ...], frame: str) -> sp.ImmutableMatrix:
     for axis in joints_up_to(axes, frame):
         rotation = rotation * joint_rotation(axis)
     return rotation
+
+
+_PLACES = {rate(axis): axis for axis in AXES} | {gear_rate(a): f"gear_{a}" for a in AXES}

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.symbols import real
+from ptp_symbolic.symbolic.symbols import ZERO, real
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Linkage:
 
     def reach(self, longest: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
         """Joint angles in rad, lower and upper, at the `longest` stroke in m and at none."""
-        return self.angle(longest), self.angle(sp.Integer(0))
+        return self.angle(longest), self.angle(ZERO)
 
     def dead_centres(self) -> tuple[sp.Expr, sp.Expr]:
         """Joint angles in rad, lower and upper, at which the actuator has no lever.

@@ -7,7 +7,7 @@ import sympy as sp
 
 from ptp_symbolic.symbolic.simplify.operations import Line
 from ptp_symbolic.symbolic.simplify.regressors import Exponents, StateFunction, place_of
-from ptp_symbolic.symbolic.symbols import real
+from ptp_symbolic.symbolic.symbols import ZERO, real
 
 Combination = dict[sp.Expr, sp.Rational]
 Row = dict[StateFunction, Combination]
@@ -88,7 +88,7 @@ class AngleSums:
         if depth == len(self.coordinates):
             return sp.Add(*(_linear(combination) for _, combination in terms))
         angle = self.coordinates[depth]
-        total = sp.Integer(0)
+        total = ZERO
         for cosine in (0, 1):
             here = [term for term in terms if term[0][depth] == (0, cosine)]
             total += sp.cos(angle) ** cosine * self._nested(here, depth + 1)
@@ -109,10 +109,10 @@ def _ratio(powers: dict[Exponents, Combination], quadratic: _Quadratic) -> sp.Ra
     both, square = powers.get((1, 1), {}), powers.get((2, 0), {})
     sample = next(iter(quadratic.sine), None)
     if sample is not None:
-        scale = both.get(sample, sp.Integer(0)) / quadratic.sine[sample]
+        scale = both.get(sample, ZERO) / quadratic.sine[sample]
     else:
         sample = next(iter(quadratic.cosine))
-        scale = -square.get(sample, sp.Integer(0)) / quadratic.cosine[sample]
+        scale = -square.get(sample, ZERO) / quadratic.cosine[sample]
     fits = not plus(both, quadratic.sine, -scale) and not plus(square, quadratic.cosine, scale)
     return scale if fits and scale else None
 
@@ -181,7 +181,7 @@ def _rate_terms(index: int, row: Row) -> list[_RateTerm]:
 
 def _content(values: Sequence[sp.Rational]) -> sp.Rational:
     """Greatest common divisor of `values`, negative where most of them are (the first of two)."""
-    divisor = sp.Integer(0)
+    divisor = ZERO
     for value in values:
         divisor = divisor.gcd(value)
     balance = sum(sp.sign(value) for value in values) or sp.sign(values[0])
@@ -193,7 +193,7 @@ def _factored(
 ) -> sp.Expr:
     """Sum of scale times rates times factor, with the common rates and sign in front."""
     if not terms:
-        return sp.Integer(0)
+        return ZERO
     left = [tuple(p - q for p, q in zip(t.powers, used, strict=True)) for t, _, used in terms]
     common = _common(left)
     sign = -1 if all(term.scale < 0 for term, _, _ in terms) else 1
