@@ -147,9 +147,9 @@ def _displayed(rows: Sequence[Statement]) -> str:
 def _contact(contact: Contact) -> str:
     if contact.restitution is None:
         return rf"The shaft of the {contact.axis} axis has a dead zone; it cannot pull:"
-    held = ", where friction holds the joint" if contact.holds else ""
+    stuck = ", where the joint sticks" if contact.holds else ""
     return (
-        rf"Gear output and joint of the {contact.axis} axis are rigid; they cross a gap{held},"
+        rf"Gear output and joint of the {contact.axis} axis are rigid; they cross a gap{stuck},"
         " strike with this restitution, and turn as one body while in contact:"
     )
 
@@ -208,7 +208,7 @@ def _emitted(equations: Equations, form: BaseForm) -> str:
     lines += [line for line in solve.definitions if line[0] not in named]
     rows = [(symbol_latex(name), by_name(e, equations)) for name, e in lines]
     rates = zip(equations.state_symbols, state_rates(equations, solve), strict=True)
-    # what samplers set is held in between
+    # what samplers set is constant in between
     rows += [(rate_latex(str(s)), e) for s, e in rates if e != 0]
     return (
         r"\section{Final equations}The rate of change of every state as the emitted module"

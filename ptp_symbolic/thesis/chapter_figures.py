@@ -79,7 +79,7 @@ def estimation_figures() -> list[ThesisFigure]:
         ),
         ThesisFigure(
             "fig_4_6_profile",
-            "Ramp test: residual against the inertia that is held,"
+            "Ramp test: residual against the inertia that is fixed,"
             " everything else refitted (erratum 16).",
             (_inertia_profile,),
         ),
@@ -166,7 +166,7 @@ def payload_figures() -> list[ThesisFigure]:
         ),
         ThesisFigure(
             "fig_5_6",
-            "Pan torque for two pulses of pan rate, the tilt axis held (Fig. 5.6)."
+            "Pan torque for two pulses of pan rate, the tilt axis fixed (Fig. 5.6)."
             " Pulses and angles are chosen here; the thesis does not print them.",
             (panel("time in s", "pan torque in N m", _held),),
         ),

@@ -87,14 +87,14 @@ def _odd(number: int, where: str, dry: sp.Expr, viscous: sp.Expr) -> Item:
         sp.Symbol("v_s"): FRICTION.v_s,
         sp.Symbol("F_v"): FRICTION.F_v,
     }
-    force, mended = dry + viscous, dry * sp.sign(v) + viscous
-    power = [float((f * v).subs(values).subs(v, -0.01)) for f in (force, mended)]
-    odd = sp.simplify(mended.subs(v, -v) + mended) == 0
+    force, corrected = dry + viscous, dry * sp.sign(v) + viscous
+    power = [float((f * v).subs(values).subs(v, -0.01)) for f in (force, corrected)]
+    odd = sp.simplify(corrected.subs(v, -v) + corrected) == 0
     return erratum(
         number,
         where,
         plain(force),
-        plain(mended),
+        plain(corrected),
         "N m",
         odd and power[0] < 0.0 < power[1],
         f"power taken at v = -0.01 rad/s, Table 4.1: {power[0]:.3g} W as printed (energy is"
@@ -217,7 +217,7 @@ def inertia_bounds() -> Item:
         16,
         "section 4.3 and Appendix C, J",
         "estimated",
-        "held by its bounds",
+        "at its bounds",
         "",
         sum(ends) >= 8 and change < 1.0 and rise < 0.05 and abs(shifted - free) > 0.05,
         f"J ends on a bound in {sum(ends)} of {len(ends)} tests; from bound to bound the angle"

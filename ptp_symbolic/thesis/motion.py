@@ -56,7 +56,7 @@ def moving(times: FloatArray, rate: InputSignal, start: float = 0.0) -> Motion:
 
 
 def at_rest(times: FloatArray, angle: float) -> Motion:
-    """A joint that is held at `angle` in rad."""
+    """A joint that is fixed at `angle` in rad."""
     still = np.zeros_like(times)
     return Motion(still + angle, still, still)
 

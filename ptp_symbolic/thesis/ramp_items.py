@@ -111,7 +111,7 @@ def bound_items() -> list[Item]:
             "Rise of the rms residual for J = 0 ... 0.1 kg m^2",
             float(np.ptp(profile[:, 1])),
             "counts",
-            "profile: J held, everything else refitted; rounding alone leaves about 0.15 counts",
+            "profile: J fixed, everything else refitted; rounding alone leaves about 0.15 counts",
         ),
         unprinted(
             "section_4_3.inertia_unbounded",

@@ -132,7 +132,7 @@ def estimates(direction: str) -> tuple[Estimate, ...]:
 
 @cache
 def inertia_profile() -> FloatArray:
-    """Rows [k, 2] of J held in kg m^2 and the rms residual in counts; test 1, everything refitted.
+    """Rows [k, 2] of fixed J in kg m^2 and the rms residual in counts; test 1, everything refitted.
 
     The bounds of the other parameters stay as in Appendix C.
     """

@@ -56,7 +56,7 @@ def pulses() -> InputSignal:
 
 @cache
 def held_tilt(angle_deg: float) -> Torques:
-    """Torques for two pulses of pan rate, the tilt axis held at an angle in deg (Fig. 5.6)."""
+    """Torques for two pulses of pan rate, the tilt axis fixed at an angle in deg (Fig. 5.6)."""
     times = np.linspace(0.0, PULSE_TIMES[-1], 6_001)
     motion = {"pan": moving(times, pulses()), "tilt": at_rest(times, float(np.radians(angle_deg)))}
     return needed_torques(read_platform("thesis-payload"), times, motion)
@@ -144,7 +144,7 @@ def held_items() -> list[Item]:
     return [
         unprinted(
             f"fig_5_6.pan_peak_at_{angle:.0f}_deg",
-            f"Fig. 5.6, largest pan torque, tilt held at {angle:.0f} deg",
+            f"Fig. 5.6, largest pan torque, tilt fixed at {angle:.0f} deg",
             float(np.max(np.abs(held_tilt(angle).pan))),
             "N m",
             "inverse dynamics, two pulses of 1 rad/s with cubic edges of 0.5 s (chosen here; the"

@@ -7,7 +7,7 @@ import pytest
 from scipy import special, stats
 
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared, gain
-from ptp_symbolic.numeric.diagnose.trial import BEND, Trial
+from ptp_symbolic.numeric.diagnose.trial import TUNING, Trial
 from ptp_symbolic.numeric.diagnose.verdict import held_out_gain
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
@@ -78,7 +78,7 @@ def test_a_false_gain_is_as_rare_where_blocks_differ_widely() -> None:
 
 def huber(square: Floats) -> Floats:
     """SciPy's loss, as a square."""
-    return 2.0 * special.huber(BEND, np.sqrt(square))
+    return 2.0 * special.huber(TUNING, np.sqrt(square))
 
 
 @pytest.mark.parametrize("off", [2.0, 10.0, 1000.0])

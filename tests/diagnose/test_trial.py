@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.trial import BEND, Trial, misfits, ranked
+from ptp_symbolic.numeric.diagnose.trial import TUNING, Trial, misfits, ranked
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 
@@ -24,12 +24,12 @@ def test_a_misfit_is_the_logarithm_of_the_mean_square_of_every_signal() -> None:
 
 def test_trials_are_compared_in_the_scale_of_the_best() -> None:
     """One run of five is off by 10: it counts linearly beside the others, alike in both trials,
-    though by its own median the second would bend five times later.
+    though by its own median the second would count less five times later.
     """
     first = trial([WAVE] * 4 + [10.0 * WAVE])
     second = trial([5.0 * WAVE] * 4 + [10.0 * WAVE])
-    bent = 2.0 * np.sqrt(BEND**2 * 100.0) - BEND**2
-    steady = 2.0 * np.sqrt(BEND**2 * 25.0) - BEND**2
+    bent = 2.0 * np.sqrt(TUNING**2 * 100.0) - TUNING**2
+    steady = 2.0 * np.sqrt(TUNING**2 * 25.0) - TUNING**2
     expected = [300 * np.log((4.0 + bent) / 5.0), 300 * np.log((4.0 * steady + bent) / 5.0)]
     assert misfits([first, second]) == pytest.approx(expected, rel=1e-12)
     assert misfits([second, first]) == pytest.approx(expected[::-1], rel=1e-12)

@@ -13,7 +13,7 @@ from ptp_symbolic.numeric.identify.least_squares import (
     Problem,
     cost_of,
     minimise,
-    robust_bend,
+    robust_tuning,
     weighted_median,
 )
 from tests.identify.curves import PHI, PRIOR, Curves, Floats, evaluation, measure
@@ -162,15 +162,15 @@ def test_loss_of_windows_by_hand() -> None:
     windows = [evaluation(np.full(10, r), none, none) for r in (*[1.0] * 19, 10.0)]
     problem = location(np.zeros(20))
     no_starts = [np.zeros(0)] * 20
-    bend = robust_bend(windows)
-    assert bend == 2.5
+    tuning = robust_tuning(windows)
+    assert tuning == 2.5
     by_hand = 19 * 10 * 6.25 * math.log(1.16) + 10 * 6.25 * math.log(17.0)
-    assert cost_of(problem, windows, no_starts, bend) == pytest.approx(by_hand, rel=1e-14)
+    assert cost_of(problem, windows, no_starts, tuning) == pytest.approx(by_hand, rel=1e-14)
     assert cost_of(problem, windows, no_starts) == pytest.approx(190 + 10 * 100, rel=1e-14)
-    assert robust_bend(windows[:19]) == np.inf
+    assert robust_tuning(windows[:19]) == np.inf
     far = [replace(e, residual=8.0 * e.residual) for e in windows]
-    assert robust_bend(far) == np.inf
-    assert robust_bend([replace(windows[0], failed="stopped"), *windows[1:]]) == np.inf
+    assert robust_tuning(far) == np.inf
+    assert robust_tuning([replace(windows[0], failed="stopped"), *windows[1:]]) == np.inf
 
 
 def test_a_median_counts_every_run_by_its_samples() -> None:
@@ -193,10 +193,10 @@ def test_windows_in_a_wrong_branch_hardly_move_the_optimum() -> None:
     def rms(at: float) -> Floats:
         return np.sqrt((values - at) ** 2 + 1.0)
 
-    bend = 2.5 * np.median(rms(found.phi[0]))
+    tuning = 2.5 * np.median(rms(found.phi[0]))
 
     def loss(at: float) -> float:
-        return float(np.sum(np.log(1.0 + (rms(at) / bend) ** 2)))
+        return float(np.sum(np.log(1.0 + (rms(at) / tuning) ** 2)))
 
     exact = minimize_scalar(loss, bounds=(-5.0, 5.0), method="bounded", options={"xatol": 1e-10})
     assert found.phi[0] == pytest.approx(exact.x, abs=1e-6)

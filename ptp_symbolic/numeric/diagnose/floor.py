@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, huber, mean_squares
-from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, BEND, MANY_RUNS, POLES
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, MANY_RUNS, POLES, TUNING
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.least_squares import weighted_median
 from ptp_symbolic.numeric.identify.noise import coloured_noise, hidden_from_differences
@@ -56,7 +56,7 @@ def left_over(fit: Fit) -> FloatArray:
     usual = weighted_median(squares, size)
     if len(squares) >= MANY_RUNS:
         return np.asarray(np.sqrt(usual))
-    bounded = huber(squares, BEND**2 * np.maximum(usual, 1.0))
+    bounded = huber(squares, TUNING**2 * np.maximum(usual, 1.0))
     return np.asarray(np.sqrt(size @ bounded / size.sum()))
 
 
@@ -79,7 +79,7 @@ def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
     runs = trial.fit.runs
     rms, most = np.ones(len(runs[0].signals)), np.ones(len(runs[0].signals))
     squares = mean_squares(trial.fit.evaluations, runs)
-    usual = squares <= BEND**2 * np.maximum(left_over(trial.fit) ** 2, 1.0)
+    usual = squares <= TUNING**2 * np.maximum(left_over(trial.fit) ** 2, 1.0)
     for column, signal in enumerate(runs[0].signals):
         if signal not in task.declared_noise:
             series = [

@@ -21,7 +21,7 @@ from ptp_symbolic.numeric.identify.blocks import (
     leave_blocks_out,
     without_outliers,
 )
-from ptp_symbolic.numeric.identify.constants import BEND, FALSE_ALARM, NOTHING
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, NOTHING, TUNING
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import project_out
@@ -65,7 +65,7 @@ def gain(larger: Trial, smaller: Trial) -> Gain:
     squares = [_predicted_squares(parts, label, signals) for parts in residuals]
     size = np.bincount(label)
     scale = np.maximum(weighted_median(squares[0], size.astype(np.float64)), 1e-300)
-    losses = [size * huber(s / scale, np.full(signals, BEND**2)).sum(axis=1) for s in squares]
+    losses = [size * huber(s / scale, np.full(signals, TUNING**2)).sum(axis=1) for s in squares]
     return compared(losses[0], losses[1])
 
 

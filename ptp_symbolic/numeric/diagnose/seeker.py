@@ -24,7 +24,7 @@ from ptp_symbolic.numeric.diagnose.refits import (
 )
 from ptp_symbolic.numeric.diagnose.responses import responses
 from ptp_symbolic.numeric.diagnose.screening import screened
-from ptp_symbolic.numeric.diagnose.starts import along, in_place, led
+from ptp_symbolic.numeric.diagnose.starts import along, from_rows, in_place
 from ptp_symbolic.numeric.diagnose.subsets import exchanges
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
@@ -83,7 +83,7 @@ class Seeker:
         """
         if not trial.candidates or self.is_at_noise(trial):
             return trial
-        begun = led(self.task, self.proposals, trial.candidates, trial.values)
+        begun = from_rows(self.task, self.proposals, trial.candidates, trial.values)
         left = halving(self.task, begun, LAST_RUNG)
         fresh = [t for t in left if is_near(t, [trial]) and not is_alike(t, trial)]
         return ranked([trial, *(self.polished(t) for t in fresh)])[0]

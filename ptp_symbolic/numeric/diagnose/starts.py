@@ -21,12 +21,12 @@ def started(task: Task, declared: Trial, found: Proposals) -> list[Trial]:
         for s in found.sets
     ]
     begun = []
-    for led in ranked([job.result() for job in jobs])[:TRIED]:
-        own = {name for c in led.candidates for name in c.names}
-        beside = declared.values | {name: led.values[name] for name in own}
+    for short in ranked([job.result() for job in jobs])[:TRIED]:
+        own = {name for c in short.candidates for name in c.names}
+        beside = declared.values | {name: short.values[name] for name in own}
         starts = [
-            fitted(task, led.candidates, led.values, None),
-            fitted(task, led.candidates, beside, declared.fit.z, 0, declared.fit),
+            fitted(task, short.candidates, short.values, None),
+            fitted(task, short.candidates, beside, declared.fit.z, 0, declared.fit),
         ]
         begun.append(ranked(starts)[0])
     return begun
@@ -47,7 +47,7 @@ def along(task: Task, proposals: Proposals, found: Response, parent: Trial) -> l
     return [continued(task, t, 1, secants=WIDE_STEP, executor=task.executor) for t in begun]
 
 
-def led(
+def from_rows(
     task: Task, proposals: Proposals, candidates: Sequence[Candidate], values: Mapping[str, float]
 ) -> list[Trial]:
     """A set where the rows start it (what they do not show stays at `values`), and where windows

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.identify.constants import BEND, GAIN, LITTLE, ROUGH, WIDE_STEP
+from ptp_symbolic.numeric.identify.constants import GAIN, LITTLE, ROUGH, TUNING, WIDE_STEP
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
@@ -192,15 +192,15 @@ def misfits(trials: Sequence[Trial]) -> list[float]:
         if not np.all(np.isfinite(square)):
             result.append(np.inf)
             continue
-        bounded = huber(square, BEND**2 * np.maximum(usual, 1.0))
+        bounded = huber(square, TUNING**2 * np.maximum(usual, 1.0))
         mean = size @ bounded / size.sum()
         result.append(float(size.sum() * np.sum(np.log(np.maximum(mean, 1e-300)))))
     return result
 
 
-def huber(square: FloatArray, bend: FloatArray) -> FloatArray:
-    """Squares that grow only linearly with their root beyond `bend` (itself a square)."""
-    return np.where(square <= bend, square, 2.0 * np.sqrt(bend * square) - bend)
+def huber(square: FloatArray, tuning: FloatArray) -> FloatArray:
+    """Squares that grow only linearly with their root beyond `tuning` (itself a square)."""
+    return np.where(square <= tuning, square, 2.0 * np.sqrt(tuning * square) - tuning)
 
 
 def ranked(trials: Sequence[Trial]) -> list[Trial]:

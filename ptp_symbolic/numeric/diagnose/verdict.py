@@ -14,7 +14,6 @@ from ptp_symbolic.numeric.diagnose.refits import forms
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, accuracy, huber, mean_squares, ranked
 from ptp_symbolic.numeric.identify.constants import (
-    BEND,
     BIGGEST,
     GAIN,
     HELD_OUT_ABOVE,
@@ -23,6 +22,7 @@ from ptp_symbolic.numeric.identify.constants import (
     POLISH,
     ROUGH,
     SHARP,
+    TUNING,
 )
 from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters, with_finite_differences
 from ptp_symbolic.numeric.identify.least_squares import weighted_median
@@ -272,6 +272,6 @@ def held_out_gain(after: Fit, before: Fit) -> Gain:
     size = sizes(after.runs)
     squares = [mean_squares(fit.evaluations, fit.runs) for fit in (after, before)]
     usual = np.min([weighted_median(s, size) for s in squares], axis=0)
-    bend = BEND**2 * np.maximum(usual, 1.0)
-    losses = [size * huber(np.minimum(s, BIGGEST), bend).sum(axis=1) for s in squares]
+    tuning = TUNING**2 * np.maximum(usual, 1.0)
+    losses = [size * huber(np.minimum(s, BIGGEST), tuning).sum(axis=1) for s in squares]
     return compared(losses[0], losses[1])

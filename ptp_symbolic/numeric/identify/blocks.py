@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.constants import (
-    BEND,
     ELSEWHERE,
     FEWEST_BLOCKS,
     MOST_BLOCKS,
@@ -20,6 +19,7 @@ from ptp_symbolic.numeric.identify.constants import (
     RESAMPLES,
     SEED,
     SINGULAR,
+    TUNING,
 )
 from ptp_symbolic.numeric.identify.least_squares import weighted_median
 
@@ -173,7 +173,7 @@ def without_outliers(
     """
     squares = block_squares(residual, label, signals)
     usual = weighted_median(squares, np.bincount(label).astype(np.float64))
-    root = np.minimum(1.0, (BEND**2 * usual / np.maximum(squares, 1e-300)) ** 0.25)
+    root = np.minimum(1.0, (TUNING**2 * usual / np.maximum(squares, 1e-300)) ** 0.25)
     weight = root[label].ravel()
     residual, jacobian = weight * residual, weight[:, None] * jacobian
     step = np.asarray(-np.linalg.lstsq(jacobian, residual, rcond=SINGULAR)[0], dtype=np.float64)

@@ -39,7 +39,7 @@ SEED = 20130801  # 1; of every draw, so that equal logs have equal answers; arbi
 DRAWS = 3  # 1; random states at which a dependence is looked for; scaled
 
 # Robustness
-BEND = 2.5  # 1; sizes of the usual block beyond which a block counts less; scaled
+TUNING = 2.5  # 1; sizes of the usual block beyond which a block counts less; scaled
 HUBER = 2.0  # 1; standard deviations beyond which a row counts linearly: 99 % efficient; derived
 FAR = 4.0  # 1; standard deviations that noise seldom reaches (once in 16,000); derived
 RESTING = 5.0  # 1; the same for every rate of a log (once in 1,700,000); derived

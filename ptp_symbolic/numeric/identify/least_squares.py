@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.constants import (
     AT_BOUND,
-    BEND,
     BIGGEST,
     FIRST_DAMPING,
     LARGEST_STEP,
     MANY_RUNS,
     NEARBY,
+    TUNING,
 )
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.requirements import Allow
@@ -72,7 +72,7 @@ def weighted_median(values: FloatArray, weight: FloatArray) -> FloatArray:
     return np.array([np.interp(at, b, v) for b, v in columns])
 
 
-def robust_bend(evaluations: Sequence[Evaluation]) -> float:
+def robust_tuning(evaluations: Sequence[Evaluation]) -> float:
     """Root mean square at which a window counts half.
 
     Infinite for a few whole runs, and while most windows are still far off.
@@ -82,35 +82,36 @@ def robust_bend(evaluations: Sequence[Evaluation]) -> float:
     squares = np.array([[float(np.mean(e.residual**2))] for e in evaluations])
     size = np.array([float(e.residual.size) for e in evaluations])
     middle = float(np.sqrt(weighted_median(squares, size)[0]))
-    return BEND * middle if middle < NEARBY else np.inf
+    return TUNING * middle if middle < NEARBY else np.inf
 
 
-def _loss(e: Evaluation, bend: float) -> float:
-    """Cauchy's loss of a window: square well below the bend, its logarithm beyond: a window that
-    began on the wrong side of a rest says nothing about the parameters (Black and Anandan, 1996).
+def _loss(e: Evaluation, tuning: float) -> float:
+    """Cauchy's loss of a window: square well below the tuning constant, its logarithm beyond: a
+    window that began on the wrong side of a rest says nothing about the parameters (Black and
+    Anandan, 1996).
     """
     square = float(e.residual @ e.residual)
-    if np.isinf(bend):
+    if np.isinf(tuning):
         return square
-    return float(e.residual.size * bend**2 * np.log1p(square / e.residual.size / bend**2))
+    return float(e.residual.size * tuning**2 * np.log1p(square / e.residual.size / tuning**2))
 
 
-def _share(e: Evaluation, bend: float) -> float:
+def _share(e: Evaluation, tuning: float) -> float:
     """Weight of a window in the normal equations."""
-    return 1.0 / (1.0 + float(np.mean(e.residual**2)) / bend**2)
+    return 1.0 / (1.0 + float(np.mean(e.residual**2)) / tuning**2)
 
 
 def cost_of(
     problem: Problem,
     evaluations: Sequence[Evaluation],
     z: Sequence[FloatArray],
-    bend: float = np.inf,
+    tuning: float = np.inf,
     scale: float = 1.0,
 ) -> float:
     """Sum of squares; infinite as soon as one simulation failed."""
     if any(e.failed for e in evaluations):
         return np.inf
-    fit = sum(_loss(e, bend) for e in evaluations)
+    fit = sum(_loss(e, tuning) for e in evaluations)
     steepest = max(
         (np.max(np.abs(j), initial=0.0) for e in evaluations for j in (e.by_parameter, e.by_start)),
         default=0.0,
@@ -149,7 +150,7 @@ def minimise(
         if problem.refine is not None:
             refined = replace(at, evaluations=problem.refine(at.phi, at.z, at.evaluations))
         weights = _weigh(problem, at)
-        before = cost_of(problem, at.evaluations, at.z, weights.bend, weights.scale)
+        before = cost_of(problem, at.evaluations, at.z, weights.tuning, weights.scale)
         found = _better(problem, refined, weights, damping, before, rejections)
         if found is None:
             cost = before
@@ -170,18 +171,20 @@ class _Point:
 
 @dataclass(frozen=True)
 class _Weights:
-    """Bend of the robust loss, precision [nf] of the prior of phi, weight of the prior of z."""
+    """Tuning constant of the robust loss, precision [nf] of the prior of phi, weight of that of
+    z.
+    """
 
-    bend: float
+    tuning: float
     prior: FloatArray
     scale: float
 
 
 def _weigh(problem: Problem, at: _Point) -> _Weights:
-    bend = robust_bend(at.evaluations)
+    tuning = robust_tuning(at.evaluations)
     size = sum(e.residual.size for e in at.evaluations)
-    mean_square = sum(_loss(e, bend) for e in at.evaluations) / size
-    return _Weights(bend, problem.prior_precision * mean_square, max(1.0, mean_square))
+    mean_square = sum(_loss(e, tuning) for e in at.evaluations) / size
+    return _Weights(tuning, problem.prior_precision * mean_square, max(1.0, mean_square))
 
 
 def _better(
@@ -201,7 +204,7 @@ def _better(
         enough = cost + _prior(problem, weights.prior, at.phi) - _prior(problem, weights.prior, phi)
         for tangents in (True,) if attempt == 0 else (False, True):
             trial = _Point(phi, z, problem.evaluate(phi, z, tangents))
-            after = cost_of(problem, trial.evaluations, z, weights.bend, weights.scale)
+            after = cost_of(problem, trial.evaluations, z, weights.tuning, weights.scale)
             if not after < enough:
                 break
         else:
@@ -230,7 +233,7 @@ def _step(
         problem.start_upper,
         strict=True,
     ):
-        share = np.sqrt(_share(e, weights.bend))
+        share = np.sqrt(_share(e, weights.tuning))
         j, k, r = share * e.by_parameter, share * e.by_start, share * e.residual
         jj, jk, kk = j.T @ j, j.T @ k, k.T @ k
         kk = kk + np.diag(scale / sigma**2)
@@ -243,8 +246,8 @@ def _step(
         right += gr - jk @ inverse @ gz
         diagonal += np.diag(jj)
         blocks.append((jk, inverse, gz))
-    held = ((phi <= problem.lower) & (right < 0)) | ((phi >= problem.upper) & (right > 0))
-    free = ~held & (diagonal > 0)
+    active = ((phi <= problem.lower) & (right < 0)) | ((phi >= problem.upper) & (right > 0))
+    free = ~active & (diagonal > 0)
     step = np.zeros(nf)
     if free.any():
         matrix = schur[np.ix_(free, free)] + np.diag(damping * diagonal[free])
@@ -268,7 +271,7 @@ def _limited(
 ) -> FloatArray:
     """Solve matrix @ step = right with low <= step <= high [nf]; `size` scales them [nf].
 
-    The one that wants furthest beyond is held there and the others solved anew: scaling all alike
+    The one that wants furthest beyond is fixed there and the others solved anew: scaling all alike
     would let a parameter on its way to zero stop the rest.
     """
     step, moves = np.zeros(len(right)), np.ones(len(right), dtype=np.bool_)

@@ -16,13 +16,13 @@ from ptp_symbolic.numeric.identify.constants import (
     ALLOWED_COUNTS,
     ALLOWED_GROWTH,
     ALLOWED_RISE,
-    BEND,
     LEAST_START,
     LENGTHS,
     MOST_CARRIED,
     SEED,
     SHORT,
     START_SPAN,
+    TUNING,
 )
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.numeric.identify.intervals import project_out
@@ -154,7 +154,7 @@ def without_chaos(
     make it grow until nothing can be predicted.
     """
     carried = propagated_noise(model, runs, z, p, declared_noise)
-    grows = np.any((carried > MOST_CARRIED) & (left < BEND * carried), axis=1)
+    grows = np.any((carried > MOST_CARRIED) & (left < TUNING * carried), axis=1)
     found: list[Run] = []
     for run, chaotic in zip(runs, grows, strict=True):
         found += split_run(model, run, SHORT) if chaotic else (run,)

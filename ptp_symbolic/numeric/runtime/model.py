@@ -153,7 +153,7 @@ class Model:
     @cached_property
     def contacts(self) -> NDArray[np.int64]:
         """Per contact [c, 3]: state index of the rates at the gear output and at the joint; 0 where
-        it is sprung, 1 where rigid bodies strike, 2 where the joint is held in the gap as well.
+        it is sprung, 1 where rigid bodies strike, 2 where the joint sticks in the gap as well.
         Switches of effects follow, as sprung ones.
 
         A module whose contacts are all sprung does not list them.
@@ -179,7 +179,7 @@ class Model:
 
     @property
     def moving(self) -> int:
-        """How many states move by themselves; the last ones are held and set by samplers."""
+        """How many states move by themselves; the last ones are set by samplers."""
         return len(self.state_names) - len(set(self.sampled[:, 1]))
 
     @cached_property

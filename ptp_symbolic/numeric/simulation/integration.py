@@ -9,7 +9,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_guards, contact_modes
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation import hybrid
-from ptp_symbolic.numeric.simulation.events.impacts import HELD
+from ptp_symbolic.numeric.simulation.events.impacts import STICKS
 from ptp_symbolic.numeric.simulation.kernels.calls import addresses
 from ptp_symbolic.numeric.simulation.kernels.lanes import padded
 from ptp_symbolic.numeric.simulation.kernels.records import (
@@ -71,7 +71,7 @@ class Accuracy:
 def default_method(model: Model) -> str:
     """`runge_kutta` for rigid bodies alone, `rosenbrock` where drives, friction or contact are.
 
-    A winding or a shaft is a hundred times faster than the motion: an explicit method is held to
+    A winding or a shaft is a hundred times faster than the motion: an explicit method has to keep
     its pace, an implicit one is not.
     """
     bodies = {f"{kind}_{axis}" for kind in ("theta", "omega") for axis in model.module.AXES}
@@ -253,7 +253,7 @@ def new_watch(model: Model, n: int, p: FloatArray) -> Watch:
 
 
 def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watch: Watch) -> None:
-    """Raise InputError where a start x [n] has rigid bodies in each other, or a held one moving."""
+    """Raise InputError where a start x [n] overlaps rigid bodies, or moves one that sticks."""
     frictions = len(model.friction_rates)
     if not model.contacts[:, 2].any():
         return
@@ -265,7 +265,11 @@ def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watc
                 f"The gear output starts {separation:.6g} rad ahead of the joint, beyond a rigid"
                 f" face at {half_gap:.6g} rad; start it within the gap."
             )
-        if rule == HELD and not watch.m[contact_modes(frictions, contact) + 1] and x[joint] != 0.0:
+        if (
+            rule == STICKS
+            and not watch.m[contact_modes(frictions, contact) + 1]
+            and x[joint] != 0.0
+        ):
             raise InputError(
                 f"State '{model.state_names[joint]}' starts at {x[joint]:.6g} rad/s in the gap,"
                 " where friction holds the joint; start it at rest."

@@ -36,7 +36,7 @@ class Solve:
     """Accelerations of a model, solved row by row or pairwise where two joints are coupled.
 
     `definitions` start with the named functions of the equations; `chain` differentiates them.
-    `inertias` is the inertia of every row with what is locked to it, `free` 0 where a row is held.
+    `inertias` is the inertia of every row with what is locked to it, `free` 0 where it is locked.
     """
 
     definitions: tuple[Line, ...]

@@ -110,9 +110,9 @@ def _docstring(equations: Equations, operations: tuple[int, int]) -> str:
         lines += _wrapped(str(symbol), term)
     for friction in equations.frictions:
         lines += _wrapped(f"sliding friction[{friction.rate}]", friction.level)
-    held = {symbol for _, symbol, _ in equations.updates}
+    sampled = {symbol for _, symbol, _ in equations.updates}
     for state in equations.extra_states:
-        if state.symbol not in held:
+        if state.symbol not in sampled:
             lines += _wrapped(f"{state.name}'", state.derivative)
     for sampler in equations.samplers:
         start = real("k") + sampler.phase

@@ -229,10 +229,10 @@ def _switch(switch: Switch) -> Iterator[Statement]:
 
 
 def _states(equations: Equations) -> Iterator[Statement]:
-    held = {symbol for _, symbol, _ in equations.updates}
+    sampled = {symbol for _, symbol, _ in equations.updates}
     for state in equations.extra_states:
         symbol = state.symbol
-        if symbol not in held:
+        if symbol not in sampled:
             name = f"the rate of change of {state.name} ({state.meaning})"
             yield Statement(("state", state.name), name, rate_of(symbol), state.derivative)
 
@@ -248,7 +248,7 @@ def _sampler(number: int, sampler: Sampler) -> Iterator[Statement]:
     instants = real("t_k")
     yield Statement(
         (*key, "instants"),
-        "the instants at which is set anew what is held between",
+        "the sampling instants",
         instants,
         sampler.offset + start * sampler.period,
     )

@@ -107,16 +107,16 @@ class Equations:
 
     @property
     def state_symbols(self) -> tuple[sp.Symbol, ...]:
-        """States in the order of the emitted module: joints, drives, effects, what is held."""
+        """States in the order of the emitted module: joints, drives, effects, what samplers set."""
         joints = len(self.axes)
         gears = [
             symbol
             for pair in zip(self.coordinates[joints:], self.rates[joints:], strict=True)
             for symbol in pair
         ]
-        held = {symbol for _, symbol, _ in self.updates}
+        sampled = {symbol for _, symbol, _ in self.updates}
         extra = [state.symbol for state in self.extra_states]
-        extra.sort(key=held.__contains__)
+        extra.sort(key=sampled.__contains__)
         return (*self.coordinates[:joints], *self.rates[:joints], *gears, *extra)
 
     def written_out(self, expression: sp.Expr) -> sp.Expr:

@@ -74,9 +74,9 @@ def constraint_power(
     for row, rate in enumerate(full.rates):
         acceleration = free.forcing[row] / free.mass[row, row]
         if rate in by_rate:
-            way = slide(by_rate[rate].axis)
-            held = way * by_rate[rate].level / free.mass[row, row]
-            acceleration = way**2 * (acceleration - held)
+            direction = slide(by_rate[rate].axis)
+            friction = direction * by_rate[rate].level / free.mass[row, row]
+            acceleration = direction**2 * (acceleration - friction)
         accelerations.append(acceleration)
     torques = full.mass * sp.Matrix(accelerations) - full.forcing
     return sum((torques[full.rates.index(rate)] * rate for rate in inputs), ZERO)

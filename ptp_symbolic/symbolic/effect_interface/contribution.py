@@ -48,13 +48,14 @@ class State:
 
 @dataclass(frozen=True)
 class Sampler:
-    """Sets states that are held in between at the instants offset + (k + phase) period, in s.
+    """Sets states at the sampling instants offset + (k + phase) period, in s; they are constant in
+    between.
 
     k counts from 0. `updates` gives the new values by state, all from what holds just before: time,
     states, inputs and the quantities ``reading_<state>`` of the sensors; `terms` are functions of
-    those that the equations keep under their names, each of those before it. `period` and `offset`
-    depend on parameters, `phase` also on held states as they are when the period starts: from 1 on
-    there is no instant in this period. Where instants coincide the inputs have jumped already,
+    those, named intermediate expressions in evaluation order. `period` and `offset` depend on
+    parameters, `phase` also on sampled states as they are when the period starts: from 1 on there
+    is no instant in this period. Where instants coincide the inputs have jumped already,
     samplers run in the order of the catalogue, each after what those before it have set, and modes
     of friction and contact follow last.
     """

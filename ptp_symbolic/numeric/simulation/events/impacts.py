@@ -7,7 +7,7 @@ Bodies that are joined by another rigid contact are struck as one.
 """
 
 from ptp_symbolic.numeric.runtime.element_layout import contact_modes
-from ptp_symbolic.numeric.simulation.events.pressed import HELD, PRESSED, RESTING_SPEED
+from ptp_symbolic.numeric.simulation.events.pressed import PRESSED, RESTING_SPEED, STICKS
 from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import clear, inlined, kernel
 
@@ -26,7 +26,7 @@ def strike_faces(equations, t, x, u, watch, tangents):
         if rule == SPRUNG:
             continue
         if m[where + 1] == 0.0:
-            if rule == HELD and x[joint] != 0.0:
+            if rule == STICKS and x[joint] != 0.0:
                 hold(joint, equations, t, x, u, watch)
         elif m[where] * (x[gear] - x[joint]) > DEAD_BAND:
             strike(contact, equations, t, x, u, watch, tangents)
@@ -112,7 +112,7 @@ def clear_resting(equations, m, s):
         gear, joint = equations.contacts[contact, 0], equations.contacts[contact, 1]
         rule = equations.contacts[contact, 2]
         joined = m[contact_modes(frictions, contact) + 1] > 0.0
-        if rule == HELD and not joined:
+        if rule == STICKS and not joined:
             clear(s[joint])
         if equations.contacts[contact, PRESSED] == 1:
             clear(s[gear])

@@ -1,9 +1,9 @@
-"""A gear output that leans on a joint which friction holds: both rest.
+"""A gear output that leans on a joint that sticks: both rest.
 
 Where friction holds the joint in the gap, a load that would drive the gear back through a closed
 face stops both: friction carries what the gear does not. Else the modes would chatter: the joint
-held, the gear pushed onto it, both driven back. The rest ends when the gear turns away, or when it
-pushes the joint on. A contact at such a rest is not active, and its flag PRESSED is set.
+sticks, the gear pushed onto it, both are driven back. The rest ends when the gear turns away, or
+when it pushes the joint on. A contact at such a rest is not active, and its flag PRESSED is set.
 """
 
 from ptp_symbolic.numeric.runtime.element_layout import contact_guards, contact_modes
@@ -11,13 +11,13 @@ from ptp_symbolic.numeric.simulation.kernels.calls import call
 from ptp_symbolic.numeric.simulation.kernels.records import clear, copy, inlined, kernel
 
 PRESSED = 3
-HELD = 2
+STICKS = 2
 RESTING_SPEED = 1e-5  # rad/s; slower parts that touch stay together
 
 
 @inlined
 def derivative(equations, t, x, u, m, out):
-    """Write dx/dt [n]; a gear output that leans on a held joint stays."""
+    """Write dx/dt [n]; a gear output that leans on a sticking joint stays."""
     call(equations.derivative, t, x, u, equations.p, m, out)
     for contact in range(len(equations.contacts)):
         if equations.contacts[contact, PRESSED] == 1:
@@ -84,14 +84,14 @@ def acceleration(contact, active, equations, t, x, u, watch):
 
 @kernel
 def press(equations, t, x, u, watch):
-    """Bring to rest every gear output that would be pushed onto a held joint, and back with it."""
+    """Bring to rest every gear output that would be pushed onto a joint that sticks."""
     m, contacts = watch.m, equations.contacts
     frictions = len(equations.friction_rates)
     for contact in range(len(contacts)):
         gear, joint = contacts[contact, 0], contacts[contact, 1]
         where = contact_modes(frictions, contact)
         touching = m[where] != 0.0 and m[where + 1] == 0.0 and abs(x[gear]) <= RESTING_SPEED
-        if contacts[contact, 2] != HELD or contacts[contact, PRESSED] == 1 or not touching:
+        if contacts[contact, 2] != STICKS or contacts[contact, PRESSED] == 1 or not touching:
             continue
         if acceleration(contact, 0.0, equations, t, x, u, watch) <= 0.0:
             continue

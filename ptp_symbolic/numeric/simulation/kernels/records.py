@@ -35,7 +35,7 @@ class Equations(NamedTuple):
     friction_rates: state index of the rate of every friction; zero_at_rest [n]: per state the
     friction that sets it to zero when it comes to rest, or -1; contacts [c, 5]: state index of the
     rates at the gear output and at the joint; 0 for a sprung contact, 1 for rigid bodies, 2 for
-    rigid bodies whose joint is held in the gap; 1 while such a joint is pressed, see `pressed`; 1
+    rigid bodies whose joint sticks in the gap; 1 while such a joint is pressed, see `pressed`; 1
     while strikes do not bounce, see `fixed_runner`.
     """
 
@@ -72,7 +72,7 @@ class Step(NamedTuple):
     slope, by_time [w]: dx/dt at the start and its derivative by time alone; stage, k [8, w];
     end [n]; dense [5, w]: the state as a polynomial in the fraction of the step; fx [n, n],
     fu [n, nu], fp [n, np] at the start; inverse of the matrix of the implicit stages, also by
-    columns [n, w], with no tangents without the states that are held, and its row exchanges
+    columns [n, w], with no tangents without the sampled states, and its row exchanges
     `order` [n]; point, right, added [w]: scratch.
     """
 
@@ -178,7 +178,7 @@ MACHINE_TYPES = (
     TABLE_OF_CONTACTS,
     TABLE,
     _I,  # cursor [nu]
-    types.boolean,  # inputs are held between stops
+    types.boolean,  # inputs are constant between stops
 )
 STEP_TYPE = types.Tuple((_V, _V, _M, _M, _V, _M, _M, _M, _M, _M, _M, _I, _V, _V, _V))
 WATCH_TYPE = types.Tuple(
