@@ -74,6 +74,20 @@ def test_parameters_that_trade_for_each_other_have_an_amount_together() -> None:
     assert is_amount_known(fit, pair)
 
 
+def test_an_amount_is_known_whatever_its_shape() -> None:
+    """A shape that acts as the amount does: of a wave along an unknown direction its part along
+    the axis is seen, and that is not zero.
+    """
+    azimuth = free_parameter("azimuth", 1.0, -7.0, 7.0)
+    shaken = Candidate("shaken", None, "", "", (SPRING, azimuth), {"k": 0.0})
+    columns = [np.column_stack([w, 0.5 * w]) for w in waves(4)]
+    noise = [np.random.default_rng(8).standard_normal(len(c)) for c in columns]
+    slopes = [-c * np.array([SPRING.scale, azimuth.scale]) for c in columns]
+    fit = finished(noise, slopes, None, (SPRING, azimuth), {"k": 1.0, "azimuth": 0.5})
+    assert not any(e.identified for e in estimates(fit))
+    assert is_amount_known(fit, shaken)
+
+
 @pytest.mark.parametrize(("value", "named"), [(4.9999, "k"), (-5.0, "k"), (0.0, None), (2.0, None)])
 def test_a_parameter_pressed_against_a_bound_is_named(value: float, named: str | None) -> None:
     fit = finished([np.ones(9)], [np.ones((9, 1))], None, (SPRING,), {"k": value})

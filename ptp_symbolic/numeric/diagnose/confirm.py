@@ -38,9 +38,10 @@ def is_amount_known(fit: Fit, candidate: Candidate) -> bool:
     on, leaves out zero: a set may need an effect that only makes up for others.
 
     Of several such parameters none need be known alone: frictions at low and at high rates trade
-    for each other where the total is clear.
+    for each other where the total is clear. Nor need the shape be known: a single axis feels a
+    base that shakes by what goes along with it, whatever the azimuth.
     """
-    return spread_of_factor(fit, candidate.vanishing) < UNIDENTIFIED
+    return spread_of_factor(fit, candidate.vanishing, candidate.parameters) < UNIDENTIFIED
 
 
 def at_bound(fit: Fit, candidate: Candidate) -> str | None:

@@ -6,7 +6,7 @@ time, the unknown starts projected out. Intervals never get narrower than those 
 the declared size.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,15 +86,17 @@ def _interval(
     return float(ends[0]), float(ends[1]), width
 
 
-def spread_of_factor(fit: Fit, zero: Mapping[str, float]) -> float:
+def spread_of_factor(fit: Fit, zero: Mapping[str, float], shape: Collection[str] = ()) -> float:
     """Half width of the 95 % interval of a factor on how far the parameters in `zero` are from
-    their values there, all of them together; the other parameters stay free.
+    their values there, all of them together. Those named in `shape` stay as they are, all others
+    are free.
     """
     away = to_search(fit.free, fit.values) - to_search(fit.free, {**fit.values, **zero})
     own = np.array([f.name in zero for f in fit.free])
+    others = np.array([f.name not in zero and f.name not in shape for f in fit.free])
     columns = _columns(fit)
     along = columns[:, own] @ away[own]
-    covariance, degrees, lost = _covariance(fit, np.column_stack([columns[:, ~own], along]))
+    covariance, degrees, lost = _covariance(fit, np.column_stack([columns[:, others], along]))
     if np.any(lost[:, -1] ** 2 > SAME):
         return np.inf
     return float(stats.t.ppf(0.975, degrees[-1]) * np.sqrt(covariance[-1, -1]))
