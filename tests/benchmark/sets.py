@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomli_w
+import tomlkit
 
 from tests.benchmark import deviations
 from tests.benchmark.effects import Numbers, Scene, Shape
@@ -184,4 +184,4 @@ def _write_platform(
         if signal["role"] == "input" and entry.variation.declared_input_noise and noise > 0.0:
             signal["noise"] = noise
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "platform.toml").write_text(tomli_w.dumps(platform))
+    (folder / "platform.toml").write_text(tomlkit.dumps(platform))
