@@ -1,7 +1,7 @@
 """The functions of a model as named assignments: accelerations, Jacobians, guards, outputs.
 
-Nothing is inverted symbolically: the coupled joints are solved by Cramer's rule with one division,
-and derivatives of accelerations are taken implicitly from M a = F. Where rigid contact joins a gear
+Nothing is inverted symbolically: the coupled joints are solved as in `simplify.solve`, and
+derivatives of accelerations are taken implicitly from M a = F. Where rigid contact joins a gear
 output to its joint, the gear's row is added to the joint's, and the gear follows.
 """
 
@@ -16,6 +16,7 @@ from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.simplify.solve import inverse_values, partner_of, solved
 from ptp_symbolic.symbolic.symbols import ZERO, real
 
 DEAD_BAND = sp.Rational(1, 10**12)  # rad/s, above the rounding of rates that are equal
@@ -51,26 +52,14 @@ class Solve:
 
     def solve(self, right: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Return a in M a = `right` for the rows that are free to move."""
-        n = len(self.accelerations)
-        result, right = [ZERO] * n, list(right)
+        right = list(right)
         for lock in self.locks:
             right[lock.joint] += lock.active * right[lock.gear]
-        for k in range(n):
-            partner = self._partner(k)
-            if partner is None:
-                result[k] = self.free[k] * right[k] * self.inverses[k]
-            else:
-                coupling = self.mass[k, partner] * self.free[k] * self.free[partner]
-                top = self.inertias[partner] * right[k] - coupling * right[partner]
-                result[k] = self.free[k] * top * self.inverses[k]
+        result = solved(self.mass, self.inertias, self.free, self.inverses, right)
         for lock in self.locks:
             apart = (1 - lock.active) * result[lock.gear]
             result[lock.gear] = apart + lock.active * result[lock.joint]
         return result
-
-    def _partner(self, row: int) -> int | None:
-        others = [j for j in range(self.mass.rows) if j != row and self.mass[row, j] != 0]
-        return others[0] if others else None
 
 
 def solve_accelerations(equations: Equations) -> Solve:
@@ -99,7 +88,7 @@ def solve_accelerations(equations: Equations) -> Solve:
         force[i] = real(f"force_{places[i]}")
     locks = _locks(equations, free)
     inertias = locked_inertias(mass, locks)
-    inverses = _named_inverses(inverse_values(mass, inertias, free), places, definitions)
+    inverses = _named_inverses(mass, inverse_values(mass, inertias, free), places, definitions)
     solve = Solve(
         tuple(definitions),
         (ZERO,) * n,
@@ -139,29 +128,14 @@ def locked_inertias(mass: sp.Matrix, locks: Sequence[Lock]) -> tuple[sp.Expr, ..
     return tuple(inertias)
 
 
-def inverse_values(
-    mass: sp.Matrix, inertias: Sequence[sp.Expr], free: Sequence[sp.Expr]
-) -> list[tuple[int, sp.Expr]]:
-    """Per row its partner (itself where it has none) and 1 / inertia or 1 / determinant."""
-    values = []
-    for i in range(mass.rows):
-        partner = next((j for j in range(mass.rows) if j != i and mass[i, j] != 0), i)
-        product = inertias[i]
-        if partner != i:
-            product = (
-                inertias[i] * inertias[partner] - (mass[i, partner] * free[i] * free[partner]) ** 2
-            )
-        values.append((partner, 1 / product))
-    return values
-
-
 def _named_inverses(
-    values: Sequence[tuple[int, sp.Expr]], places: Sequence[str], definitions: list[Line]
+    mass: sp.Matrix, values: Sequence[sp.Expr], places: Sequence[str], definitions: list[Line]
 ) -> list[sp.Expr]:
     """Symbols for `values`, which join `definitions`; partners share theirs."""
     inverses = []
-    for i, (partner, value) in enumerate(values):
-        name = f"inverse_mass_{places[i]}" if partner == i else "inverse_determinant"
+    for row, value in enumerate(values):
+        coupled = partner_of(mass, row) != row
+        name = "inverse_determinant" if coupled else f"inverse_mass_{places[row]}"
         if name not in dict(definitions):
             definitions.append((name, value))
         inverses.append(real(name))

@@ -8,9 +8,10 @@ from dataclasses import replace
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.dynamics import Lock, Solve, inverse_values, locked_inertias
+from ptp_symbolic.symbolic.codegen.dynamics import Lock, Solve, locked_inertias
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.simplify.solve import inverse_values
 from ptp_symbolic.symbolic.symbols import ZERO
 
 ONE = sp.Integer(1)
@@ -56,7 +57,7 @@ def _without_friction(equations: Equations, solve: Solve, own: Contact) -> Solve
         locks += [lock for lock in solve.locks if lock.joint == joint]
         free[joint] = contact.active if contact.holds else ONE
     inertias = locked_inertias(mass, locks)
-    inverses = tuple(value for _, value in inverse_values(mass, inertias, free))
+    inverses = tuple(inverse_values(mass, inertias, free))
     return replace(
         solve, free=tuple(free), locks=tuple(locks), inertias=inertias, inverses=inverses
     )
