@@ -1,15 +1,17 @@
 """Share common subexpressions among definitions and outputs, and name them readably."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import sympy as sp
 
+from ptp_symbolic.symbolic.simplify.operations import common_subexpressions
 from ptp_symbolic.symbolic.symbols import real
 
 Line = tuple[str, sp.Expr]
 MAX_NAME = 40
+PREFIX = "shared:"  # of names yet to be found, which no machine uses
 MULTIPLES = {2: "twice", 3: "thrice", sp.Rational(1, 2): "half"}
 
 
@@ -49,14 +51,13 @@ def share(definitions: Sequence[Line], outputs: Sequence[Line], words: Vocabular
     keep their text, e.g. ``dx[0]``.
     """
     named = [*definitions, *words.meanings]
-    written = [words.without_powers(e) for _, e in (*named, *outputs)]
-    expressions = _in_single_angles(written)
-    replacements, reduced = sp.cse(expressions, symbols=_numbered(), order="canonical")
-    shared = [(str(symbol), expression) for symbol, expression in replacements]
-    count = len(definitions)
-    defined = [(name, e) for (name, _), e in zip(definitions, reduced[:count], strict=True)]
-    meant = [(n, e) for (n, _), e in zip(words.meanings, reduced[count:], strict=False)]
-    final = [(name, e) for (name, _), e in zip(outputs, reduced[len(named) :], strict=True)]
+    written = _in_single_angles([words.without_powers(e) for _, e in (*named, *outputs)])
+    count = len(named)
+    found, terms, ends = common_subexpressions(written[:count], written[count:], PREFIX)
+    shared = [(str(symbol), expression) for symbol, expression in found]
+    lines = [(name, e) for (name, _), e in zip(named, terms, strict=True)]
+    defined, meant = lines[: len(definitions)], lines[len(definitions) :]
+    final = [(name, e) for (name, _), e in zip(outputs, ends, strict=True)]
     available, final = _without_aliases(shared, defined, meant, final)
     ordered = _ordered(available, final)
     return _renamed(ordered, {name for name, _ in available}, words.targets)
@@ -109,13 +110,6 @@ def _in_single_angles(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
     return [e.xreplace(single) for e in expressions] if single else list(expressions)
 
 
-def _numbered() -> Iterator[sp.Symbol]:
-    number = 0
-    while True:
-        yield real(f"shared:{number}")
-        number += 1
-
-
 def _ordered(available: Sequence[Line], final: Sequence[Line]) -> list[Line]:
     """Depth-first from the outputs: only what is needed, each before its use."""
     by_name = dict(available)
@@ -150,7 +144,7 @@ def _renamed(lines: Iterable[Line], kept: set[str], words: Mapping[str, str]) ->
     result: list[Line] = []
     for name, expression in lines:
         expression = expression.xreplace(names)
-        if not name.startswith("shared:"):
+        if not name.startswith(PREFIX):
             result.append((name, expression))
             continue
         readable = _unused(_describe(expression) or f"{final_use[name]}_term", taken)
@@ -164,7 +158,7 @@ def _first_target(lines: Sequence[Line], words: Mapping[str, str]) -> dict[str, 
     """For every shared term, a word for what it is first used in."""
     first: dict[str, str] = {}
     for name, expression in reversed(lines):
-        word = first.get(name, name) if name.startswith("shared:") else words.get(name, name)
+        word = first.get(name, name) if name.startswith(PREFIX) else words.get(name, name)
         for symbol in expression.free_symbols:
             first[str(symbol)] = word
     return first

@@ -1,6 +1,7 @@
 """Count the operations of expressions, written out or with common subexpressions shared."""
 
 from collections.abc import Iterable, Sequence
+from graphlib import TopologicalSorter
 
 import sympy as sp
 
@@ -31,25 +32,21 @@ def share_subexpressions(
 
     `shared` are named terms, in order of use, that appear in `expressions`; they become lines.
     """
-    terms = [term for _, term in shared]
-    names = sp.numbered_symbols("shared_", real=True)
-    replacements, reduced = sp.cse([*terms, *expressions], symbols=names, order="canonical")
-    named = zip((name for name, _ in shared), reduced[: len(terms)], strict=True)
-    return _in_order_of_use([*replacements, *named]), list(reduced[len(terms) :])
+    found, named, reduced = common_subexpressions(
+        [term for _, term in shared], expressions, "shared_"
+    )
+    lines = dict([*found, *zip((name for name, _ in shared), named, strict=True)])
+    uses = {n: sorted(e.free_symbols & lines.keys(), key=str) for n, e in lines.items()}
+    return [(name, lines[name]) for name in TopologicalSorter(uses).static_order()], reduced
 
 
-def _in_order_of_use(lines: Sequence[Line]) -> list[Line]:
-    """The same lines, each after all those that it uses."""
-    by_name = dict(lines)
-    ordered: dict[sp.Symbol, sp.Expr] = {}
-
-    def visit(name: sp.Symbol) -> None:
-        if name in ordered:
-            return
-        for used in sorted(by_name[name].free_symbols & by_name.keys(), key=str):
-            visit(used)
-        ordered[name] = by_name[name]
-
-    for name, _ in lines:
-        visit(name)
-    return list(ordered.items())
+def common_subexpressions(
+    terms: Iterable[sp.Expr], expressions: Iterable[sp.Expr], prefix: str
+) -> tuple[list[Line], list[sp.Expr], list[sp.Expr]]:
+    """What `terms` and `expressions` have in common, named by `prefix` and a number, and both
+    written with it.
+    """
+    terms = list(terms)
+    names = sp.numbered_symbols(prefix, real=True)
+    found, reduced = sp.cse([*terms, *expressions], symbols=names, order="canonical")
+    return list(found), list(reduced[: len(terms)]), list(reduced[len(terms) :])
