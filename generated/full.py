@@ -25,9 +25,7 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*cos(theta_tilt)**2 -
       c_y_payload*c_z_payload*m_payload*omega_tilt**2*sin(theta_tilt) -
       2*c_z_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt)
-  forcing[omega_tilt] = 9.81*c_x_payload*m_payload*cos(theta_tilt) +
-      9.81*c_z_payload*m_payload*sin(theta_tilt) -
-      J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
+  forcing[omega_tilt] = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
       J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
       J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       J_z_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
@@ -35,8 +33,10 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       c_x_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       c_x_payload*c_z_payload*m_payload*omega_pan**2*sin(theta_tilt)**2 +
       c_x_payload*c_z_payload*m_payload*omega_pan**2*cos(theta_tilt)**2 +
+      c_x_payload*gravity*m_payload*cos(theta_tilt) +
       c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
-      ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
+      c_z_payload*gravity*m_payload*sin(theta_tilt) + ratio_tilt*(K_t_tilt*i_tilt -
+      b_motor_tilt*omega_tilt*ratio_tilt)
   forcing[omega_gear_pan] = K_t_pan*N_pan*i_pan - active_pan*(d_shaft_pan*(omega_gear_pan -
       omega_pan) + k_shaft_pan*(-gap_pan*side_pan/2 + theta_gear_pan - theta_pan))
   linkage_cos_tilt = l_ground_tilt**2 + r_arm_tilt**2 - (l_min_tilt + s_start_tilt)**2
@@ -74,16 +74,16 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       2*c_z_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt)
   driving_torque_tilt = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
       ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
-  load_torque_tilt = 9.81*c_x_payload*m_payload*cos(theta_tilt) +
-      9.81*c_z_payload*m_payload*sin(theta_tilt) +
-      J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
+  load_torque_tilt = J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
       J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       J_z_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       J_z_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) - b_tilt*omega_tilt -
       c_x_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       c_x_payload*c_z_payload*m_payload*omega_pan**2*sin(theta_tilt)**2 +
       c_x_payload*c_z_payload*m_payload*omega_pan**2*cos(theta_tilt)**2 +
-      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
+      c_x_payload*gravity*m_payload*cos(theta_tilt) +
+      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
+      c_z_payload*gravity*m_payload*sin(theta_tilt) -
       follower_coupling_tilt*follower_torque_tilt/follower_inertia_tilt
   load_inertia_tilt = J_y_payload + J_y_tilt + c_x_payload**2*m_payload +
       c_z_payload**2*m_payload - follower_coupling_tilt**2/follower_inertia_tilt
@@ -107,7 +107,8 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
   i_pan' = (-K_t_pan*N_pan*omega_gear_pan - R_pan*i_pan + u_pan)/L_pan
   i_tilt' = (-K_t_tilt*omega_tilt*ratio_tilt - R_tilt*i_tilt + u_tilt)/L_tilt
 
-Operations of the state derivative: 701 as derived, 228 as written.
+Operations of the state derivative: 697 as derived, 227 as written, 170 of them at every
+call where `prepare` does the others once per parameter set.
 
 Effects:
 - rigid_bodies: thesis Eq. 3.8, Table 5.1
@@ -127,9 +128,11 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "dc784586db28ab79"
+MODEL_HASH = "c927079bf9cdf3a4"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
+# How many numbers `prepare` writes.
+PREPARED = 16
 AXES = ("pan", "tilt")
 STATE_NAMES = (
     "theta_pan",
@@ -253,6 +256,7 @@ PARAMETERS = (
     ("r_arm_tilt", "m", 0.0634133, 1e-06, 100.0, "joint to pin of the actuator"),
     ("s_start_tilt", "m", 0.0405022, 0.0, 100.0, "stroke at tilt angle zero"),
     ("s_max_tilt", "m", 0.1, 1e-06, 100.0, "longest stroke"),
+    ("gravity", "m/s^2", 9.81, 0.0, 1000.0, "gravitational acceleration"),
 )
 # Searching them: name, value at which the effect vanishes (None: any), starts,
 # period, what a frequency is locked to.
@@ -424,7 +428,7 @@ EFFECTS = (
 def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; m [4],
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
     see MODE_NAMES; dx [8] in STATE_UNITS per s.
     """
     theta_pan = x[0]
@@ -479,6 +483,7 @@ def mode_derivative(t, x, u, p, m, dx):
     l_min_tilt = p[39]
     r_arm_tilt = p[40]
     s_start_tilt = p[41]
+    gravity = p[43]
     slide_pan = m[0]
     slide_tilt = m[1]
     side_pan = m[2]
@@ -587,9 +592,9 @@ def mode_derivative(t, x, u, p, m, dx):
     driving_torque_tilt_term = (
         J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
     )
-    gravity_cos_tilt_term = 9.81 * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
-    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    gravity_m_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_m_payload
+    gravity_sin_tilt = c_z_payload * gravity_m_payload
     load_torque_tilt_term = (
         -b_tilt * omega_tilt
         + 0.5 * coriolis * omega_pan
@@ -659,11 +664,276 @@ def mode_derivative(t, x, u, p, m, dx):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def prepare(p, c):
+    """Write into c what prepared_derivative takes from the parameters alone.
+
+    p [44] in the units of PARAMETERS; c [16] of prepare.
+    """
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    m_payload = p[4]
+    J_x_payload = p[5]
+    J_y_payload = p[6]
+    J_z_payload = p[7]
+    c_x_payload = p[8]
+    c_y_payload = p[9]
+    c_z_payload = p[10]
+    gap_pan = p[21]
+    J_motor_pan = p[27]
+    N_pan = p[28]
+    lead_tilt = p[35]
+    d_screw_tilt = p[36]
+    f_screw_tilt = p[37]
+    l_ground_tilt = p[38]
+    l_min_tilt = p[39]
+    r_arm_tilt = p[40]
+    s_start_tilt = p[41]
+    gravity = p[43]
+    c[0] = 2.0 * c_x_payload * c_z_payload * m_payload
+    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
+    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
+    c[1] = (
+        J_x_payload
+        + J_x_tilt
+        - J_z_payload
+        - J_z_tilt
+        - inertia_pan_sin_sq_tilt_term
+        + inertia_pan_sin_sq_tilt_term_2
+    )
+    c_y_payload_m_payload = c_y_payload * m_payload
+    c[2] = c_y_payload_m_payload * c_z_payload
+    c[3] = c_x_payload * c_y_payload_m_payload
+    c[4] = 0.5 * gap_pan
+    c[5] = J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
+    c[6] = (
+        J_pan
+        + J_z_payload
+        + J_z_tilt
+        + (c_y_payload * c_y_payload) * m_payload
+        + inertia_pan_sin_sq_tilt_term
+    )
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lead_tilt_inverse = 1.0 / lead_tilt
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    c[8] = (
+        -lead_tilt_inverse_lowered_tilt_term
+        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+    )
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    c[11] = math.sqrt(
+        4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt)
+    )
+    c[12] = (
+        lead_tilt_inverse_lowered_tilt_term
+        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
+    )
+    gravity_m_payload = gravity * m_payload
+    c[13] = c_x_payload * gravity_m_payload
+    c[14] = c_z_payload * gravity_m_payload
+    mass_gear_pan = J_motor_pan * (N_pan * N_pan)
+    c[15] = 1.0 / mass_gear_pan
+    c[7] = lead_tilt_inverse
+    c[9] = l_ground_tilt_sq_plus_r_arm_tilt_sq
+    c[10] = linkage_cos_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def prepared_derivative(t, x, u, p, m, c, dx):
+    """Write the time derivative of the state into dx in the modes m, c being prepared.
+
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; c [16] of prepare; dx [8] in STATE_UNITS per s.
+    """
+    theta_pan = x[0]
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    theta_gear_pan = x[4]
+    omega_gear_pan = x[5]
+    i_pan = x[6]
+    i_tilt = x[7]
+    u_pan = u[0]
+    u_tilt = u[1]
+    b_pan = p[11]
+    b_tilt = p[12]
+    F_c_pan = p[13]
+    F_s_pan = p[14]
+    v_s_pan = p[15]
+    F_v_pan = p[16]
+    a_F_c_pan = p[17]
+    a_F_s_pan = p[18]
+    a_v_s_pan = p[19]
+    a_F_v_pan = p[20]
+    k_shaft_pan = p[22]
+    d_shaft_pan = p[23]
+    L_pan = p[24]
+    R_pan = p[25]
+    K_t_pan = p[26]
+    N_pan = p[28]
+    L_tilt = p[29]
+    R_tilt = p[30]
+    K_t_tilt = p[31]
+    J_motor_tilt = p[32]
+    b_motor_tilt = p[33]
+    N_tilt = p[34]
+    slide_pan = m[0]
+    slide_tilt = m[1]
+    side_pan = m[2]
+    active_pan = m[3]
+    inertia_pan_sin_cos_tilt = c[0]
+    inertia_pan_sin_sq_tilt = c[1]
+    coupling_cos_tilt = c[2]
+    coupling_sin_tilt = c[3]
+    half_gap_pan = c[4]
+    inertia_tilt = c[5]
+    inertia_pan = c[6]
+    lead_tilt_inverse = c[7]
+    lowered_tilt = c[8]
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = c[9]
+    linkage_cos_tilt = c[10]
+    linkage_sin_tilt = c[11]
+    raised_tilt = c[12]
+    gravity_cos_tilt = c[13]
+    gravity_sin_tilt = c[14]
+    inverse_mass_gear_pan = c[15]
+    dx[0] = omega_pan
+    dx[1] = omega_tilt
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = (
+        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
+    )
+    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
+    shaft_torque_pan_term = omega_gear_pan - omega_pan
+    shaft_torque_pan_term_2 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
+    shaft_torque_pan = active_pan * (
+        d_shaft_pan * shaft_torque_pan_term + k_shaft_pan * shaft_torque_pan_term_2
+    )
+    force_pan = (
+        -b_pan * omega_pan
+        - omega_tilt
+        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
+        + shaft_torque_pan
+    )
+    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan_inverse = 1.0 / mass_pan
+    load_inertia_tilt = inertia_tilt - mass_pan_inverse * (mass_pan_tilt * mass_pan_tilt)
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt = math.sqrt(
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
+    lost_lowering_tilt = (1.0 - lowered_tilt) / (
+        abs(load_inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
+    )
+    lost_raising_tilt = (raised_tilt - 1.0) / (
+        load_inertia_tilt * raised_tilt + lost_lowering_tilt_term
+    )
+    length_tilt_by_theta_tilt = (
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    ) / length_tilt
+    ratio_tilt_by_theta_tilt = (
+        -math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_term
+        / (length_tilt * length_tilt)
+        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
+    )
+    driving_torque_tilt_term = (
+        J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
+    )
+    load_torque_tilt_term = (
+        -b_tilt * omega_tilt
+        + 0.5 * coriolis * omega_pan
+        + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt
+    )
+    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
+    driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
+    load_torque_tilt = -force_pan * mass_pan_inverse * mass_pan_tilt + load_torque_tilt_term
+    carried_tilt = (
+        driving_torque_tilt * load_inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
+    )
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    transmitted_torque_tilt = driving_torque_tilt_term_2 * ratio_tilt
+    force_tilt = (
+        -driving_torque_tilt_term
+        + load_torque_tilt_term
+        - slide_tilt
+        * (
+            0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
+            + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
+        )
+        + transmitted_torque_tilt
+    )
+    mass_tilt = inertia_tilt + lost_lowering_tilt_term
+    slide_tilt_sq = slide_tilt * slide_tilt
+    inverse_determinant = 1.0 / (
+        mass_pan * mass_tilt - (mass_pan_tilt * mass_pan_tilt) * slide_tilt_sq
+    )
+    mass_pan_tilt_slide_tilt_sq = mass_pan_tilt * slide_tilt_sq
+    accel_pan = inverse_determinant * (
+        force_pan * mass_tilt - force_tilt * mass_pan_tilt_slide_tilt_sq
+    )
+    dx[2] = accel_pan
+    accel_tilt = (
+        inverse_determinant
+        * slide_tilt_sq
+        * (-force_pan * mass_pan_tilt_slide_tilt_sq + force_tilt * mass_pan)
+    )
+    dx[3] = accel_tilt
+    dx[4] = omega_gear_pan
+    coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
+    force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
+    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_decay_pan = math.exp(
+        -(omega_gear_pan * omega_gear_pan)
+        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    )
+    viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
+    force_gear_pan = (
+        K_t_pan * N_pan * i_pan
+        - shaft_torque_pan
+        - slide_pan
+        * (
+            coulomb_torque_pan
+            + omega_gear_pan * slide_pan * viscous_coefficient_pan
+            + stribeck_decay_pan * (F_s_pan * force_gear_pan_term - coulomb_torque_pan)
+        )
+    )
+    accel_gear_pan = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
+    dx[5] = accel_gear_pan
+    dx[6] = (-K_t_pan * N_pan * omega_gear_pan - R_pan * i_pan + u_pan) / L_pan
+    dx[7] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def jacobian(t, x, u, p, m, fx, fu, fp):
     """Write the non-zero derivatives of mode_derivative by state, input and parameter.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; fx [8, 8]; fu [8, 2]; fp [8, 43].
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; fx [8, 8]; fu [8, 2]; fp [8, 44].
     """
     theta_pan = x[0]
     theta_tilt = x[1]
@@ -717,6 +987,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     l_min_tilt = p[39]
     r_arm_tilt = p[40]
     s_start_tilt = p[41]
+    gravity = p[43]
     slide_pan = m[0]
     slide_tilt = m[1]
     side_pan = m[2]
@@ -737,8 +1008,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     inertia_pan = (
         J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + c_y_payload_sq * m_payload
     )
-    coupling_sin_tilt_by_c_y_payload = c_x_payload * m_payload
-    inertia_tilt_by_c_x_payload = 2.0 * coupling_sin_tilt_by_c_y_payload
+    gravity_cos_tilt_by_gravity = c_x_payload * m_payload
+    inertia_tilt_by_c_x_payload = 2.0 * gravity_cos_tilt_by_gravity
     inertia_pan_sin_cos_tilt = c_z_payload * inertia_tilt_by_c_x_payload
     c_z_payload_sq = c_z_payload * c_z_payload
     c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
@@ -861,9 +1132,9 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     force_pan_term = follower_coupling_tilt_by_theta_tilt * omega_tilt
     force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_term) + shaft_torque_pan
-    gravity_cos_tilt = 9.81 * coupling_sin_tilt_by_c_y_payload
-    coupling_cos_tilt_by_c_y_payload = c_z_payload * m_payload
-    gravity_sin_tilt = 9.81 * coupling_cos_tilt_by_c_y_payload
+    gravity_cos_tilt = gravity * gravity_cos_tilt_by_gravity
+    gravity_sin_tilt_by_gravity = c_z_payload * m_payload
+    gravity_sin_tilt = gravity * gravity_sin_tilt_by_gravity
     half_coriolis = 0.5 * coriolis
     load_torque_tilt_term = (
         -b_tilt * omega_tilt
@@ -1352,8 +1623,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + inertia_tilt_by_m_payload
     )
     follower_torque_tilt_by_m_payload = -accel_pan_by_m_payload_term
-    gravity_cos_tilt_by_m_payload = 9.81 * c_x_payload
-    gravity_sin_tilt_by_m_payload = 9.81 * c_z_payload
+    gravity_cos_tilt_by_m_payload = c_x_payload * gravity
+    gravity_sin_tilt_by_m_payload = c_z_payload * gravity
     load_torque_tilt_by_m_payload = (
         coriolis_by_m_payload * half_omega_pan
         + cos_tilt * gravity_cos_tilt_by_m_payload
@@ -1483,7 +1754,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     )
     follower_coupling_tilt_by_c_x_payload = coupling_cos_tilt_by_c_z_payload * sin_tilt
     inertia_pan_sin_sq_tilt_by_c_x_payload = -inertia_tilt_by_c_x_payload
-    inertia_tilt_by_c_z_payload = 2.0 * coupling_cos_tilt_by_c_y_payload
+    inertia_tilt_by_c_z_payload = 2.0 * gravity_sin_tilt_by_gravity
     inertia_pan_per_sin_tilt_by_c_x_payload = (
         cos_tilt * inertia_tilt_by_c_z_payload + inertia_pan_sin_sq_tilt_by_c_x_payload * sin_tilt
     )
@@ -1509,7 +1780,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + inertia_tilt_by_c_x_payload
     )
     follower_torque_tilt_by_c_x_payload = -accel_pan_by_c_x_payload_term
-    gravity_cos_tilt_by_c_x_payload = 9.81 * m_payload
+    gravity_cos_tilt_by_c_x_payload = gravity * m_payload
     load_torque_tilt_by_c_x_payload = (
         coriolis_by_c_x_payload * half_omega_pan
         + cos_tilt * gravity_cos_tilt_by_c_x_payload
@@ -1545,12 +1816,12 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + accel_pan_by_c_x_payload_term_3 * mass_pan
     )
     follower_coupling_tilt_by_c_y_payload = (
-        -cos_tilt * coupling_cos_tilt_by_c_y_payload + coupling_sin_tilt_by_c_y_payload * sin_tilt
+        -cos_tilt * gravity_sin_tilt_by_gravity + gravity_cos_tilt_by_gravity * sin_tilt
     )
     inertia_pan_by_c_y_payload = 2.0 * coupling_cos_tilt_by_c_z_payload
     accel_pan_by_c_y_payload_term = (
-        cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_c_y_payload
-        + coupling_cos_tilt_by_c_y_payload * omega_tilt_sq_sin_tilt
+        cos_tilt_omega_tilt_sq * gravity_cos_tilt_by_gravity
+        + gravity_sin_tilt_by_gravity * omega_tilt_sq_sin_tilt
     )
     accel_pan_by_c_y_payload_term_2 = (
         -accel_pan * inertia_pan_by_c_y_payload
@@ -2179,13 +2450,23 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[2, 41] = -accel_pan_by_i_tilt_term_2 * accel_pan_by_s_start_tilt_term
     fp[3, 41] = accel_pan_by_s_start_tilt_term * accel_tilt_by_i_tilt_term
     fp[7, 41] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_s_start_tilt
+    load_torque_tilt_by_gravity = (
+        cos_tilt * gravity_cos_tilt_by_gravity + gravity_sin_tilt_by_gravity * sin_tilt
+    )
+    carried_tilt_by_gravity = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_gravity
+    accel_pan_by_gravity_term = (
+        -accel_pan_by_theta_pan_term_4_slide_tilt * carried_tilt_by_gravity
+        + load_torque_tilt_by_gravity
+    )
+    fp[2, 43] = -accel_pan_by_gravity_term * accel_pan_by_i_tilt_term_2
+    fp[3, 43] = accel_pan_by_gravity_term * accel_tilt_by_i_tilt_term
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; m [4],
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
     see MODE_NAMES; g [10] in N m and rad.
     """
     theta_pan = x[0]
@@ -2227,6 +2508,7 @@ def guards(t, x, u, p, m, g):
     l_min_tilt = p[39]
     r_arm_tilt = p[40]
     s_start_tilt = p[41]
+    gravity = p[43]
     slide_tilt = m[1]
     side_pan = m[2]
     active_pan = m[3]
@@ -2340,9 +2622,9 @@ def guards(t, x, u, p, m, g):
     )
     driving_torque_tilt_term_2 = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt * ratio_tilt
     driving_torque_tilt = -driving_torque_tilt_term + driving_torque_tilt_term_2 * ratio_tilt
-    gravity_cos_tilt_term = 9.81 * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
-    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    gravity_m_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_m_payload
+    gravity_sin_tilt = c_z_payload * gravity_m_payload
     load_torque_tilt_term = (
         -b_tilt * omega_tilt
         + 0.5 * coriolis * omega_pan
@@ -2388,8 +2670,8 @@ def guards(t, x, u, p, m, g):
 def guard_jacobian(t, x, u, p, m, gx, gp):
     """Write the non-zero derivatives of guards by state and parameter.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; m [4],
-    see MODE_NAMES; gx [10, 8]; gp [10, 43].
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
+    see MODE_NAMES; gx [10, 8]; gp [10, 44].
     """
     theta_pan = x[0]
     theta_tilt = x[1]
@@ -2430,6 +2712,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     l_min_tilt = p[39]
     r_arm_tilt = p[40]
     s_start_tilt = p[41]
+    gravity = p[43]
     slide_tilt = m[1]
     side_pan = m[2]
     active_pan = m[3]
@@ -2450,8 +2733,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     inertia_pan = (
         J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + c_y_payload_sq * m_payload
     )
-    coupling_sin_tilt_by_c_y_payload = c_x_payload * m_payload
-    inertia_tilt_by_c_x_payload = 2.0 * coupling_sin_tilt_by_c_y_payload
+    gravity_cos_tilt_by_gravity = c_x_payload * m_payload
+    inertia_tilt_by_c_x_payload = 2.0 * gravity_cos_tilt_by_gravity
     inertia_pan_sin_cos_tilt = c_z_payload * inertia_tilt_by_c_x_payload
     c_z_payload_sq = c_z_payload * c_z_payload
     c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
@@ -2571,9 +2854,9 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     )
     force_pan_term = follower_coupling_tilt_by_theta_tilt * omega_tilt
     force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_term) + shaft_torque_pan
-    gravity_cos_tilt = 9.81 * coupling_sin_tilt_by_c_y_payload
-    coupling_cos_tilt_by_c_y_payload = c_z_payload * m_payload
-    gravity_sin_tilt = 9.81 * coupling_cos_tilt_by_c_y_payload
+    gravity_cos_tilt = gravity * gravity_cos_tilt_by_gravity
+    gravity_sin_tilt_by_gravity = c_z_payload * m_payload
+    gravity_sin_tilt = gravity * gravity_sin_tilt_by_gravity
     half_coriolis = 0.5 * coriolis
     load_torque_tilt_term = (
         -b_tilt * omega_tilt
@@ -3017,8 +3300,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + coupling_cos_tilt_by_m_payload * omega_tilt_sq_sin_tilt
     )
     follower_torque_tilt_by_m_payload = -follower_torque_tilt_by_m_payload_term
-    gravity_cos_tilt_by_m_payload = 9.81 * c_x_payload
-    gravity_sin_tilt_by_m_payload = 9.81 * c_z_payload
+    gravity_cos_tilt_by_m_payload = c_x_payload * gravity
+    gravity_sin_tilt_by_m_payload = c_z_payload * gravity
     load_torque_tilt_by_m_payload_term = (
         coriolis_by_m_payload * half_omega_pan
         + cos_tilt * gravity_cos_tilt_by_m_payload
@@ -3152,7 +3435,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     gp[5, 7] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_J_z_payload
     follower_coupling_tilt_by_c_x_payload = coupling_cos_tilt_by_c_z_payload * sin_tilt
     inertia_pan_sin_sq_tilt_by_c_x_payload = -inertia_tilt_by_c_x_payload
-    inertia_tilt_by_c_z_payload = 2.0 * coupling_cos_tilt_by_c_y_payload
+    inertia_tilt_by_c_z_payload = 2.0 * gravity_sin_tilt_by_gravity
     inertia_pan_per_sin_tilt_by_c_x_payload = (
         cos_tilt * inertia_tilt_by_c_z_payload + inertia_pan_sin_sq_tilt_by_c_x_payload * sin_tilt
     )
@@ -3173,7 +3456,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + cos_tilt_omega_tilt_sq * coupling_cos_tilt_by_c_z_payload
     )
     follower_torque_tilt_by_c_x_payload = -follower_torque_tilt_by_c_x_payload_term
-    gravity_cos_tilt_by_c_x_payload = 9.81 * m_payload
+    gravity_cos_tilt_by_c_x_payload = gravity * m_payload
     load_torque_tilt_by_c_x_payload = (
         coriolis_by_c_x_payload * half_omega_pan
         + cos_tilt * gravity_cos_tilt_by_c_x_payload
@@ -3215,7 +3498,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     gp[4, 8] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_c_x_payload
     gp[5, 8] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_c_x_payload
     follower_coupling_tilt_by_c_y_payload = (
-        -cos_tilt * coupling_cos_tilt_by_c_y_payload + coupling_sin_tilt_by_c_y_payload * sin_tilt
+        -cos_tilt * gravity_sin_tilt_by_gravity + gravity_cos_tilt_by_gravity * sin_tilt
     )
     inertia_pan_by_c_y_payload = 2.0 * coupling_cos_tilt_by_c_z_payload
     load_inertia_tilt_by_c_y_payload = (
@@ -3223,8 +3506,8 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + inertia_pan_by_c_y_payload * load_inertia_tilt_by_theta_tilt_term_2
     )
     follower_torque_tilt_by_c_y_payload_term = (
-        cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_c_y_payload
-        + coupling_cos_tilt_by_c_y_payload * omega_tilt_sq_sin_tilt
+        cos_tilt_omega_tilt_sq * gravity_cos_tilt_by_gravity
+        + gravity_sin_tilt_by_gravity * omega_tilt_sq_sin_tilt
     )
     follower_torque_tilt_by_c_y_payload = -follower_torque_tilt_by_c_y_payload_term
     load_torque_tilt_by_c_y_payload = (
@@ -3850,13 +4133,24 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
             - ratio_tilt_by_s_start_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
         )
     )
+    load_torque_tilt_by_gravity = (
+        cos_tilt * gravity_cos_tilt_by_gravity + gravity_sin_tilt_by_gravity * sin_tilt
+    )
+    carried_tilt_by_gravity = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_gravity
+    gp[3, 43] = (
+        holding_tilt_by_i_tilt_term
+        * (-carried_tilt_by_gravity * holding_tilt_by_theta_tilt_term + load_torque_tilt_by_gravity)
+        + load_torque_tilt_by_gravity
+    )
+    gp[4, 43] = forward_tilt_by_theta_pan_term_4 * load_torque_tilt_by_gravity
+    gp[5, 43] = backward_tilt_by_theta_pan_term * load_torque_tilt_by_gravity
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; y [4] in
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; y [4] in
     OUTPUT_UNITS.
     """
     theta_pan = x[0]
@@ -3873,8 +4167,8 @@ def outputs(t, x, u, p, y):
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; yx [4,
-    8]; yp [4, 43].
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; yx [4,
+    8]; yp [4, 44].
     """
     yx[0, 0] = 1.0
     yx[1, 1] = 1.0
@@ -3886,7 +4180,7 @@ def output_jacobian(t, x, u, p, yx, yp):
 def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
-    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; m [4],
+    t in s; x [8] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
     see MODE_NAMES; e [3] in J, W and W.
     """
     theta_pan = x[0]
@@ -3940,6 +4234,7 @@ def energy(t, x, u, p, m, e):
     l_min_tilt = p[39]
     r_arm_tilt = p[40]
     s_start_tilt = p[41]
+    gravity = p[43]
     slide_pan = m[0]
     slide_tilt = m[1]
     side_pan = m[2]
@@ -3969,7 +4264,7 @@ def energy(t, x, u, p, m, e):
     omega_pan_omega_tilt = omega_pan * omega_tilt
     half_gap_pan = 0.5 * gap_pan
     stored_term_6 = -half_gap_pan * side_pan + theta_gear_pan - theta_pan
-    stored_term_7 = 9.81 * m_payload
+    gravity_m_payload = gravity * m_payload
     omega_pan_sq = omega_pan * omega_pan
     m_payload_omega_pan_sq = m_payload * omega_pan_sq
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
@@ -4013,10 +4308,10 @@ def energy(t, x, u, p, m, e):
         + J_z_tilt_cos_tilt_sq * half_omega_pan_sq
         + 0.5 * L_pan * i_pan_sq
         + 0.5 * L_tilt * i_tilt_sq
-        - c_x_payload_sin_tilt * stored_term_7
+        - c_x_payload_sin_tilt * gravity_m_payload
         + c_x_payload_sq_m_payload * half_omega_tilt_sq
         + c_x_payload_sq_m_payload_cos_tilt_sq * half_omega_pan_sq
-        + c_z_payload_cos_tilt * stored_term_7
+        + c_z_payload_cos_tilt * gravity_m_payload
         + cos_tilt_sq_stored_term_3 * half_omega_pan_sq
         + half_omega_pan_sq * sin_tilt_sq_stored_term_3
         + half_omega_pan_sq * sin_tilt_sq_stored_term_4
@@ -4120,9 +4415,9 @@ def energy(t, x, u, p, m, e):
         - J_z_payload * cos_tilt_sin_tilt_omega_pan_sq
         - J_z_tilt * cos_tilt_sin_tilt_omega_pan_sq
         - b_tilt * omega_tilt
-        + c_x_payload_cos_tilt * stored_term_7
+        + c_x_payload_cos_tilt * gravity_m_payload
         - c_x_payload_sq_m_payload * cos_tilt_sin_tilt_omega_pan_sq
-        + c_z_payload_sin_tilt * stored_term_7
+        + c_z_payload_sin_tilt * gravity_m_payload
         + cos_tilt_sin_tilt_omega_pan_sq * stored_term_4
         + cos_tilt_sq * load_torque_tilt_term
         - follower_coupling_tilt * follower_inertia_tilt_inverse * follower_torque_tilt
@@ -4172,7 +4467,7 @@ def energy(t, x, u, p, m, e):
 def equation_error(t, x, u, p, m, r):
     """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
 
-    t in s; x [11] in STATE_UNITS; u [2] in INPUT_UNITS; p [43] in the units of PARAMETERS; m [4],
+    t in s; x [11] in STATE_UNITS; u [2] in INPUT_UNITS; p [44] in the units of PARAMETERS; m [4],
     see MODE_NAMES; r [5] in N m, then STATE_UNITS per s.
     """
     theta_pan = x[0]
@@ -4230,6 +4525,7 @@ def equation_error(t, x, u, p, m, r):
     l_min_tilt = p[39]
     r_arm_tilt = p[40]
     s_start_tilt = p[41]
+    gravity = p[43]
     slide_pan = m[0]
     slide_tilt = m[1]
     side_pan = m[2]
@@ -4337,9 +4633,9 @@ def equation_error(t, x, u, p, m, r):
     driving_torque_tilt_term = (
         J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
     )
-    gravity_cos_tilt_term = 9.81 * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
-    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    gravity_m_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_m_payload
+    gravity_sin_tilt = c_z_payload * gravity_m_payload
     load_torque_tilt_term = (
         -b_tilt * omega_tilt
         + 0.5 * coriolis * omega_pan
@@ -4395,7 +4691,7 @@ def equation_error(t, x, u, p, m, r):
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
-    p [43] in the units of PARAMETERS; bounds [2, 2] in STATE_UNITS: lower, upper.
+    p [44] in the units of PARAMETERS; bounds [2, 2] in STATE_UNITS: lower, upper.
     """
     l_ground_tilt = p[38]
     l_min_tilt = p[39]
@@ -4437,7 +4733,7 @@ def domain(p, bounds):
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
-    p [43] in the units of PARAMETERS; margin [4] in units of what is compared.
+    p [44] in the units of PARAMETERS; margin [4] in units of what is compared.
     """
     F_c_pan = p[13]
     F_s_pan = p[14]
@@ -4492,4 +4788,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 fa92e9af154021d06c4c6a77d17558da94b2a94206cc7fe95a3b84a254d91c82
+# END sha256 50e59b04f45919bc4f3f9f517606367dd50cf4bd68f29198a624491621896984

@@ -21,18 +21,19 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*cos(theta_tilt)**2 -
       c_y_payload*c_z_payload*m_payload*omega_tilt**2*sin(theta_tilt) -
       2*c_z_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) + tau_pan
-  forcing[omega_tilt] = 9.81*c_x_payload*m_payload*cos(theta_tilt) +
-      9.81*c_z_payload*m_payload*sin(theta_tilt) +
-      J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
+  forcing[omega_tilt] = J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
       J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       J_z_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       J_z_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) - b_tilt*omega_tilt -
       c_x_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
       c_x_payload*c_z_payload*m_payload*omega_pan**2*sin(theta_tilt)**2 +
       c_x_payload*c_z_payload*m_payload*omega_pan**2*cos(theta_tilt)**2 +
-      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) + tau_tilt
+      c_x_payload*gravity*m_payload*cos(theta_tilt) +
+      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
+      c_z_payload*gravity*m_payload*sin(theta_tilt) + tau_tilt
 
-Operations of the state derivative: 238 as derived, 72 as written.
+Operations of the state derivative: 236 as derived, 71 as written, 44 of them at every
+call where `prepare` does the others once per parameter set.
 
 Effects:
 - rigid_bodies: thesis Eq. 3.8, Table 5.1
@@ -45,9 +46,11 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "13f36cca963fe1a3"
+MODEL_HASH = "c5e7ce6739319ae6"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
+# How many numbers `prepare` writes.
+PREPARED = 8
 AXES = ("pan", "tilt")
 STATE_NAMES = ("theta_pan", "theta_tilt", "omega_pan", "omega_tilt")
 STATE_UNITS = ("rad", "rad", "rad/s", "rad/s")
@@ -88,6 +91,7 @@ PARAMETERS = (
     ("c_z_payload", "m", 0.0, -10.0, 10.0, "z of the payload's centre of mass"),
     ("b_pan", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the pan joint"),
     ("b_tilt", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the tilt joint"),
+    ("gravity", "m/s^2", 9.81, 0.0, 1000.0, "gravitational acceleration"),
 )
 # Searching them: name, value at which the effect vanishes (None: any), starts,
 # period, what a frequency is locked to.
@@ -150,7 +154,7 @@ EFFECTS = (
 def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; m [0],
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
     see MODE_NAMES; dx [4] in STATE_UNITS per s.
     """
     theta_tilt = x[1]
@@ -171,6 +175,7 @@ def mode_derivative(t, x, u, p, m, dx):
     c_z_payload = p[10]
     b_pan = p[11]
     b_tilt = p[12]
+    gravity = p[13]
     dx[0] = omega_pan
     dx[1] = omega_tilt
     inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
@@ -199,9 +204,9 @@ def mode_derivative(t, x, u, p, m, dx):
         * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
         + tau_pan
     )
-    gravity_cos_tilt_term = 9.81 * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
-    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    gravity_m_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_m_payload
+    gravity_sin_tilt = c_z_payload * gravity_m_payload
     force_tilt = (
         -b_tilt * omega_tilt
         + 0.5 * coriolis * omega_pan
@@ -229,11 +234,108 @@ def mode_derivative(t, x, u, p, m, dx):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def prepare(p, c):
+    """Write into c what prepared_derivative takes from the parameters alone.
+
+    p [14] in the units of PARAMETERS; c [8] of prepare.
+    """
+    J_pan = p[0]
+    J_x_tilt = p[1]
+    J_y_tilt = p[2]
+    J_z_tilt = p[3]
+    m_payload = p[4]
+    J_x_payload = p[5]
+    J_y_payload = p[6]
+    J_z_payload = p[7]
+    c_x_payload = p[8]
+    c_y_payload = p[9]
+    c_z_payload = p[10]
+    gravity = p[13]
+    c[0] = 2.0 * c_x_payload * c_z_payload * m_payload
+    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
+    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
+    c[1] = (
+        J_x_payload
+        + J_x_tilt
+        - J_z_payload
+        - J_z_tilt
+        - inertia_pan_sin_sq_tilt_term
+        + inertia_pan_sin_sq_tilt_term_2
+    )
+    c_y_payload_m_payload = c_y_payload * m_payload
+    c[2] = c_y_payload_m_payload * c_z_payload
+    c[3] = c_x_payload * c_y_payload_m_payload
+    gravity_m_payload = gravity * m_payload
+    c[4] = c_x_payload * gravity_m_payload
+    c[5] = c_z_payload * gravity_m_payload
+    c[6] = J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
+    c[7] = (
+        J_pan
+        + J_z_payload
+        + J_z_tilt
+        + (c_y_payload * c_y_payload) * m_payload
+        + inertia_pan_sin_sq_tilt_term
+    )
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def prepared_derivative(t, x, u, p, m, c, dx):
+    """Write the time derivative of the state into dx in the modes m, c being prepared.
+
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; c [8] of prepare; dx [4] in STATE_UNITS per s.
+    """
+    theta_tilt = x[1]
+    omega_pan = x[2]
+    omega_tilt = x[3]
+    tau_pan = u[0]
+    tau_tilt = u[1]
+    b_pan = p[11]
+    b_tilt = p[12]
+    inertia_pan_sin_cos_tilt = c[0]
+    inertia_pan_sin_sq_tilt = c[1]
+    coupling_cos_tilt = c[2]
+    coupling_sin_tilt = c[3]
+    gravity_cos_tilt = c[4]
+    gravity_sin_tilt = c[5]
+    inertia_tilt = c[6]
+    inertia_pan = c[7]
+    dx[0] = omega_pan
+    dx[1] = omega_tilt
+    cos_tilt = math.cos(theta_tilt)
+    sin_tilt = math.sin(theta_tilt)
+    inertia_pan_per_sin_tilt = (
+        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
+    )
+    coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
+    force_pan = (
+        -b_pan * omega_pan
+        - omega_tilt
+        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
+        + tau_pan
+    )
+    force_tilt = (
+        -b_tilt * omega_tilt
+        + 0.5 * coriolis * omega_pan
+        + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt
+        + tau_tilt
+    )
+    mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
+    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
+    inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
+    accel_pan = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
+    dx[2] = accel_pan
+    accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
+    dx[3] = accel_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def jacobian(t, x, u, p, m, fx, fu, fp):
     """Write the non-zero derivatives of mode_derivative by state, input and parameter.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 13].
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 14].
     """
     theta_tilt = x[1]
     omega_pan = x[2]
@@ -253,6 +355,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     c_z_payload = p[10]
     b_pan = p[11]
     b_tilt = p[12]
+    gravity = p[13]
     c_x_payload_sq = c_x_payload * c_x_payload
     c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
     c_z_payload_sq = c_z_payload * c_z_payload
@@ -262,8 +365,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     inertia_pan = (
         J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + c_y_payload_sq * m_payload
     )
-    coupling_sin_tilt_by_c_y_payload = c_x_payload * m_payload
-    inertia_tilt_by_c_x_payload = 2.0 * coupling_sin_tilt_by_c_y_payload
+    gravity_cos_tilt_by_gravity = c_x_payload * m_payload
+    inertia_tilt_by_c_x_payload = 2.0 * gravity_cos_tilt_by_gravity
     inertia_pan_sin_cos_tilt = c_z_payload * inertia_tilt_by_c_x_payload
     inertia_pan_sin_sq_tilt = (
         J_x_payload
@@ -293,9 +396,9 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     force_pan_term = cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt
     force_pan_term_omega_tilt = force_pan_term * omega_tilt
     force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_term_omega_tilt) + tau_pan
-    gravity_cos_tilt = 9.81 * coupling_sin_tilt_by_c_y_payload
-    coupling_cos_tilt_by_c_y_payload = c_z_payload * m_payload
-    gravity_sin_tilt = 9.81 * coupling_cos_tilt_by_c_y_payload
+    gravity_cos_tilt = gravity * gravity_cos_tilt_by_gravity
+    gravity_sin_tilt_by_gravity = c_z_payload * m_payload
+    gravity_sin_tilt = gravity * gravity_sin_tilt_by_gravity
     half_coriolis = 0.5 * coriolis
     force_tilt = (
         -b_tilt * omega_tilt
@@ -407,8 +510,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_m_payload
         - inertia_pan_sin_cos_tilt_by_m_payload * omega_pan
     )
-    gravity_cos_tilt_by_m_payload = 9.81 * c_x_payload
-    gravity_sin_tilt_by_m_payload = 9.81 * c_z_payload
+    gravity_cos_tilt_by_m_payload = c_x_payload * gravity
+    gravity_sin_tilt_by_m_payload = c_z_payload * gravity
     inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
     coupling_cos_tilt_by_m_payload = c_y_payload * c_z_payload
     accel_pan_by_m_payload_term = (
@@ -472,7 +575,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         + coriolis_by_J_z_payload_half_omega_pan * mass_pan
     )
     inertia_pan_sin_sq_tilt_by_c_x_payload = -inertia_tilt_by_c_x_payload
-    inertia_tilt_by_c_z_payload = 2.0 * coupling_cos_tilt_by_c_y_payload
+    inertia_tilt_by_c_z_payload = 2.0 * gravity_sin_tilt_by_gravity
     inertia_pan_per_sin_tilt_by_c_x_payload = (
         cos_tilt * inertia_tilt_by_c_z_payload + inertia_pan_sin_sq_tilt_by_c_x_payload * sin_tilt
     )
@@ -480,7 +583,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_x_payload
         - inertia_tilt_by_c_z_payload * omega_pan
     )
-    gravity_cos_tilt_by_c_x_payload = 9.81 * m_payload
+    gravity_cos_tilt_by_c_x_payload = gravity * m_payload
     accel_pan_by_c_x_payload_term = (
         -accel_pan_sin_tilt * coupling_cos_tilt_by_c_z_payload
         - accel_tilt * inertia_tilt_by_c_x_payload
@@ -502,15 +605,15 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         accel_pan_by_c_x_payload_term * mass_pan - accel_pan_by_c_x_payload_term_2 * mass_pan_tilt
     )
     accel_pan_by_c_y_payload_term = (
-        -cos_tilt * coupling_cos_tilt_by_c_y_payload + coupling_sin_tilt_by_c_y_payload * sin_tilt
+        -cos_tilt * gravity_sin_tilt_by_gravity + gravity_cos_tilt_by_gravity * sin_tilt
     )
     accel_pan_accel_pan_by_c_y_payload_term = accel_pan * accel_pan_by_c_y_payload_term
     inertia_pan_by_c_y_payload = 2.0 * coupling_cos_tilt_by_c_z_payload
     accel_pan_by_c_y_payload_term_2 = (
         -accel_pan * inertia_pan_by_c_y_payload
         - accel_pan_by_c_y_payload_term * accel_tilt
-        - cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_c_y_payload
-        - coupling_cos_tilt_by_c_y_payload * omega_tilt_sq_sin_tilt
+        - cos_tilt_omega_tilt_sq * gravity_cos_tilt_by_gravity
+        - gravity_sin_tilt_by_gravity * omega_tilt_sq_sin_tilt
     )
     fp[2, 9] = inverse_determinant * (
         accel_pan_accel_pan_by_c_y_payload_term * mass_pan_tilt
@@ -550,13 +653,18 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[3, 11] = inverse_determinant_mass_pan_tilt * omega_pan
     fp[2, 12] = inverse_determinant_mass_pan_tilt * omega_tilt
     fp[3, 12] = -inverse_determinant_mass_pan * omega_tilt
+    accel_pan_by_gravity_term = (
+        cos_tilt * gravity_cos_tilt_by_gravity + gravity_sin_tilt_by_gravity * sin_tilt
+    )
+    fp[2, 13] = -accel_pan_by_gravity_term * inverse_determinant_mass_pan_tilt
+    fp[3, 13] = accel_pan_by_gravity_term * inverse_determinant_mass_pan
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; m [0],
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
     see MODE_NAMES; g [0] in N m and rad.
     """
     return
@@ -566,8 +674,8 @@ def guards(t, x, u, p, m, g):
 def guard_jacobian(t, x, u, p, m, gx, gp):
     """Write the non-zero derivatives of guards by state and parameter.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; gx [0, 4]; gp [0, 13].
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
+    see MODE_NAMES; gx [0, 4]; gp [0, 14].
     """
     return
 
@@ -576,7 +684,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; y [2] in
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; y [2] in
     OUTPUT_UNITS.
     """
     theta_pan = x[0]
@@ -589,8 +697,8 @@ def outputs(t, x, u, p, y):
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; yx [2,
-    4]; yp [2, 13].
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; yx [2,
+    4]; yp [2, 14].
     """
     yx[0, 0] = 1.0
     yx[1, 1] = 1.0
@@ -600,7 +708,7 @@ def output_jacobian(t, x, u, p, yx, yp):
 def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; m [0],
+    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
     see MODE_NAMES; e [3] in J, W and W.
     """
     theta_tilt = x[1]
@@ -621,44 +729,45 @@ def energy(t, x, u, p, m, e):
     c_z_payload = p[10]
     b_pan = p[11]
     b_tilt = p[12]
+    gravity = p[13]
     omega_pan_sq = omega_pan * omega_pan
     half_omega_pan_sq = 0.5 * omega_pan_sq
     omega_tilt_sq = omega_tilt * omega_tilt
     half_omega_tilt_sq = 0.5 * omega_tilt_sq
-    stored_term = 9.81 * m_payload
-    sin_tilt = math.sin(theta_tilt)
-    c_x_payload_sin_tilt = c_x_payload * sin_tilt
+    gravity_m_payload = gravity * m_payload
     cos_tilt = math.cos(theta_tilt)
     c_z_payload_cos_tilt = c_z_payload * cos_tilt
+    sin_tilt = math.sin(theta_tilt)
+    c_x_payload_sin_tilt = c_x_payload * sin_tilt
     c_x_payload_sin_tilt_m_payload = c_x_payload_sin_tilt * m_payload
     c_y_payload_omega_pan_omega_tilt = c_y_payload * omega_pan * omega_tilt
     c_x_payload_sq = c_x_payload * c_x_payload
     half_omega_tilt_sq_m_payload = half_omega_tilt_sq * m_payload
     c_z_payload_sq = c_z_payload * c_z_payload
-    stored_term_2 = half_omega_pan_sq * (sin_tilt * sin_tilt)
-    stored_term_3 = (cos_tilt * cos_tilt) * half_omega_pan_sq
-    m_payload_stored_term_3 = m_payload * stored_term_3
-    c_y_payload_sq = c_y_payload * c_y_payload
+    stored_term = half_omega_pan_sq * (sin_tilt * sin_tilt)
+    stored_term_2 = (cos_tilt * cos_tilt) * half_omega_pan_sq
     m_payload_stored_term_2 = m_payload * stored_term_2
+    c_y_payload_sq = c_y_payload * c_y_payload
+    m_payload_stored_term = m_payload * stored_term
     e[0] = (
         J_pan * half_omega_pan_sq
-        + J_x_payload * stored_term_2
-        + J_x_tilt * stored_term_2
+        + J_x_payload * stored_term
+        + J_x_tilt * stored_term
         + J_y_payload * half_omega_tilt_sq
         + J_y_tilt * half_omega_tilt_sq
-        + J_z_payload * stored_term_3
-        + J_z_tilt * stored_term_3
-        - c_x_payload_sin_tilt * stored_term
+        + J_z_payload * stored_term_2
+        + J_z_tilt * stored_term_2
+        - c_x_payload_sin_tilt * gravity_m_payload
         + c_x_payload_sin_tilt_m_payload * c_y_payload_omega_pan_omega_tilt
         + c_x_payload_sin_tilt_m_payload * c_z_payload_cos_tilt * omega_pan_sq
         + c_x_payload_sq * half_omega_tilt_sq_m_payload
-        + c_x_payload_sq * m_payload_stored_term_3
+        + c_x_payload_sq * m_payload_stored_term_2
         - c_y_payload_omega_pan_omega_tilt * c_z_payload_cos_tilt * m_payload
+        + c_y_payload_sq * m_payload_stored_term
         + c_y_payload_sq * m_payload_stored_term_2
-        + c_y_payload_sq * m_payload_stored_term_3
-        + c_z_payload_cos_tilt * stored_term
+        + c_z_payload_cos_tilt * gravity_m_payload
         + c_z_payload_sq * half_omega_tilt_sq_m_payload
-        + c_z_payload_sq * m_payload_stored_term_2
+        + c_z_payload_sq * m_payload_stored_term
     )
     e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
     e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
@@ -668,7 +777,7 @@ def energy(t, x, u, p, m, e):
 def equation_error(t, x, u, p, m, r):
     """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
 
-    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [13] in the units of PARAMETERS; m [0],
+    t in s; x [6] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
     see MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
     """
     theta_tilt = x[1]
@@ -691,6 +800,7 @@ def equation_error(t, x, u, p, m, r):
     c_z_payload = p[10]
     b_pan = p[11]
     b_tilt = p[12]
+    gravity = p[13]
     inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
     inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
     inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
@@ -727,9 +837,9 @@ def equation_error(t, x, u, p, m, r):
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
     r[0] = accel_pan * mass_pan + accel_tilt * mass_pan_tilt - force_pan
-    gravity_cos_tilt_term = 9.81 * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
-    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    gravity_m_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_m_payload
+    gravity_sin_tilt = c_z_payload * gravity_m_payload
     force_tilt = (
         -b_tilt * omega_tilt
         + 0.5 * coriolis * omega_pan
@@ -747,7 +857,7 @@ def equation_error(t, x, u, p, m, r):
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
-    p [13] in the units of PARAMETERS; bounds [0, 2] in STATE_UNITS: lower, upper.
+    p [14] in the units of PARAMETERS; bounds [0, 2] in STATE_UNITS: lower, upper.
     """
     return
 
@@ -756,7 +866,7 @@ def domain(p, bounds):
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
-    p [13] in the units of PARAMETERS; margin [0] in units of what is compared.
+    p [14] in the units of PARAMETERS; margin [0] in units of what is compared.
     """
     return
 
@@ -773,4 +883,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 29fc85921edcf7f61218b9646055eaca0157590c65b50e6928678da3ec7950a3
+# END sha256 3ce23299fa17549189efc742c5cc5d3dd0ba956e9de7d9dabc643c9f41d72360

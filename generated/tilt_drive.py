@@ -4,10 +4,10 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
 
   M[0, 0] = J_motor_tilt*ratio_tilt**2 + J_y_payload + c_x_payload**2*m_payload +
       c_z_payload**2*m_payload
-  forcing[omega_tilt] = 9.81*c_x_payload*m_payload*cos(theta_tilt) +
-      9.81*c_z_payload*m_payload*sin(theta_tilt) -
-      J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt - b_tilt*omega_tilt +
-      ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
+  forcing[omega_tilt] = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt -
+      b_tilt*omega_tilt + c_x_payload*gravity*m_payload*cos(theta_tilt) +
+      c_z_payload*gravity*m_payload*sin(theta_tilt) + ratio_tilt*(K_t_tilt*i_tilt -
+      b_motor_tilt*omega_tilt*ratio_tilt)
   linkage_cos_tilt = l_ground_tilt**2 + r_arm_tilt**2 - (l_min_tilt + s_start_tilt)**2
   linkage_sin_tilt = sqrt(4*l_ground_tilt**2*r_arm_tilt**2 - linkage_cos_tilt**2)
   length_tilt = sqrt(l_ground_tilt**2 - linkage_cos_tilt*cos(theta_tilt) -
@@ -23,8 +23,8 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       linkage_sin_tilt*cos(theta_tilt))/(lead_tilt*length_tilt**2)
   driving_torque_tilt = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
       ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
-  load_torque_tilt = 9.81*c_x_payload*m_payload*cos(theta_tilt) +
-      9.81*c_z_payload*m_payload*sin(theta_tilt) - b_tilt*omega_tilt
+  load_torque_tilt = -b_tilt*omega_tilt + c_x_payload*gravity*m_payload*cos(theta_tilt) +
+      c_z_payload*gravity*m_payload*sin(theta_tilt)
   load_inertia_tilt = J_y_payload + c_x_payload**2*m_payload + c_z_payload**2*m_payload
   raised_tilt = pi*d_screw_tilt*(pi*d_screw_tilt*f_screw_tilt +
       lead_tilt)/(lead_tilt*(pi*d_screw_tilt - f_screw_tilt*lead_tilt))
@@ -41,7 +41,8 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       lost_raising_tilt)*Abs(carried_tilt*slide_tilt)/2
   i_tilt' = (-K_t_tilt*omega_tilt*ratio_tilt - R_tilt*i_tilt + u_tilt)/L_tilt
 
-Operations of the state derivative: 197 as derived, 120 as written.
+Operations of the state derivative: 193 as derived, 119 as written, 84 of them at every
+call where `prepare` does the others once per parameter set.
 
 Effects:
 - payload: thesis section 3.2.2, Table 5.3 with erratum 18
@@ -54,9 +55,11 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "ffbed8c7dcf38f8a"
+MODEL_HASH = "aaff3a614384a4f9"
 NAME = "tilt_drive"
 TITLE = "Tilt drive of the thesis"
+# How many numbers `prepare` writes.
+PREPARED = 9
 AXES = ("tilt",)
 STATE_NAMES = ("theta_tilt", "omega_tilt", "i_tilt")
 STATE_UNITS = ("rad", "rad/s", "A")
@@ -118,6 +121,7 @@ PARAMETERS = (
     ("r_arm_tilt", "m", 0.0634133, 1e-06, 100.0, "joint to pin of the actuator"),
     ("s_start_tilt", "m", 0.0405022, 0.0, 100.0, "stroke at tilt angle zero"),
     ("s_max_tilt", "m", 0.1, 1e-06, 100.0, "longest stroke"),
+    ("gravity", "m/s^2", 9.81, 0.0, 1000.0, "gravitational acceleration"),
 )
 # Searching them: name, value at which the effect vanishes (None: any), starts,
 # period, what a frequency is locked to.
@@ -177,7 +181,7 @@ EFFECTS = (
 def mode_derivative(t, x, u, p, m, dx):
     """Write the time derivative of the state into dx in the modes m.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; m [1],
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
     see MODE_NAMES; dx [3] in STATE_UNITS per s.
     """
     theta_tilt = x[0]
@@ -202,11 +206,12 @@ def mode_derivative(t, x, u, p, m, dx):
     l_min_tilt = p[15]
     r_arm_tilt = p[16]
     s_start_tilt = p[17]
+    gravity = p[19]
     slide_tilt = m[0]
     dx[0] = omega_tilt
-    gravity_cos_tilt_term = 9.81 * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
-    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    gravity_m_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_m_payload
+    gravity_sin_tilt = c_z_payload * gravity_m_payload
     inertia_tilt = (
         J_y_payload
         + (c_x_payload * c_x_payload) * m_payload
@@ -297,11 +302,153 @@ def mode_derivative(t, x, u, p, m, dx):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
+def prepare(p, c):
+    """Write into c what prepared_derivative takes from the parameters alone.
+
+    p [20] in the units of PARAMETERS; c [9] of prepare.
+    """
+    m_payload = p[0]
+    J_y_payload = p[1]
+    c_x_payload = p[2]
+    c_z_payload = p[3]
+    lead_tilt = p[11]
+    d_screw_tilt = p[12]
+    f_screw_tilt = p[13]
+    l_ground_tilt = p[14]
+    l_min_tilt = p[15]
+    r_arm_tilt = p[16]
+    s_start_tilt = p[17]
+    gravity = p[19]
+    gravity_m_payload = gravity * m_payload
+    c[0] = c_x_payload * gravity_m_payload
+    c[1] = c_z_payload * gravity_m_payload
+    c[2] = (
+        J_y_payload
+        + (c_x_payload * c_x_payload) * m_payload
+        + (c_z_payload * c_z_payload) * m_payload
+    )
+    lowered_tilt_term = math.pi * d_screw_tilt
+    f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
+    f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
+    lead_tilt_inverse = 1.0 / lead_tilt
+    lead_tilt_inverse_lowered_tilt_term = lead_tilt_inverse * lowered_tilt_term
+    c[4] = (
+        -lead_tilt_inverse_lowered_tilt_term
+        * (f_screw_tilt_lowered_tilt_term - lead_tilt)
+        / (f_screw_tilt_lead_tilt + lowered_tilt_term)
+    )
+    l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
+    r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
+    linkage_cos_tilt = l_ground_tilt_sq_plus_r_arm_tilt_sq - (
+        (l_min_tilt + s_start_tilt) * (l_min_tilt + s_start_tilt)
+    )
+    c[7] = math.sqrt(4.0 * l_ground_tilt_sq * r_arm_tilt_sq - (linkage_cos_tilt * linkage_cos_tilt))
+    c[8] = (
+        lead_tilt_inverse_lowered_tilt_term
+        * (f_screw_tilt_lowered_tilt_term + lead_tilt)
+        / (-f_screw_tilt_lead_tilt + lowered_tilt_term)
+    )
+    c[3] = lead_tilt_inverse
+    c[5] = l_ground_tilt_sq_plus_r_arm_tilt_sq
+    c[6] = linkage_cos_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def prepared_derivative(t, x, u, p, m, c, dx):
+    """Write the time derivative of the state into dx in the modes m, c being prepared.
+
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
+    see MODE_NAMES; c [9] of prepare; dx [3] in STATE_UNITS per s.
+    """
+    theta_tilt = x[0]
+    omega_tilt = x[1]
+    i_tilt = x[2]
+    u_tilt = u[0]
+    b_tilt = p[4]
+    L_tilt = p[5]
+    R_tilt = p[6]
+    K_t_tilt = p[7]
+    J_motor_tilt = p[8]
+    b_motor_tilt = p[9]
+    N_tilt = p[10]
+    slide_tilt = m[0]
+    gravity_cos_tilt = c[0]
+    gravity_sin_tilt = c[1]
+    inertia_tilt = c[2]
+    lead_tilt_inverse = c[3]
+    lowered_tilt = c[4]
+    l_ground_tilt_sq_plus_r_arm_tilt_sq = c[5]
+    linkage_cos_tilt = c[6]
+    linkage_sin_tilt = c[7]
+    raised_tilt = c[8]
+    dx[0] = omega_tilt
+    sin_tilt = math.sin(theta_tilt)
+    linkage_cos_tilt_sin_tilt = linkage_cos_tilt * sin_tilt
+    cos_tilt = math.cos(theta_tilt)
+    cos_tilt_linkage_sin_tilt = cos_tilt * linkage_sin_tilt
+    ratio_tilt_term = -cos_tilt_linkage_sin_tilt + linkage_cos_tilt_sin_tilt
+    cos_tilt_linkage_cos_tilt = cos_tilt * linkage_cos_tilt
+    linkage_sin_tilt_sin_tilt = linkage_sin_tilt * sin_tilt
+    length_tilt = math.sqrt(
+        -cos_tilt_linkage_cos_tilt + l_ground_tilt_sq_plus_r_arm_tilt_sq - linkage_sin_tilt_sin_tilt
+    )
+    ratio_tilt_term_2 = math.pi * N_tilt * lead_tilt_inverse / length_tilt
+    ratio_tilt = ratio_tilt_term * ratio_tilt_term_2
+    lost_lowering_tilt_term = J_motor_tilt * (ratio_tilt * ratio_tilt)
+    lost_lowering_tilt = (1.0 - lowered_tilt) / (
+        abs(inertia_tilt * lowered_tilt + lost_lowering_tilt_term)
+    )
+    lost_raising_tilt = (raised_tilt - 1.0) / (inertia_tilt * raised_tilt + lost_lowering_tilt_term)
+    length_tilt_by_theta_tilt = (
+        -0.5 * cos_tilt_linkage_sin_tilt + 0.5 * linkage_cos_tilt_sin_tilt
+    ) / length_tilt
+    ratio_tilt_by_theta_tilt = (
+        -math.pi
+        * N_tilt
+        * lead_tilt_inverse
+        * length_tilt_by_theta_tilt
+        * ratio_tilt_term
+        / (length_tilt * length_tilt)
+        + ratio_tilt_term_2 * (cos_tilt_linkage_cos_tilt + linkage_sin_tilt_sin_tilt)
+    )
+    omega_tilt_ratio_tilt = omega_tilt * ratio_tilt
+    driving_torque_tilt_term = K_t_tilt * i_tilt - b_motor_tilt * omega_tilt_ratio_tilt
+    driving_torque_tilt_term_2 = (
+        J_motor_tilt * (omega_tilt * omega_tilt) * ratio_tilt * ratio_tilt_by_theta_tilt
+        - driving_torque_tilt_term * ratio_tilt
+    )
+    b_tilt_omega_tilt = b_tilt * omega_tilt
+    driving_torque_tilt = -driving_torque_tilt_term_2
+    load_torque_tilt = (
+        -b_tilt_omega_tilt + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
+    )
+    carried_tilt = driving_torque_tilt * inertia_tilt - load_torque_tilt * lost_lowering_tilt_term
+    carried_tilt_slide_tilt = carried_tilt * slide_tilt
+    force_tilt = (
+        -b_tilt_omega_tilt
+        + cos_tilt * gravity_cos_tilt
+        - driving_torque_tilt_term_2
+        + gravity_sin_tilt * sin_tilt
+        - slide_tilt
+        * (
+            0.5 * carried_tilt_slide_tilt * (-lost_lowering_tilt + lost_raising_tilt)
+            + 0.5 * (lost_lowering_tilt + lost_raising_tilt) * abs(carried_tilt_slide_tilt)
+        )
+    )
+    mass_tilt = inertia_tilt + lost_lowering_tilt_term
+    inverse_mass_tilt = 1.0 / mass_tilt
+    accel_tilt = force_tilt * inverse_mass_tilt * (slide_tilt * slide_tilt)
+    dx[1] = accel_tilt
+    dx[2] = (-K_t_tilt * omega_tilt_ratio_tilt - R_tilt * i_tilt + u_tilt) / L_tilt
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def jacobian(t, x, u, p, m, fx, fu, fp):
     """Write the non-zero derivatives of mode_derivative by state, input and parameter.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; m [1],
-    see MODE_NAMES; fx [3, 3]; fu [3, 1]; fp [3, 19].
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
+    see MODE_NAMES; fx [3, 3]; fu [3, 1]; fp [3, 20].
     """
     theta_tilt = x[0]
     omega_tilt = x[1]
@@ -325,6 +472,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     l_min_tilt = p[15]
     r_arm_tilt = p[16]
     s_start_tilt = p[17]
+    gravity = p[19]
     slide_tilt = m[0]
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
@@ -424,9 +572,9 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     c_x_payload_sq = c_x_payload * c_x_payload
     c_z_payload_sq = c_z_payload * c_z_payload
     inertia_tilt = J_y_payload + c_x_payload_sq * m_payload + c_z_payload_sq * m_payload
-    gravity_cos_tilt_by_c_x_payload = 9.81 * m_payload
+    gravity_cos_tilt_by_c_x_payload = gravity * m_payload
     gravity_cos_tilt = c_x_payload * gravity_cos_tilt_by_c_x_payload
-    gravity_sin_tilt_by_m_payload = 9.81 * c_z_payload
+    gravity_sin_tilt_by_m_payload = c_z_payload * gravity
     gravity_sin_tilt = gravity_sin_tilt_by_m_payload * m_payload
     load_torque_tilt_by_theta_tilt_term = -cos_tilt * gravity_sin_tilt + gravity_cos_tilt * sin_tilt
     load_torque_tilt_by_theta_tilt = -load_torque_tilt_by_theta_tilt_term
@@ -573,7 +721,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fx[2, 2] = -L_tilt_inverse * R_tilt
     fu[2, 0] = L_tilt_inverse
     inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
-    gravity_cos_tilt_by_m_payload = 9.81 * c_x_payload
+    gravity_cos_tilt_by_m_payload = c_x_payload * gravity
     load_torque_tilt_by_m_payload = (
         cos_tilt * gravity_cos_tilt_by_m_payload + gravity_sin_tilt_by_m_payload * sin_tilt
     )
@@ -606,8 +754,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - accel_tilt_by_theta_tilt_term_5 * lost_lowering_tilt_by_J_y_payload
         - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_J_y_payload
     )
-    twice_m_payload = 2.0 * m_payload
-    inertia_tilt_by_c_x_payload = c_x_payload * twice_m_payload
+    gravity_cos_tilt_by_gravity = c_x_payload * m_payload
+    inertia_tilt_by_c_x_payload = 2.0 * gravity_cos_tilt_by_gravity
     load_torque_tilt_by_c_x_payload = cos_tilt * gravity_cos_tilt_by_c_x_payload
     carried_tilt_by_c_x_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_x_payload
@@ -626,7 +774,8 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - accel_tilt_by_theta_tilt_term_6 * lost_raising_tilt_by_c_x_payload
         + cos_tilt * gravity_cos_tilt_by_c_x_payload
     )
-    inertia_tilt_by_c_z_payload = c_z_payload * twice_m_payload
+    gravity_sin_tilt_by_gravity = c_z_payload * m_payload
+    inertia_tilt_by_c_z_payload = 2.0 * gravity_sin_tilt_by_gravity
     load_torque_tilt_by_c_z_payload = gravity_cos_tilt_by_c_x_payload * sin_tilt
     carried_tilt_by_c_z_payload = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_c_z_payload
@@ -1043,13 +1192,20 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - ratio_tilt_by_s_start_tilt * twice_J_motor_tilt_ratio_tilt_accel_tilt
     )
     fp[2, 17] = -K_t_tilt_L_tilt_inverse_omega_tilt * ratio_tilt_by_s_start_tilt
+    load_torque_tilt_by_gravity = (
+        cos_tilt * gravity_cos_tilt_by_gravity + gravity_sin_tilt_by_gravity * sin_tilt
+    )
+    carried_tilt_by_gravity = -J_motor_tilt_ratio_tilt_sq * load_torque_tilt_by_gravity
+    fp[1, 19] = accel_tilt_term * (
+        -accel_tilt_by_theta_tilt_term_3 * carried_tilt_by_gravity + load_torque_tilt_by_gravity
+    )
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def guards(t, x, u, p, m, g):
     """Write holding and breakaway torques, gap separations and contact torques into g.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; m [1],
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
     see MODE_NAMES; g [3] in N m and rad.
     """
     theta_tilt = x[0]
@@ -1070,9 +1226,10 @@ def guards(t, x, u, p, m, g):
     l_min_tilt = p[15]
     r_arm_tilt = p[16]
     s_start_tilt = p[17]
-    gravity_cos_tilt_term = 9.81 * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
-    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    gravity = p[19]
+    gravity_m_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_m_payload
+    gravity_sin_tilt = c_z_payload * gravity_m_payload
     cos_tilt = math.cos(theta_tilt)
     sin_tilt = math.sin(theta_tilt)
     b_tilt_omega_tilt = b_tilt * omega_tilt
@@ -1142,8 +1299,8 @@ def guards(t, x, u, p, m, g):
 def guard_jacobian(t, x, u, p, m, gx, gp):
     """Write the non-zero derivatives of guards by state and parameter.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; m [1],
-    see MODE_NAMES; gx [3, 3]; gp [3, 19].
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
+    see MODE_NAMES; gx [3, 3]; gp [3, 20].
     """
     theta_tilt = x[0]
     omega_tilt = x[1]
@@ -1163,6 +1320,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     l_min_tilt = p[15]
     r_arm_tilt = p[16]
     s_start_tilt = p[17]
+    gravity = p[19]
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
     l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
@@ -1257,9 +1415,9 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         J_motor_tilt_ratio_tilt_omega_tilt_sq * ratio_tilt_by_theta_tilt_by_theta_tilt
         - holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_theta_tilt
     )
-    gravity_cos_tilt_by_c_x_payload = 9.81 * m_payload
+    gravity_cos_tilt_by_c_x_payload = gravity * m_payload
     gravity_cos_tilt = c_x_payload * gravity_cos_tilt_by_c_x_payload
-    gravity_sin_tilt_by_m_payload = 9.81 * c_z_payload
+    gravity_sin_tilt_by_m_payload = c_z_payload * gravity
     gravity_sin_tilt = gravity_sin_tilt_by_m_payload * m_payload
     holding_tilt_by_theta_tilt_term_4 = -cos_tilt * gravity_sin_tilt + gravity_cos_tilt * sin_tilt
     gx[0, 0] = -holding_tilt_by_theta_tilt_term_3 - holding_tilt_by_theta_tilt_term_4
@@ -1310,7 +1468,7 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
     gx[2, 1] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_omega_tilt
     driving_torque_tilt_by_i_tilt = K_t_tilt * ratio_tilt
     gx[0, 2] = driving_torque_tilt_by_i_tilt
-    gravity_cos_tilt_by_m_payload = 9.81 * c_x_payload
+    gravity_cos_tilt_by_m_payload = c_x_payload * gravity
     load_torque_tilt_by_m_payload = (
         cos_tilt * gravity_cos_tilt_by_m_payload + gravity_sin_tilt_by_m_payload * sin_tilt
     )
@@ -1599,13 +1757,21 @@ def guard_jacobian(t, x, u, p, m, gx, gp):
         + holding_tilt_by_theta_tilt_term_2 * ratio_tilt_by_s_start_tilt
     )
     gp[0, 17] = driving_torque_tilt_by_s_start_tilt
+    gravity_cos_tilt_by_gravity = c_x_payload * m_payload
+    gravity_sin_tilt_by_gravity = c_z_payload * m_payload
+    load_torque_tilt_by_gravity = (
+        cos_tilt * gravity_cos_tilt_by_gravity + gravity_sin_tilt_by_gravity * sin_tilt
+    )
+    gp[0, 19] = load_torque_tilt_by_gravity
+    gp[1, 19] = forward_tilt_by_theta_tilt_term_4 * load_torque_tilt_by_gravity
+    gp[2, 19] = backward_tilt_by_theta_tilt_term * load_torque_tilt_by_gravity
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def outputs(t, x, u, p, y):
     """Write the measured signals into y.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; y [2] in
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; y [2] in
     OUTPUT_UNITS.
     """
     theta_tilt = x[0]
@@ -1618,8 +1784,8 @@ def outputs(t, x, u, p, y):
 def output_jacobian(t, x, u, p, yx, yp):
     """Write the non-zero derivatives of outputs by state and parameter.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; yx [2,
-    3]; yp [2, 19].
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; yx [2,
+    3]; yp [2, 20].
     """
     yx[0, 0] = 1.0
     yx[1, 2] = 1.0
@@ -1629,7 +1795,7 @@ def output_jacobian(t, x, u, p, yx, yp):
 def energy(t, x, u, p, m, e):
     """Write stored energy in J, power in and dissipated power in W into e.
 
-    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; m [1],
+    t in s; x [3] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
     see MODE_NAMES; e [3] in J, W and W.
     """
     theta_tilt = x[0]
@@ -1654,14 +1820,15 @@ def energy(t, x, u, p, m, e):
     l_min_tilt = p[15]
     r_arm_tilt = p[16]
     s_start_tilt = p[17]
+    gravity = p[19]
     slide_tilt = m[0]
     cos_tilt = math.cos(theta_tilt)
+    gravity_m_payload = gravity * m_payload
+    cos_tilt_gravity_m_payload = cos_tilt * gravity_m_payload
     sin_tilt = math.sin(theta_tilt)
-    stored_term = 9.81 * m_payload
-    c_x_payload_stored_term = c_x_payload * stored_term
-    c_z_payload_stored_term = c_z_payload * stored_term
-    stored_term_2 = (c_x_payload * c_x_payload) * m_payload
-    stored_term_3 = (c_z_payload * c_z_payload) * m_payload
+    gravity_m_payload_sin_tilt = gravity_m_payload * sin_tilt
+    stored_term = (c_x_payload * c_x_payload) * m_payload
+    stored_term_2 = (c_z_payload * c_z_payload) * m_payload
     l_ground_tilt_sq = l_ground_tilt * l_ground_tilt
     r_arm_tilt_sq = r_arm_tilt * r_arm_tilt
     l_ground_tilt_sq_plus_r_arm_tilt_sq = l_ground_tilt_sq + r_arm_tilt_sq
@@ -1691,13 +1858,13 @@ def energy(t, x, u, p, m, e):
         J_motor_tilt_ratio_tilt_sq * half_omega_tilt_sq
         + J_y_payload * half_omega_tilt_sq
         + 0.5 * L_tilt * i_tilt_sq
-        - c_x_payload_stored_term * sin_tilt
-        + c_z_payload_stored_term * cos_tilt
+        - c_x_payload * gravity_m_payload_sin_tilt
+        + c_z_payload * cos_tilt_gravity_m_payload
+        + half_omega_tilt_sq * stored_term
         + half_omega_tilt_sq * stored_term_2
-        + half_omega_tilt_sq * stored_term_3
     )
     e[1] = i_tilt * u_tilt
-    load_inertia_tilt = J_y_payload + stored_term_2 + stored_term_3
+    load_inertia_tilt = J_y_payload + stored_term + stored_term_2
     lowered_tilt_term = math.pi * d_screw_tilt
     f_screw_tilt_lead_tilt = f_screw_tilt * lead_tilt
     f_screw_tilt_lowered_tilt_term = f_screw_tilt * lowered_tilt_term
@@ -1737,8 +1904,8 @@ def energy(t, x, u, p, m, e):
     )
     load_torque_tilt = (
         -b_tilt * omega_tilt
-        + c_x_payload_stored_term * cos_tilt
-        + c_z_payload_stored_term * sin_tilt
+        + c_x_payload * cos_tilt_gravity_m_payload
+        + c_z_payload * gravity_m_payload_sin_tilt
     )
     carried_tilt = (
         -J_motor_tilt_ratio_tilt_sq * load_torque_tilt + driving_torque_tilt * load_inertia_tilt
@@ -1762,7 +1929,7 @@ def energy(t, x, u, p, m, e):
 def equation_error(t, x, u, p, m, r):
     """Write the torque that every row lacks, then rates of other states into r; x ends in accel.
 
-    t in s; x [4] in STATE_UNITS; u [1] in INPUT_UNITS; p [19] in the units of PARAMETERS; m [1],
+    t in s; x [4] in STATE_UNITS; u [1] in INPUT_UNITS; p [20] in the units of PARAMETERS; m [1],
     see MODE_NAMES; r [2] in N m, then STATE_UNITS per s.
     """
     theta_tilt = x[0]
@@ -1788,10 +1955,11 @@ def equation_error(t, x, u, p, m, r):
     l_min_tilt = p[15]
     r_arm_tilt = p[16]
     s_start_tilt = p[17]
+    gravity = p[19]
     slide_tilt = m[0]
-    gravity_cos_tilt_term = 9.81 * m_payload
-    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_term
-    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_term
+    gravity_m_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_m_payload
+    gravity_sin_tilt = c_z_payload * gravity_m_payload
     inertia_tilt = (
         J_y_payload
         + (c_x_payload * c_x_payload) * m_payload
@@ -1883,7 +2051,7 @@ def equation_error(t, x, u, p, m, r):
 def domain(p, bounds):
     """Write lower and upper bound of the state of every row of DOMAIN into bounds.
 
-    p [19] in the units of PARAMETERS; bounds [2, 2] in STATE_UNITS: lower, upper.
+    p [20] in the units of PARAMETERS; bounds [2, 2] in STATE_UNITS: lower, upper.
     """
     l_ground_tilt = p[14]
     l_min_tilt = p[15]
@@ -1925,7 +2093,7 @@ def domain(p, bounds):
 def margins(p, margin):
     """Write by how much the parameters meet every row of REQUIREMENTS into margin.
 
-    p [19] in the units of PARAMETERS; margin [3] in units of what is compared.
+    p [20] in the units of PARAMETERS; margin [3] in units of what is compared.
     """
     lead_tilt = p[11]
     d_screw_tilt = p[12]
@@ -1977,4 +2145,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 7b6cda2f7abc5984fcfb5f23f8de448b9eb814c39635ed38a7fbb5e05b5421f3
+# END sha256 c6eb0d533810076b6b6f398c361c474b358e5a2d50ec0ccf1e07e1dde7b02173

@@ -34,8 +34,20 @@ class EventMachine:
         """Start in the modes of the state at rest."""
         self.model, self.table, self.p = model, table, model.parameter_vector()
         self.m, self.u = np.zeros(len(model.mode_names)), np.zeros(len(model.input_names))
+        none = np.zeros(0)
         self.equations = Equations(
-            0, 0, 0, 0, 0, self.p, model.friction_rates, model.zero_at_rest, 0, 0, model.contacts
+            0,
+            0,
+            0,
+            0,
+            0,
+            self.p,
+            none,
+            model.friction_rates,
+            model.zero_at_rest,
+            0,
+            0,
+            model.contacts,
         )
         frictions = len(model.friction_rates)
         elements = frictions + (len(self.m) - frictions) // 2

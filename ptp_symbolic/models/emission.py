@@ -10,7 +10,7 @@ from ptp_symbolic.symbolic.codegen.module import module_text
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.derivation.placement import declared_parameters, place_effects
+from ptp_symbolic.symbolic.derivation.placement import parameters_of, place_effects
 
 
 def emit(platform: Platform) -> Model:
@@ -20,7 +20,7 @@ def emit(platform: Platform) -> Model:
     InputError when no machine with its parameters can exist.
     """
     equations = _possible(platform)
-    path = emitted(equations, declared_parameters(place_effects(platform)))
+    path = emitted(equations, parameters_of(place_effects(platform)))
     own = {p.name: (p.default, p.lower, p.upper) for p in equations.parameters}
     return replace(load_module(path, path.stem), declared=(platform.name, platform.title, own))
 

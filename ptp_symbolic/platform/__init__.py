@@ -3,6 +3,7 @@
 from ptp_symbolic.platform.declaration import (
     AXES,
     SITES,
+    STANDARD_GRAVITY,
     EffectDeclaration,
     ParameterDeclaration,
     Platform,
@@ -15,6 +16,7 @@ from ptp_symbolic.platform.writer import platform_text
 __all__ = [
     "AXES",
     "SITES",
+    "STANDARD_GRAVITY",
     "EffectDeclaration",
     "ParameterDeclaration",
     "Platform",

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from ptp_symbolic.errors import InputError
 
 AXES = ("pan", "tilt")  # that a platform may have, base first
+STANDARD_GRAVITY = 9.81  # m/s^2
 SITES = ("gear", "joint")  # where on its axis an effect may sit
 
 

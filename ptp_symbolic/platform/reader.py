@@ -12,6 +12,7 @@ from ptp_symbolic.platform import fields
 from ptp_symbolic.platform.declaration import (
     AXES,
     SITES,
+    STANDARD_GRAVITY,
     EffectDeclaration,
     ParameterDeclaration,
     Platform,
@@ -21,7 +22,6 @@ from ptp_symbolic.platform.text_file import read_text_bytes
 from ptp_symbolic.platform.units import to_si
 
 ROLES = ("input", "output")
-STANDARD_GRAVITY = 9.81
 
 _MAX_BYTES = 1_000_000
 # tomllib needs a time that grows with the square of the parts of a dotted key.

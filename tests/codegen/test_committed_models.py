@@ -1,5 +1,6 @@
 """The committed modules: up to date, sealed, and right against independent programs."""
 
+import ast
 import os
 import subprocess
 import sys
@@ -48,6 +49,45 @@ def test_rigid_models_against_an_independent_newton_euler_program(name: str) -> 
         bound = 1e-12 * np.linalg.cond(mass) * max(1.0, np.abs(truth).max())
         assert np.abs(found[2:] - truth).max() <= bound
         assert np.array_equal(found[:2], x[2:])
+
+
+@pytest.mark.parametrize("name", sorted(COMMITTED))
+def test_what_is_prepared_gives_the_same_derivative_in_every_mode(name: str) -> None:
+    model, rng = ptp_symbolic.load(name), np.random.default_rng(11)
+    module, n = model.module, len(model.state_names)
+    whole, prepared = np.zeros(n), np.zeros(n)
+    for _ in range(100):
+        values = {p.name: rng.uniform(0.9, 1.1) * p.default for p in model.parameters}
+        p = model.parameter_vector(values)
+        m = rng.integers(-1, 2, len(model.mode_names)).astype(float)
+        x, u = 0.1 * rng.normal(size=n), rng.normal(size=len(model.input_names))
+        module.mode_derivative(0.0, x, u, p, m, whole)
+        module.prepared_derivative(0.0, x, u, p, m, model.prepared(p), prepared)
+        assert np.array_equal(whole, prepared, equal_nan=True)
+
+
+def test_what_depends_on_parameters_alone_is_computed_once() -> None:
+    """The inertias and weights of the payload: as the header says, 27 of 71 operations."""
+    text = (generated_folder() / "payload.py").read_text()
+    assert "71 as written, 44 of them" in text
+    bodies = {
+        node.name: sum(isinstance(each, ast.BinOp) for each in ast.walk(node))
+        for node in ast.parse(text).body
+        if isinstance(node, ast.FunctionDef)
+    }
+    assert bodies["prepare"] + bodies["prepared_derivative"] == bodies["mode_derivative"]
+    assert bodies["prepare"] > 20
+
+
+def test_gravity_may_be_set_like_any_parameter() -> None:
+    """The payload swings about the tilt axis with the moon's gravity and the earth's."""
+    model = ptp_symbolic.load("payload")
+    rest, still = np.zeros(4), np.zeros(2)
+    moon, earth = (
+        model.rhs(0.0, rest, still, model.parameter_vector({"gravity": g}))[3] for g in (1.62, 9.81)
+    )
+    assert moon / earth == pytest.approx(1.62 / 9.81, rel=1e-12)
+    assert model.defaults["gravity"] == 9.81
 
 
 @pytest.mark.parametrize("name", ["ideal", "payload"])

@@ -28,7 +28,9 @@ def test_torques_are_those_of_weight_and_inertia_force() -> None:
     arm = sp.Matrix(sp.symbols("c_x_payload c_y_payload c_z_payload", real=True))
     place = sp.rot_axis3(-pan) * sp.rot_axis2(-tilt) * arm
     push = a * sp.sin(2 * sp.pi * f * TIME + phi)
-    force = m * sp.Matrix([-push * sp.cos(psi), -push * sp.sin(psi), -sp.Rational(981, 100)])
+    force = m * sp.Matrix(
+        [-push * sp.cos(psi), -push * sp.sin(psi), -sp.Symbol("gravity", real=True)]
+    )
     still = sp.symbols("omega_pan omega_tilt tau_pan tau_tilt", real=True)
     forcing = assemble(platform("pan", "tilt")).forcing.xreplace(dict.fromkeys(still, 0))
     for torque, angle in zip(forcing, (pan, tilt), strict=True):

@@ -14,7 +14,7 @@ EFFECTS = tuple(EffectDeclaration(e, None, None) for e in ("rigid_bodies", "payl
 M, C = sp.symbols("m_payload c_x_payload", real=True)
 BETA, ALPHA = sp.symbols("beta_base alpha_base", real=True)
 PAN, TILT = sp.symbols("theta_pan theta_tilt", real=True)
-WEIGHT = M * sp.Rational(981, 100)
+WEIGHT = M * sp.Symbol("gravity", real=True)
 
 
 def platform(*axes: str) -> Platform:

@@ -11,7 +11,7 @@ from ptp_symbolic.platform import EffectDeclaration, Platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 EFFECTS = tuple(EffectDeclaration(e, None, None) for e in ("rigid_bodies", "payload"))
-G = sp.Rational(981, 100)
+G = sp.Symbol("gravity", real=True)
 M, X, Y, Z = sp.symbols("m_payload c_x_payload c_y_payload c_z_payload", real=True)
 JX, JY, JZ = sp.symbols("J_x_payload J_y_payload J_z_payload", real=True)
 THETA = sp.Symbol("theta_tilt", real=True)

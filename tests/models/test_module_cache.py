@@ -12,7 +12,7 @@ from ptp_symbolic.models import module_cache
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
-from ptp_symbolic.symbolic.derivation.placement import declared_parameters, place_effects
+from ptp_symbolic.symbolic.derivation.placement import parameters_of, place_effects
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 
 Machine = tuple[Equations, dict[str, Parameter]]
@@ -36,7 +36,7 @@ def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 @pytest.fixture
 def machine(checkout: Path) -> Machine:
     platform = read_platform(checkout / "ptp_symbolic/platform/presets/thesis-ideal.toml")
-    return assemble(platform), declared_parameters(place_effects(platform))
+    return assemble(platform), parameters_of(place_effects(platform))
 
 
 def test_a_module_is_written_once(machine: Machine, written: list[str]) -> None:

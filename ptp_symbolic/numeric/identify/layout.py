@@ -96,7 +96,7 @@ def layout_of(model: Model) -> Layout:
 
 def equation_addresses(model: Model) -> IntArray:
     """Addresses [3] of the compiled `equation_error`, `guards` and `outputs` of `model`."""
-    kernel, outputs = SIGNATURES["mode_derivative"], OUTPUT_SIGNATURES["outputs"]
+    kernel, outputs = SIGNATURES["guards"], OUTPUT_SIGNATURES["outputs"]
     return _addresses(model.module, kernel, outputs)
 
 

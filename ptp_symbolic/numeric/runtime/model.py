@@ -249,6 +249,12 @@ class Model:
                 _refuse_out_of_bounds(p, values[p.name])
         return np.array([values.get(n, d) for n, d in self.defaults.items()], dtype=np.float64)
 
+    def prepared(self, p: FloatArray) -> FloatArray:
+        """Return what `prepared_derivative` of the module takes of the parameters p [np] alone."""
+        c = np.zeros(self.module.PREPARED)
+        self.module.prepare(p, c)
+        return c
+
 
 def _refuse_out_of_bounds(p: ModelParameter, value: float) -> None:
     below, above = BOUND_SLACK * abs(p.lower), BOUND_SLACK * abs(p.upper)

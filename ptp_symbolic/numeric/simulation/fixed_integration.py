@@ -90,6 +90,7 @@ def integrate_in_fixed_steps(
     status = fixed_runner.runner()(
         addresses(model.module),
         p,
+        model.prepared(p),
         model.friction_rates,
         model.zero_at_rest,
         contact_table(model),

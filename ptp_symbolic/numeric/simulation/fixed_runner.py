@@ -213,6 +213,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
     def run_fixed(
         functions,
         p,
+        prepared,
         friction_rates,
         zero_at_rest,
         contacts,
@@ -231,7 +232,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         """Integrate from the first to the last output time; inputs jump at no other time."""
         record = Record(*record)
         record.counts[SOURCES] = sources
-        equations = equations_at(functions, p, friction_rates, zero_at_rest, contacts)
+        equations = equations_at(functions, p, prepared, friction_rates, zero_at_rest, contacts)
         inputs, work = Inputs(table, cursor, held, u[0], u[1]), StepWork(*work)
         watch, tangents, sampling = Watch(*watch), Tangents(*tangents), Sampling(*sampling)
         m, times = watch.m, record.times

@@ -198,6 +198,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         method,
         functions,
         p,
+        prepared,
         friction_rates,
         zero_at_rest,
         contacts,
@@ -219,7 +220,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         """Integrate from the first to the last stop; returns a status, the rest is in `record`."""
         record = Record(*record)
         record.counts[SOURCES] = sources
-        equations = equations_at(functions, p, friction_rates, zero_at_rest, contacts)
+        equations = equations_at(functions, p, prepared, friction_rates, zero_at_rest, contacts)
         inputs, step, watch = Inputs(table, cursor, held, u[0], u[1]), Step(*step), Watch(*watch)
         tangents, sampling = Tangents(*tangents), Sampling(*sampling)
         propagator = Propagator(*propagator)

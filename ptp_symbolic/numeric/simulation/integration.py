@@ -138,6 +138,7 @@ def integrate(
         METHODS[method],
         addresses(module),
         p,
+        model.prepared(p),
         model.friction_rates,
         model.zero_at_rest,
         contact_table(model),

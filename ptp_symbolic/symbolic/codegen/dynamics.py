@@ -151,6 +151,18 @@ def state_rates(equations: Equations, solve: Solve) -> list[sp.Expr]:
     return [by_state[symbol] for symbol in equations.state_symbols]
 
 
+def prepared(lines: Sequence[Line], parameters: Sequence[str]) -> tuple[list[Line], list[Line]]:
+    """Split `lines`: named terms of the `parameters` alone, then all others."""
+    known, once, each = set(parameters), [], []
+    for name, expression in lines:
+        if name.isidentifier() and {str(s) for s in expression.free_symbols} <= known:
+            known.add(name)
+            once.append((name, expression))
+        else:
+            each.append((name, expression))
+    return once, each
+
+
 def acceleration_derivative(
     equations: Equations, solve: Solve, variable: sp.Symbol
 ) -> list[sp.Expr]:

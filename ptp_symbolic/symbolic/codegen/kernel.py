@@ -26,6 +26,7 @@ class Vectors:
     u: tuple[str, ...]
     p: tuple[str, ...]
     m: tuple[str, ...]
+    c: tuple[str, ...]
     rows: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
     def describe(self, argument: str) -> str:
@@ -36,6 +37,7 @@ class Vectors:
             "u": f"u [{len(self.u)}] in INPUT_UNITS",
             "p": f"p [{len(self.p)}] in the units of PARAMETERS",
             "m": f"m [{len(self.m)}], see MODE_NAMES",
+            "c": f"c [{len(self.c)}] of prepare",
         }
         if argument in given:
             return given[argument]
@@ -46,12 +48,13 @@ class Vectors:
         return f"{argument} [{self.rows[array][0]}, {len(getattr(self, variable))}]"
 
     def unpack(self, lines: Sequence[Line]) -> list[str]:
-        """Assignments that unpack what `lines` use, states first."""
+        """Assignments that unpack what `lines` use and do not assign, states first."""
         used = {str(symbol) for _, expression in lines for symbol in expression.free_symbols}
+        used -= {name for name, _ in lines}
         return [
             f"{name} = {array}[{index}]"
-            for array, names in (("x", self.x), ("u", self.u), ("p", self.p), ("m", self.m))
-            for index, name in enumerate(names)
+            for array in "xupmc"
+            for index, name in enumerate(getattr(self, array))
             if name in used
         ]
 

@@ -25,6 +25,7 @@ GREEK = {
     "sigma",
     "zeta",
 }
+LETTERS = {"gravity": "g"}
 DERIVATIVES = {"dc": r"\Delta c", "dF": r"\Delta F"}
 LARGEST_FRACTION = 2  # larger ones are measured numbers
 LINE_WIDTH = 92
@@ -37,7 +38,7 @@ def symbol_latex(name: str) -> str:
 
     Letters are set in italics, words upright.
     """
-    letter, *place = name.split("_")
+    letter, *place = LETTERS.get(name, name).split("_")
     trailing = re.fullmatch(r"([A-Za-z]+)(\d+)", letter)
     if trailing:
         letter, place = trailing[1], [trailing[2], *place]

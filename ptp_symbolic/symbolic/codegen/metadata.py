@@ -19,12 +19,18 @@ from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.symbols import real
 
 
-def metadata_text(equations: Equations, digest: str, operations: tuple[int, int]) -> str:
-    """Return docstring, imports and constants of the module of `equations`."""
+def metadata_text(
+    equations: Equations, digest: str, operations: tuple[int, int, int], prepared: int
+) -> str:
+    """Return docstring, imports and constants of the module of `equations`, of which `prepared`
+    numbers are computed once.
+    """
     constants = [
         f'MODEL_HASH = "{digest}"',
         f"NAME = {repr_text(equations.name)}",
         f"TITLE = {repr_text(equations.title)}",
+        "# How many numbers `prepare` writes.",
+        f"PREPARED = {prepared}",
         *_signal_lines(equations),
         *_motion_lines(equations),
         *_parameter_lines(equations),
@@ -93,7 +99,7 @@ def _imports(equations: Equations) -> str:
     return f"import math\n\n{arrays}from numba import njit"
 
 
-def _docstring(equations: Equations, operations: tuple[int, int]) -> str:
+def _docstring(equations: Equations, operations: tuple[int, int, int]) -> str:
     title = repr_text(equations.title)[1:-1]
     lines = [f'"""{title}: equations of motion, emitted; do not edit.', ""]
     lines.append("M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:")
@@ -121,8 +127,13 @@ def _docstring(equations: Equations, operations: tuple[int, int]) -> str:
             lines += _wrapped(str(symbol), term)
         for symbol, value in sampler.updates.items():
             lines += _wrapped(f"{symbol} from there", value)
-    before, after = operations
-    lines += ["", f"Operations of the state derivative: {before} as derived, {after} as written."]
+    before, written, left = operations
+    lines += [
+        "",
+        f"Operations of the state derivative: {before} as derived, {written} as written, {left} of"
+        " them at every",
+        "call where `prepare` does the others once per parameter set.",
+    ]
     lines += ["", "Effects:"]
     for placed in equations.effects:
         where = f" ({placed.axis})" if placed.axis else ""

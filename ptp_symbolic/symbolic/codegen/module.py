@@ -16,6 +16,7 @@ from ptp_symbolic.symbolic.codegen.sharing import Line, share
 from ptp_symbolic.symbolic.codegen.term_names import vocabulary
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.symbols import real
 
 SEAL = "# END sha256 "
 
@@ -34,11 +35,16 @@ def module_text(equations: Equations) -> str:
         tuple(i.name for i in equations.inputs),
         tuple(p.name for p in equations.parameters),
         tuple(map(str, equations.mode_symbols)),
+        (),
         _rows(equations, len(guards)),
     )
+    once, each = dynamics.prepared(rates, vectors.p)
+    vectors = replace(vectors, c=tuple(name for name, _ in once if name in _used(each)))
     body = "\n\n\n".join(
         [
             _mode_derivative(rates, vectors),
+            _prepare(once, vectors),
+            _prepared_derivative(each, vectors),
             _jacobian(grouped, solve, vectors),
             _guards(grouped, solve, guards, vectors),
             _guard_jacobian(grouped, solve, guards, vectors),
@@ -54,8 +60,8 @@ def module_text(equations: Equations) -> str:
         ]
     )
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
-    operations = _operations(equations, rates)
-    return sealed(f"{metadata_text(equations, digest, operations)}\n\n\n{body}\n")
+    operations = _operations(equations, rates, each)
+    return sealed(f"{metadata_text(equations, digest, operations, len(vectors.c))}\n\n\n{body}\n")
 
 
 def _rows(equations: Equations, guards: int) -> dict[str, tuple[str, str]]:
@@ -84,13 +90,23 @@ def sealed(text: str) -> str:
     return f"{text}{SEAL}{hashlib.sha256(text.encode()).hexdigest()}\n"
 
 
-def _operations(equations: Equations, lines: Sequence[Line]) -> tuple[int, int]:
-    """Operations of the state derivative as derived, and as written with shared terms."""
+def _operations(
+    equations: Equations, lines: Sequence[Line], each: Sequence[Line]
+) -> tuple[int, int, int]:
+    """Operations of the state derivative as derived, as written with shared terms, and of `each`
+    call where the others are done once.
+    """
     derived = [e for _, e in dynamics.solve_accelerations(equations).definitions]
     derived += [state.derivative for state in equations.extra_states]
-    written = [expression for _, expression in lines]
-    before, after = (sum(int(sp.count_ops(e)) for e in es) for es in (derived, written))
-    return before, after
+    before, written, left = (
+        sum(int(sp.count_ops(e)) for e in es)
+        for es in (derived, (e for _, e in lines), (e for _, e in each))
+    )
+    return before, written, left
+
+
+def _used(lines: Sequence[Line]) -> set[str]:
+    return {str(symbol) for _, expression in lines for symbol in expression.free_symbols}
 
 
 def _shared(
@@ -103,6 +119,20 @@ def _shared(
 def _mode_derivative(lines: Sequence[Line], vectors: Vectors) -> str:
     doc = "Write the time derivative of the state into dx in the modes m."
     return kernel_text("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
+
+
+def _prepare(once: Sequence[Line], vectors: Vectors) -> str:
+    entry = {name: f"c[{k}]" for k, name in enumerate(vectors.c)}
+    inner = _used(once)
+    lines = [(name if name in inner else entry[name], e) for name, e in once]
+    lines += [(target, real(name)) for name, target in entry.items() if name in inner]
+    doc = "Write into c what prepared_derivative takes from the parameters alone."
+    return kernel_text("prepare", "p, c", doc, vectors, lines)
+
+
+def _prepared_derivative(each: Sequence[Line], vectors: Vectors) -> str:
+    doc = "Write the time derivative of the state into dx in the modes m, c being prepared."
+    return kernel_text("prepared_derivative", f"{MODE_ARGUMENTS}, c, dx", doc, vectors, each)
 
 
 def _state_lines(equations: Equations, solve: dynamics.Solve) -> list[Line]:

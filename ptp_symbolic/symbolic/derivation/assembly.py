@@ -17,7 +17,12 @@ from ptp_symbolic.symbolic.derivation.equations import Equations, PlacedEffect
 from ptp_symbolic.symbolic.derivation.friction import Mechanics, driving_torque, resolved_frictions
 from ptp_symbolic.symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.symbolic.derivation.ledger import energy_ledger
-from ptp_symbolic.symbolic.derivation.placement import acts_on, place_effects, resolved_parameters
+from ptp_symbolic.symbolic.derivation.placement import (
+    GRAVITY,
+    acts_on,
+    place_effects,
+    resolved_parameters,
+)
 from ptp_symbolic.symbolic.derivation.prescribed import constraint_power, reduced, released
 from ptp_symbolic.symbolic.derivation.reserved_names import refuse_reserved_names
 from ptp_symbolic.symbolic.derivation.rigid_play import rigid_contact
@@ -158,7 +163,7 @@ def _rigid_configuration(platform: Platform, contributions: Contributions) -> Ri
     """Bodies, and gravity in the base frame less the acceleration of the base."""
     tilt, azimuth = (contributions.resolve(quantity_symbol(name)) for name in GRAVITY_QUANTITIES)
     acceleration = [contributions.resolve(quantity_symbol(name)) for name in BASE_ACCELERATION]
-    g = sp.Rational(repr(platform.gravity))
+    g = GRAVITY.symbol if platform.gravity else ZERO
     direction = [
         sp.sin(tilt) * sp.cos(azimuth),
         sp.sin(tilt) * sp.sin(azimuth),

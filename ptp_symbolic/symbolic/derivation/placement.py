@@ -3,12 +3,19 @@
 from dataclasses import replace
 
 from ptp_symbolic.errors import InputError, did_you_mean, unknown
-from ptp_symbolic.platform import ParameterDeclaration, Platform, naming_file
+from ptp_symbolic.platform import (
+    STANDARD_GRAVITY,
+    ParameterDeclaration,
+    Platform,
+    naming_file,
+)
 from ptp_symbolic.platform.units import compatible
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects import EFFECTS
+
+GRAVITY = Parameter("gravity", "m/s^2", STANDARD_GRAVITY, 0.0, 1e3, "gravitational acceleration")
 
 
 def find_effect(identifier: str) -> Effect:
@@ -72,24 +79,31 @@ def _placed(platform: Platform) -> list[tuple[Effect, Place]]:
     return placed
 
 
-def declared_parameters(placed: list[tuple[Effect, Place]]) -> dict[str, Parameter]:
-    """Return the parameters of the placed effects by name."""
+def parameters_of(placed: list[tuple[Effect, Place]]) -> dict[str, Parameter]:
+    """Return gravity and the parameters of the placed effects by name, effects first."""
+    return {**_of_effects(placed), GRAVITY.name: GRAVITY}
+
+
+def _of_effects(placed: list[tuple[Effect, Place]]) -> dict[str, Parameter]:
     return {p.name: p for effect, place in placed for p in effect.parameters_at(place)}
 
 
 def undeclared_parameters(platform: Platform) -> tuple[Parameter, ...]:
     """Parameters of the declared effects that `platform` leaves at the catalogue's default."""
     said = {declaration.name for declaration in platform.parameters}
-    own = declared_parameters(place_effects(platform))
+    own = _of_effects(place_effects(platform))
     return tuple(parameter for name, parameter in own.items() if name not in said)
 
 
 def resolved_parameters(
     platform: Platform, placed: list[tuple[Effect, Place]]
 ) -> dict[str, Parameter]:
-    """Return the parameters of the placed effects, defaults and bounds as `platform` declares."""
+    """Return gravity and the parameters of the placed effects, values and bounds as `platform`
+    declares.
+    """
     declarations = {d.name: d for d in platform.parameters}
-    own = declared_parameters(placed)
+    own = parameters_of(placed)
+    own[GRAVITY.name] = replace(GRAVITY, default=platform.gravity)
     return {name: _declared(parameter, declarations) for name, parameter in own.items()}
 
 
@@ -167,7 +181,7 @@ def _check_ownership(placed: list[tuple[Effect, Place]]) -> None:
 
 
 def _check_parameters(platform: Platform, placed: list[tuple[Effect, Place]]) -> None:
-    own = declared_parameters(placed)
+    own = parameters_of(placed)
     for declaration in platform.parameters:
         parameter = own.get(declaration.name)
         if parameter is None:

@@ -18,7 +18,7 @@ RESTING_SPEED = 1e-5  # rad/s; slower parts that touch stay together
 @inlined
 def derivative(equations, t, x, u, m, out):
     """Write dx/dt [n]; a gear output that leans on a sticking joint stays."""
-    call(equations.derivative, t, x, u, equations.p, m, out)
+    call(equations.derivative, t, x, u, equations.p, m, equations.prepared, out)
     for contact in range(len(equations.contacts)):
         if equations.contacts[contact, PRESSED] == 1:
             out[equations.contacts[contact, 0]] = 0.0
@@ -77,7 +77,7 @@ def acceleration(contact, active, equations, t, x, u, watch):
     for f in range(len(equations.friction_rates)):
         if equations.friction_rates[f] == gear or equations.friction_rates[f] == joint:
             m[f] = m[where]
-    call(equations.derivative, t, x, u, equations.p, m, watch.trial)
+    call(equations.derivative, t, x, u, equations.p, m, equations.prepared, watch.trial)
     copy(watch.m_kept, m)
     return m[where] * watch.trial[gear]
 

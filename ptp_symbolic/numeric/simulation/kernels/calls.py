@@ -16,15 +16,16 @@ from numpy.typing import NDArray
 
 _AT = (types.float64, *[types.float64[::1]] * 4)  # t, x, u, p, m
 _VECTOR, _MATRIX = types.float64[::1], types.float64[:, ::1]
+_WRITES_VECTOR = types.void(*_AT, _VECTOR)
 SIGNATURES = {
-    "mode_derivative": types.void(*_AT, _VECTOR),
+    "prepared_derivative": types.void(*_AT, _VECTOR, _VECTOR),
     "jacobian": types.void(*_AT, _MATRIX, _MATRIX, _MATRIX),
-    "guards": types.void(*_AT, _VECTOR),
+    "guards": _WRITES_VECTOR,
     "guard_jacobian": types.void(*_AT, _MATRIX, _MATRIX),
-    "energy": types.void(*_AT, _VECTOR),
+    "energy": _WRITES_VECTOR,
 }
 SAMPLER_SIGNATURES = {
-    "sample": SIGNATURES["mode_derivative"],
+    "sample": _WRITES_VECTOR,
     "sample_jacobian": SIGNATURES["jacobian"],
 }
 OUTPUT_SIGNATURES = {
@@ -33,7 +34,7 @@ OUTPUT_SIGNATURES = {
 }
 DERIVATIVE, JACOBIAN, GUARDS, GUARD_JACOBIAN, ENERGY = range(5)
 IMPACT_SIGNATURES = {
-    "impacts": types.void(*_AT, _VECTOR),
+    "impacts": _WRITES_VECTOR,
     "impact_jacobian": types.void(*_AT, _MATRIX, _MATRIX),
 }
 
@@ -78,7 +79,9 @@ def compiled_addresses(module: ModuleType, signatures: dict[str, Any]) -> NDArra
 
 @intrinsic
 def call(typing_context: Any, address: Any, *arguments: Any) -> Any:
-    """Call the compiled function at `address` with (t, x, u, p, m, outputs...), m where it asks."""
+    """Call the compiled function at `address` with (t, x, u, p, m, outputs...), m where it asks,
+    and before the output what was prepared where it asks for that.
+    """
     signature = types.void(*arguments)
     if signature not in (*SIGNATURES.values(), *OUTPUT_SIGNATURES.values()):
         raise TypeError(f"no emitted function takes {signature}")

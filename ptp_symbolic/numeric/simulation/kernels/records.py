@@ -30,7 +30,8 @@ TABLE = types.Tuple((VECTOR, MATRIX, INTEGERS, MATRIX, INTEGERS, MATRIX, INTEGER
 
 
 class Equations(NamedTuple):
-    """The emitted functions of a model, its parameters p [np], and where its frictions act.
+    """The emitted functions of a model, its parameters p [np], what its `prepare` makes of them,
+    and where its frictions act.
 
     friction_rates: state index of the rate of every friction; zero_at_rest [n]: per state the
     friction that sets it to zero when it comes to rest, or -1; contacts [c, 5]: state index of the
@@ -45,6 +46,7 @@ class Equations(NamedTuple):
     guard_jacobian: Any
     energy: Any
     p: Any
+    prepared: Any
     friction_rates: Any
     zero_at_rest: Any
     impacts: Any
@@ -173,6 +175,7 @@ _V, _M, _C, _I = VECTOR, MATRIX, CUBE, INTEGERS
 MACHINE_TYPES = (
     _I,  # addresses of the emitted functions
     _V,  # parameters
+    _V,  # what is prepared of them
     _I,  # state index of the rate of every friction
     _I,  # per state the friction that zeroes it when it comes to rest, or -1
     TABLE_OF_CONTACTS,
@@ -201,7 +204,7 @@ def source_stamp() -> int:
 
 
 @inlined
-def equations_at(functions, p, friction_rates, zero_at_rest, contacts):
+def equations_at(functions, p, prepared, friction_rates, zero_at_rest, contacts):
     """Equations of the model whose emitted functions have the addresses `functions` [7]."""
     derivative, jacobian, guards, guard_jacobian, energy, impacts, impact_jacobian = (
         functions[0],
@@ -219,6 +222,7 @@ def equations_at(functions, p, friction_rates, zero_at_rest, contacts):
         guard_jacobian,
         energy,
         p,
+        prepared,
         friction_rates,
         zero_at_rest,
         impacts,
