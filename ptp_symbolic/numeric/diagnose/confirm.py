@@ -18,14 +18,15 @@ from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
 FloatArray = NDArray[np.float64]
 
 
-def why_unconfirmed(task: Task, trial: Trial, fit: Fit, candidate: Candidate) -> str | None:
+def why_unconfirmed(fit: Fit, candidate: Candidate, leaves_noise: bool) -> str | None:
     """Why `candidate` of a trial cannot be named; None where nothing speaks against it. `fit` is
-    the trial's, with derivatives that are not blind.
+    the trial's, with derivatives that are not blind. Where it leaves noise alone, nothing is
+    missing that the candidate could make up for.
     """
     bound = at_bound(fit, candidate)
     if bound is not None:
         return f"{bound} ends at its bound"
-    if not is_amount_known(fit, candidate):
+    if not leaves_noise and not is_amount_known(fit, candidate):
         return "its amount cannot be told from zero"
     run = unstable_without(fit, candidate)
     if run is not None:
@@ -69,7 +70,7 @@ def unstable_without(fit: Fit, candidate: Candidate) -> str | None:
     worse than usual weigh less. Where a single run holds all that is known of it, leaving that out
     says nothing.
     """
-    sources = [run.name.partition("#")[0] for run in fit.runs]
+    sources = [run.source for run in fit.runs]
     names = list(dict.fromkeys(sources))
     residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
     columns = stacked(fit, [e.by_parameter for e in fit.evaluations])

@@ -206,7 +206,7 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
     for step in by_gain:
         if not seeker.is_needed(step):
             return step, _too_little(step.gain)
-        reason = why_unconfirmed(seeker.task, trial, fit, step.candidate)
+        reason = why_unconfirmed(fit, step.candidate, quiet)
         if reason is not None:
             return step, reason
         if step.gain.share < MOST and not quiet:
