@@ -3,7 +3,7 @@
 import json
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,21 +12,29 @@ import click
 from ptp_symbolic.cli.declared import note_defaults
 
 
-class Several(click.Option):
-    """An option that takes all values up to the next option, and may be repeated."""
+class SeveralValues(click.Command):
+    """A command whose repeatable options take all values up to the next option."""
 
-    def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
-        """Let the option take every value up to the next option."""
-        super().add_to_parser(parser, ctx)
-        own = next(parser._long_opt[name] for name in self.opts if name in parser._long_opt)
-        process = own.process
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse `args`, an option with several values written once per value."""
+        options = [p for p in self.params if isinstance(p, click.Option) and p.multiple]
+        return super().parse_args(ctx, repeated(args, {name for p in options for name in p.opts}))
 
-        def take_all(value: str, state: Any) -> None:
-            process(value, state)
-            while state.rargs and not state.rargs[0].startswith("-"):
-                process(state.rargs.pop(0), state)
 
-        own.process = take_all
+def repeated(args: Sequence[str], options: Collection[str]) -> list[str]:
+    """`args` with ``--train a b`` as ``--train a --train b`` for each of the `options`."""
+    written: list[str] = []
+    option, has_value = None, False
+    for arg in args:
+        if arg.startswith("-"):
+            name, equals, _ = arg.partition("=")
+            option, has_value = name if name in options else None, bool(equals)
+        elif option is not None:
+            if has_value:
+                written.append(option)
+            has_value = True
+        written.append(arg)
+    return written
 
 
 def progress_line() -> Callable[[str], None]:
@@ -40,12 +48,10 @@ def progress_line() -> Callable[[str], None]:
     return show
 
 
-@click.command()
+@click.command(cls=SeveralValues)
 @click.option("--platform", "source", required=True, help="Platform TOML or packaged name.")
-@click.option("--train", cls=Several, multiple=True, required=True, help="Logs or folders to fit.")
-@click.option(
-    "--validate", cls=Several, multiple=True, required=True, help="Logs never fitted, to judge."
-)
+@click.option("--train", multiple=True, required=True, help="Logs or folders to fit.")
+@click.option("--validate", multiple=True, required=True, help="Logs never fitted, to judge.")
 @click.option("--out", type=Path, required=True, help="Folder for the results.")
 @click.option("--json", "as_json", is_flag=True, help="Print diagnosis.json instead of tables.")
 def diagnose(

@@ -32,6 +32,16 @@ def mode_derivative(t, x, u, p, m, dx):
 
 
 @njit(error_model="numpy", nogil=True)
+def prepare(p, c):
+    return
+
+
+@njit(error_model="numpy", nogil=True)
+def prepared_derivative(t, x, u, p, m, c, dx):
+    mode_derivative(t, x, u, p, m, dx)
+
+
+@njit(error_model="numpy", nogil=True)
 def jacobian(t, x, u, p, m, fx, fu, fp):
     slides = m[0] * m[0]
     fx[0, 1] = 1.0
@@ -89,6 +99,9 @@ def block() -> Model:
     module = types.ModuleType("block")
     module.__dict__.update(
         mode_derivative=mode_derivative,
+        PREPARED=0,
+        prepare=prepare,
+        prepared_derivative=prepared_derivative,
         jacobian=jacobian,
         guards=guards,
         guard_jacobian=guard_jacobian,

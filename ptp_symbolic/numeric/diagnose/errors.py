@@ -27,7 +27,7 @@ def by_source(pairs: Sequence[Pair]) -> dict[str, list[Pair]]:
     """Pairs by run, the windows of one run together."""
     grouped: dict[str, list[Pair]] = {}
     for run, evaluation in pairs:
-        grouped.setdefault(run.name.partition("#")[0], []).append((run, evaluation))
+        grouped.setdefault(run.source, []).append((run, evaluation))
     return grouped
 
 

@@ -22,6 +22,8 @@ from ptp_symbolic.platform import Platform, SignalDeclaration
 
 FloatArray = NDArray[np.float64]
 
+WINDOW = "#"  # between the name of a log and the number of a window of it
+
 
 @dataclass(frozen=True)
 class StartUnknown:
@@ -63,6 +65,11 @@ class Run:
     signals: tuple[str, ...]
     start: FloatArray
     unknowns: tuple[StartUnknown, ...]
+
+    @property
+    def source(self) -> str:
+        """Name of the log that the run, or the window, is of."""
+        return self.name.partition(WINDOW)[0]
 
     @property
     def size(self) -> int:
@@ -277,7 +284,7 @@ def by_source(runs: Sequence[Run]) -> list[list[int]]:
     """Indices of the runs, the windows of one run together."""
     grouped: dict[str, list[int]] = {}
     for index, run in enumerate(runs):
-        grouped.setdefault(run.name.partition("#")[0], []).append(index)
+        grouped.setdefault(run.source, []).append(index)
     return list(grouped.values())
 
 

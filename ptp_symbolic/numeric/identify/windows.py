@@ -27,7 +27,7 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.numeric.identify.intervals import project_out
 from ptp_symbolic.numeric.identify.noise import white_noise
-from ptp_symbolic.numeric.identify.run import Around, Run, with_start
+from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, with_start
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
 
@@ -203,7 +203,7 @@ def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
         part = slice(a, b + 1)
         piece = replace(
             run,
-            name=f"{run.name}#{number + 1}",
+            name=f"{run.name}{WINDOW}{number + 1}",
             time=np.ascontiguousarray(run.time[part]),
             inputs=stack([table(run.time[part], c, "hold") for c in run.held_inputs[part].T]),
             held_inputs=np.ascontiguousarray(run.held_inputs[part]),

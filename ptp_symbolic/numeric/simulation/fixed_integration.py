@@ -8,11 +8,13 @@ from numpy.typing import NDArray
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation import fixed_runner
-from ptp_symbolic.numeric.simulation.integration import (
+from ptp_symbolic.numeric.simulation.buffers import (
     contact_table,
     new_record,
     new_tangents,
     new_watch,
+)
+from ptp_symbolic.numeric.simulation.integration import (
     refuse_start,
 )
 from ptp_symbolic.numeric.simulation.kernels.calls import addresses

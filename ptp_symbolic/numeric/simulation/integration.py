@@ -6,9 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_guards, contact_modes
+from ptp_symbolic.numeric.runtime.element_layout import contact_guards, contact_modes
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation import hybrid
+from ptp_symbolic.numeric.simulation.buffers import (
+    contact_table,
+    new_record,
+    new_step,
+    new_tangents,
+    new_watch,
+)
 from ptp_symbolic.numeric.simulation.events.impacts import STICKS
 from ptp_symbolic.numeric.simulation.kernels.calls import addresses
 from ptp_symbolic.numeric.simulation.kernels.lanes import padded
@@ -16,13 +23,9 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     EVENTS,
     STEPS,
     TIME,
-    Record,
-    Step,
-    Tangents,
     Watch,
 )
 from ptp_symbolic.numeric.simulation.methods.exponential_step import new_propagator
-from ptp_symbolic.numeric.simulation.methods.rodas5p import STAGES
 from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
 from ptp_symbolic.numeric.simulation.sampling import new_sampling
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
@@ -150,7 +153,7 @@ def integrate(
         stops,
         np.array([accuracy.relative, accuracy.largest_step, accuracy.most_steps]),
         accuracy.absolute,
-        tuple(_step(n, nu, len(p), n if s.shape[1] else model.moving)),
+        tuple(new_step(n, nu, len(p), n if s.shape[1] else model.moving)),
         tuple(watch),
         tuple(tangents),
         tuple(record),
@@ -167,89 +170,6 @@ def integrate(
         record.events[: record.counts[EVENTS]],
         int(record.counts[EVENTS]),
         int(record.counts[STEPS]),
-    )
-
-
-def new_record(times: FloatArray, n: int, ns: int, ledger: int, event_room: int) -> Record:
-    """Room for what a run leaves at `times` [k]: n states, ns tangents, `ledger` rows, events."""
-    z = np.zeros
-    return Record(
-        times,
-        z((len(times), n)),
-        z((len(times), n, ns)),
-        z((ledger, 3)),
-        z((event_room, 3)),
-        z(3),
-        z((4, 3)),
-        z(2),
-        z(6, dtype=np.int64),
-    )
-
-
-def _step(n: int, nu: int, parameters: int, solved: int) -> Step:
-    z, width = np.zeros, padded(n)
-    return Step(
-        z(width),
-        z(width),
-        z((STAGES, width)),
-        z((STAGES, width)),
-        z(n),
-        z((5, width)),
-        z((n, n)),
-        z((n, nu)),
-        z((n, parameters)),
-        z((solved, width)),
-        z((solved, width)),
-        z(n, dtype=np.int64),
-        z(width),
-        z(width),
-        z(width),
-    )
-
-
-def contact_table(model: Model) -> IntArray:
-    """Rates and rule of every contact [c, 5], and the flags PRESSED and SETTLING, not set yet."""
-    rules = model.contacts
-    table = np.zeros((len(rules), 5), dtype=np.int64)
-    table[:, :3] = rules
-    return table
-
-
-def limited_states(model: Model) -> IntArray:
-    """Index [limits] of the state of every limit of the domain."""
-    return np.array([model.state_names.index(name) for name, _ in model.limits], np.int64)
-
-
-def new_watch(model: Model, n: int, p: FloatArray) -> Watch:
-    """Room for the guards of a machine of n states, with the bounds of its domain at p [np]."""
-    parameters = len(p)
-    frictions, modes = len(model.friction_rates), len(model.mode_names)
-    elements = frictions + contact_count(frictions, modes)
-    watched = elements + len(model.limits)
-    guards, z = contact_guards(frictions, elements - frictions), np.zeros
-    strikes = (elements - frictions) * (n + 2)
-    return Watch(
-        z(guards),
-        z(modes),
-        z(modes),
-        z(watched),
-        z(watched),
-        z(watched),
-        z((guards, n)),
-        z((guards, parameters)),
-        z(n),
-        z(parameters),
-        z(n),
-        z(n),
-        z(strikes),
-        z((strikes, n)),
-        z((strikes, parameters)),
-        z(1),
-        z((2, 3)),
-        limited_states(model),
-        model.domain(p),
-        z(modes),
-        z(n),
     )
 
 
@@ -275,27 +195,3 @@ def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watc
                 f"State '{model.state_names[joint]}' starts at {x[joint]:.6g} rad/s in the gap,"
                 " where friction holds the joint; start it at rest."
             )
-
-
-def new_tangents(
-    s: FloatArray, columns: IntArray, delay_column: IntArray, parameters: int, nu: int
-) -> Tangents:
-    """Room for the tangents s [n, ns]; see `integrate`."""
-    (n, ns), z = (len(s), padded(s.shape[1])), np.zeros
-    table = z((n, ns))
-    table[:, : s.shape[1]] = s
-    return Tangents(
-        table.reshape(-1),
-        table,
-        columns,
-        delay_column,
-        z((STAGES, n * ns)),
-        z(n * ns),
-        z(n * ns),
-        z(n * ns),
-        z((3, n, n)),
-        z((3, n * ns)),
-        z((n, n)),
-        z((n, nu)),
-        z((n, parameters)),
-    )

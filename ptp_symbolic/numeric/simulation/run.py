@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.buffers import limited_states
 from ptp_symbolic.numeric.simulation.events.names import Event, named_events
 from ptp_symbolic.numeric.simulation.fixed_integration import (
     FixedSolution,
@@ -22,7 +23,6 @@ from ptp_symbolic.numeric.simulation.integration import (
     Solution,
     default_method,
     integrate,
-    limited_states,
     tolerance_weights,
 )
 from ptp_symbolic.numeric.simulation.kernels.records import (

@@ -64,7 +64,7 @@ class Solve:
 
 def solve_accelerations(equations: Equations) -> Solve:
     """Name the mass matrix, forces and accelerations of `equations`."""
-    places = [str(symbol).removeprefix("theta_") for symbol in equations.coordinates]
+    places = [kinematics.place_of(coordinate) for coordinate in equations.coordinates]
     n = len(places)
     slides = {friction.rate: friction for friction in equations.frictions}
     definitions: list[Line] = [(str(symbol), term) for symbol, term in equations.terms]

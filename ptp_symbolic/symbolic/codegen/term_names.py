@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 
+import sympy as sp
+
 from ptp_symbolic.symbolic.codegen.sharing import Vocabulary
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.place import active
@@ -21,7 +23,7 @@ def vocabulary(equations: Equations) -> Vocabulary:
 
 def _targets(equations: Equations) -> dict[str, str]:
     """Words by target: ``accel_pan`` for ``dx[2]``, ``accel_pan_by_b_pan`` for ``fp[2, 4]``."""
-    rates = _numbered("dx", [_rate(str(s)) for s in equations.state_symbols])
+    rates = _numbered("dx", [_rate(s, equations) for s in equations.state_symbols])
     guards = _numbered("g", _guards(equations))
     readings = _numbered("y", [f"reading_{name}" for name, _, _ in equations.outputs])
     energy = _numbered("e", ["stored", "power_in", "dissipated"])
@@ -77,10 +79,10 @@ def _derivatives(
     }
 
 
-def _rate(state: str) -> str:
+def _rate(state: sp.Symbol, equations: Equations) -> str:
     """The time derivative of a state in words."""
-    if state.startswith("omega_"):
-        return state.replace("omega_", "accel_", 1)
+    if state in equations.rates:
+        return f"accel_{place_of(state)}"
     return f"rate_of_{state}"
 
 

@@ -41,9 +41,9 @@ def gear_rate(axis: str) -> sp.Symbol:
     return real(f"omega_gear_{axis}")
 
 
-def place_of(rate: sp.Symbol) -> str:
-    """Where a rate of a joint or gear output is: ``pan``, or ``gear_pan``."""
-    return _PLACES[rate]
+def place_of(motion: sp.Symbol) -> str:
+    """Where an angle or rate is: ``pan`` of the joint, ``gear_pan`` of the gear output."""
+    return _PLACES[motion]
 
 
 def joint_direction(axis: str) -> sp.ImmutableMatrix:
@@ -76,4 +76,5 @@ def rotation_to_base(axes: tuple[str, ...], frame: str) -> sp.ImmutableMatrix:
     return rotation
 
 
-_PLACES = {rate(axis): axis for axis in AXES} | {gear_rate(a): f"gear_{a}" for a in AXES}
+_PLACES = {of(axis): axis for of in (angle, rate) for axis in AXES}
+_PLACES |= {of(axis): f"gear_{axis}" for of in (gear_angle, gear_rate) for axis in AXES}

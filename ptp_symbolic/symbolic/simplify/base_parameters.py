@@ -7,7 +7,7 @@ from itertools import combinations_with_replacement
 import sympy as sp
 
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
-from ptp_symbolic.symbolic.mechanics.kinematics import TIME
+from ptp_symbolic.symbolic.mechanics.kinematics import TIME, place_of
 from ptp_symbolic.symbolic.simplify.nesting import (
     AngleSums,
     Combination,
@@ -22,7 +22,6 @@ from ptp_symbolic.symbolic.simplify.regressors import (
     Exponents,
     Regression,
     StateFunction,
-    place_of,
     regress,
 )
 from ptp_symbolic.symbolic.symbols import real

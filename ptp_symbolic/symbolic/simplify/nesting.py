@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from ptp_symbolic.symbolic.mechanics.kinematics import place_of
 from ptp_symbolic.symbolic.simplify.operations import Line
-from ptp_symbolic.symbolic.simplify.regressors import Exponents, StateFunction, place_of
+from ptp_symbolic.symbolic.simplify.regressors import Exponents, StateFunction
 from ptp_symbolic.symbolic.symbols import ZERO, real
 
 Combination = dict[sp.Expr, sp.Rational]

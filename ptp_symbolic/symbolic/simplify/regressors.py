@@ -12,14 +12,10 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.trigonometry import TrigonometricRing
+from ptp_symbolic.symbolic.mechanics.kinematics import place_of
 
 Exponents = tuple[int, ...]
 Coefficient = dict[Exponents, sp.Rational]
-
-
-def place_of(coordinate: sp.Symbol) -> str:
-    """The place in the name of a coordinate: 'pan' for theta_pan."""
-    return str(coordinate).removeprefix("theta_")
 
 
 @dataclass(frozen=True)
