@@ -1,14 +1,12 @@
 """Parameters of which the data see a combination alone are not given an interval each."""
 
-from types import SimpleNamespace
-from typing import cast
-
 import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import estimates
+from tests.identify.straight import finished
 
 RNG = np.random.default_rng(5)
 TIME = np.arange(0.0, 20.0, 0.01)
@@ -19,20 +17,7 @@ def straight_line(columns: dict[str, np.ndarray], noise: float) -> Fit:
     free = tuple(free_parameter(name, 2.0, 0.0, 50.0) for name in columns)
     matrix = np.column_stack(list(columns.values()))
     residual = noise * RNG.standard_normal(len(TIME))
-    evaluation = SimpleNamespace(
-        residual=residual, by_parameter=-2.0 * matrix, by_start=np.zeros((len(TIME), 0))
-    )
-    run = SimpleNamespace(name="run", time=TIME, measured=np.zeros((len(TIME), 1)), size=len(TIME))
-    return cast(
-        Fit,
-        SimpleNamespace(
-            free=free,
-            values=dict.fromkeys(columns, 2.0),
-            runs=(run,),
-            evaluations=(evaluation,),
-            cost=float(residual @ residual),
-        ),
-    )
+    return finished([residual], [-2.0 * matrix], None, free, dict.fromkeys(columns, 2.0))
 
 
 def test_two_frictions_in_one_joint_are_known_as_a_sum_only() -> None:

@@ -14,7 +14,7 @@ from ptp_symbolic.numeric.identify.coordinates import (
 )
 from ptp_symbolic.numeric.identify.fit import Effort, all_values, fit_parameters
 from ptp_symbolic.numeric.identify.intervals import estimates
-from ptp_symbolic.numeric.identify.requirements import Allow, keep_possible
+from ptp_symbolic.numeric.identify.requirements import Allow, keep_possible, nearest_possible
 from ptp_symbolic.numeric.runtime.model import Model
 from tests.identify.pan_runs import (
     FLOOR,
@@ -110,6 +110,28 @@ def test_tied_frictions_are_never_held() -> None:
 def test_a_relation_broken_from_the_start_is_let_be() -> None:
     trial = values(10.0, 0.7, 0.3)
     assert stepped(values(14.0, 0.6, 0.5), trial) == pytest.approx(trial, rel=1e-12)
+
+
+def test_a_start_with_a_broken_relation_goes_to_the_nearest_possible_one() -> None:
+    """In units of their starts, as above; viscous friction stays. A fit ends possible from there:
+    its result used to be refused after all the work.
+    """
+    phi = to_search(ALL, values(14.0, 0.6, 0.2))
+
+    def parameters(phi: Floats) -> Floats:
+        return MODEL.parameter_vector(all_values(ALL, phi))
+
+    found = to_values(ALL, nearest_possible(MODEL, ALL, parameters, phi))
+    meet = (25 * 0.6 + 4 * 0.2) / 29
+    assert found == pytest.approx(values(14.0, meet, meet), rel=1e-5)
+    assert found["F_s_pan"] >= found["F_c_pan"]
+
+    made = make_runs(PanDrive(), [profile() for profile in THREE], 10)
+    free = (free_parameter("F_c_pan", 0.5, 0.0, 20.0), free_parameter("F_s_pan", 0.3, 0.0, 30.0))
+    names = {f.name for f in free}
+    fit = fit_parameters(MODEL, made.runs, free, unfree(names) | {**TRUTH}, None, Effort(15, 1e-4))
+    MODEL.refuse_impossible(MODEL.parameter_vector(dict(fit.values)))
+    assert fit.values["F_s_pan"] == pytest.approx(0.65, rel=0.1)
 
 
 def test_a_strict_relation_is_kept_strictly() -> None:

@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.identify.coordinates import (
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.gap_places import gears_in_place, residual_of, with_gap_places
 from ptp_symbolic.numeric.identify.least_squares import Optimum, Problem, cost_of, minimise
-from ptp_symbolic.numeric.identify.requirements import keep_possible
+from ptp_symbolic.numeric.identify.requirements import keep_possible, nearest_possible
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.secants import Secants, Shift
 from ptp_symbolic.numeric.runtime.model import Model
@@ -98,10 +98,12 @@ def fit_parameters(
     effort = effort or Effort()
     if not free:
         return _fit_starts(model, runs, fixed, z, effort, executor)
-    problem = _problem(model, runs, free, fixed, effort, executor)
+    simulations = _simulations(model, runs, free, fixed, effort, executor)
+    problem = _problem(simulations, effort)
     if problem.refine is not None and misleading is not None:
         problem.refine.chosen = list(misleading)
     phi = to_search(free, {f.name: f.start for f in free})
+    phi = nearest_possible(model, free, simulations.parameters, phi)
     values = {**fixed, **all_values(free, phi)}
     if z is None:
         guesses = [run.guess for run in runs]
@@ -131,7 +133,9 @@ def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
     if not fit.free or fit.failed:
         return fit
     effort = Effort(tolerance=fit.tolerance, secants=STEP)
-    problem = _problem(fit.model, fit.runs, fit.free, fit.values, effort, executor)
+    problem = _problem(
+        _simulations(fit.model, fit.runs, fit.free, fit.values, effort, executor), effort
+    )
     assert problem.refine is not None
     phi = to_search(fit.free, fit.values)
     here = problem.evaluate(phi, fit.z, True)
@@ -201,18 +205,18 @@ class _Simulations:
         return list(self.executor.map(one, pairs)) if self.executor else [one(a) for a in pairs]
 
 
-def _problem(
+def _simulations(
     model: Model,
     runs: Sequence[Run],
     free: Sequence[FreeParameter],
     fixed: Mapping[str, float],
     effort: Effort,
     executor: Executor | None,
-) -> Problem:
+) -> _Simulations:
     names = list(model.parameter_names)
     owned = [(i, names.index(name)) for i, f in enumerate(free) for name in f.names]
     owner, columns = np.array(owned, dtype=np.int64).reshape(-1, 2).T
-    simulations = _Simulations(
+    return _Simulations(
         model,
         runs,
         free,
@@ -222,6 +226,10 @@ def _problem(
         effort.tolerance,
         executor,
     )
+
+
+def _problem(simulations: _Simulations, effort: Effort) -> Problem:
+    free, runs = simulations.free, simulations.runs
     lower, upper = limits(free)
     return Problem(
         simulations.evaluate,
@@ -234,8 +242,8 @@ def _problem(
         np.zeros(len(free)),
         None
         if effort.secants is None
-        else Secants(simulations.residual, upper, executor, step=effort.secants),
-        keep_possible(model, free, simulations.parameters),
+        else Secants(simulations.residual, upper, simulations.executor, step=effort.secants),
+        keep_possible(simulations.model, free, simulations.parameters),
     )
 
 
@@ -256,7 +264,7 @@ def _fit_starts(
     simulated = partial(residual_of, model, model.parameter_vector(fixed), effort.tolerance)
 
     def one(run: Run, known: Sequence[FloatArray]) -> Optimum:
-        problem = _problem(model, [run], (), fixed, effort, None)
+        problem = _problem(_simulations(model, [run], (), fixed, effort, None), effort)
         starts = [with_gap_places(run, s, partial(simulated, run)) for s in run.guesses]
         starts += known
         costs = [cost_of(problem, problem.evaluate(nothing, [s], False), [s]) for s in starts]

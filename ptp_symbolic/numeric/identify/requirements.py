@@ -23,11 +23,7 @@ def keep_possible(
 
     `parameters(phi)` gives all parameters [np]. A relation broken at phi already is let be.
     """
-    relations, bounds = [], limits(free)
-    for row, (names, _, strict) in enumerate(model.module.REQUIREMENTS):
-        about = np.array([bool({f.name, *f.tied} & set(names)) for f in free], dtype=np.bool_)
-        if about.any():
-            relations.append(_Relation(model, parameters, row, strict, about, bounds))
+    relations = _relations(model, free, parameters)
 
     def allow(phi: FloatArray, trial: FloatArray) -> FloatArray:
         for relation in relations:
@@ -36,6 +32,31 @@ def keep_possible(
         return trial
 
     return allow
+
+
+def nearest_possible(
+    model: Model,
+    free: Sequence[FreeParameter],
+    parameters: Callable[[FloatArray], FloatArray],
+    phi: FloatArray,
+) -> FloatArray:
+    """Return `phi` [nf], moved to the boundary of every relation that is broken there."""
+    for relation in _relations(model, free, parameters):
+        if not relation.holds(phi):
+            phi = relation.entered(phi)
+    return phi
+
+
+def _relations(
+    model: Model, free: Sequence[FreeParameter], parameters: Callable[[FloatArray], FloatArray]
+) -> list["_Relation"]:
+    """The relations of a model that `free` parameters can break."""
+    relations, bounds = [], limits(free)
+    for row, (names, _, strict) in enumerate(model.module.REQUIREMENTS):
+        about = np.array([bool({f.name, *f.tied} & set(names)) for f in free], dtype=np.bool_)
+        if about.any():
+            relations.append(_Relation(model, parameters, row, strict, about, bounds))
+    return relations
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,14 +107,20 @@ class _Relation:
         boundary = self.boundary(phi, step)
         rest, slope = phi + step - boundary, self.gradient(boundary)
         rest -= _inward(slope) * min(0.0, float(slope @ rest))
+        there = self.entered(np.clip(boundary + rest, *self.bounds))
+        return np.where(self.about, there if self.holds(there) else boundary, trial)
+
+    def entered(self, phi: FloatArray) -> FloatArray:
+        """The nearest point at which the relation holds, within the bounds; where Newton's steps
+        along the gradient find none, the last one that they reach.
+        """
         for _ in range(CORRECTIONS):
-            there = np.clip(boundary + rest, *self.bounds)
-            if self.holds(there):
-                return np.where(self.about, there, trial)
-            by = self.margin(there)
-            inward = _inward(np.where(self.at_bound(there, slope), 0.0, slope))
-            rest = there - boundary + inward * (QUOTIENT * abs(by) - by)
-        return np.where(self.about, boundary, trial)
+            if self.holds(phi):
+                break
+            by, slope = self.margin(phi), self.gradient(phi)
+            inward = _inward(np.where(self.at_bound(phi, slope), 0.0, slope))
+            phi = np.clip(phi + inward * (QUOTIENT * abs(by) - by), *self.bounds)
+        return phi
 
 
 def _inward(slope: FloatArray) -> FloatArray:
