@@ -1,6 +1,7 @@
 """What a diagnosis says in words, tables and tests, from fits with known residuals."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,6 +17,7 @@ from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.intervals import Estimate
+from tests.identify.straight import run_of
 
 DECLARED = 6.5e-4
 COUNT = 1e-3  # rad
@@ -40,10 +42,9 @@ def _fit(
     """
     weight = np.array([1.0 / c if np.isfinite(c) else 10.0 for c in counts])
     runs = tuple(
-        SimpleNamespace(
-            name=f"run#{number}",
+        replace(
+            run_of(len(left), left.shape[1], inputs, f"run#{number}"),
             time=4.0 * number + np.linspace(0.0, 4.0, len(left)),
-            held_inputs=inputs,
             measured=np.ones_like(left),
             weight=weight,
             counts=np.array(counts),
