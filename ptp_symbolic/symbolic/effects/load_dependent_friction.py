@@ -1,4 +1,8 @@
-"""Dry friction that grows with the torque that the gear carries."""
+"""Dry friction that grows with the torque that the gear carries.
+
+That is the torque of the shaft. An axis without one takes the torque of its drive at the gear
+output, what accelerates the rotor included, or else its torque input.
+"""
 
 import sympy as sp
 
