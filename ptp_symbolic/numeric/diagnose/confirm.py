@@ -9,10 +9,10 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.linear import effect_of, outside, stacked
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, accuracy
 from ptp_symbolic.numeric.identify.blocks import leave_blocks_out, without_outliers
-from ptp_symbolic.numeric.identify.constants import ELSEWHERE, MOST, NEAR_BOUND, SHARP, UNIDENTIFIED
+from ptp_symbolic.numeric.identify.constants import ELSEWHERE, FALSE_ALARM, MOST, NEAR_BOUND, SHARP
 from ptp_symbolic.numeric.identify.evaluate import evaluate
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.intervals import spread_of_factor
+from ptp_symbolic.numeric.identify.intervals import chance_of_zero
 from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
 
 FloatArray = NDArray[np.float64]
@@ -35,14 +35,13 @@ def why_unconfirmed(fit: Fit, candidate: Candidate, leaves_noise: bool) -> str |
 
 
 def is_amount_known(fit: Fit, candidate: Candidate) -> bool:
-    """Whether the interval of the candidate's amount, a factor on all parameters that switch it
-    on, leaves out zero: a set may need an effect that only makes up for others.
+    """Whether the parameters that switch the candidate on can be told from where they switch it
+    off: a set may need an effect that only makes up for others.
 
-    Of several such parameters none need be known alone: frictions at low and at high rates trade
-    for each other where the total is clear. Nor need the shape be known: a single axis feels a
-    base that shakes by what goes along with it, whatever the azimuth.
+    None of them need be known alone, for they may trade for each other. Nor need the shape be
+    known: a single axis feels a base that shakes by what goes along with it, whatever the azimuth.
     """
-    return spread_of_factor(fit, candidate.vanishing, candidate.parameters) < UNIDENTIFIED
+    return chance_of_zero(fit, candidate.vanishing, candidate.parameters) < FALSE_ALARM
 
 
 def at_bound(fit: Fit, candidate: Candidate) -> str | None:

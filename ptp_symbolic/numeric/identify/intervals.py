@@ -86,20 +86,25 @@ def _interval(
     return float(ends[0]), float(ends[1]), width
 
 
-def spread_of_factor(fit: Fit, zero: Mapping[str, float], shape: Collection[str] = ()) -> float:
-    """Half width of the 95 % interval of a factor on how far the parameters in `zero` are from
-    their values there, all of them together. Those named in `shape` stay as they are, all others
-    are free.
+def chance_of_zero(fit: Fit, zero: Mapping[str, float], shape: Collection[str] = ()) -> float:
+    """Probability that the parameters in `zero` are found as far from their values there as they
+    are, or further, where the truth is there: Hotelling's T^2 (1931) with the covariance of the
+    intervals. Those named in `shape` stay as they are, all others are free. 1 where the data see
+    them only in combination with others, or where too few blocks tell.
     """
     away = to_search(fit.free, fit.values) - to_search(fit.free, {**fit.values, **zero})
     own = np.array([f.name in zero for f in fit.free])
     others = np.array([f.name not in zero and f.name not in shape for f in fit.free])
     columns = _columns(fit)
-    along = columns[:, own] @ away[own]
-    covariance, degrees, lost = _covariance(fit, np.column_stack([columns[:, others], along]))
-    if np.any(lost[:, -1] ** 2 > SAME):
-        return np.inf
-    return float(stats.t.ppf(0.975, degrees[-1]) * np.sqrt(covariance[-1, -1]))
+    covariance, degrees, lost = _covariance(fit, np.hstack([columns[:, others], columns[:, own]]))
+    k, first = int(own.sum()), int(others.sum())
+    mixed = [np.any(part**2 > SAME, axis=(0, 1)) for part in (lost[:, :first], lost[:, first:])]
+    left = float(degrees[first:].min()) - k + 1.0
+    if np.any(mixed[0] & mixed[1]) or left <= 0.0:
+        return 1.0
+    inverse = np.linalg.pinv(covariance[first:, first:], rcond=NOTHING, hermitian=True)
+    statistic = float(away[own] @ inverse @ away[own]) * left / (k * (left + k - 1.0))
+    return float(stats.f.sf(statistic, k, left))
 
 
 def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
