@@ -78,7 +78,7 @@ class Output:
 
 
 @contextmanager
-def _workers() -> Iterator[Executor]:
+def workers() -> Iterator[Executor]:
     """One thread per core that the process may use, for runs side by side; threads of the linear
     algebra would be in their way.
     """
@@ -103,10 +103,10 @@ def fit_platform(
     that do not fit each other.
     """
     logs = read_logs(paths, platform)
-    noted = _look_at(platform, logs, logs, progress)
+    noted = look_at(platform, logs, logs, progress)
     model = emission.emit(platform)
-    with _workers() as executor:
-        task = _task(platform, model, logs, logs, (), executor, progress)
+    with workers() as executor:
+        task = task_for(platform, model, logs, logs, (), executor, progress)
         begun = _as_declared(task)
         trial = begun
         if task.free:
@@ -163,11 +163,11 @@ def diagnose_platform(
     Raises InputError for logs and platforms that do not fit each other, and for a run in both.
     """
     train_logs, validate_logs = read_split_logs(train, validate, platform)
-    noted = _look_at(platform, train_logs, (*train_logs, *validate_logs), progress)
+    noted = look_at(platform, train_logs, (*train_logs, *validate_logs), progress)
     progress("deriving the equations of the platform and its candidates")
     model = emission.emit(variants.with_candidates(platform))
-    with _workers() as executor:
-        task = _task(
+    with workers() as executor:
+        task = task_for(
             platform, model, train_logs, validate_logs, effect_keys(platform), executor, progress
         )
         found = search(task)
@@ -175,7 +175,7 @@ def diagnose_platform(
         return _write_up(platform, task, found, verdict, noted)
 
 
-def _look_at(
+def look_at(
     platform: Platform, train: Sequence[Log], every: Sequence[Log], progress: Progress
 ) -> tuple[str, ...]:
     """Refuse logs that cannot be used, and say what is odd about the others before any fit."""
@@ -187,7 +187,7 @@ def _look_at(
     return noted
 
 
-def _task(
+def task_for(
     platform: Platform,
     model: Model,
     train: Iterable[Log],

@@ -4,6 +4,7 @@ import sys
 
 import click
 
+from ptp_symbolic.cli.check import check
 from ptp_symbolic.cli.diagnose import diagnose, fit
 from ptp_symbolic.cli.lists import effects, models, platforms
 from ptp_symbolic.cli.regenerate import regenerate
@@ -22,6 +23,7 @@ for command in (
     regenerate,
     simulate,
     sensitivity,
+    check,
     fit,
     diagnose,
     report,

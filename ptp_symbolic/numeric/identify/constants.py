@@ -41,6 +41,7 @@ DRAWS = 3  # 1; random states at which a dependence is looked for; scaled
 # Robustness
 TUNING = 2.5  # 1; sizes of the usual block beyond which a block counts less; scaled
 HUBER = 2.0  # 1; standard deviations beyond which a row counts linearly: 99 % efficient; derived
+SEEN = 3.29  # 1; standard deviations: found with 95 % where 5 % are false alarms; derived
 FAR = 4.0  # 1; standard deviations that noise seldom reaches (once in 16,000); derived
 RESTING = 5.0  # 1; the same for every rate of a log (once in 1,700,000); derived
 NEARBY = 2.0 * FAR  # 1; standard deviations from which on all windows count alike; scaled

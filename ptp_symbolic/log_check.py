@@ -1,0 +1,65 @@
+"""Look at logs before anything is fitted: what they hold, and what they can show."""
+
+import json
+import math
+from collections.abc import Iterable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from ptp_symbolic.diagnosis_workflow import (
+    SCHEMA_VERSION,
+    Output,
+    Progress,
+    effect_keys,
+    look_at,
+    task_for,
+    workers,
+)
+from ptp_symbolic.models import emission, variants
+from ptp_symbolic.numeric.data import read_logs
+from ptp_symbolic.numeric.diagnose.summary import repeatability_table
+from ptp_symbolic.numeric.diagnose.trial import fitted
+from ptp_symbolic.numeric.diagnose.visibility import Visible, visible_amounts
+from ptp_symbolic.numeric.identify.fit import all_values_at_start
+from ptp_symbolic.numeric.identify.log_facts import facts_of
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.platform import Platform
+
+
+def check_logs(
+    platform: Platform, paths: Iterable[Path | str], progress: Progress = lambda text: None
+) -> Output:
+    """What logs of `platform` hold, and how small a parameter and an effect they can show,
+    predicted by the model at its declared start values.
+
+    Raises InputError for logs and platforms that do not fit each other.
+    """
+    logs = read_logs(paths, platform)
+    noted = look_at(platform, logs, logs, progress)
+    progress("deriving the equations of the platform and its candidates")
+    model = emission.emit(variants.with_candidates(platform))
+    with workers() as executor:
+        task = task_for(platform, model, logs, logs, effect_keys(platform), executor, progress)
+        progress("predicting what these logs can show")
+        start = fitted(task, (), {**task.fixed, **all_values_at_start(task.free)}, None)
+        failed = start.fit.failed is not None
+        visible = [] if failed else visible_amounts(task, start)
+    units = {n: model.units[n] for n in (*model.input_names, *task.whole[0].signals)}
+    summary = {
+        "schema_version": SCHEMA_VERSION,
+        "platform": {"name": platform.name, "title": platform.title},
+        "remarks": list(noted),
+        "logs": [facts_of(run, units).as_dict() for run in task.whole],
+        "units": units,
+        "repeatability": repeatability_table(task.whole, model.units),
+        "simulates": not failed,
+        "visible": [_row(v, model) for v in visible],
+    }
+    return Output(summary, {"check.json": json.dumps(summary, indent=2) + "\n"})
+
+
+def _row(visible: Visible, model: Model) -> dict[str, Any]:
+    unit = next(p.unit for p in model.parameters if p.name == visible.parameter)
+    smallest = visible.smallest if math.isfinite(visible.smallest) else None
+    return {**asdict(visible), "smallest": smallest, "unit": unit}

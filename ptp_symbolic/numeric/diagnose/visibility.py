@@ -1,0 +1,71 @@
+"""How small a parameter or an effect these logs can show, predicted at the declared start values.
+
+The prediction takes the declared model for right and the noise for white: model errors leave less
+to be seen. An effect is simulated at a small amount; what of its response the free parameters and
+the starts of the runs cannot follow must stand out of the noise.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.linear import outside, stacked
+from ptp_symbolic.numeric.diagnose.responses import response_columns
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial
+from ptp_symbolic.numeric.identify.constants import NOTHING, REACH, SEEN
+from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Visible:
+    """A parameter, the `effect` that it switches on (None: declared and free), and the smallest
+    amount in its unit that the logs show; infinite where they show none.
+    """
+
+    effect: str | None
+    parameter: str
+    smallest: float
+
+
+def visible_amounts(task: Task, start: Trial) -> list[Visible]:
+    """Smallest visible change of every free parameter, and amount of every effect that is searched
+    for in its simplest form, at `start`, the declared model with its derivatives.
+    """
+    declared = stacked(start.fit, [e.by_parameter for e in start.fit.evaluations])
+    units = np.abs(slopes(start.fit.free, to_search(start.fit.free, start.fit.values)))
+    found = [
+        Visible(None, f.name, _smallest(declared[:, k] / units[k], np.delete(declared, k, axis=1)))
+        for k, f in enumerate(start.fit.free)
+    ]
+    simplest: dict[str, Candidate] = {}
+    for candidate in sorted(task.candidates, key=lambda c: len(c.free)):
+        if not candidate.is_declared_value:
+            simplest.setdefault(candidate.key, candidate)
+    most = REACH * float(np.sqrt(len(declared)))
+
+    def amounts(candidate: Candidate) -> list[Visible]:
+        columns = response_columns(task, start, candidate, candidate.shapes[0], most)
+        seen = {} if columns is None else dict(zip(columns.free, columns.table.T, strict=True))
+        return [
+            Visible(
+                candidate.key, f.name, _smallest(seen[f], declared) if f in seen else float("inf")
+            )
+            for f in candidate.defining
+        ]
+
+    for rows in task.executor.map(amounts, simplest.values()):
+        found += rows
+    return found
+
+
+def _smallest(column: FloatArray, others: FloatArray) -> float:
+    """The amount whose response, `column` [n] per unit, stands out of unit noise beside what
+    `others` [n, k] can follow.
+    """
+    size = float(np.linalg.norm(outside(column[:, None], others)))
+    least = np.sqrt(NOTHING) * float(np.linalg.norm(column))
+    return SEEN / size if size > least else float("inf")
