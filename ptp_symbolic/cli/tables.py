@@ -22,7 +22,7 @@ ENERGIES = ("stored", "supplied", "dissipated")
 def trajectory_columns(
     platform: Platform, model: Model, found: Trajectory, signals: Mapping[str, InputSignal]
 ) -> dict[str, FloatArray]:
-    """Columns [k] of `found` by heading: time, states, energies, inputs, measured signals.
+    """Columns [k] of `found` by heading: time, states, energies in J, inputs, measured signals.
 
     Inputs and outputs stand under the columns that `platform` declares, so that the file is a log
     of it; a state of the same name makes room for them. Raises InputError for a column that has the

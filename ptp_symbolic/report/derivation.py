@@ -38,7 +38,10 @@ ROUTES = (("Newton--Euler", newton_euler), ("Kane", kane), ("Lagrange", lagrange
 
 
 def render_derivation(platform: Platform) -> dict[str, str | bytes]:
-    """Return the document as ``derivation.tex``; it needs no other file."""
+    """Return the document as ``derivation.tex``; it needs no other file.
+
+    Raises InputError for a platform that cannot be derived or a machine that cannot exist.
+    """
     equations = assemble(platform)
     refuse_impossible(equations)
     simplified = _simplified(equations)

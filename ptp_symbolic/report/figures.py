@@ -73,7 +73,7 @@ def residual_unit(signal: Mapping[str, Any]) -> str:
 
 
 def motion_figure(curve: Mapping[str, Any], floors: Mapping[str, float], points: int = 800) -> str:
-    """One run as SVG: every signal measured and simulated, and under it what is left over.
+    """One run as SVG: every signal measured and simulated, and under it the residual.
 
     `floors`: rms noise floor of signals, in the unit of their residual, drawn as a band of twice
     its height either side of zero. Each line is thinned to `points`, keeping its extremes. Where
@@ -179,10 +179,10 @@ def _set_limit(axes: Axes, values: FloatArray, floor: float | None) -> None:
 def residual_map_figure(
     signal_name: str, axis: str, curves: Mapping[str, Mapping[str, Any]], floor: float | None
 ) -> str:
-    """What one signal leaves over against angle, rate of `axis` and time, runs pooled, as SVG.
+    """Residual of one signal against angle and rate of `axis` and time, runs pooled, as SVG.
 
-    Dots are samples, the line their median in equal bins, the band twice the noise floor, given in
-    the unit of the residual.
+    Dots are samples, the line their median in equal bins, the band twice the noise floor (rms),
+    given in the unit of the residual.
     """
     runs = [run for run in curves.values() if signal_name in run["signals"]]
     against = [
@@ -211,8 +211,8 @@ def residual_map_figure(
 
 
 def torque_map_figure(maps: Sequence[Mapping[str, Any]], unit: str) -> str:
-    """Means of the torque that is left on one axis in bins of every side of `maps`, with bars of
-    twice their standard error, as SVG; the share of its variance stands above.
+    """Means of the residual torque of one axis, in `unit`, in bins of every side of `maps`, with
+    bars of twice their standard error, as SVG; the share of its variance stands above.
     """
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(10.4, 2.4))

@@ -19,7 +19,7 @@ class LogAxis:
     high: float
 
     def place(self, value: Any) -> float | None:
-        """Where a value lies, in percent of the length; None when it lies nowhere."""
+        """Where a value lies, in percent of the length; None if not positive and finite."""
         if not usable(value) or value <= 0.0:
             return None
         share = (math.log10(value) - self.low) / (self.high - self.low)
@@ -40,7 +40,7 @@ class ErrorRow:
 
 @dataclass(frozen=True)
 class SignalRow:
-    """The error of one signal in its own unit, or in counts where it has an encoder."""
+    """The error (rms) of one signal in its own unit, or in counts where it has an encoder."""
 
     signal: str
     unit: str

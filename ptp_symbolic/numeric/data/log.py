@@ -20,7 +20,7 @@ class Log:
     """One run: `time` [n] in s, strictly increasing; `inputs` [n, nu]; `outputs` [n, ny].
 
     Columns are in the order of the platform's signals of that role and in their units (SI). The
-    sampling may be irregular; an input holds from its sample to the next.
+    sampling may be irregular; inputs are zero-order hold.
     """
 
     name: str
@@ -34,7 +34,7 @@ def read_log(path: Path | str, platform: Platform) -> Log:
 
     Raises InputError, with the line where there is one, for a file that is missing, not text or
     truncated, a missing signal or a wrong unit, cells that are no finite numbers, time stamps that
-    do not increase, and fewer than 10 rows.
+    do not increase, fewer than 10 rows, and a platform without output signals.
     """
     path = Path(path)
     inputs = [signal for signal in platform.signals if signal.role == "input"]
@@ -60,7 +60,7 @@ def read_inputs(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Read only time [n] in s and inputs [n, nu] in SI of a CSV, to drive a simulation with.
 
-    Raises InputError as `read_log` does.
+    Raises InputError as `read_log` does, and for a platform without input signals.
     """
     inputs = [signal for signal in platform.signals if signal.role == "input"]
     if not inputs:

@@ -1,4 +1,4 @@
-"""What can be seen of logs before anything is fitted: what they cannot tell, and what is wrong."""
+"""Checks of logs before any fit: wrapped angles, excitation, saturation, gaps and jitter."""
 
 from collections.abc import Sequence
 
@@ -20,7 +20,7 @@ JITTER = 0.2  # of the sampling period, rms
 
 
 def refuse_wrapped_angles(logs: Sequence[Log], platform: Platform) -> None:
-    """Raise InputError for an angle that jumps by a turn from one sample to the next."""
+    """Raise InputError for an angle that jumps by over half a turn (pi rad) between samples."""
     for log in logs:
         for k, signal in enumerate(_outputs(platform)):
             step = np.diff(log.outputs[:, k])
@@ -34,7 +34,9 @@ def refuse_wrapped_angles(logs: Sequence[Log], platform: Platform) -> None:
 
 
 def refuse_motionless(logs: Sequence[Log], platform: Platform) -> None:
-    """Raise InputError where no angle moves in any of the logs."""
+    """Raise InputError where no angle of any log moves, peak to peak, by more than 3 counts of its
+    encoder and 6 standard deviations of its declared noise.
+    """
     angles = [(k, s) for k, s in enumerate(_outputs(platform)) if s.unit == "rad"]
     if angles and not any(_moves(logs, k, s) for k, s in angles):
         names = " and ".join(f"'{s.column}'" for _, s in angles)
@@ -46,7 +48,9 @@ def refuse_motionless(logs: Sequence[Log], platform: Platform) -> None:
 
 
 def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
-    """What these logs cannot tell, or what is odd about them, a sentence each."""
+    """Warnings about the logs, one sentence each: motionless angles, constant inputs, saturated
+    signals, gaps and jitter of the sampling.
+    """
     found = []
     outputs = _outputs(platform)
     inputs = [s for s in platform.signals if s.role == "input"]

@@ -1,4 +1,4 @@
-"""Runs to fit and runs to judge by: what a fit has seen judges nothing."""
+"""Training and validation logs: no run may be in both, whole or in part."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -17,10 +17,10 @@ CHANGES = 10  # of them differ from the one before, or they say little
 def read_split_logs(
     train: Iterable[Path | str], validate: Iterable[Path | str], platform: Platform
 ) -> tuple[tuple[Log, ...], tuple[Log, ...]]:
-    """Read the logs to fit and those to judge by, which must be other runs.
+    """Read the training logs and the validation logs, which must be other runs.
 
     Raises InputError as `read_logs` does, and for a run that is in both, under whatever name, whole
-    or in part. A part that was sampled anew is not noticed.
+    or in part. A part that was resampled is not noticed.
     """
     places = [[f for path in paths for f in csv_files(Path(path))] for paths in (train, validate)]
     fitted, judging = (read_logs(files, platform) for files in places)

@@ -39,7 +39,7 @@ def read_table(path: Path) -> Table:
     """Read a CSV and its header row.
 
     Raises InputError for a file that is missing, larger than 200 MB, empty or not text, and for a
-    header with a column twice.
+    header with a column twice, over 1000 columns, another separator or a malformed heading.
     """
     content = read_text_bytes(path, _MAX_BYTES, "a CSV log")
     head, _, body = content.partition(b"\n")
@@ -64,8 +64,9 @@ def read_table(path: Path) -> Table:
 def read_numbers(table: Table, columns: Sequence[int]) -> NDArray[np.float64]:
     """Parse the rows of `table`; return the given columns as [n, len(columns)].
 
-    Raises InputError with the line for a row with too few or too many cells and for a cell of
-    these columns that is empty or not a finite decimal number. Other columns may hold anything.
+    Raises InputError with the line for a row with too few or too many cells and for a cell of these
+    columns that is empty or not a finite decimal number, and for more than ten million rows or a
+    truncated last number. Other columns may hold anything.
     """
     body = table.body.rstrip(b"\n \t")
     cut_off = body if len(body) == len(table.body) else b""

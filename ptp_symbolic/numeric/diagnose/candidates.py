@@ -16,10 +16,10 @@ class Candidate:
     """One explanation, or a nested member of it: id, axis and the parameters that it frees.
 
     `free` are the parameters with the amounts at which a search begins; those in `vanishing` switch
-    it off at the values given, all others shape it. `shapes` are sets of values of the shaping
-    parameters from which a search begins. `locked` is a shaping frequency that a scan finds, with
-    what it is locked to ("time" or "angle"). `brings` are keys of candidates without which it has
-    nothing to act on. `member` numbers the nested versions, the simplest first.
+    it off at the values given, in their units, all others shape it. `shapes` are sets of values of
+    the shaping parameters from which a search begins. `locked` is a shaping frequency that a scan
+    finds, with what it is locked to ("time" or "angle"). `brings` are keys of candidates without
+    which it has nothing to act on. `member` numbers the nested versions, the simplest first.
     """
 
     id: str
@@ -56,7 +56,7 @@ class Candidate:
 
     @property
     def defining(self) -> tuple[FreeParameter, ...]:
-        """The parameters that switch it on."""
+        """The parameters that switch it on, those in `vanishing`."""
         return tuple(f for f in self.free if f.name in self.vanishing)
 
 
@@ -64,7 +64,7 @@ def find_candidates(
     model: Model, declared: Sequence[str], known: Mapping[str, tuple[float, float | None]]
 ) -> tuple[Candidate, ...]:
     """Candidates in the emitted union `model`: the members of effects not in `declared`, then
-    `known` values, each with the most by which it may be off (None: a factor).
+    `known` values, each with the most by which it may be off, in its unit (None: a factor).
     """
     by_name = {p.name: p for p in model.parameters}
     found: list[Candidate] = []
@@ -145,7 +145,7 @@ def _declared_value(
 
 
 def vanished(model: Model, declared: Sequence[str]) -> dict[str, float]:
-    """Parameter values at which every effect outside `declared` is off."""
+    """Vanishing values (or defaults) of the parameters of every effect outside `declared`."""
     by_name = {p.name: p for p in model.parameters}
     return {
         name: by_name[name].default if by_name[name].vanishes is None else by_name[name].vanishes  # type: ignore[misc]

@@ -20,8 +20,8 @@ FloatArray = NDArray[np.float64]
 
 def why_unconfirmed(fit: Fit, candidate: Candidate, leaves_noise: bool) -> str | None:
     """Why `candidate` of a trial cannot be named; None where nothing speaks against it. `fit` is
-    the trial's, with derivatives that are not blind. Where it leaves noise alone, nothing is
-    missing that the candidate could make up for.
+    the trial's, from `with_finite_differences`. Where it leaves noise alone, nothing is missing
+    that the candidate could make up for.
     """
     bound = at_bound(fit, candidate)
     if bound is not None:
@@ -45,7 +45,7 @@ def is_amount_known(fit: Fit, candidate: Candidate) -> bool:
 
 
 def at_bound(fit: Fit, candidate: Candidate) -> str | None:
-    """A parameter of the candidate that the fit pressed to a bound at which it does not vanish.
+    """Name of a parameter of the candidate with an active bound at which it does not vanish.
 
     A shape counts too: at the end of its range an effect becomes another one, as a spring that is
     relaxed far away becomes a constant torque.
@@ -63,11 +63,12 @@ def at_bound(fit: Fit, candidate: Candidate) -> str | None:
 
 
 def unstable_without(fit: Fit, candidate: Candidate) -> str | None:
-    """The first run without which less than half of the effect, or its opposite, would be found.
+    """Leave-one-run-out: the first run without which less than half of the effect, or its opposite,
+    would be found.
 
-    The effect is what it changes in the outputs, apart from what other parameters follow; runs far
-    worse than usual weigh less. Where a single run holds all that is known of it, leaving that out
-    says nothing.
+    The effect is what it changes in the outputs, projected off what other parameters follow; runs
+    far worse than usual weigh less. Where a single run holds all that is known of it, leaving that
+    out says nothing.
     """
     sources = [run.source for run in fit.runs]
     names = list(dict.fromkeys(sources))

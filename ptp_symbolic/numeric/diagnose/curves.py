@@ -14,9 +14,9 @@ FloatArray = NDArray[np.float64]
 
 
 def curves_of(parts: Mapping[str, tuple[Fit, Fit]]) -> dict[str, Any]:
-    """Measured and simulated signals of every run of each part ("train", "validate"), by the
-    declared and by the final model; the windows of a run joined at the times `borders`. The key of
-    a curve is its `run`, with the part where both parts have a run of that name.
+    """Measured and simulated signals [n] in SI of every run of each part ("train", "validate"), by
+    the declared and by the final model; the windows of a run joined at the times `borders` in s.
+    The key of a curve is its `run`, with the part where both parts have a run of that name.
     """
     curves: dict[str, Any] = {}
     for name, (before_fit, after_fit) in parts.items():

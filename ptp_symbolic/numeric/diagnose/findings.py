@@ -30,8 +30,8 @@ class Step:
 class Search:
     """What the search found: the declared model, the chosen set (the same where nothing is added),
     what every member of it gains, all other trials, and the noise of the inputs [ny] as the
-    declared model carries it to the outputs. `task` has the candidates with a frequency where a
-    line was found, and without those that have none.
+    declared model carries it to the outputs, over their own. `task` has the candidates with a
+    frequency where a line was found, and without those that have none.
     """
 
     task: Task

@@ -44,7 +44,7 @@ class Floor:
 
 
 def left_over(fit: Fit) -> FloatArray:
-    """Root mean square [ny] of what a fit leaves in every signal.
+    """Robust root mean square [ny] of the residual of a fit in every signal, over its noise.
 
     Of many windows the median of the samples counts, for one in twenty begins on the wrong side of
     a rest; of few runs, those far worse than usual count linearly.
@@ -61,7 +61,8 @@ def left_over(fit: Fit) -> FloatArray:
 
 
 def carried_noise(task: Task, fit: Fit) -> FloatArray:
-    """What the noise of the inputs leaves in every signal [ny], by the model of `fit`.
+    """What the noise of the inputs leaves in every signal [ny], over its noise, by the model of
+    `fit`.
 
     The median of the samples counts, so that a replay which sticks elsewhere does not.
     """
@@ -72,9 +73,10 @@ def carried_noise(task: Task, fit: Fit) -> FloatArray:
 
 
 def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
-    """The floor, with the colour of the noise as the remainder of `trial` shows it, but no more
-    than the differences of the measured signals leave room for. Where more is left than noise of
-    that colour, it is model error that has a colour: the floor is white then.
+    """The floor, with the colour of the noise as the residual of `trial` shows it, but no more than
+    the differences of the measured signals leave room for, and what the inputs `carried` [ny].
+    Where more is left than noise of that colour, it is model error that has a colour: the floor is
+    white then.
     """
     runs = trial.fit.runs
     rms, most = np.ones(len(runs[0].signals)), np.ones(len(runs[0].signals))
@@ -97,12 +99,12 @@ def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
 
 
 def leaves_white_noise(trial: Trial, carried: FloatArray) -> bool:
-    """Whether a trial leaves no more than rounding, white noise and what the inputs carry there; a
-    search goes on where it does, whatever the colour of the remainder.
+    """Whether a trial leaves no more than rounding, white noise and what the inputs `carried` [ny]
+    there; a search goes on where it does, whatever the colour of the residual.
     """
     return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * np.hypot(1.0, carried)))
 
 
 def leaves_noise_alone(trial: Trial, floor: Floor) -> bool:
-    """Whether what a trial leaves cannot be told from noise, in any signal."""
+    """Whether the residual of a trial cannot be told from noise, in any signal."""
     return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.most))

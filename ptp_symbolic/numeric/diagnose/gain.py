@@ -1,4 +1,4 @@
-"""By how much a larger model predicts better: losses of blocks that the fit did not see.
+"""By how much a larger model predicts better: leave-one-block-out losses.
 
 Every block of the training runs is left out in turn and predicted by the others (see
 `identify.blocks`); the losses of two models on the same blocks are compared in pairs.
@@ -70,7 +70,7 @@ def gain(larger: Trial, smaller: Trial) -> Gain:
 
 
 def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
-    """The gain from the losses [b] of the same blocks by two models."""
+    """The gain from the losses `larger` and `smaller` [b] of the same blocks by two models."""
     taken = smaller - larger
     share, lower, upper = bootstrap_share(taken, smaller, 1.0 - FALSE_ALARM)
     influence = (taken - taken.mean()) / max(float(smaller.sum()), 1e-300)

@@ -1,9 +1,9 @@
 """Candidates that the logs cannot tell from one that was chosen.
 
 An effect of the chosen set is compared, at the fit, with what every other candidate would change in
-the outputs, both without what the declared parameters and the other effects can follow (canonical
-correlation: Hotelling, 1936). Those that resemble it are refitted in its place to the same depth;
-the ones that predict as well form its group.
+the outputs, both projected off what the declared parameters and the other effects can follow
+(canonical correlation: Hotelling, 1936). Those that resemble it are refitted in its place to the
+same depth; the ones that predict as well form its group.
 """
 
 from collections.abc import Mapping, Sequence
@@ -46,7 +46,7 @@ class Rival:
 
 @dataclass(frozen=True, eq=False)
 class Similarity:
-    """A candidate in the place of another: their correlation, and where its refit starts."""
+    """A candidate in the place of another: canonical correlation, and where its refit starts."""
 
     candidate: Candidate
     correlation: float
@@ -55,7 +55,7 @@ class Similarity:
 
 def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> list[Rival]:
     """Sets as large as the chosen one, of which these logs do not prefer the chosen one clearly and
-    materially, `others` among them. `fit` is its fit with derivatives that are not blind.
+    materially, `others` among them. `fit` is its fit, from `with_finite_differences`.
 
     A few iterations tell which come near the chosen set. Where that leaves more than noise, a set
     that it cannot be told from by its response is fitted to its end, however far it is till then.
@@ -162,8 +162,8 @@ def confusable(chosen: Trial, found: Sequence[Rival]) -> dict[str, tuple[str, ..
 
 
 def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[Similarity]:
-    """Candidates whose response correlates above SIMILAR with the effect of `member`, best
-    first.
+    """Candidates whose response has a canonical correlation above SIMILAR with the effect of
+    `member` at `fit`, best first.
     """
     residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
     table = stacked(fit, [e.by_parameter for e in fit.evaluations])

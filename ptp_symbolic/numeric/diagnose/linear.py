@@ -1,4 +1,4 @@
-"""Linear algebra at a fit: what an effect changes in the residuals, apart from what others
+"""Linear algebra at a fit: what an effect changes in the residuals, projected off what others
 follow.
 """
 
@@ -16,16 +16,14 @@ FloatArray = NDArray[np.float64]
 
 
 def stacked(fit: Fit, columns: Sequence[FloatArray]) -> FloatArray:
-    """Columns [k, c] of every run below one another, without what the unknown starts can
-    explain.
-    """
+    """Columns [k, c] of every run below one another [n, c], projected off its start unknowns."""
     pairs = zip(columns, fit.evaluations, strict=True)
     return np.vstack([project_out(c, e.by_start) for c, e in pairs])
 
 
 def effect_of(fit: Fit, vanishing: Mapping[str, float], table: FloatArray) -> FloatArray:
-    """What parameters change in the residuals [n] at the fit against their values in `vanishing`,
-    linearly: `table` [n, nf] are the derivatives by the search coordinates.
+    """Linear prediction of what parameters change in the residuals [n] at the fit against their
+    values in `vanishing`: `table` [n, nf] is the Jacobian by the search coordinates.
     """
     unit = slopes(fit.free, to_search(fit.free, fit.values))
     effect = np.zeros(len(table))
@@ -36,7 +34,7 @@ def effect_of(fit: Fit, vanishing: Mapping[str, float], table: FloatArray) -> Fl
 
 
 def outside(columns: FloatArray, away: FloatArray) -> FloatArray:
-    """The part of `columns` [n, k] orthogonal to those of `away` [n, m]."""
+    """Projection of `columns` [n, k] onto the orthogonal complement of those of `away` [n, m]."""
     size = np.linalg.norm(away, axis=0)
     kept = away[:, size > 0.0] / size[size > 0.0]
     if not kept.shape[1]:
@@ -47,7 +45,7 @@ def outside(columns: FloatArray, away: FloatArray) -> FloatArray:
 
 
 def canonical_correlation(target: FloatArray, columns: FloatArray) -> float:
-    """Largest correlation of `target` [n] with any combination of `columns` [n, k]."""
+    """Largest correlation, 0 to 1, of `target` [n] with any combination of `columns` [n, k]."""
     size = np.linalg.norm(columns, axis=0)
     kept = columns[:, size > 0.0] / size[size > 0.0]
     if not kept.shape[1] or not np.any(target):

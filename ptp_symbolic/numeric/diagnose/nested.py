@@ -17,7 +17,7 @@ FloatArray = NDArray[np.float64]
 
 def beside_declared(task: Task, trial: Trial, declared: Trial, carried: FloatArray) -> Trial:
     """A trial that fits worse than the declared model, begun anew beside that, its effects as they
-    are or switched off.
+    are or at their vanishing values; `carried` [ny] as in `Search`.
     """
     own = {name: trial.values[name] for c in trial.candidates for name in c.names}
     off = {n: c.vanishing[f.name] for c in trial.candidates for f in c.defining for n in f.names}
@@ -30,8 +30,8 @@ def beside_declared(task: Task, trial: Trial, declared: Trial, carried: FloatArr
 
 
 def declared_from(task: Task, trial: Trial, declared: Trial, carried: FloatArray) -> Trial | None:
-    """The declared model fitted from where a trial ended, its effects switched off; None unless
-    that is materially better than `declared`, which was stuck then.
+    """The declared model fitted from where a trial ended, its effects at their vanishing values;
+    None unless that is materially better than `declared`, which was in a local minimum then.
     """
     off = {name: task.fixed[name] for c in trial.candidates for name in c.names}
     left = halving(task, [fitted(task, (), trial.values | off, trial.fit.z)], LAST_RUNG)

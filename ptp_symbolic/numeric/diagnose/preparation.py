@@ -30,7 +30,8 @@ def task_of(
     """All that stays the same through a diagnosis, or through a fit where nothing is `declared`.
 
     `known` are the known values with the most by which each may be off, `declared` the keys of the
-    effects that are no candidates, `noises` the declared noise of every signal.
+    effects that are no candidates, `noises` the declared noise (rms) of every signal in its unit
+    (None: not declared). Raises InputError for values out of bounds.
     """
     off = vanished(model, declared) if declared else {}
     fixed = {**model.defaults, **off, **{name: value for name, (value, _) in known.items()}}

@@ -65,7 +65,7 @@ class Proposals:
 
 
 def declared_start(task: Task) -> dict[str, float]:
-    """All parameters at the declared starts, every candidate switched off."""
+    """All parameters at the declared starts, every candidate at its vanishing value."""
     return {**task.fixed, **all_values_at_start(task.free)}
 
 
@@ -145,7 +145,9 @@ def start_for(
 
 
 def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | None:
-    """The equation space of the training runs; None where angles are missing or states sampled."""
+    """The equation space of the training runs; None where angles are missing, states are sampled or
+    switched, or rows are too few for the free parameters.
+    """
     vector = task.model.parameter_vector
     varied = dict(start)
     for candidate in task.candidates:
@@ -171,8 +173,8 @@ def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | No
 
 
 def possible(task: Task, values: Mapping[str, float]) -> dict[str, float]:
-    """`values` with every relation met that the machine needs: of two parameters the first
-    raised.
+    """`values` with the relations met that the machine needs: as long as one is broken, relation
+    after relation gets the largest value of its parameters for all of them.
     """
     found = dict(values)
     margin = np.zeros(len(task.model.module.REQUIREMENTS))
@@ -226,8 +228,9 @@ def _keys(subset: Subset) -> frozenset[str]:
 def start_of(
     task: Task, rows: Regression, candidates: Sequence[Candidate], values: Mapping[str, float]
 ) -> dict[str, float]:
-    """Values at which to start a set: the amounts that the rows ask for, within bounds, at the best
-    values of the parameters that shape its members; the declared parameters follow.
+    """Values at which to start a set: the amounts of a least squares fit to the rows, within
+    bounds, at the best values of the parameters that shape its members; the declared parameters
+    follow.
     """
     own = {(s.candidate.key, s.candidate.member): s for s in rows.signatures}
     found = [own[c.key, c.member] for c in candidates]

@@ -70,8 +70,8 @@ def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]
 
 
 def refitted_without_chaos(task: Task, declared: Trial) -> tuple[Task, Trial]:
-    """The task with runs cut into windows where the fitted model carries the noise of the inputs
-    further than the noise of the outputs (see `without_chaos`), and the declared model refitted.
+    """The task with runs cut into windows where the fitted model amplifies the noise of the inputs
+    beyond that of the outputs (see `without_chaos`), and the declared model refitted.
     """
     model, noise = task.model, task.input_noise
     p = model.parameter_vector(declared.values)
@@ -89,7 +89,7 @@ def refitted_without_chaos(task: Task, declared: Trial) -> tuple[Task, Trial]:
 
 
 def unbiased(trial: Trial) -> Trial:
-    """The trial with nothing known of which derivatives mislead: they are looked for anew."""
+    """The trial with its record of misleading derivatives cleared: they are looked for anew."""
     return replace(trial, fit=replace(trial.fit, misleading=None))
 
 
@@ -132,7 +132,7 @@ def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
 
 
 def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
-    """The trial fitted to its end, and begun anew where that is near the floor."""
+    """The trial fitted to its end, and begun anew where that is near the floor; `carried` [ny]."""
     trial = _to_its_end(task, trial, carried)
     return started_anew(task, trial, carried) if _is_near_floor(trial) else trial
 
@@ -202,7 +202,7 @@ def sharpened(task: Task, trial: Trial, carried: FloatArray) -> Trial:
 
 def expected_gain(trial: Trial, vanishing: Mapping[str, float]) -> float:
     """The share of the squared residual with the parameters in `vanishing` at their values there
-    that those at the fit take away, predicted from the derivatives.
+    that those at the fit take away, by linear prediction from the Jacobian.
     """
     fit = trial.fit
     residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]

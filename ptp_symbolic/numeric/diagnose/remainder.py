@@ -1,4 +1,4 @@
-"""What a model leaves along the measured motion, seen from several sides: observations, no names.
+"""The residual torque of a model along the measured motion: observations, no names.
 
 The residual torque of every axis is averaged in bins of the angle, of the rate, of the input and of
 the time since the joint turned back, and searched for lines in time and in angle. The share of its
@@ -99,8 +99,9 @@ def _inputs(space: EquationSpace, number: NDArray[np.int64], time: FloatArray) -
 
 
 def binned(x: FloatArray, left: FloatArray) -> dict[str, Any]:
-    """Means of `left` [n] in equally full bins of `x` [n] (equal values share one), their standard
-    errors (rows whose windows overlap count as one), and the share of the variance between bins.
+    """Means of `left` [n] in N m in equally full bins of `x` [n] (equal values share one), their
+    standard errors (rows whose windows overlap count as one), and the share of the variance between
+    bins.
     """
     usable = np.isfinite(x)
     if not usable.any():
@@ -134,10 +135,11 @@ def strongest_line(
     rate: FloatArray,
     by_angle: bool,
 ) -> tuple[float, float] | None:
-    """The strongest line of `left` [n] over a place (time in s run by run, or turns) and the share
-    of the variance in it (Lomb, 1976; Scargle, 1982), beyond that of the strongest of white noise
-    (Fisher, 1929); None where the range holds too few cycles. Frequencies end where a window
-    averages two cycles away, or where there are two rows in a cycle.
+    """The strongest line of `left` [n] over a `place` [n] (time in s run by run, or turns) in Hz or
+    1/turn and the share of the variance in it (Lomb, 1976; Scargle, 1982), beyond that of the
+    strongest of white noise (Fisher, 1929); None where the range holds too few cycles. Frequencies
+    end where a window of `half_width` s averages two cycles away at `rate` [n] in rad/s, or at two
+    rows in a cycle.
     """
     span = max(float(np.ptp(place[runs == k])) for k in np.unique(runs))
     moving = np.abs(rate[rate != 0.0])

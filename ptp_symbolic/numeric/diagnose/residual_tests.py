@@ -1,4 +1,4 @@
-"""Tests of what a model leaves over on validation runs, for every measured signal."""
+"""Whiteness and independence tests of the residual on validation runs, for every signal."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -20,7 +20,8 @@ INDEPENDENT = "what is left over should not follow {name}; where it does, the mo
 
 
 def residual_tests(fit: Fit, inputs: tuple[str, ...]) -> list[dict[str, Any]]:
-    """Per measured signal: whiteness of its residual, and independence of each of the `inputs`.
+    """Per measured signal: whiteness of its residual (autocorrelation), and independence of each of
+    the `inputs` (cross-correlation).
 
     The statistic is the largest correlation over `LAGS` lags; of independent residuals it stays
     below the threshold in 99 of 100 cases.

@@ -34,8 +34,8 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """Responses `table` [n, k] of a candidate, per unit of each of its `free` parameters, the
-    others at `base` (shaping values, and candidates that it brings along).
+    """Responses `table` [n, k] of a candidate, sigmas per unit of each of its `free` parameters,
+    the others at `base` (shaping values, and candidates that it brings along).
     """
 
     candidate: Candidate
@@ -160,8 +160,9 @@ def _column(
 
 
 def least(here: FloatArray, declared: FloatArray, found: Columns) -> tuple[FloatArray, float]:
-    """Amounts of the declared search coordinates and of the candidate's parameters that make the
-    residual `here` [n] least within bounds, and the share of its square that is left.
+    """Amounts [nf + k] of the declared search coordinates and of the candidate's parameters that
+    make the residual `here` [n] least within bounds (ridge regression; `declared` [n, nf] is its
+    Jacobian), and the share of its square that is left.
     """
     zero = [found.candidate.vanishing[f.name] for f in found.free]
     reach = np.full(declared.shape[1], FARTHEST)

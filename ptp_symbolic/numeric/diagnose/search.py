@@ -93,8 +93,8 @@ def extended(seeker: Seeker, best: Trial, steps: list[Step]) -> tuple[Trial, lis
 
 
 def by_effects_alone(seeker: Seeker, best: Trial, steps: list[Step]) -> tuple[Trial, list[Step]]:
-    """The trial, or what forward selection from the declared model makes of effects alone, if
-    that fits better, or leaves only noise too with no more parameters.
+    """The trial, or what forward selection from the declared model makes of effects alone, if that
+    fits better, or leaves only noise too with no more parameters.
 
     Declared values are known, and a few of them changed together imitate much: they scale all
     torques of an axis that is driven by a voltage. A single one that leaves only noise is not

@@ -50,7 +50,9 @@ FloatArray = NDArray[np.float64]
 
 
 class Seeker:
-    """A search in progress; `others` collects the trials that were not chosen."""
+    """A search in progress; `others` collects the trials that were not chosen, `carried` [ny] is
+    that of `Search`.
+    """
 
     def __init__(
         self, task: Task, declared: Trial, proposals: Proposals, carried: FloatArray

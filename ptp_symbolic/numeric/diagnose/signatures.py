@@ -32,8 +32,8 @@ FloatArray = NDArray[np.float64]
 class Signature:
     """What a candidate, with its frequency, changes in the rows.
 
-    `slopes` gives, for every set of shaping values and every defining parameter, the change [n] of
-    the rows per unit of the parameter; `finite` the defining parameters that show only at the whole
+    `slopes` gives, for every set of shaping values and every defining parameter, the difference
+    quotient [n] of the rows by it; `finite` the defining parameters that show only at the whole
     amount with which their search begins. `columns` [n, c] span all of that, orthonormal when rows
     count by their weight.
     """
@@ -132,11 +132,12 @@ def locked_signatures(
     residual: FloatArray,
     weight: FloatArray,
 ) -> list[Signature]:
-    """Signatures of candidates with a frequency, at the strongest line of the weighted `residual`.
+    """Signatures of candidates with a frequency, at the strongest line of the weighted `residual`
+    [n]; `weight` [n].
 
-    A full scan over the place (time, or the angle of the candidate's axis): all frequencies from
-    a few cycles over the whole range to those that the windows average away. What the wave moves
-    may turn with the machine: the residual is scanned as the candidate at no frequency shows it.
+    A full scan over the place (time, or the angle of the candidate's axis): all frequencies from a
+    few cycles over the whole range to those that the windows average away. What the wave moves may
+    turn with the machine: the residual is scanned as the candidate at no frequency shows it.
     """
     by_key = {c.key: c for c in reversed(candidates)}
     own = space.own_torque(space.model.parameter_vector(dict(values)))

@@ -1,4 +1,4 @@
-"""Which sets of candidates explain the rows of the equation space: all subsets, blocks left out.
+"""Which sets of candidates explain the rows of the equation space: all subsets, cross-validated.
 
 Everything is linear here: the declared parameters and the signatures are columns of one regression,
 so that a subset costs the solution of a small system per fold, and effects that stand in for one
@@ -34,11 +34,11 @@ IntArray = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Regression:
-    """Rows [n] that `base` [n, nb], the columns of the `declared` parameters, and the columns of
-    the signatures may take up.
+    """Rows [n] to be regressed on `base` [n, nb], the columns of the `declared` parameters, and on
+    the columns of the signatures.
 
-    `scale` [n] is the standard deviation of every row, `weight` [n] its weight in the fit, `block`
-    [n] the number of the block of time that it belongs to.
+    `scale` [n] is the standard deviation of every row, `weight` [n] its weight in the fit,
+    `equation` [n] its equation, `block` [n] the number of the block of time that it belongs to.
     """
 
     rows: FloatArray
@@ -60,7 +60,9 @@ def regression(
     block: IntArray,
     weight: FloatArray,
 ) -> Regression:
-    """The regression with weights from the residual of the declared model."""
+    """The regression with weights [n] from the residual of the declared model, begun at `weight`;
+    the other arguments are those of `Regression`.
+    """
     start = Regression(
         rows,
         tuple(declared),
@@ -75,7 +77,7 @@ def regression(
 
 
 def reweighted(found: Regression, candidates: Sequence[Candidate]) -> Regression:
-    """`found` with weights and scales from the residual that a set of `candidates` leaves."""
+    """`found` with Huber's weights and scales from the residual of a set of `candidates`."""
     own = [s.columns for s in found.signatures if s.candidate in candidates]
     columns = np.column_stack([found.base, *own])
     weight, scale = found.weight, found.scale
@@ -87,7 +89,7 @@ def reweighted(found: Regression, candidates: Sequence[Candidate]) -> Regression
 
 
 def remainder(found: Regression) -> FloatArray:
-    """Rows [n] that the declared parameters leave."""
+    """Residual rows [n] of the regression on the declared parameters alone."""
     return found.rows - found.base @ _amounts(found.base, found.rows, found.weight)
 
 
@@ -100,7 +102,7 @@ def _amounts(columns: FloatArray, rows: FloatArray, weight: FloatArray) -> Float
 
 @dataclass(frozen=True, eq=False)
 class Subset:
-    """A set of candidates with the loss of every block [b] when it was left out."""
+    """A set of candidates with the loss of every block [b], predicted without its fold."""
 
     candidates: tuple[Candidate, ...]
     losses: FloatArray
@@ -113,7 +115,7 @@ class Subset:
 
 
 def ranked_subsets(found: Regression, largest: int) -> list[Subset]:
-    """Subsets of up to `largest` candidates, the least loss on blocks left out first.
+    """Subsets of up to `largest` candidates, the least cross-validated loss first.
 
     All single candidates and pairs are compared, larger subsets among those that do best in them.
     """
@@ -137,7 +139,7 @@ def ranked_subsets(found: Regression, largest: int) -> list[Subset]:
 
 def exchanges(found: Regression, candidates: Sequence[Candidate]) -> list[tuple[Candidate, ...]]:
     """Sets with another candidate in the place of one of `candidates` that are no worse than these
-    on blocks left out, the best first. What the rows do not show of the candidates is kept.
+    in cross-validation, the best first. What the rows do not show of the candidates is kept.
     """
     found = reweighted(found, candidates)
     number = {(s.candidate.key, s.candidate.member): k for k, s in enumerate(found.signatures)}

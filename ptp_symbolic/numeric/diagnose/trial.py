@@ -28,10 +28,10 @@ class Task:
 
     `whole` are the training runs as they were logged, `train` the same or their windows, `windows`
     some short and all longer ones, `validate` the runs that only the report sees. `free` are the
-    declared free parameters, `fixed` the values of all others, every candidate switched off.
-    `input_noise` is the declared noise of every input (None: as the logs show it), `declared_noise`
-    names the outputs whose noise is declared, and `resolution` is the noise of the finest angle in
-    rad.
+    declared free parameters, `fixed` the values of all others, every candidate at its vanishing
+    value. `input_noise` is the declared noise (rms) of every input [nu] in its unit (None: as the
+    logs show it), `declared_noise` names the outputs whose noise is declared, and `resolution` is
+    the noise of the finest angle in rad.
     """
 
     model: Model
@@ -94,10 +94,11 @@ def fitted(
     secants: float | None = None,
     executor: Executor | None = None,
 ) -> Trial:
-    """Fit from `values` (all parameters of the model) and the starts `z` of the runs.
+    """Fit from `values` (all parameters of the model) and the starts `z`, each [nz], of the runs.
 
     `secants` is the step of the differences that replace derivatives which mislead; those that
-    misled the parent are known to mislead.
+    misled the parent are known to mislead. `share` is that of `accuracy`; values out of bounds are
+    projected onto them.
     """
     free = freed(task, candidates, values)
     names = {name for f in free for name in f.names}
@@ -122,8 +123,8 @@ def _inherited(parent: Fit | None, free: Sequence[FreeParameter]) -> list[tuple[
 
 
 def accuracy(task: Task, share: float) -> Tolerance:
-    """Tolerance that keeps angles good to a `share` of their noise: a coarser one, where more is
-    left, makes a misfit jump wherever friction lets go a sample later.
+    """Integration tolerance that keeps angles good to a `share` of their noise: a coarser one makes
+    a misfit jump wherever friction lets go a sample later.
     """
     return Tolerance.for_resolution(task.resolution, share)
 
@@ -157,7 +158,9 @@ def continued(
 def simulated(
     task: Task, fit: Fit, values: Mapping[str, float], executor: Executor | None
 ) -> list[Evaluation]:
-    """All runs of `fit` with `values` in place of its own, without derivatives."""
+    """All runs of `fit` with `values` in place of its own, without Jacobians. Raises InputError for
+    values out of bounds.
+    """
     p, none = task.model.parameter_vector({**fit.values, **values}), np.zeros(0, dtype=np.int64)
     tolerance = accuracy(task, ROUGH)
 
@@ -169,7 +172,7 @@ def simulated(
 
 
 def mean_squares(evaluations: Sequence[Evaluation], runs: Sequence[Run]) -> FloatArray:
-    """Mean square [runs, signals] of the weighted residuals; infinite where a simulation failed."""
+    """Mean square [runs, ny] of the weighted residuals; infinite where a simulation failed."""
     rows = []
     for e, run in zip(evaluations, runs, strict=True):
         table = e.residual.reshape(run.measured.shape)
@@ -182,7 +185,8 @@ def misfits(trials: Sequence[Trial]) -> list[float]:
     """One number per trial to rank them by: n log(mean square), summed over the signals, so that no
     signal outweighs another by its unit (likelihood with unknown variances: Bard, 1974, 4.9).
 
-    Runs or windows far worse than usual count only linearly; "usual" is that of the best trial.
+    Runs or windows far worse than usual count only linearly (Huber's loss); "usual" is that of the
+    best trial.
     """
     squares = [mean_squares(t.fit.evaluations, t.fit.runs) for t in trials]
     size = sizes(trials[0].fit.runs)
@@ -199,7 +203,9 @@ def misfits(trials: Sequence[Trial]) -> list[float]:
 
 
 def huber(square: FloatArray, tuning: FloatArray) -> FloatArray:
-    """Squares that grow only linearly with their root beyond `tuning` (itself a square)."""
+    """Huber's loss of the squares `square`, linear in their root beyond the squared tuning constant
+    `tuning`; shapes broadcast.
+    """
     return np.where(square <= tuning, square, 2.0 * np.sqrt(tuning * square) - tuning)
 
 

@@ -260,14 +260,14 @@ def _is_quiet(after: Fit, floor: Floor) -> bool:
 
 
 def held_out_fit(task: Task, trial: Trial) -> Fit:
-    """The validation runs by the model of a trial, nothing but their starts fitted."""
+    """The validation runs by the model of a trial, nothing but their start unknowns fitted."""
     effort = Effort(POLISH, GAIN * ROUGH, accuracy(task, SHARP))
     return fit_parameters(task.model, task.validate, (), trial.values, None, effort, task.executor)
 
 
 def held_out_gain(after: Fit, before: Fit) -> Gain:
-    """The share of the mean square error of validation runs or windows that is taken away; those
-    far worse than usual count linearly.
+    """The share of the mean square error of validation runs or windows that is taken away (Huber's
+    loss: those far worse than usual count linearly).
     """
     size = sizes(after.runs)
     squares = [mean_squares(fit.evaluations, fit.runs) for fit in (after, before)]

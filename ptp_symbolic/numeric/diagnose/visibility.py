@@ -1,8 +1,8 @@
 """How small a parameter or an effect these logs can show, predicted at the declared start values.
 
 The prediction takes the declared model for right and the noise for white: model errors leave less
-to be seen. An effect is simulated at a small amount; what of its response the free parameters and
-the starts of the runs cannot follow must stand out of the noise.
+to be seen. An effect is simulated at a small amount; its response, projected off what the free
+parameters and the starts of the runs can follow, must stand out of the noise.
 """
 
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ class Visible:
 
 def visible_amounts(task: Task, start: Trial) -> list[Visible]:
     """Smallest visible change of every free parameter, and amount of every effect that is searched
-    for in its simplest form, at `start`, the declared model with its derivatives.
+    for in its simplest form, in their units, at `start`, the declared model with its Jacobians.
     """
     declared = stacked(start.fit, [e.by_parameter for e in start.fit.evaluations])
     units = np.abs(slopes(start.fit.free, to_search(start.fit.free, start.fit.values)))

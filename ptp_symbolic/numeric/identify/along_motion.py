@@ -1,4 +1,4 @@
-"""The equations of a model along a measured motion, sample by sample, without simulating it.
+"""Inverse dynamics along a measured motion, sample by sample, without simulating it.
 
 The joint angles are measured; what is behind a gap follows them: the torque that a joint lacks is
 what its shaft transmits, its sign tells the face that is touched, and the twist follows from the
@@ -16,9 +16,9 @@ from ptp_symbolic.numeric.simulation.kernels.calls import call
 
 
 class Motion(NamedTuple):
-    """A measured motion: time [k] in s; angle, rate and acceleration of the joints [k, na]; inputs
-    [k, nu] averaged over the cell of each sample; measured further states [k, e], nan where a state
-    is not measured.
+    """A measured motion: time [k] in s; angle, rate and acceleration of the joints [k, na] in rad,
+    rad/s and rad/s^2; inputs [k, nu] averaged over the cell of each sample; measured further states
+    [k, e], nan where a state is not measured.
     """
 
     time: Any
@@ -50,8 +50,9 @@ def _fill(layout, motion, k, x, m, resting):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def gear_ahead(addresses, layout, motion, p, resting, given):
-    """How far [k, na] in rad every gear output is ahead of its joint, and the face [k, na] (-1, 0,
-    1) that it touches: the `given` one, or where that is 0 the one on which the joint must rest.
+    """How far [k, na] in rad every gear output is ahead of its joint at p [np], and the face
+    [k, na] (-1, 0, 1) that it touches: the `given` [k, na] one, or where that is 0 the one on which
+    the joint must rest; `resting` [na] in rad/s.
     """
     n, na = motion.angle.shape
     ahead, face = np.zeros((n, na)), np.zeros((n, na))
@@ -91,11 +92,11 @@ def gear_ahead(addresses, layout, motion, p, resting, given):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def further_states(addresses, layout, motion, p, resting, acts, shown, late):
-    """The further states [k, e] integrated along the motion, at the samples and averaged over the
-    cells around them, and by how much those that are `shown` [e] settle elsewhere at another rate
-    [k, e, na]; `late` [k - 1, parts, nu] holds the inputs between the samples, an even number of
-    parts. Each state is taken as linear in itself over a part of a sample; one that does not act
-    (`acts` [e]) on anything stays at zero.
+    """The further states [k, e] integrated along the motion at p [np], their averages [k, e] over
+    the cells around the samples, and the quasi-static derivative [k, e, na] by the joint rates of
+    those that are `shown` [e]. `late` [k - 1, parts, nu] holds the inputs between samples, an even
+    number of parts, each one exponential Euler step per state; a state that does not act (`acts`
+    [e]) on anything stays at zero.
     """
     n, na = motion.angle.shape
     count, frictions, parts = len(layout.further), len(layout.friction_axis), late.shape[1]
@@ -192,9 +193,9 @@ def _settle(addresses, layout, time, x, u, p, m, r, by_rate):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def torques_along(addresses, layout, motion, p, resting, ahead, ahead_rate, face, further):
-    """Per sample the torque [k, na] that every axis lacks without accelerations, the inertia
-    [k, na, rows] by which every acceleration adds to it, and the slopes [k, na, 2 na] by which the
-    angles and then the rates of the joints do; a gear output counts with its joint.
+    """Inverse dynamics per sample at p [np]: the torque [k, na] in N m that every axis lacks
+    without accelerations, its derivatives [k, na, rows] by every acceleration (inertia), and
+    [k, na, 2 na] by the angles, then the rates of the joints; a gear output counts with its joint.
     """
     n, na = motion.angle.shape
     frictions = len(layout.friction_axis)
@@ -250,9 +251,9 @@ def torques_along(addresses, layout, motion, p, resting, ahead, ahead_rate, face
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def angles_behind_sensors(addresses, layout, shown, time, measured, inputs, p, signals, iterations):
-    """Joint angles [k, na] in rad that make the sensors show what was `measured` [k, na]; `shown`
-    [na] is the place of every angle among the `signals` outputs. Fixed-point iteration: errors of
-    sensors are small and smooth.
+    """Joint angles [k, na] in rad at which the sensors at p [np] show what was `measured` [k, na];
+    `shown` [na] is the place of every angle among the `signals` outputs. Fixed-point iteration:
+    errors of sensors are small and smooth.
     """
     angles = measured.copy()
     x, y = np.zeros(layout.states), np.zeros(signals)

@@ -1,8 +1,8 @@
 """Statistics of residuals that are correlated in time: blocks long enough to be independent.
 
-Blocks are left out in turn without a refit: near the optimum the residual is linear in the
-parameters, and the normal equations without a block give its prediction and the shift of the
-parameters at once (PRESS: Allen, 1974; the jackknife over clusters: Bell and McCaffrey, 2002).
+Leave-one-block-out without a refit: near the optimum the residual is linear in the parameters, and
+the normal equations without a block give its prediction and the shift of the parameters at once
+(PRESS: Allen, 1974; the jackknife over clusters: Bell and McCaffrey, 2002).
 """
 
 from collections.abc import Sequence
@@ -28,7 +28,8 @@ IntArray = NDArray[np.int64]
 
 
 def block_length(series: Sequence[FloatArray]) -> float:
-    """Samples in a block for the mean of stationary `series` of one kind (Politis and White, 2004).
+    """Samples in a block for the mean of stationary `series` [n] of one kind (Politis and White,
+    2004).
 
     The automatic rule for the circular block bootstrap, with the corrected constant of Patton,
     Politis and White (2009): (2 G^2 / D)^(1/3) n^(1/3), lags up to where correlations are noise.
@@ -69,7 +70,7 @@ def _last_correlated(correlation: FloatArray, n: int) -> int:
 
 
 def block_labels(sizes: Sequence[int], length: float) -> list[IntArray]:
-    """Number of the block of every sample, per run of `sizes` samples; blocks of about `length`
+    """Block number [n] of every sample, per run of `sizes` samples; blocks of about `length`
     samples, all of one run equally long, about FEWEST_BLOCKS to MOST_BLOCKS in all.
     """
     longest, shortest = sum(sizes) / FEWEST_BLOCKS, sum(sizes) / MOST_BLOCKS
@@ -114,8 +115,8 @@ def _inverse_root(jacobian: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class LeftOut:
-    """Blocks left out in turn: predicted residuals [n] of each block by the others, and how far the
-    parameters move [b, nf] without it.
+    """Leave-one-block-out: residuals [n] of each block predicted by the others, and the shifts
+    [b, nf] of the parameters without it.
     """
 
     predicted: FloatArray
@@ -129,9 +130,10 @@ def leave_blocks_out(
     prior: float = 0.0,
     ridge: float = 1e-10,
 ) -> LeftOut:
-    """Leave every block out of a least squares fit with `residual` [n] and `jacobian` [n, nf] (by
-    the parameters) at its optimum. Directions that nothing else sees do not move; `prior` is the
-    precision with which every parameter is known without the data to be where it is.
+    """Leave each block out in turn of a least squares fit with `residual` [n] and `jacobian`
+    [n, nf] (by the parameters) at its optimum; `label` [n] numbers the blocks. Directions that no
+    other block sees do not move; `prior` is the precision of a prior of every parameter at its
+    optimum.
     """
     blocks = int(label.max()) + 1 if len(label) else 0
     nf = jacobian.shape[1]
@@ -166,7 +168,8 @@ def without_outliers(
     residual: FloatArray, jacobian: FloatArray, label: IntArray, signals: int
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """A fit in which blocks far worse than usual weigh less (Huber, 1964): residual [n] and
-    jacobian [n, nf] with these weights, and the one step [nf] to their optimum (Bickel, 1975).
+    jacobian [n, nf] with these weights, and the one Gauss-Newton step [nf] to their optimum
+    (Bickel, 1975).
 
     `residual` is [n / signals, signals] in one column, `label` [n / signals] its blocks; every
     signal has its own weight in a block.
@@ -190,8 +193,8 @@ def jackknife_covariance(shifts: FloatArray) -> FloatArray:
 def bootstrap_share(
     gain: FloatArray, whole: FloatArray, confidence: float
 ) -> tuple[float, float, float]:
-    """The share sum(gain) / sum(whole) over blocks, and its interval of that `confidence` from
-    blocks drawn with replacement (percentiles: Efron, 1979).
+    """The share sum(gain) / sum(whole) over blocks [b], and its interval of that `confidence` from
+    a bootstrap over blocks (percentiles: Efron, 1979).
     """
     rng = np.random.default_rng(SEED)
     b = len(gain)

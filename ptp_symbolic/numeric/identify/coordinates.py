@@ -13,7 +13,8 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class FreeParameter:
-    """A parameter to be fitted: start, bounds, period; `tied` follow its value.
+    """A parameter to be fitted: start, bounds, period and scale in its unit; `tied` follow its
+    value.
 
     `declared_start` is the value that the platform declares to start from; None for a parameter of
     an effect that is only searched for.
@@ -50,7 +51,7 @@ def free_parameter(
 
 
 def to_search(free: Sequence[FreeParameter], values: Mapping[str, float]) -> FloatArray:
-    """Search coordinates [nf] of parameter values."""
+    """Search coordinates [nf] of parameter values, dimensionless."""
     return np.array(
         [
             np.log(max(values[f.name], SMALLEST_SHARE * f.start) / f.start)
@@ -62,7 +63,7 @@ def to_search(free: Sequence[FreeParameter], values: Mapping[str, float]) -> Flo
 
 
 def to_values(free: Sequence[FreeParameter], phi: FloatArray) -> dict[str, float]:
-    """Parameter values of search coordinates [nf], within their bounds to the last bit."""
+    """Parameter values of search coordinates phi [nf], within their bounds to the last bit."""
     given = [
         f.start * np.exp(v) if f.logarithmic else f.scale * v
         for f, v in zip(free, phi, strict=True)
@@ -71,7 +72,7 @@ def to_values(free: Sequence[FreeParameter], phi: FloatArray) -> dict[str, float
 
 
 def slopes(free: Sequence[FreeParameter], phi: FloatArray) -> FloatArray:
-    """Derivative of every parameter value by its search coordinate [nf]."""
+    """Derivative of every parameter value by its search coordinate phi [nf], in its unit."""
     values = to_values(free, phi)
     return np.array([values[f.name] if f.logarithmic else f.scale for f in free])
 

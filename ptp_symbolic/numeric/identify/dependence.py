@@ -1,4 +1,4 @@
-"""Which parameters and states act on what, seen at states drawn at random."""
+"""Structural dependence: which parameters and states act on what, probed at random states."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,8 +17,9 @@ BoolArray = NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class Dependence:
-    """Which parameters [np] act on what the sensors of the angles show, which on the rates of
-    further states, and which of these states [e] act on a torque or on one another.
+    """Which parameters act on what the sensors of the angles show (`sensing` [np]) and on the rates
+    of further states (`moving` [np]), and which of these states act on a torque or on one another
+    (`acting` [e]).
     """
 
     sensing: BoolArray
@@ -29,7 +30,7 @@ class Dependence:
 def dependence_of(
     model: Model, layout: Layout, runs: Sequence[Run], p: FloatArray, varied: FloatArray
 ) -> Dependence:
-    """What depends on what, seen at states drawn at random, with parameters p and with others."""
+    """What depends on what, probed at random states with p [np] and with `varied` [np]."""
     rng = np.random.default_rng(SEED)
     count = len(layout.further)
     found = Dependence(

@@ -33,7 +33,7 @@ class EquationFit:
 
 
 def robust_scale(rows: FloatArray, equation: IntArray) -> FloatArray:
-    """Standard deviation [n] of the rows of the same equation, by the median (Huber, 1981)."""
+    """Standard deviation [n] of each row, by the median of its `equation` [n] (Huber, 1981)."""
     scale = np.ones(len(rows))
     for number in np.unique(equation):
         own = equation == number
@@ -42,7 +42,7 @@ def robust_scale(rows: FloatArray, equation: IntArray) -> FloatArray:
 
 
 def huber_weight(rows: FloatArray, equation: IntArray) -> FloatArray:
-    """Weight [n] of every row in a least squares fit: 1 / variance, less for outliers."""
+    """Huber's weight [n] of every row in a least squares fit: 1 / variance, less for outliers."""
     scale = robust_scale(rows, equation)
     return np.minimum(1.0, HUBER * scale / np.maximum(np.abs(rows), 1e-300)) / scale**2
 
@@ -54,10 +54,12 @@ def fit_equations(
     iterations: int,
     executor: Executor | None = None,
 ) -> EquationFit:
-    """Fit `free`, begun at `values` (all parameters of the model), to the rows of `space`.
+    """Fit `free`, begun at `values` (all parameters of the model), to the rows of `space` by
+    reweighted Gauss-Newton steps within bounds.
 
     A prior of one start value (or one scale) around the start of every parameter keeps those in
     place that the rows do not see; thousands of rows, which overlap, outweigh it where they do.
+    Raises InputError for `values` out of bounds.
     """
     equation, run, time = space.labels()
     blocks = len(np.unique(np.column_stack([equation, run, time // SHORT]), axis=0))
@@ -99,8 +101,9 @@ def linearised(
     executor: Executor | None = None,
     own_torque: bool = False,
 ) -> EquationFit:
-    """The rows and their difference quotients with `free` at the values `here`, the quotients with
-    the model's `own_torque` if asked for (see `EquationSpace.own_torque`).
+    """The rows [n] and their difference quotients [n, nf] with `free` at the values `here`, the
+    quotients with the model's `own_torque` if asked for (see `EquationSpace.own_torque`). Raises
+    InputError for `values` out of bounds.
     """
     model = space.model
     names = list(model.parameter_names)

@@ -40,7 +40,9 @@ class RunRows:
 def half_width_of(
     runs: Sequence[Run], columns: Sequence[int], noise: FloatArray, period: float
 ) -> float:
-    """The shortest window in which noise hardly shows beside what accelerates the joints."""
+    """Half width in s of the shortest window in which `noise` [na] in rad of the angles, in
+    measured `columns` [na] every `period` s, is small beside what accelerates the joints.
+    """
     for half_width in HALF_WIDTHS:
         if 2.0 * half_width / period < MOST_COARSE:
             continue
@@ -64,8 +66,9 @@ def half_width_of(
 def resting_rates(
     counts: FloatArray, noise: FloatArray, period: float, rate_width: float
 ) -> FloatArray:
-    """Rate [na] in rad/s below which a joint may be at rest, from the `counts` of its encoder (nan
-    where it has none) and the `noise` of its angle in rad, sampled every `period` s.
+    """Rate [na] in rad/s below which a joint may be at rest, from the `counts` [na] of its encoder
+    in rad (nan where it has none) and the `noise` [na] of its angle in rad, sampled every `period`
+    s and differentiated over windows of half `rate_width` s.
     """
     rounding = np.nan_to_num(counts) / np.sqrt(12.0)
     samples = 2.0 * rate_width / period + 1.0
@@ -73,7 +76,9 @@ def resting_rates(
 
 
 def every_row(run: Run, half_width: float, axes: int, equations: int) -> RunRows:
-    """The grid of a run and the samples of it that have a row, all of which count for now."""
+    """The grid of a run for windows of `half_width` s and the samples of it that have a row, all of
+    which count for now.
+    """
     period = float(np.median(np.diff(run.time)))
     window = 2.0 * half_width / period
     grid = np.arange(0, len(run.time), max(1, int(window / SAMPLES_PER_WINDOW)))
@@ -91,8 +96,9 @@ def rows_that_count(
     half_width: float,
     measured: int,
 ) -> RunRows:
-    """The `rows` whose windows are whole and hold neither rest nor a change of one of the `faces`
-    [g, na], the first of which are those at the parameters; so many further states are `measured`.
+    """The `rows` whose windows, of `half_width` s, are whole and hold neither rest (`resting` [na]
+    in rad/s) nor a change of one of the `faces` [g, na], the first of which are those at the
+    parameters; so many further states are `measured`.
     """
     rests = (np.abs(motion.rate) < resting).astype(np.float64)
     changed = np.zeros_like(rests)

@@ -1,4 +1,4 @@
-"""What the equations leave along the measured motion: residual torques, and residual currents.
+"""Residuals of the equations along the measured motion: residual torques and residual currents.
 
 One row per chosen sample and equation: the torque in N m that an axis lacks, averaged under a test
 function (see `weak_form`), or the measured minus the integrated value of a further state. The rows
@@ -77,7 +77,7 @@ class EquationSpace:
 
     @property
     def equations(self) -> int:
-        """Torque of every axis, then every measured further state."""
+        """Number of equations: torque of every axis, then every measured further state."""
         return len(self.layout.angle) + len(self.measured)
 
     @property
@@ -96,7 +96,8 @@ class EquationSpace:
         return np.concatenate(equations), np.concatenate(numbers), np.concatenate(times)
 
     def rows(self, p: FloatArray, own: Sequence[FloatArray] | None = None) -> FloatArray:
-        """All rows [n] at parameters p, equation by equation and run by run.
+        """All rows [n] at parameters p [np], equation by equation and run by run, in N m or state
+        units.
 
         With `own`, per run what has to be added to inputs and further states (see `own_torque`),
         the torque is the model's own instead of the measured one.
@@ -192,7 +193,7 @@ class EquationSpace:
         return self._states[key]
 
     def decide_rows(self, p: FloatArray, others: Sequence[FloatArray]) -> None:
-        """Decide anew which rows count, and at p which faces are touched.
+        """Decide anew which rows count, and at p [np] which faces are touched.
 
         A row counts where no face changes at p nor at `others`: an inertia or a friction that is
         far from its true value would miss the changes, and between two faces no torque passes.
@@ -216,14 +217,14 @@ class EquationSpace:
         return rows_that_count(rows, motion, faces, self.resting, self.half_width, measured)
 
     def forget(self) -> None:
-        """Drop what is kept of motions and states: after a search over sensors or currents."""
+        """Clear the caches of motions and states: after a search over sensors or currents."""
         self._motions.clear()
         self._states.clear()
 
     def own_torque(self, p: FloatArray) -> list[FloatArray]:
-        """Per run what inputs and measured further states [g, nu + e] lack for the torque of the
-        model to be its own: as a regressor the measured one carries the residual that it should
-        explain (Janot, Vandanjon and Gautier, 2014).
+        """Per run what inputs and measured further states [g, nu + e] lack at p [np] for the torque
+        of the model to be its own: as a regressor the measured one carries the residual that it
+        should explain (Janot, Vandanjon and Gautier, 2014).
         """
         acting = self._acting(p)
         found = []

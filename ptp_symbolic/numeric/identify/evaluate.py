@@ -1,4 +1,4 @@
-"""Residuals of a run and their derivatives by parameters and by the unknown start."""
+"""Residuals of a run and their Jacobians by parameters and by the unknown initial state."""
 
 from dataclasses import dataclass
 
@@ -52,13 +52,16 @@ class Tolerance:
         return cls(1e-4 * factor, 1e-6 * factor)
 
     def absolute(self, model: Model) -> FloatArray:
-        """Absolute tolerance of every state [n]."""
+        """Absolute tolerance of every state [n], in its unit."""
         return self.angle * geared_weights(model)
 
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """Weighted residuals [k * ny] (measured - simulated) and their Jacobians."""
+    """Weighted residuals [k * ny], (measured - simulated) / sigma, and their Jacobians by
+    parameters [k * ny, nc] and by the unknowns of the start [k * ny, nz]; `failed` says why a
+    simulation ended.
+    """
 
     residual: FloatArray
     by_parameter: FloatArray
@@ -67,7 +70,7 @@ class Evaluation:
 
 
 def simulated_signals(run: Run, evaluation: Evaluation) -> FloatArray:
-    """The measured signals [k, ny] of `run` as they were simulated."""
+    """The measured signals [k, ny] of `run` as they were simulated, in their units."""
     return run.measured - evaluation.residual.reshape(run.measured.shape) / run.weight
 
 
@@ -100,7 +103,9 @@ def _compare(functions, signals, time, x, s, u, p, measured, columns, picked, we
 def start_state(
     model: Model, run: Run, p: FloatArray, z: FloatArray, columns: NDArray[np.int64]
 ) -> tuple[FloatArray, FloatArray]:
-    """State [n] at the start of `run` for start unknowns z, and its tangents [n, np + nz]."""
+    """Initial state [n] of `run` at p [np] for start unknowns z [nz], and its tangents [n, nc + nz]
+    by the parameters `columns` [nc] and by z.
+    """
     x = run.start.copy()
     s = np.zeros((len(x), len(columns) + len(z)))
     u = run.held_inputs[0]
@@ -163,7 +168,10 @@ def evaluate(
     tangents: bool,
     tolerance: Tolerance,
 ) -> Evaluation:
-    """Simulate `run` and compare. A simulation that fails says so and scores as failed."""
+    """Simulate `run` at p [np] from start unknowns z [nz]; with `tangents` also the Jacobians by
+    the parameters `columns` [nc] and by z. A simulation that fails has zero residuals and says so
+    in `failed`; raises InputError as `integrate` does.
+    """
     columns = columns if tangents else columns[:0]
     x, s = start_state(model, run, p, z, columns)
     late = delays_of(model, p)

@@ -32,11 +32,11 @@ DEFAULT_TOLERANCE = Tolerance()
 
 @dataclass(frozen=True)
 class Effort:
-    """How hard to search: iterations, relative gain at which to stop, simulation tolerance, and
-    how many steps in a row may be rejected.
+    """How hard to search: iterations, relative gain at which to stop, simulation tolerance, and how
+    many steps in a row may be rejected.
 
-    `secants` is the step of the differences that
-    replace derivatives which mislead (see `identify.secants`); None: none are replaced.
+    `secants` is the step, in search coordinates, of the finite differences that replace derivatives
+    which mislead (see `identify.secants`); None: none are replaced.
     """
 
     iterations: int = 30
@@ -48,7 +48,7 @@ class Effort:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """A fit: parameter `values` (all of the model), start unknowns `z`, evaluations per run."""
+    """A fit: parameter `values` (all of the model), start unknowns `z` and evaluations per run."""
 
     model: Model
     runs: tuple[Run, ...]
@@ -62,7 +62,7 @@ class Fit:
     misleading: tuple[Shift, ...] | None = None
 
     def rms_counts(self) -> float:
-        """Root mean square of the residual of all encoder signals, in counts."""
+        """Root mean square of the residual of all encoder signals, in counts (see `run_counts`)."""
         squares = np.concatenate([run_counts(r, e) for r, e in self.pairs()])
         return float(np.sqrt(np.mean(squares**2)))
 
@@ -72,7 +72,7 @@ class Fit:
 
 
 def run_counts(run: Run, evaluation: Evaluation) -> FloatArray:
-    """Residuals of the encoder signals of one run in counts; analog signals in units of sigma."""
+    """Residuals [k * ne] of the encoder signals in counts; without one, of all in sigmas."""
     residual = evaluation.residual.reshape(run.measured.shape)
     in_counts = residual / run.weight / run.counts
     encoders = np.isfinite(run.counts)
@@ -92,8 +92,9 @@ def fit_parameters(
     """Fit `free` from their starts; all other parameters stay at `fixed`. Derivatives known to be
     `misleading` from an earlier fit of the same parameters are replaced from the first step on.
 
-    With no free parameter only the start unknowns of every run are fitted, which is how runs that
-    were never fitted are judged. Places in a gap are looked for where no starts `z` are given.
+    With no free parameter only the start unknowns of every run are fitted, which is how validation
+    runs are judged. Places in a gap are looked for where no starts `z`, each [nz], are given.
+    Raises InputError for `fixed` values out of bounds.
     """
     effort = effort or Effort()
     if not free:
@@ -127,8 +128,8 @@ def fit_parameters(
 
 
 def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
-    """`fit` with differences over finite steps where derivatives at the optimum see next to nothing
-    of what such a step does: intervals of an effect that acts through breakaways need them.
+    """`fit` with finite-difference columns in its Jacobians where the tangents at the optimum are
+    blind to such a step: intervals of an effect that acts through breakaways need them.
     """
     if not fit.free or fit.failed:
         return fit
@@ -149,7 +150,7 @@ def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
 
 
 def all_values(free: Sequence[FreeParameter], phi: FloatArray) -> dict[str, float]:
-    """Values of the free parameters and of those tied to them."""
+    """Values of the free parameters at phi [nf], and of those tied to them."""
     own = to_values(free, phi)
     return own | {name: own[f.name] for f in free for name in f.tied}
 

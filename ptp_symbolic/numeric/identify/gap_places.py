@@ -31,8 +31,8 @@ def gears_in_place(
     tolerance: Tolerance,
     executor: Executor | None,
 ) -> list[FloatArray]:
-    """The start unknowns `z` of every run with the gears where `with_gap_places` finds them for the
-    parameter `values`.
+    """The start unknowns `z`, each [nz], of every run with the gears where `with_gap_places` finds
+    them for the parameter `values`. Raises InputError for values out of bounds.
     """
     simulated = partial(residual_of, model, model.parameter_vector(values), tolerance)
 
@@ -45,15 +45,15 @@ def gears_in_place(
 def residual_of(
     model: Model, p: FloatArray, tolerance: Tolerance, run: Run, z: FloatArray
 ) -> FloatArray | None:
-    """Residual of a run for the parameters p [np]; None where the simulation fails."""
+    """Weighted residual [k * ny] of a run at p [np]; None where the simulation fails."""
     e = evaluate(model, run, p, z, np.zeros(0, dtype=np.int64), False, tolerance)
     return None if e.failed else e.residual
 
 
 def with_gap_places(run: Run, z: FloatArray, residual: Residual) -> FloatArray:
-    """The start unknowns `z` [nz] of `run` with the place in every gap where the median of the
-    `residual` [k * ny], in units of the noise, is nothing; as they are where that fits no better,
-    or where simulations fail.
+    """The start unknowns `z` [nz] of `run` with the place in every gap at the root of the median of
+    the `residual` [k * ny], in units of the noise; as they are where that fits no better, or where
+    simulations fail.
     """
     for index, unknown in enumerate(run.unknowns):
         if unknown.contact is not None and unknown.column is not None:

@@ -29,10 +29,10 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Estimate:
-    """A fitted value with its 95 % interval; SI. `identified` is False where the interval is wider
-    than the value itself, or the data do not see the parameter at all: then the interval is that of
-    its bounds. `only_with` names parameters of which the data see a combination alone, such as the
-    sum of two viscous frictions in one joint.
+    """A fitted value with its 95 % confidence interval; SI. `identified` is False where the
+    interval is wider than the value itself, or the data do not see the parameter at all: then the
+    interval is that of its bounds. `only_with` names parameters of which the data see a combination
+    alone, such as the sum of two viscous frictions in one joint.
     """
 
     name: str
@@ -45,7 +45,7 @@ class Estimate:
 
 
 def estimates(fit: Fit) -> tuple[Estimate, ...]:
-    """Values of the free parameters of `fit` with 95 % intervals."""
+    """Values of the free parameters of `fit` with 95 % confidence intervals (Student's t)."""
     if not fit.free:
         return ()
     covariance, degrees, lost = covariance_of(fit)
@@ -109,8 +109,8 @@ def chance_of_zero(fit: Fit, zero: Mapping[str, float], shape: Collection[str] =
 
 def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Covariance [nf, nf] of the search coordinates, the degrees of freedom [nf] behind each, and
-    the directions [2, nf, lost] that the data do not see, in coordinates scaled by what the data
-    see of each alone, and in those of the search; it leaves these out.
+    the null space [2, nf, lost] that the data do not see, in coordinates scaled by what the data
+    see of each alone, and in those of the search; the covariance leaves it out.
     """
     return _covariance(fit, _columns(fit))
 
@@ -168,7 +168,7 @@ def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def project_out(jacobian: FloatArray, nuisance: FloatArray) -> FloatArray:
-    """The part of `jacobian` [k, nf] orthogonal to the columns of `nuisance` [k, nz]."""
+    """Projection of `jacobian` [k, nf] onto the orthogonal complement of `nuisance` [k, nz]."""
     if nuisance.shape[1] == 0:
         return jacobian
     basis, triangle = np.linalg.qr(nuisance)

@@ -1,4 +1,4 @@
-"""Levenberg-Marquardt over several runs, the unknown starts eliminated run by run.
+"""Levenberg-Marquardt over several runs, the unknown initial states eliminated run by run.
 
 Shared parameters phi meet all runs, the start unknowns z of a run meet only that run: the normal
 equations are bordered block diagonal and solved by a Schur complement (Golub and Pereyra, 1973,
@@ -32,11 +32,12 @@ SHARE_TO_BOUND = -np.expm1(-LARGEST_STEP)  # of the way there in one step
 
 @dataclass(frozen=True)
 class Problem:
-    """What to minimise: `evaluate(phi, z, tangents)`, bounds of phi, bounds and prior of z.
+    """What to minimise: `evaluate(phi, z, tangents)`, bounds of phi [nf], bounds and prior of z
+    [nz].
 
-    `refine`, where given, mends the derivatives from which steps are taken: those that come out are
-    always the ones at the point, which intervals need. `allow` bends steps that lead where no
-    machine is possible.
+    `refine`, where given, corrects the Jacobians from which steps are taken: those that come out
+    are always the ones at the point, which intervals need. `allow` projects steps that lead where
+    no machine is possible.
     """
 
     evaluate: Evaluate
@@ -73,7 +74,7 @@ def weighted_median(values: FloatArray, weight: FloatArray) -> FloatArray:
 
 
 def robust_tuning(evaluations: Sequence[Evaluation]) -> float:
-    """Root mean square at which a window counts half.
+    """Tuning constant of Cauchy's loss: the root mean square at which a window counts half.
 
     Infinite for a few whole runs, and while most windows are still far off.
     """
@@ -108,7 +109,9 @@ def cost_of(
     tuning: float = np.inf,
     scale: float = 1.0,
 ) -> float:
-    """Sum of squares; infinite as soon as one simulation failed."""
+    """Robust loss (squares, if `tuning` is infinite) and prior of z; infinite where a simulation
+    failed or has no finite Jacobian.
+    """
     if any(e.failed for e in evaluations):
         return np.inf
     fit = sum(_loss(e, tuning) for e in evaluations)
@@ -131,11 +134,11 @@ def minimise(
     gain: float = 1e-5,
     rejections: int = 5,
 ) -> Optimum:
-    """Minimise from (phi, z) until two steps in a row gain less than the share `gain`, or until
-    `rejections` ever shorter steps in a row gain nothing.
+    """Minimise from phi [nf] and z [nz] until two steps in a row gain less than the share `gain`,
+    or until `rejections` ever shorter steps in a row gain nothing.
 
     Priors of phi and z are weighed by the mean square residual: strong while the model is far off,
-    so that declared parameters and starts do not bend to stand in for an effect, and weak at the
+    so that declared parameters and starts do not absorb the lack of an effect, and weak at the
     noise floor.
     """
     at = _Point(np.clip(phi, problem.lower, problem.upper), [a.copy() for a in z], [])

@@ -22,8 +22,7 @@ FloatArray = NDArray[np.float64]
 @dataclass(frozen=True, eq=False)
 class MeasuredMotion:
     """The motion of one run at all samples and on the grid, the averaged second derivatives [c, na]
-    of its angles, and by how much the averages of angles and rates [c, 2 na] differ from those of
-    the smoothed ones.
+    in rad/s^2 of its angles, and the smoothing bias [c, 2 na] of the averages of angles and rates.
     """
 
     fine: Motion
@@ -34,8 +33,9 @@ class MeasuredMotion:
 
 @dataclass(frozen=True, eq=False)
 class FurtherStates:
-    """Further states: what acts on the grid [g, e], measured minus integrated [k, e] at all
-    samples, and by how much they settle elsewhere at another rate [k, e, na].
+    """Further states: their values on the grid [g, e], measured where they are; residual [k, e],
+    measured minus integrated, at all samples; quasi-static derivative by the joint rates
+    [k, e, na].
     """
 
     acting: FloatArray
@@ -44,7 +44,7 @@ class FurtherStates:
 
 
 def angles_of(model: Model, layout: Layout, run: Run, p: FloatArray, errors: bool) -> FloatArray:
-    """Joint angles [k, na] that were measured; where sensors have `errors`, without those at p."""
+    """Measured joint angles [k, na] in rad; with sensor `errors`, those at p [np] taken out."""
     axes = model.module.AXES
     columns = [run.signals.index(f"theta_{a}") for a in axes]
     shown = [model.output_names.index(f"theta_{a}") for a in axes]

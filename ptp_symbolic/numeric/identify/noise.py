@@ -30,7 +30,8 @@ FloatArray = NDArray[np.float64]
 
 
 def white_noise(signal: FloatArray) -> float:
-    """Standard deviation of the white noise of a smooth `signal` [n], also of its rounding.
+    """Standard deviation of the white noise of a smooth `signal` [n], also of its rounding, in its
+    unit.
 
     Squared differences of order 5, without those that are clipped; zero where the signal is too
     short.
@@ -65,7 +66,8 @@ class Noise:
 
 
 def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
-    """The noise in residual `series` (evenly sampled, any lengths), at least `least` of it white.
+    """The noise in residual `series` [n] (evenly sampled, any lengths), at least `least` of it
+    white.
 
     Whittle's likelihood over the bins that lie above the motion, profiled over the pole.
     """

@@ -21,7 +21,7 @@ FloatArray = NDArray[np.float64]
 @dataclass(frozen=True, eq=False)
 class Repeatability:
     """Standard deviation [ny] of one run, from the differences of two with equal inputs, in the
-    units of the signals, and the `names` of such runs, two by two.
+    units of the signals, and the `names` of such runs, in pairs.
     """
 
     rms: FloatArray

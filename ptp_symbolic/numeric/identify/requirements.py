@@ -1,4 +1,4 @@
-"""Keep a search where the machine is possible: no breakaway below sliding friction, for one."""
+"""Inequality constraints of a search: no breakaway below sliding friction, for one."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -17,9 +17,9 @@ Allow = Callable[[FloatArray, FloatArray], FloatArray]
 def keep_possible(
     model: Model, free: Sequence[FreeParameter], parameters: Callable[[FloatArray], FloatArray]
 ) -> Allow:
-    """Return a function that bends a step from phi to trial [nf], so that no relation that the
-    machine needs is broken: up to the boundary, then along it, and only in the coordinates that
-    the relation is about (gradient projection: Rosen, 1960).
+    """Return a function that projects a step from phi to trial [nf], so that no relation that the
+    machine needs is broken: up to the boundary, then along the active constraint, and only in the
+    coordinates that the relation is about (gradient projection: Rosen, 1960).
 
     `parameters(phi)` gives all parameters [np]. A relation broken at phi already is let be.
     """
@@ -40,7 +40,7 @@ def nearest_possible(
     parameters: Callable[[FloatArray], FloatArray],
     phi: FloatArray,
 ) -> FloatArray:
-    """Return `phi` [nf], moved to the boundary of every relation that is broken there."""
+    """Return `phi` [nf], projected onto the boundary of every relation that is broken there."""
     for relation in _relations(model, free, parameters):
         if not relation.holds(phi):
             phi = relation.entered(phi)

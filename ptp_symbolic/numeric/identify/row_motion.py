@@ -24,7 +24,7 @@ class RowMotion(NamedTuple):
 
 def row_motion(space: EquationSpace, axis: int) -> RowMotion:
     """The measured motion of `axis` at the rows of its own equation: the angle as it was measured,
-    the rate as a difference over a window.
+    the rate as a central difference over a window.
     """
     equation, number, time = space.labels()
     own = equation == axis

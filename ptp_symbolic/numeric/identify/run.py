@@ -31,8 +31,9 @@ class StartUnknown:
 
     `tangent` [n] is the derivative of the start by the unknown; a `contact` index says that the
     unknown is the place in that gap, from -1 (lower face) to 1 (upper face), and beyond where the
-    shaft is wound up; `column` is the measured angle of the joint behind it. `sigma` is its prior.
-    A search begins at `guess`, and may begin at other values `instead`: at rest, or turning back.
+    shaft is wound up; `column` is the measured angle of the joint behind it. `sigma` is that of its
+    prior. A search begins at `guess`, and may begin at other values `instead`: at rest, or turning
+    back. All are in rad or rad/s, places in half gaps.
     """
 
     name: str
@@ -48,10 +49,11 @@ class StartUnknown:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One run or window: time [k] in s, inputs, measured [k, ny] and `weight` [ny] (1/sigma).
+    """One run or window: time [k] in s, inputs [k, nu], measured [k, ny], `weight` [ny] (1/sigma).
 
-    `outputs` gives the model output of every measured column, `counts` the size of one encoder
-    count (nan for analog signals); `start` [n] is the guess of the state at the first sample.
+    `outputs` [ny] gives the model output of every measured column, `counts` [ny] the size of one
+    encoder count in rad (nan for analog signals); `start` [n] guesses the state at the first
+    sample.
     """
 
     name: str
@@ -73,17 +75,17 @@ class Run:
 
     @property
     def size(self) -> int:
-        """Number of residuals."""
+        """Number of residuals, k * ny."""
         return int(self.measured.size)
 
     @property
     def guess(self) -> FloatArray:
-        """Values of the unknowns at which a search begins."""
+        """Values of the unknowns [nz] at which a search begins."""
         return np.array([unknown.guess for unknown in self.unknowns])
 
     @property
     def guesses(self) -> list[FloatArray]:
-        """The guess, and the others at which a search may begin."""
+        """The guess, and the others, each [nz], at which a search may begin."""
         starts = [self.guess]
         for index, unknown in enumerate(self.unknowns):
             for value in unknown.instead:
@@ -105,7 +107,7 @@ class Around:
 def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple[Run, ...]:
     """Match the columns of `logs` to `model` and guess the start of every run.
 
-    Raises InputError when the platform's signals do not fit the model.
+    Raises InputError when the platform's signals do not fit the model or one has no noise.
     """
     given = [s for s in platform.signals if s.role == "input"]
     outputs = [s for s in platform.signals if s.role == "output"]
@@ -179,11 +181,10 @@ def _sigma(signal: SignalDeclaration, count: float, measured: Sequence[FloatArra
 def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
     """`run` with a guess of the state at its first sample, and what is unknown of it.
 
-    A parabola through a tenth of a second gives the rate, in the middle of it where the run is a
-    window and `around` it is the rest of a log. A joint with dry friction
-    whose rate is within its noise is taken to be at rest; one that is near it may be. A moving
-    joint is driven: its gear touches the face ahead and has wound up the shaft, nobody knows by how
-    much.
+    A local parabola over a tenth of a second gives the rate, in the middle of it where the run is a
+    window and `around` it is the rest of a log. A joint with dry friction whose rate is within its
+    noise is taken to be at rest; one that is near it may be. A moving joint is driven: its gear
+    touches the face ahead and has wound up the shaft, nobody knows by how much.
     """
     states = list(model.state_names)
     start = np.array(model.module.STATE_INITIAL, dtype=np.float64)
@@ -289,5 +290,5 @@ def by_source(runs: Sequence[Run]) -> list[list[int]]:
 
 
 def sizes(runs: Sequence[Run]) -> FloatArray:
-    """How many samples every run has [n]."""
+    """Number of samples of every run [runs]."""
     return np.array([len(run.time) for run in runs], dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Averages over parts of samples: of held inputs, and of values at the samples around a grid."""
+"""Averages over parts of samples: of zero-order-hold inputs, and of values around a grid."""
 
 from dataclasses import replace
 
@@ -13,7 +13,9 @@ IntArray = NDArray[np.int64]
 
 
 def cell_averages(run: Run, column: int, delay: float, grid: IntArray) -> FloatArray:
-    """A held input [g], late by `delay` s, averaged over the cell around every sample of a grid."""
+    """A zero-order-hold input [g], delayed by `delay` s, averaged over the cell around every sample
+    of a `grid` [g].
+    """
     time = run.time[grid]
     middle = 0.5 * (time[1:] + time[:-1])
     edges = np.concatenate(
@@ -23,7 +25,9 @@ def cell_averages(run: Run, column: int, delay: float, grid: IntArray) -> FloatA
 
 
 def part_averages(run: Run, column: int, delay: float, parts: int) -> FloatArray:
-    """A held input, late by `delay` s, averaged over equal parts of every sample [k - 1, parts]."""
+    """A zero-order-hold input, delayed by `delay` s, averaged over equal parts of every sample
+    [k - 1, parts].
+    """
     shares = np.arange(parts) / parts
     edges = run.time[:-1, None] + np.diff(run.time)[:, None] * shares
     flat = np.append(edges.ravel(), run.time[-1])
@@ -31,8 +35,8 @@ def part_averages(run: Run, column: int, delay: float, parts: int) -> FloatArray
 
 
 def thinned(run: Run, period: float) -> Run:
-    """`run` with every so many samples alone that they come about every `period` s, the inputs
-    averaged in between; the run itself where less than two samples come in that time.
+    """`run` decimated to samples about every `period` s, the inputs averaged in between; the run
+    itself where less than two samples come in that time.
     """
     every = int(period / float(np.median(np.diff(run.time))) + 1e-6)
     if every < 2:

@@ -1,8 +1,8 @@
-"""Derivatives over a finite step, where those at a point mislead.
+"""Finite-difference Jacobians, where the derivatives at a point mislead.
 
-Inputs that are held from sample to sample let a friction break away at one sample or the next: the
-residual is then a staircase of the parameter, and its derivative sees the treads alone. Bounces in
-a gap that appear and vanish do the same. A difference over a finite step sees both.
+Zero-order-hold inputs let a friction break away at one sample or the next: the residual is then a
+staircase of the parameter, and its derivative sees the treads alone. Bounces in a gap that appear
+and vanish do the same. A difference over a finite step sees both.
 """
 
 from collections.abc import Callable, Sequence
@@ -22,11 +22,11 @@ Residual = Callable[[int, FloatArray, FloatArray], FloatArray | None]
 
 @dataclass(eq=False)
 class Secants:
-    """Replaces misleading derivatives by phi with differences.
+    """Replaces misleading columns of the Jacobians by phi [nf] with finite differences.
 
     `residual(run, phi, z)` simulates one run (None: it failed); `upper` [nf] bounds phi. The first
     call compares every column of every run, later ones only those that misled, `chosen`; `step` is
-    that of the differences.
+    that of the differences, in search coordinates.
     """
 
     residual: Residual

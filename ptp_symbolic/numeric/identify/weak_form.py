@@ -45,9 +45,9 @@ def _windows(time, half_width):
 @njit(cache=True, nogil=True, error_model="numpy")
 def weak_average(time, values, half_width, derivative, chosen):
     """Average [c, v] of `values` [k, v] at `time` [k] in s, or of their first or second derivative
-    (`derivative` 1 or 2), under the test function centred on the samples `chosen` [c]; nan
-    where its window is not whole. Weights are normalised so that a constant has the average 1 and a
-    parabola its exact derivatives, however few the samples.
+    (`derivative` 1 or 2, per s or s^2), under the test function of `half_width` s centred on the
+    samples `chosen` [c]; nan where its window is not whole. Weights are normalised so that a
+    constant has the average 1 and a parabola its exact derivatives, however few the samples.
     """
     columns = values.shape[1]
     first, end = _windows(time, half_width)
@@ -82,8 +82,9 @@ def weak_average(time, values, half_width, derivative, chosen):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def local_motion(time, values, half_width):
-    """Value, rate and acceleration [k, 3, c] of `values` [k, c] from a parabola through the samples
-    within `half_width` s of each, at least five of them (local regression: Fan and Gijbels, 1996).
+    """Value, rate and acceleration [k, 3, c] of `values` [k, c], per s and s^2, from a parabola
+    through the samples within `half_width` s of each, at least five of them (local regression: Fan
+    and Gijbels, 1996).
     """
     n, columns = values.shape
     result = np.zeros((n, 3, columns))
@@ -119,7 +120,8 @@ def local_motion(time, values, half_width):
 
 
 def noise_gain(period: float, half_width: float, derivative: int) -> float:
-    """Standard deviation of a weak average of white noise of deviation 1, sampled every `period` s.
+    """Standard deviation of a weak average of white noise of deviation 1, sampled every `period` s;
+    per s^2 of its second `derivative` (0 or 2 only).
 
     Continuous limit of the sums above: the integrals of the squared test function and of its
     squared second derivative are h B(1/2, 9) and

@@ -35,7 +35,7 @@ FloatArray = NDArray[np.float64]
 
 
 def input_noise(run: Run, declared: Sequence[float | None]) -> FloatArray:
-    """Noise (rms) of every input [nu]: as declared, else as its samples show it."""
+    """Noise (rms) of every input [nu] in its unit: as declared, else as its samples show it."""
     columns = zip(run.held_inputs.T, declared, strict=True)
     return np.array([white_noise(column) if d is None else d for column, d in columns])
 
@@ -43,7 +43,7 @@ def input_noise(run: Run, declared: Sequence[float | None]) -> FloatArray:
 def window_length(
     model: Model, runs: Sequence[Run], p: FloatArray, declared_noise: Sequence[float | None]
 ) -> float | None:
-    """Longest window in s over which input noise stays near the rounding of the encoder.
+    """Longest window in s over which input noise stays near the rounding of the encoder, at p [np].
 
     None where whole runs do. Where an error of the start grows tenfold, windows of 1 s at most.
     """
@@ -150,8 +150,8 @@ def without_chaos(
     declared_noise: Sequence[float | None],
 ) -> tuple[Run, ...]:
     """The runs, those cut into windows in which the noise of the inputs leaves more than the noise
-    of the signals and may be most of what is `left` [runs, ny]: bounces in a gap and breakaways
-    make it grow until nothing can be predicted.
+    of the signals and may be most of the residual `left` [runs, ny]: bounces in a gap and
+    breakaways amplify it until nothing can be predicted.
     """
     carried = propagated_noise(model, runs, z, p, declared_noise)
     grows = np.any((carried > MOST_CARRIED) & (left < TUNING * carried), axis=1)

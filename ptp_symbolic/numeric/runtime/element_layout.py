@@ -1,8 +1,9 @@
 """Where frictions, contacts and switches stand among modes and guards of an emitted module.
 
 Modes: one per friction, then side and activity per contact, then the same per switch. Guards: per
-friction what holds it, breakaway forward and backward; per contact the separation, half the gap,
-the torque at the upper and at the lower face; switches as contacts.
+friction the holding torque (Lagrange multiplier of sticking) and the breakaway torque forward and
+backward, in N m; per contact separation and half gap in rad, torque at the upper and at the lower
+face in N m (of rigid faces that approach: a rate in rad/s); switches as contacts.
 """
 
 from numba.extending import register_jitable
@@ -20,7 +21,7 @@ def friction_guards(friction: int) -> int:
 
 @register_jitable
 def contact_guards(frictions: int, contact: int) -> int:
-    """Index of the first guard of a contact, or how many guards so many contacts make in all."""
+    """Index of the first guard of a contact; of so many contacts, the number of guards in all."""
     return GUARDS_PER_FRICTION * frictions + GUARDS_PER_CONTACT * contact
 
 
@@ -32,5 +33,5 @@ def contact_modes(frictions: int, contact: int) -> int:
 
 @register_jitable
 def contact_count(frictions: int, modes: int) -> int:
-    """How many contacts and switches so many modes hold."""
+    """Number of contacts and switches among `modes` modes, of which `frictions` are frictions."""
     return (modes - frictions) // MODES_PER_CONTACT

@@ -37,7 +37,7 @@ def load_model(name: str) -> Model:
 def load_module(path: Path, import_name: str) -> Model:
     """Load the emitted module at `path` under `import_name` (one name per module).
 
-    Raises InputError when the text of the module does not fit its checksum.
+    Raises InputError when the text of the module does not fit its checksum or cannot be imported.
     """
     verify(path)
     if import_name in sys.modules:

@@ -43,7 +43,9 @@ class EffectInstance:
 
 @dataclass(frozen=True)
 class ModelParameter:
-    """A parameter of a model, with the fields of `Parameter` in the effect interface."""
+    """A parameter of a model, with the fields of `Parameter` in the effect interface; all numbers
+    in `unit` (SI).
+    """
 
     name: str
     unit: str
@@ -83,22 +85,22 @@ class Model:
 
     @cached_property
     def state_names(self) -> tuple[str, ...]:
-        """Names of the states."""
+        """Names [n] of the states."""
         return tuple(self.module.STATE_NAMES)
 
     @cached_property
     def input_names(self) -> tuple[str, ...]:
-        """Names of the inputs."""
+        """Names [nu] of the inputs."""
         return tuple(self.module.INPUT_NAMES)
 
     @cached_property
     def output_names(self) -> tuple[str, ...]:
-        """Names of the signals that can be measured."""
+        """Names [ny] of the signals that can be measured."""
         return tuple(self.module.OUTPUT_NAMES)
 
     @cached_property
     def parameters(self) -> tuple[ModelParameter, ...]:
-        """The parameters with unit, default, bounds and where they vanish."""
+        """The parameters [np] with unit, default, bounds and where they vanish."""
         search = {row[0]: row[1:] for row in self.module.SEARCH}
         own = {} if self.declared is None else self.declared[2]
         rows = (
@@ -109,7 +111,7 @@ class Model:
 
     @cached_property
     def parameter_names(self) -> tuple[str, ...]:
-        """Names of the parameters."""
+        """Names [np] of the parameters."""
         return tuple(p.name for p in self.parameters)
 
     @cached_property
@@ -129,7 +131,7 @@ class Model:
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """Unit of every state, input, output and parameter."""
+        """SI unit, by name, of every state, input, output and parameter."""
         m = self.module
         names = (*m.STATE_NAMES, *m.INPUT_NAMES, *m.OUTPUT_NAMES, *self.parameter_names)
         units = (
@@ -142,12 +144,12 @@ class Model:
 
     @cached_property
     def friction_rates(self) -> NDArray[np.int64]:
-        """State index of the rate on which every friction acts."""
+        """State index [f] of the rate on which every friction acts."""
         return np.array(self.module.FRICTION_RATES, dtype=np.int64)
 
     @cached_property
     def zero_at_rest(self) -> NDArray[np.int64]:
-        """Per state the friction that sets it to zero when it comes to rest, or -1."""
+        """Per state [n] the friction that sets it to zero when it comes to rest, or -1."""
         return np.array(self.module.ZERO_AT_REST, dtype=np.int64)
 
     @cached_property
@@ -164,31 +166,31 @@ class Model:
 
     @cached_property
     def input_delays(self) -> NDArray[np.int64]:
-        """Per input the index of the parameter by which it is late, or -1."""
+        """Per input [nu] the index of the parameter that is its delay in s, or -1."""
         return np.array(self.module.INPUT_DELAYS, dtype=np.int64)
 
     @cached_property
     def sampler_periods(self) -> tuple[tuple[str, ...], ...]:
-        """Per sampler the parameters that its period follows from."""
+        """Per sampler the names of the parameters that its period in s follows from."""
         return tuple(self.module.SAMPLERS)
 
     @cached_property
     def sampled(self) -> NDArray[np.int64]:
-        """Sampler and state index [r, 2] of everything that samplers set."""
+        """Sampler and state index [r, 2] of every state that a sampler sets (zero-order hold)."""
         return np.array(self.module.SAMPLED, dtype=np.int64).reshape(-1, 2)
 
     @property
     def moving(self) -> int:
-        """How many states move by themselves; the last ones are set by samplers."""
+        """Number of states with a differential equation; those that samplers set come last."""
         return len(self.state_names) - len(set(self.sampled[:, 1]))
 
     @cached_property
     def limits(self) -> tuple[tuple[str, str], ...]:
-        """States with limits beyond which the equations do not hold, each with its meaning."""
+        """State and meaning of every limit of the domain in which the equations hold."""
         return tuple(self.module.DOMAIN)
 
     def domain(self, p: FloatArray) -> FloatArray:
-        """Lower and upper bound [k, 2] of the states of `limits` at parameters p [np]."""
+        """Bounds [k, 2] of the states of `limits` in their units, lower and upper, at p [np]."""
         bounds = np.empty((len(self.limits), 2))
         self.module.domain(p, bounds)
         return bounds
@@ -212,7 +214,7 @@ class Model:
 
     @cached_property
     def state_derivative(self) -> Callable[..., None]:
-        """The jitted in-place function f(t, x, u, p, dx), for loops of your own.
+        """The jitted in-place function f(t, x [n], u [nu], p [np], dx [n]), for loops of your own.
 
         Nothing is checked: all must be contiguous float64 arrays of the right length, or it reads
         and writes beyond them. `rhs` checks.
@@ -250,7 +252,7 @@ class Model:
         return np.array([values.get(n, d) for n, d in self.defaults.items()], dtype=np.float64)
 
     def prepared(self, p: FloatArray) -> FloatArray:
-        """Return what `prepared_derivative` of the module takes of the parameters p [np] alone."""
+        """Return the subexpressions of p [np] alone that `prepared_derivative` takes."""
         c = np.zeros(self.module.PREPARED)
         self.module.prepare(p, c)
         return c

@@ -1,7 +1,8 @@
 """Forward sensitivities of states and measured signals, through located events.
 
-The tangents follow the variational equation with the method of the run itself; at an event they
-jump by the change of the vector field times the shift of the event (Aizerman and Gantmacher, 1958).
+The tangents follow the variational equation with the method of the run itself; at an event the
+saltation matrix, the jump of the vector field times the shift of the event time, updates them
+(Aizerman and Gantmacher, 1958).
 """
 
 from __future__ import annotations
@@ -66,12 +67,15 @@ def sensitivity(
     largest_step: float = 0.1,
     method: str | None = None,
 ) -> Sensitivities:
-    """Derivatives by parameters (None: all) and by initial states, at `times` as in `simulate`.
+    """Sensitivities by parameters (None: all) and by initial states, at `times` as in `simulate`.
 
-    Tolerances and `method` are as in `simulate` too. Near vanishing bounces the motion bends so
-    sharply that differences by a thousandth of a parameter are off by half a percent; smaller ones
-    converge to these derivatives, until rounding spoils them. Raises InputError for unknown names
-    and SimulationError when the simulation cannot go on.
+    Tolerances and `method` are as in `simulate` too, `method` without "fixed_step". Near vanishing
+    bounces the solution is only piecewise smooth: difference quotients over a thousandth of a
+    parameter are off by half a percent; smaller steps converge to these derivatives, until rounding
+    spoils them.
+
+    Raises InputError for unknown names and methods, parameters out of bounds and times that do not
+    increase, and SimulationError when the simulation cannot go on.
     """
     t, p = output_times(times), checked_parameters(model, parameters or {})
     table = input_table(model, inputs or {}, p, float(t[-1]))
@@ -104,11 +108,11 @@ def sensitivity(
 
 
 def stable_step(model: Model, p: FloatArray, x: FloatArray) -> float:
-    """Step in s at which the explicit method is stable, from the Jacobian at x [n] in open modes
-    and with every friction sliding and every contact closed.
+    """Step in s at which the explicit method is stable, by the spectral radius of the Jacobian at x
+    [n], p [np] in open modes, and with every friction sliding and every contact closed.
 
-    Its tangents need it: a fast mode that has died out in the states, so that their error does not
-    tell of it, still grows in the tangents, by ten powers of ten where steps are too long.
+    Its tangents need it: the error estimate does not see a fast mode that has decayed in the
+    states, and it still grows in the tangents, by ten powers of ten where steps are too long.
     """
     n, nu = len(x), len(model.input_names)
     fx, fu, fp = np.zeros((n, n)), np.zeros((n, nu)), np.zeros((n, len(p)))

@@ -1,4 +1,4 @@
-"""Room for what a run works on and what it leaves: kernels allocate nothing."""
+"""Preallocated arrays of a run, for its work and its results: kernels allocate nothing."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ IntArray = NDArray[np.int64]
 
 
 def new_record(times: FloatArray, n: int, ns: int, ledger: int, event_room: int) -> Record:
-    """Room for what a run leaves at `times` [k]: n states, ns tangents, `ledger` rows, events."""
+    """Preallocated results at `times` [k] in s: n states, ns tangents, `ledger` rows, events."""
     z = np.zeros
     return Record(
         times,
@@ -30,7 +30,7 @@ def new_record(times: FloatArray, n: int, ns: int, ledger: int, event_room: int)
 
 
 def new_step(n: int, nu: int, parameters: int, solved: int) -> Step:
-    """Room for a step of n states, the first `solved` of them by linear equations."""
+    """Preallocated arrays of a step of n states, the first `solved` of them in linear systems."""
     z, width = np.zeros, padded(n)
     return Step(
         z(width),
@@ -52,7 +52,7 @@ def new_step(n: int, nu: int, parameters: int, solved: int) -> Step:
 
 
 def contact_table(model: Model) -> IntArray:
-    """Rates and rule of every contact [c, 5], and the flags PRESSED and SETTLING, not set yet."""
+    """Table [c, 5] of the contacts: both rates, rule, flags PRESSED and SETTLING, cleared."""
     rules = model.contacts
     table = np.zeros((len(rules), 5), dtype=np.int64)
     table[:, :3] = rules
@@ -60,12 +60,12 @@ def contact_table(model: Model) -> IntArray:
 
 
 def limited_states(model: Model) -> IntArray:
-    """Index [limits] of the state of every limit of the domain."""
+    """State index [limits] of every limit of the domain."""
     return np.array([model.state_names.index(name) for name, _ in model.limits], np.int64)
 
 
 def new_watch(model: Model, n: int, p: FloatArray) -> Watch:
-    """Room for the guards of a machine of n states, with the bounds of its domain at p [np]."""
+    """Preallocated guards and modes of n states, with the bounds of the domain at p [np]."""
     parameters = len(p)
     frictions, modes = len(model.friction_rates), len(model.mode_names)
     elements = frictions + contact_count(frictions, modes)
@@ -100,7 +100,7 @@ def new_watch(model: Model, n: int, p: FloatArray) -> Watch:
 def new_tangents(
     s: FloatArray, columns: IntArray, delay_column: IntArray, parameters: int, nu: int
 ) -> Tangents:
-    """Room for the tangents s [n, ns]; see `integrate`."""
+    """Preallocated tangents, begun at s [n, ns]; `columns` and `delay_column` as in `integrate`."""
     (n, ns), z = (len(s), padded(s.shape[1])), np.zeros
     table = z((n, ns))
     table[:, : s.shape[1]] = s

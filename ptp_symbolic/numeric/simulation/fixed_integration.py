@@ -1,4 +1,4 @@
-"""Run a model in steps of fixed length: room for its records, and what came out."""
+"""Integrate a model in steps of fixed length: preallocate, run, and return the solution."""
 
 from dataclasses import dataclass
 
@@ -31,11 +31,11 @@ MOST_STEPS = 1e9
 
 @dataclass(frozen=True, eq=False)
 class FixedSolution:
-    """What steps of fixed length left: status, time reached in s and state [n] there.
+    """Solution in steps of fixed length: status, time reached in s and state [n] there.
 
-    x [k, n], ledger [k, 3] (stored, supplied, dissipated in J), the first events [e, 3] (time,
-    element, mode entered) and how many there were, steps taken, and the most mode sets that one of
-    them tried.
+    At the output times x [k, n] and ledger [k, 3] (stored, supplied, dissipated in J); the first
+    events [e, 3] (time in s, element, mode entered) and their number in all, steps taken, and the
+    most mode sets that a single step tried.
     """
 
     status: int
@@ -58,10 +58,11 @@ def integrate_in_fixed_steps(
     step: float,
     event_room: int = 0,
 ) -> FixedSolution:
-    """Simulate `model` from x [n] in steps of at most `step` s; outputs at `times` [k] in s.
+    """Simulate `model` at p [np] from x [n] in steps of at most `step` s; outputs at `times` [k]
+    in s.
 
     Every output time and every jump of an input is the end of a step. Raises InputError for a step
-    that is no positive time or makes too many steps, and as `refuse_start` does.
+    that is no positive time or makes too many steps, and as `refuse_start` and `new_sampling` do.
     """
     duration = times[-1] - times[0]
     if not 0.0 < step < np.inf or duration / step > MOST_STEPS:

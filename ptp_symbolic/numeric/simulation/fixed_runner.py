@@ -1,13 +1,13 @@
 """The second way to simulate: fixed steps that solve friction and contact implicitly.
 
-It locates no events. A step keeps its modes when they still hold at its end: then it is the
-two-stage Rosenbrock method of Verwer et al. (SIAM J. Sci. Comput. 20, 1999), L-stable, order 2 with
-any Jacobian. Otherwise it is repeated as a linearly implicit Euler step whose modes are unknowns:
-one element after the other changes, and the linear system is solved anew, until every mode fits the
-end of the step (Murty, Opsearch 11, 1974).
+It locates no events (time stepping). A step keeps its modes when they still hold at its end: then
+it is the two-stage Rosenbrock method of Verwer et al. (SIAM J. Sci. Comput. 20, 1999), L-stable,
+order 2 with any Jacobian. Otherwise it is repeated as a linearly implicit Euler step whose modes
+are unknowns of a complementarity problem: one element after the other changes, and the linear
+system is solved anew, until every mode fits the end (principal pivoting: Murty, Opsearch 11, 1974).
 
-Rigid faces that have closed by the end of a step strike there, as speeds tell, not depth (time
-stepping after Moreau, 1988); bodies whose next bounce would not outlast a step stay together.
+Rigid faces that have closed by the end of a step strike there, as speeds tell, not depth (Moreau,
+1988); bodies whose next bounce would not outlast a step stay together.
 
 Order 2 in smooth motion, 1 across mode changes: an event takes effect up to one step late or early.
 A bounce shorter than a step is missed. Work per step is bounded, and nothing is allocated in it.
@@ -78,7 +78,7 @@ _WORK = types.Tuple((_M, _M, _M, _M, _I, _V, _V, _V, types.int64[:, ::1]))
 
 @kernel
 def take_step(equations, inputs, t, t_end, x, watch, tangents, work, record):
-    """Step from t to t_end in s; inputs.ahead holds the inputs at t. Returns a status."""
+    """Step x [n] in place from t to t_end in s; inputs.ahead holds u at t. Returns a status."""
     record.clock[TIME] = t
     h, u, m, rigid = t_end - t, inputs.u, watch.m, is_rigid(equations.contacts)
     if not inputs.held:
@@ -104,7 +104,7 @@ def take_step(equations, inputs, t, t_end, x, watch, tangents, work, record):
 
 @inlined
 def find_modes(equations, t, h, x, u, watch, work, record):
-    """Repeat a step whose modes do not fit its end, with modes that do; False if none do."""
+    """Repeat a step whose modes do not fit its end in consistent modes; False if none are found."""
     m, rates = watch.m, equations.friction_rates
     call(equations.guards, t + h, work.end, u, equations.p, m, watch.g)
     copy(m, watch.m_before)
@@ -122,7 +122,7 @@ def find_modes(equations, t, h, x, u, watch, work, record):
 
 @inlined
 def is_rigid(contacts):
-    """Whether some bodies are rigid where they meet."""
+    """Whether any contact [c, 5] is rigid."""
     found = False
     for contact in range(len(contacts)):
         found = found or contacts[contact, 2] != SPRUNG
@@ -131,9 +131,10 @@ def is_rigid(contacts):
 
 @inlined
 def land(equations, t, x, u, watch, tangents, record):
-    """Let faces that have closed by t strike, and friction follow; False when that does not end.
+    """Apply the impacts of faces that have closed by t, and switch modes; False on chattering.
 
-    Faces that have let go and approach again before the gap has opened would bounce for ever.
+    Faces that have let go and approach again before the gap has opened would bounce for ever (Zeno
+    behaviour): they meet without restitution.
     """
     m, frictions, contacts = watch.m, len(equations.friction_rates), equations.contacts
     fill_guards(equations, t, x, u, watch)
@@ -151,7 +152,7 @@ def land(equations, t, x, u, watch, tangents, record):
 
 @inlined
 def take_steps(equations, inputs, begin, end, step, x, watch, tangents, work, record):
-    """Go from begin to end in equal steps of at most `step` s. Returns a status."""
+    """Go from begin to end in s in equal steps of at most `step` s. Returns a status."""
     count = max(1, int(np.ceil((end - begin) / step - 1e-9)))
     h = (end - begin) / count
     for index in range(count):
@@ -165,7 +166,7 @@ def take_steps(equations, inputs, begin, end, step, x, watch, tangents, work, re
 
 @inlined
 def add_work(equations, t, t_end, x, u, u_end, m, end, record):
-    """Add the work of the step, by the trapezoidal rule over the powers at its ends."""
+    """Add the work in J of the step, by the trapezoidal rule over the powers at its ends."""
     call(equations.energy, t, x, u, equations.p, m, record.powers[0])
     call(equations.energy, t_end, end, u_end, equations.p, m, record.powers[1])
     for c in range(1, 3):
@@ -174,7 +175,7 @@ def add_work(equations, t, t_end, x, u, u_end, m, end, record):
 
 @inlined
 def write_output(equations, t, x, u, m, record):
-    """Write state and ledger at t."""
+    """Write state [n] and ledger [3] in J at t."""
     output = record.counts[OUTPUT]
     copy(x, record.x[output])
     if len(record.ledger) > 0:
@@ -186,7 +187,7 @@ def write_output(equations, t, x, u, m, record):
 
 @inlined
 def begin_modes(equations, t, x, u, watch, tangents, work, record):
-    """Find the modes of the start; those of rigid contacts come with it. False when none fit."""
+    """Find consistent modes of the initial state [n]; False when none fit."""
     if is_rigid(equations.contacts):
         return land(equations, t, x, u, watch, tangents, record)
     return choose_start_modes(equations, t, x, u, watch, work)

@@ -1,9 +1,9 @@
 """The compiled runner: adaptive steps by either method, located events, tangents through both.
 
 One runner serves every model: the emitted functions come in as typed function pointers. Steps end
-at every stop (sample of a held input, break of a profile) and where a sampler is due. A mode that
-ends inside a step is found on the step's interpolant, then by repeating the step itself until the
-landing point lies just past the event. The step length is carried over stops and events.
+at every stop (sample of a zero-order hold, break of a profile) and where a sampler is due. An event
+inside a step is bracketed on the dense output, then located by repeating the step itself until its
+end lies just past the event. The step length is carried over stops and events.
 """
 
 from collections.abc import Callable
@@ -85,7 +85,10 @@ _V, _M, _I = VECTOR, MATRIX, INTEGERS
 
 @merged
 def advance(method, equations, inputs, stop, x, limits, atol, step, watch, tangents, record):
-    """Take steps up to `stop`; returns a status."""
+    """Integrate x [n] in place up to `stop` in s, through all events; returns a status.
+
+    `limits` [3]: rtol, largest step in s, most steps; `atol` [n] in the units of the states.
+    """
     clock, counts = record.clock, record.counts
     known = False
     if is_outside(x, watch):
@@ -146,7 +149,7 @@ def advance_by_samples(
     sampling,
     propagator,
 ):
-    """Advance to `stop`, running the samplers that come due until then and there.
+    """Advance to `stop` in s, running the samplers that come due until then and there.
 
     The explicit method shares nothing with the exponential step: each checks the other.
     """

@@ -1,4 +1,4 @@
-"""Run a model through the compiled runner: room for its records, and what came out."""
+"""Integrate a model with adaptive steps: preallocate, run, and return the solution."""
 
 from dataclasses import dataclass
 
@@ -42,10 +42,11 @@ MOST_STEPS = 50_000_000  # a minute or two
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """What a run left: status, time reached in s, state [n] there, and outputs at the times asked.
+    """Solution of a run: status (see `kernels.records`), time reached in s and state [n] there.
 
-    x [k, n], s [k, n, ns], ledger [k, 3] (stored, supplied, dissipated in J; no rows if not asked
-    for), the first events [e, 3] (time, element, mode entered) and the number of all, steps tried.
+    At the output times x [k, n], tangents s [k, n, ns] and ledger [k, 3] (stored, supplied,
+    dissipated in J; no rows if not asked for); the first events [e, 3] (time in s, element, mode
+    entered) and the number of all, steps tried.
     """
 
     status: int
@@ -61,8 +62,8 @@ class Solution:
 
 @dataclass(frozen=True, eq=False)
 class Accuracy:
-    """Tolerances of a step, relative and absolute per state [n], the largest step in s, and how
-    many steps may be tried.
+    """Local error tolerances, relative and absolute per state [n] in its unit, the largest step
+    in s, and how many steps may be tried.
     """
 
     relative: float
@@ -74,8 +75,8 @@ class Accuracy:
 def default_method(model: Model) -> str:
     """`runge_kutta` for rigid bodies alone, `rosenbrock` where drives, friction or contact are.
 
-    A winding or a shaft is a hundred times faster than the motion: an explicit method has to keep
-    its pace, an implicit one is not.
+    A winding or a shaft is a hundred times faster than the motion: the machine is stiff, and
+    stability limits the steps of an explicit method.
     """
     bodies = {f"{kind}_{axis}" for kind in ("theta", "omega") for axis in model.module.AXES}
     smooth = not model.mode_names and set(model.state_names) <= bodies
@@ -83,17 +84,19 @@ def default_method(model: Model) -> str:
 
 
 def tolerance_weights(model: Model) -> FloatArray:
-    """Weight [n] of an absolute tolerance in rad for every state; free bodies forget no error."""
+    """Factor [n] from an absolute tolerance in rad to that of every state; 1 for free bodies, whose
+    errors do not decay.
+    """
     if default_method(model) == "runge_kutta":
         return np.ones(len(model.state_names))
     return geared_weights(model)
 
 
 def geared_weights(model: Model) -> FloatArray:
-    """Weight [n] of an absolute tolerance in rad for every state of a geared machine.
+    """Factor [n] from an absolute tolerance in rad to that of every state of a geared machine.
 
-    An error of a rate (rad/s) counts a hundredth and any other, such as a current, a thousandth:
-    friction forgets it before it reaches an angle.
+    An error of a rate (rad/s) counts a hundredth and any other, such as a current, a thousandth: it
+    decays before it reaches an angle.
     """
     factors = {"rad": 1.0, "rad/s": 100.0}
     return np.array([factors.get(unit, 1000.0) for unit in model.module.STATE_UNITS])
@@ -115,11 +118,13 @@ def integrate(
     ledger: bool = False,
     event_room: int = 0,
 ) -> Solution:
-    """Run `model` from the first to the last of `stops`, starting at x [n] with tangents s [n, ns].
+    """Integrate `model` at p [np] from the first to the last of `stops` in s, from x [n] with
+    tangents s [n, ns]; outputs at `times` [k] in s.
 
-    `held` says that inputs change at stops only; those that samplers alone read need not. With
-    tangents, output times must be stops. The first tangents belong to the parameters `columns`;
-    `delay_column` is per input the tangent of its delay, or -1.
+    `held`: inputs are zero-order hold, with jumps at stops only; those that samplers alone read
+    need not be. With tangents, output times must be stops. The first tangents are by the parameters
+    `columns`; `delay_column` [nu] is per input the tangent of its delay, or -1. Raises InputError
+    as `refuse_start` and `new_sampling` do.
     """
     n, nu, module = len(x), len(model.input_names), model.module
     none = np.zeros(0, dtype=np.int64)
@@ -174,7 +179,10 @@ def integrate(
 
 
 def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watch: Watch) -> None:
-    """Raise InputError where a start x [n] overlaps rigid bodies, or moves one that sticks."""
+    """Raise InputError where the initial state x [n], with u [nu] and p [np], lets rigid bodies
+    overlap, or moves a joint that sticks in its gap. Modes are read from `watch`, its guards
+    written.
+    """
     frictions = len(model.friction_rates)
     if not model.contacts[:, 2].any():
         return

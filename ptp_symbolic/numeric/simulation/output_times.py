@@ -1,4 +1,4 @@
-"""The times at which a simulation is written."""
+"""Output times of a simulation."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,9 +12,10 @@ MOST_SAMPLES = 5_000_000
 
 
 def output_times(times: float | ArrayLike, every: float = OUTPUT_STEP) -> FloatArray:
-    """Times [k] of the output: from 0 to a duration `every` so many s, its end too, or as given.
+    """Output times [k] in s: from 0 to a duration in s and `every` so many s between, or as given.
 
-    Raises InputError if they decrease and for more than five million of them.
+    Raises InputError for a duration or an interval that is not positive, for less than two times or
+    times that are not finite and increasing, and for five million or more within a duration.
     """
     t = np.array(times, dtype=np.float64)
     if t.ndim == 0:

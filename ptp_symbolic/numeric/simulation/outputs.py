@@ -1,4 +1,4 @@
-"""What a run leaves behind: states at the output times, the energy ledger, events."""
+"""Results of a run: states at the output times, the energy ledger, events."""
 
 import numpy as np
 
@@ -25,7 +25,9 @@ NODES = 0.5 * (1.0 - 0.2**0.5), 0.5 * (1.0 + 0.2**0.5)  # Lobatto, with both end
 
 @kernel
 def fill_powers(equations, inputs, t, h, m, step, record):
-    """Write stored energy and both powers at the four nodes of the step, then as a cubic."""
+    """Evaluate stored energy in J and both powers in W at the four Lobatto nodes of a step, and
+    replace the powers by the coefficients of their interpolating cubics, in record.powers [4, 3].
+    """
     for node in range(4):
         fraction = 0.0 if node == 0 else 1.0 if node == 3 else NODES[node - 1]
         curve(fraction, step, step.point)
@@ -63,21 +65,23 @@ def _cubic_through_nodes(powers, c):
 
 @inlined
 def work_done(fraction, h, powers, c):
-    """Work in J of column c from the start of the step to a fraction of it."""
+    """Work in J, the integral of power c of `powers` [4, 3], from the start to a fraction of a
+    step.
+    """
     cubic = powers[2, c] / 3.0 + fraction * powers[3, c] / 4.0
     return h * fraction * (powers[0, c] + fraction * (powers[1, c] / 2.0 + fraction * cubic))
 
 
 @inlined
 def missing_at(node, fraction, h, powers):
-    """What the ledger of a step misses between its start and a node."""
+    """Residual in J of the energy balance between the start of a step and a node."""
     change = powers[node, 0] - powers[0, 0]
     return abs(change - work_done(fraction, h, powers, 1) + work_done(fraction, h, powers, 2))
 
 
 @inlined
 def ledger_error(h, rtol, record):
-    """What the ledger of a step misses, over what it may miss: at its end, and less so inside.
+    """Residual of the energy balance of a step over its tolerance: at its end, and less so inside.
 
     A stiff method leaps over a transient without harm to the states, but not to the work done in
     it. Where a step of SHORTEST_FOR_LEDGER is still off, it is taken; where many are, the energies
@@ -101,7 +105,7 @@ def ledger_error(h, rtol, record):
 
 @kernel
 def write_inside(equations, inputs, t, h, t_new, m, step, record):
-    """Write the outputs that lie inside the step from t to t_new."""
+    """Write the outputs inside the step from t to t_new in s, by dense output."""
     output = record.counts[OUTPUT]
     while output < len(record.times) and record.times[output] < t_new - TIME_RESOLUTION:
         time = record.times[output]
@@ -119,14 +123,14 @@ def write_inside(equations, inputs, t, h, t_new, m, step, record):
 
 @inlined
 def next_output(record):
-    """Time of the next output in s; endless after the last."""
+    """Time of the next output in s; infinite after the last."""
     output = record.counts[OUTPUT]
     return record.times[output] if output < len(record.times) else np.inf
 
 
 @inlined
 def write_here(equations, inputs, t, x, m, tangents, record):
-    """Write the outputs that lie at time t, a stop, with their tangents."""
+    """Write the outputs at time t in s, a stop, with their tangents [n, ns]."""
     if next_output(record) <= t + TIME_RESOLUTION:
         _write_here(equations, inputs, t, x, m, tangents, record)
 
@@ -152,7 +156,7 @@ def _write_ledger(equations, inputs, t, m, output, record):
 
 @inlined
 def note_switches(t, m, m_before, frictions, contacts, record):
-    """Note every element whose mode changed; the count goes on past the room for events."""
+    """Record every element whose mode changed at t; the count goes on past the room for events."""
     events = record.events
     for element in range(frictions + contact_count(frictions, len(m))):
         where = element if element < frictions else contact_modes(frictions, element - frictions)
@@ -176,6 +180,6 @@ def note_switches(t, m, m_before, frictions, contacts, record):
 
 @inlined
 def note_strikes(watch, record):
-    """Add what strikes have taken to the energy lost."""
+    """Add the energy in J that impacts have taken to what is dissipated."""
     record.totals[2] += watch.lost[0]
     watch.lost[0] = 0.0

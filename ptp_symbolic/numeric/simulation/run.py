@@ -48,7 +48,9 @@ LARGEST_IMBALANCE = 0.1  # of the energies: a motion that makes more out of noth
 
 
 class SimulationError(InputError):
-    """The simulation left its domain; the message tells time, state and what to do."""
+    """A simulation that did not reach its end, or whose energies do not balance; the message tells
+    time, state and what to do.
+    """
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,21 +90,22 @@ def simulate(
     save: Sequence[str] | None = None,
     most_steps: int = MOST_STEPS,
 ) -> Trajectory:
-    """Simulate `model` from 0 to a duration in s (output every ms) or at given `times` [k].
+    """Simulate `model` from 0 to a duration in s (output every ms) or at given `times` [k] in s.
 
-    Inputs are signals or profiles as text ("step:1@0.5"), zero where not given. rtol and atol bound
-    the error of a step, atol in rad for angles (see `tolerance_weights`); `method` is "rosenbrock"
-    for stiff machines, "runge_kutta" for smooth ones and where a controller samples faster than a
-    winding settles, "fixed_step" for steps of `step` s, None to let the model choose. Steps of a
-    fixed length are of order one across events: their error goes with `step`. Where a controller
-    samples, the state at that instant is the one after it.
+    Inputs are signals or profiles as text ("step:1@0.5"), zero where not given; `parameters` and
+    `initial` states are in SI. rtol and atol bound the local error, atol in rad for angles (see
+    `tolerance_weights`). `method` is "rosenbrock" for stiff machines, "runge_kutta" for smooth ones
+    and where a controller samples faster than a winding settles, "fixed_step" for steps of `step`
+    s, None to let the model choose. Fixed steps are of order one across events: their error goes
+    with `step`. Where a controller samples, the state at that instant is the one after it.
 
     `save` names the states to keep (None: all). Without `ledger` no energy is summed up, and a
-    machine with a sampled controller is followed from sample to sample, in less time.
+    machine with a sampled controller is integrated from sample to sample by an exponential method,
+    in less time.
 
-    Raises InputError for unknown names, times that do not increase, a tolerance or largest step
-    that is not above zero and a step that does not fit; SimulationError when the state diverges,
-    modes switch without end, `most_steps` do not reach the end, or steps of fixed length make a
+    Raises InputError for unknown names, parameters out of bounds, times that do not increase, a
+    tolerance or largest step that is not above zero and a step that does not fit; SimulationError
+    when the state diverges, modes chatter, `most_steps` do not reach the end, or fixed steps make a
     motion whose energies do not add up.
     """
     t = output_times(times)
@@ -177,7 +180,7 @@ def _refuse_unbalanced(found: FixedSolution, step: float) -> None:
 def input_table(
     model: Model, inputs: Mapping[str, InputSignal | str], p: FloatArray, end: float
 ) -> InputTable:
-    """`inputs` from 0 to `end` s as the model sees them, late where parameters p [np] say so.
+    """`inputs` from 0 to `end` s as the model sees them, delayed where parameters p [np] say so.
 
     Inputs that are not given stay zero. Raises InputError for unknown names and profiles.
     """
@@ -198,7 +201,7 @@ def chosen_method(
 
 
 def checked_parameters(model: Model, parameters: Mapping[str, float]) -> FloatArray:
-    """Parameter vector [np].
+    """Parameter vector [np] in SI.
 
     Raises InputError for unknown names, values outside bounds, values that do not fit each other.
     """
@@ -208,7 +211,7 @@ def checked_parameters(model: Model, parameters: Mapping[str, float]) -> FloatAr
 
 
 def start_of(model: Model, initial: Mapping[str, float]) -> FloatArray:
-    """State [n] at the start. Raises InputError for unknown names or values that are not finite."""
+    """Initial state [n] in SI. Raises InputError for unknown names and values not finite."""
     _refuse_unknown("state", initial, model.state_names)
     x = np.array(model.module.STATE_INITIAL, dtype=np.float64)
     for name, value in initial.items():

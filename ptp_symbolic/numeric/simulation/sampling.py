@@ -43,9 +43,9 @@ class Sampling(NamedTuple):
 
     functions [2]: addresses of `sample` and `sample_jacobian`; owner, target [r]: sampler and state
     of every update; due [s] in s: next instant; count [s]: periods begun; armed [s]: 1 between the
-    start of a period and a later instant in it; z [3 s + r], zx, zu, zp: what `sample` and
-    `sample_jacobian` write; shift [ns]: derivative of the instant by what the tangents are by;
-    rows [r, ns]: new tangents of the updated states; before, after [n]: dx/dt; slopes [nu]: du/dt.
+    start of a period and a later instant in it; z [3 s + r], zx, zu, zp: what `sample` writes, and
+    its Jacobians; shift [ns]: derivative of the instant by what the tangents are by; rows [r, ns]:
+    new tangents of the updated states; before, after [n]: dx/dt; slopes [nu]: du/dt.
     """
 
     functions: Any
@@ -68,7 +68,8 @@ class Sampling(NamedTuple):
 def new_sampling(
     model: Model, p: FloatArray, x: FloatArray, times: FloatArray, ns: int
 ) -> Sampling:
-    """The samplers of `model` before the first of `times`, with room for `ns` tangents.
+    """The samplers of `model` at p [np] and x [n] before the first of `times` [k] in s, with room
+    for `ns` tangents.
 
     Raises InputError for a sampling time that is not positive, longer than the run, or so short
     that there are more than MOST_SAMPLES instants.
@@ -115,7 +116,7 @@ def new_sampling(
 
 @inlined
 def next_stop(stop, sampling):
-    """The earlier of `stop` and the next instant, in s."""
+    """The earlier of `stop` and the next sampling instant, in s."""
     earliest = stop
     for i in range(len(sampling.due)):
         earliest = min(earliest, sampling.due[i])
@@ -124,7 +125,7 @@ def next_stop(stop, sampling):
 
 @inlined
 def is_due(t, sampling):
-    """Whether some sampler has an instant at t."""
+    """Whether some sampler has an instant at t in s."""
     found = False
     for i in range(len(sampling.due)):
         found = found or sampling.due[i] <= t + COINCIDENT
@@ -133,7 +134,7 @@ def is_due(t, sampling):
 
 @inlined
 def sample_at(equations, inputs, t, x, m, tangents, sampling):
-    """Run every sampler that is due at t, and let the tangents jump, where there are any.
+    """Run every sampler that is due at t in s, and apply its saltation to the tangents, if any.
 
     inputs.u is as before t, inputs.ahead will be as after it.
     """
@@ -146,7 +147,7 @@ def sample_at(equations, inputs, t, x, m, tangents, sampling):
 
 @kernel
 def sample_now(equations, u, t, x, m, sampling):
-    """Run every sampler that is due at t, with inputs u after a jump there."""
+    """Run every sampler that is due at t in s, with inputs u [nu] after a jump there."""
     for i in range(len(sampling.due)):
         if sampling.due[i] <= t + COINCIDENT and _comes(i, equations, u, t, x, m, sampling):
             _set_states(i, x, sampling)
@@ -154,7 +155,7 @@ def sample_now(equations, u, t, x, m, sampling):
 
 @kernel
 def sample_with_tangents(equations, inputs, t, x, m, tangents, sampling):
-    """Run every sampler that is due at t, and let the tangents jump; see `sample_at`."""
+    """Run every sampler due at t in s, and apply its saltation to the tangents; see `sample_at`."""
     for i in range(len(sampling.due)):
         if sampling.due[i] > t + COINCIDENT:
             continue

@@ -1,4 +1,6 @@
-"""Cross an event: settle the modes, and let the tangents jump (Aizerman and Gantmacher, 1958)."""
+"""Cross an event: settle the modes, and apply the saltation matrix to the tangents (Aizerman and
+Gantmacher, 1958).
+"""
 
 from ptp_symbolic.numeric.simulation.events.impacts import clear_resting
 from ptp_symbolic.numeric.simulation.events.modes import settle, violation, violation_gradient
@@ -14,9 +16,10 @@ AHEAD = 1e-7  # s
 
 @kernel
 def cross(equations, inputs, t, x, watch, tangents, record):
-    """Settle the modes at t, where one has ended; watch.before holds dx/dt before the event.
+    """Settle the modes at an event at t in s, and let x [n] and the tangents jump; watch.before
+    holds dx/dt [n] before the event.
 
-    Returns False when the modes switch without end.
+    Returns False when the modes chatter.
     """
     m, frictions, ns = watch.m, len(equations.friction_rates), tangents.table.shape[1]
     evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)
@@ -42,7 +45,9 @@ def cross(equations, inputs, t, x, watch, tangents, record):
 
 @inlined
 def differentiate_guard(equations, inputs, t, x, watch):
-    """Write the gradient of the guard that ended its mode; returns its derivative by time."""
+    """Write the gradient of the event function that ended its mode into watch.by_x [n] and
+    watch.by_p [np]; returns its partial derivative by time, per s.
+    """
     m, p, rates = watch.m, equations.p, equations.friction_rates
     fill_guards(equations, t, x, inputs.u, watch)
     worst, element = -1e300, 0
@@ -68,9 +73,10 @@ def differentiate_guard(equations, inputs, t, x, watch):
 
 @inlined
 def follow_to_event(by_time, watch, tangents):
-    """Add f- dt/dp to the tangents, dt/dp from the guard that ended the mode; keeps dt/dp.
+    """Add f- dt/dp to the tangents [n, ns], dt/dp from the event function; keeps dt/dp.
 
-    Strikes act between this and `follow_from_event`, at the state where the event is.
+    First half of the saltation matrix. Impacts act between this and `follow_from_event`, at the
+    state where the event is. A grazing event has no dt/dp.
     """
     s, columns, shifts = tangents.table, tangents.columns, tangents.along
     n, ns = s.shape
@@ -94,7 +100,7 @@ def follow_to_event(by_time, watch, tangents):
 
 @inlined
 def follow_from_event(watch, tangents):
-    """Take f+ dt/dp off the tangents."""
+    """Take f+ dt/dp off the tangents [n, ns]: the second half of the saltation matrix."""
     s = tangents.table
     for c in range(s.shape[1]):
         for a in range(s.shape[0]):
@@ -103,7 +109,9 @@ def follow_from_event(watch, tangents):
 
 @kernel
 def jump_by_delay(equations, inputs, t, x, u_before, watch, tangents):
-    """Add (f- - f+) to the tangent of every delay whose held input has just changed."""
+    """Add (f- - f+) to the tangent of every delay whose zero-order-hold input jumps at t, from
+    u_before [nu] to inputs.u.
+    """
     u, s = inputs.u, tangents.table
     for j in range(len(u)):
         column = tangents.delay_column[j]

@@ -5,14 +5,14 @@ from ptp_symbolic.numeric.simulation.kernels.records import TIME, inlined, kerne
 
 @inlined
 def past_bound(limit, x, watch):
-    """How far the state of a limit is past its nearer bound (> 0: outside)."""
+    """How far the state of a limit is past its nearer bound, in its unit (> 0: outside)."""
     value = x[watch.limited[limit]]
     return max(watch.bounds[limit, 0] - value, value - watch.bounds[limit, 1])
 
 
 @inlined
 def is_outside(x, watch):
-    """Whether some state is past a bound."""
+    """Whether some state of x [n] is past a bound of the domain."""
     found = False
     for limit in range(len(watch.limited)):
         found = found or past_bound(limit, x, watch) > 0.0
@@ -21,7 +21,7 @@ def is_outside(x, watch):
 
 @inlined
 def is_finite(x, largest):
-    """Whether every state is a number below `largest` in size."""
+    """Whether every state of x [n] is a number (not NaN) below `largest` in size."""
     found = True
     for a in range(len(x)):
         found = found and abs(x[a]) < largest
@@ -30,7 +30,7 @@ def is_finite(x, largest):
 
 @kernel
 def stop_at_bound(t, h, x, end, watch, clock):
-    """Go from x at t in s along the straight line to `end`, h later, up to the first bound."""
+    """Move x [n] at t in s along the secant to `end` [n], h s later, up to the first bound."""
     fraction = 1.0
     for limit in range(len(watch.limited)):
         before, after = past_bound(limit, x, watch), past_bound(limit, end, watch)

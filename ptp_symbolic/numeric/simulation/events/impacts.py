@@ -1,9 +1,9 @@
-"""Rigid contacts: strikes at one instant, and what a body brings to rest along with itself.
+"""Rigid contacts: impacts at one instant, and what a body brings to rest along with itself.
 
-A strike at a speed of approach v leaves the faces parting at e v, unless that is below
-RESTING_SPEED: then they stay together, so that bounces that grow ever shorter end after finitely
-many. What is cut off are flights no higher than RESTING_SPEED squared over twice the acceleration.
-Bodies that are joined by another rigid contact are struck as one.
+Newton's law of restitution: a speed of approach v leaves the faces parting at e v, unless that is
+below RESTING_SPEED: then they stay together, so that bounces that grow ever shorter (Zeno) end
+after finitely many. What is cut off are flights no higher than RESTING_SPEED squared over twice the
+acceleration. Bodies that are joined by another rigid contact are struck as one.
 """
 
 from ptp_symbolic.numeric.runtime.element_layout import contact_modes
@@ -18,7 +18,7 @@ SETTLING = 4  # flag of a contact whose next bounce would be shorter than a step
 
 @kernel
 def strike_faces(equations, t, x, u, watch, tangents):
-    """Let the bodies of every rigid contact that has just closed strike each other."""
+    """Apply the impact law to every rigid contact that has just closed; x [n] jumps in place."""
     m, contacts = watch.m, equations.contacts
     for contact in range(len(contacts)):
         gear, joint, rule = contacts[contact, 0], contacts[contact, 1], contacts[contact, 2]
@@ -34,7 +34,9 @@ def strike_faces(equations, t, x, u, watch, tangents):
 
 @inlined
 def hold(joint, equations, t, x, u, watch):
-    """Stop a joint that friction holds; it moves only where a coupled strike has turned it back."""
+    """Zero the rate of a joint that friction locks; it moves only where a coupled impact has turned
+    it back. Adds the energy lost in J to `watch.lost`.
+    """
     m, energies = watch.m, watch.energies
     call(equations.energy, t, x, u, equations.p, m, energies[0])
     x[joint] = 0.0
@@ -44,7 +46,7 @@ def hold(joint, equations, t, x, u, watch):
 
 @inlined
 def strike(contact, equations, t, x, u, watch, tangents):
-    """Change the rates by one strike; adds the energy lost to `watch.lost`."""
+    """Change the rates in x [n] by one impact; adds the energy lost in J to `watch.lost`."""
     n, m, changes = len(x), watch.m, watch.strike
     where, at = contact_modes(len(equations.friction_rates), contact), contact * (n + 2)
     m[where + 1] = 0.0
@@ -68,7 +70,7 @@ def strike(contact, equations, t, x, u, watch, tangents):
 
 @inlined
 def strike_tangents(at, restitution, watch, tangents):
-    """Carry the tangents through the strike whose rows of the Jacobians begin at `at`."""
+    """Propagate the tangents through the impact whose rows of the Jacobians begin at `at`."""
     s, change = tangents.table, watch.by_x
     n = s.shape[0]
     for c in range(s.shape[1]):
@@ -84,7 +86,7 @@ def strike_tangents(at, restitution, watch, tangents):
 
 @inlined
 def along_tangent(row, c, watch, tangents):
-    """Derivative of one entry of watch.strike along the tangent c."""
+    """Directional derivative of one entry of watch.strike along the tangent c."""
     result = watch.strike_p[row, tangents.columns[c]] if c < len(tangents.columns) else 0.0
     for b in range(tangents.table.shape[0]):
         result += watch.strike_x[row, b] * tangents.table[b, c]
@@ -93,7 +95,7 @@ def along_tangent(row, c, watch, tangents):
 
 @kernel
 def rest_together(rate, equations, m, x):
-    """Zero the rates of a rigid contact that lasts, when friction has brought `rate` to rest."""
+    """Zero the rates of a lasting rigid contact once friction has brought state `rate` to rest."""
     for contact in range(len(equations.contacts)):
         gear, joint = equations.contacts[contact, 0], equations.contacts[contact, 1]
         joined = m[contact_modes(len(equations.friction_rates), contact) + 1] > 0.0
@@ -103,7 +105,7 @@ def rest_together(rate, equations, m, x):
 
 @kernel
 def clear_resting(equations, m, s):
-    """Clear the tangents [n, ns] of rates that friction, a stuck partner or a gap holds."""
+    """Zero the tangents [n, ns] of rates that friction, a stuck partner or a gap locks."""
     frictions = len(equations.friction_rates)
     for f in range(frictions):
         if m[f] == 0.0:

@@ -1,4 +1,4 @@
-"""Find the end of a mode or of the domain inside a step, and step to just past it."""
+"""Event location: find the end of a mode or of the domain in a step, and step to just past it."""
 
 from ptp_symbolic.numeric.simulation.events.domain import past_bound
 from ptp_symbolic.numeric.simulation.events.modes import largest_violation, violation
@@ -11,12 +11,14 @@ MISSES, NEAR_START = 4, 0.01
 TIME_RESOLUTION = 1e-12  # s
 LANDING = 2e-12  # s; how far past an event a step may end
 NEARLY = 0.25
-NEARBY = 1e-3  # of the way to the root: where the curve is asked how fast a mode ends
+NEARBY = 1e-3  # of the way to the root: step of the first slope, on the dense output
 
 
 @inlined
 def fill_violations(equations, inputs, t, x, watch, out):
-    """Write how far every element is past the end of its mode into out; returns the largest."""
+    """Write the event functions of all elements and limits into out (> 0: the mode has ended);
+    returns the largest.
+    """
     fill_guards(equations, t, x, inputs.u, watch)
     worst = -1e300
     elements = len(out) - len(watch.limited)
@@ -31,7 +33,7 @@ def fill_violations(equations, inputs, t, x, watch, out):
 
 @kernel
 def violation_at(equations, inputs, t, x, watch):
-    """The largest violation at time t in s and state x; inputs as they are before a jump at t."""
+    """Largest event function at t in s and x [n]; inputs as they are before a jump at t."""
     if not inputs.held:
         evaluate_inputs(t, -1, *inputs.table, inputs.cursor, inputs.u)
     fill_guards(equations, t, x, inputs.u, watch)
@@ -43,7 +45,7 @@ def violation_at(equations, inputs, t, x, watch):
 
 @inlined
 def on_curve(equations, inputs, t, h, fraction, step, watch):
-    """The largest violation at a fraction of the step."""
+    """Largest event function at a fraction of the step, by dense output."""
     curve(fraction, step, step.point)
     return violation_at(equations, inputs, t + fraction * h, step.point, watch)
 
@@ -52,9 +54,9 @@ def on_curve(equations, inputs, t, h, fraction, step, watch):
 def first_violation(equations, inputs, t, h, step, watch):
     """A fraction of the step at which a mode is found to have ended; 0 if none has.
 
-    inputs.u is as at the end of the step. End and middle are looked at, and the summit of the
-    parabola through start, middle and end of every element whose summit comes near: a mode may end
-    and hold again within one step.
+    inputs.u is as at the end of the step. End and middle are probed, and the vertex of the parabola
+    through start, middle and end of every event function that comes near zero there: it may change
+    sign twice within one step.
     """
     ended = fill_violations(equations, inputs, t + h, step.end, watch, watch.at_end) > 0.0
     curve(0.5, step, step.point)
@@ -73,7 +75,9 @@ def first_violation(equations, inputs, t, h, step, watch):
 
 @inlined
 def summit(start, middle, end):
-    """Fraction of a step where the parabola through three violations comes near zero, or 0."""
+    """Fraction of a step at which the parabola through an event function at start, middle and end
+    has its maximum, if that comes near zero; else 0.
+    """
     bend, rise = 2.0 * (start + end) - 4.0 * middle, 4.0 * middle - 3.0 * start - end
     if not bend < 0.0 < rise < -2.0 * bend:
         return 0.0
@@ -84,7 +88,9 @@ def summit(start, middle, end):
 
 @kernel
 def root_on_curve(equations, inputs, t, h, high, step, watch):
-    """The fraction below `high` at which the largest violation passes zero (Illinois method)."""
+    """Fraction below `high` at which the largest event function has a root on the dense output
+    (Illinois method).
+    """
     low, below = 0.0, on_curve(equations, inputs, t, h, 0.0, step, watch)
     above = on_curve(equations, inputs, t, h, high, step, watch)
     side = 0
@@ -108,13 +114,14 @@ def root_on_curve(equations, inputs, t, h, high, step, watch):
 
 @merged
 def locate_event(method, equations, inputs, t, h, fraction, x, step, watch):
-    """Length of the step that lands just past the first event; the attempt is left at that step.
+    """Length in s of the step that lands just past the first event; the attempt is left at that
+    step.
 
-    The root on the curve is only as good as the curve: the step itself is repeated until it ends
-    past the event and no more than LANDING after it; how fast the mode ends, the curve tells too.
+    The root on the dense output is only as good as that: the step itself is repeated until it ends
+    past the event and no more than LANDING after it; its slope there begins the secant iteration.
     Where a few such steps end before any event, the last of them is taken: the next step begins
-    nearer and its curve is better. Only near the start of a step the search strides ahead, or no
-    progress would be made.
+    nearer and its dense output is better. Only near the start of a step the search strides ahead,
+    or no progress would be made.
     """
     root = root_on_curve(equations, inputs, t, h, fraction, step, watch)
     before = on_curve(equations, inputs, t, h, (1.0 - NEARBY) * root, step, watch)

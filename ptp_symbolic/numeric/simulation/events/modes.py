@@ -22,7 +22,9 @@ REVERSAL_DEAD_BAND = 1e-13
 
 @kernel
 def violation(element, x, m, g, friction_rates):
-    """How far `element` is past the end of its mode (> 0: the mode has ended)."""
+    """Event function of `element` at x [n], modes m and guards g (> 0: its mode has ended); in the
+    unit of its guard, or rad/s for the reversal of sliding.
+    """
     frictions = len(friction_rates)
     if element < frictions:
         direction = m[element]
@@ -43,7 +45,7 @@ def violation(element, x, m, g, friction_rates):
 
 @kernel
 def largest_violation(x, m, g, friction_rates):
-    """The largest violation over all elements; negative when every mode holds."""
+    """The largest event function over all elements; not above zero where every mode holds."""
     worst = -1e300
     elements = len(friction_rates) + contact_count(len(friction_rates), len(m))
     for element in range(elements):
@@ -81,7 +83,9 @@ def _active_guards(element, m, g, frictions):
 
 @kernel
 def violation_gradient(element, m, g, gx, gp, friction_rates, by_x, by_p):
-    """Write the derivatives of `violation` by state and parameter, on its active branch."""
+    """Write the gradient of `violation` into by_x [n] and by_p [np], on its active branch, from the
+    guards' Jacobians gx [guards, n] and gp [guards, np].
+    """
     if element < len(friction_rates) and m[element] != 0.0:
         for i in range(len(by_x)):
             by_x[i] = 0.0
@@ -96,7 +100,7 @@ def violation_gradient(element, m, g, gx, gp, friction_rates, by_x, by_p):
 
 @kernel
 def switch_contacts(equations, m, g):
-    """Move every violated contact to its next mode."""
+    """Move every violated contact to its next mode, in m; g are the guards."""
     frictions, contacts = len(equations.friction_rates), equations.contacts
     for contact in range(contact_count(frictions, len(m))):
         at = contact_guards(frictions, contact)
@@ -125,11 +129,11 @@ def switch_contacts(equations, m, g):
 
 @kernel
 def settle(equations, t, x, u, watch, tangents):
-    """Resolve all violated modes at one instant; returns False when that does not end.
+    """Find consistent modes and rates at one instant t in s, x [n] in place; False on chattering.
 
     Order matters: rates that reversed are zeroed first, then contacts switch and rigid faces
-    strike, then the torque on every resting friction decides whether it sticks or slides. Ties end
-    in sticking.
+    strike, then the holding torque of every resting friction decides whether it sticks or slides.
+    Ties end in sticking.
     """
     m, g = watch.m, watch.g
     friction_rates, zero_at_rest = equations.friction_rates, equations.zero_at_rest

@@ -17,7 +17,7 @@ RESTING_SPEED = 1e-5  # rad/s; slower parts that touch stay together
 
 @inlined
 def derivative(equations, t, x, u, m, out):
-    """Write dx/dt [n]; a gear output that leans on a sticking joint stays."""
+    """Write dx/dt [n]; a gear output pressed onto a sticking joint stays at rest."""
     call(equations.derivative, t, x, u, equations.p, m, equations.prepared, out)
     for contact in range(len(equations.contacts)):
         if equations.contacts[contact, PRESSED] == 1:
@@ -26,7 +26,7 @@ def derivative(equations, t, x, u, m, out):
 
 @inlined
 def jacobian(equations, t, x, u, m, fx, fu, fp):
-    """Write the derivatives of `derivative` by state, input and parameters."""
+    """Write the Jacobians fx [n, n], fu [n, nu], fp [n, np] of `derivative`."""
     call(equations.jacobian, t, x, u, equations.p, m, fx, fu, fp)
     for contact in range(len(equations.contacts)):
         if equations.contacts[contact, PRESSED] == 1:
@@ -38,7 +38,9 @@ def jacobian(equations, t, x, u, m, fx, fu, fp):
 
 @inlined
 def hold_at_rest(equations, m, x, end):
-    """Put back what rests at the start x of a step: rounding would make it creep."""
+    """Copy what rests from the start x [n] of a step to its `end` [n]: rounding would make it
+    creep.
+    """
     for f in range(len(equations.friction_rates)):
         if m[f] == 0.0:
             end[equations.friction_rates[f]] = x[equations.friction_rates[f]]
@@ -49,7 +51,7 @@ def hold_at_rest(equations, m, x, end):
 
 @inlined
 def fill_guards(equations, t, x, u, watch):
-    """Write the guards; those of a contact that is pressed say whether one gets away."""
+    """Write the guards into watch.g; those of a pressed contact say whether it is released."""
     call(equations.guards, t, x, u, equations.p, watch.m, watch.g)
     for contact in range(len(equations.contacts)):
         if equations.contacts[contact, PRESSED] == 1:
@@ -58,7 +60,7 @@ def fill_guards(equations, t, x, u, watch):
 
 @kernel
 def fill_guards_of_pressed(contact, equations, t, x, u, watch):
-    """Write the guards of a contact that is pressed."""
+    """Write the guards of a pressed contact: accelerations in rad/s^2."""
     frictions = len(equations.friction_rates)
     at, side = contact_guards(frictions, contact), watch.m[contact_modes(frictions, contact)]
     watch.g[at] = side * acceleration(contact, 0.0, equations, t, x, u, watch)
@@ -84,7 +86,7 @@ def acceleration(contact, active, equations, t, x, u, watch):
 
 @kernel
 def press(equations, t, x, u, watch):
-    """Bring to rest every gear output that would be pushed onto a joint that sticks."""
+    """Bring to rest, in x [n] and the modes, every gear output pushed onto a joint that sticks."""
     m, contacts = watch.m, equations.contacts
     frictions = len(equations.friction_rates)
     for contact in range(len(contacts)):

@@ -20,7 +20,7 @@ INSTANT_STEP = 1e-10  # s
 
 @merged
 def enter(equations, inputs, t, x, watch, tangents, record):
-    """Settle modes that the inputs from t on have ended; False when that does not end."""
+    """Settle modes that inputs from t in s on have ended, x [n] in place; False on chattering."""
     elements = len(watch.at_end)
     if elements == 0 or fill_violations(equations, inputs, t, x, watch, watch.at_start) <= 0.0:
         return True

@@ -80,7 +80,9 @@ def compiled_addresses(module: ModuleType, signatures: dict[str, Any]) -> NDArra
 @intrinsic
 def call(typing_context: Any, address: Any, *arguments: Any) -> Any:
     """Call the compiled function at `address` with (t, x, u, p, m, outputs...), m where it asks,
-    and before the output what was prepared where it asks for that.
+    and before the output the prepared subexpressions where it asks for them.
+
+    Raises TypeError, when it is compiled, for arguments that no emitted function takes.
     """
     signature = types.void(*arguments)
     if signature not in (*SIGNATURES.values(), *OUTPUT_SIGNATURES.values()):

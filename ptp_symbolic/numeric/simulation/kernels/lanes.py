@@ -80,7 +80,7 @@ def nothing(typing_context: Any) -> Any:
 
 @intrinsic
 def plus_times(typing_context: Any, four: Any, factor: Any, other: Any) -> Any:
-    """The sum of four numbers and a factor times four others."""
+    """Four numbers plus a factor times four others (fused multiply-add)."""
 
     def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         factors = ir.Constant(_VECTOR, ir.Undefined)

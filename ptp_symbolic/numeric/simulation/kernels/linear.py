@@ -1,4 +1,4 @@
-"""Small dense systems: a product with an inverse, or triangular factors.
+"""Small dense linear systems: by an explicit inverse, or by LU factors.
 
 A row with its diagonal alone, as a friction at rest has it, is never exchanged: rounding in a
 product of such rows would let the rest creep.
@@ -26,7 +26,8 @@ def add_stages(i, weights, scale, k, out):
 
 @inlined
 def multiply(columns, vector, added, out):
-    """Write the sum of columns [m, w] weighted by the first m of vector + added into w of out.
+    """Write the product of the matrix with `columns` [m, w] and vector + added, m of each, into out
+    [w].
 
     The two are added one by one: what has just been stored singly is slow to be loaded in fours.
     """
@@ -39,7 +40,7 @@ def multiply(columns, vector, added, out):
 
 @inlined
 def add_product(matrix, vectors, out):
-    """Add matrix [n, n or more] times vectors to out, both [n * columns] row by row."""
+    """Add the product of matrix [n, n or more] and vectors to out, both [n * columns] by rows."""
     n = matrix.shape[0]
     width = len(out) // n
     for a in range(n):
@@ -52,7 +53,7 @@ def add_product(matrix, vectors, out):
 
 @inlined
 def add_sparse_product(matrix, vectors, out):
-    """Add matrix [n, n], most of whose entries are zero, times vectors [n * columns] to out."""
+    """Add the product of a sparse matrix [n, n] and vectors to out, both [n * columns] by rows."""
     n = matrix.shape[0]
     width = len(out) // n
     for a in range(n):
@@ -80,10 +81,11 @@ def _is_coupled(a, row):
 
 @kernel
 def invert(fx, rate, a, order, transposed):
-    """Write the inverse of rate I - fx into a [n, w] and, by columns, into transposed [n, w].
+    """Write the inverse of rate I - fx [n, n], `rate` in 1/s, into a [n, w] and, transposed, into
+    `transposed` [n, w] (Gauss-Jordan, partial pivoting in `order` [n]).
 
-    Eight products follow with every inverse: for a dozen states they cost less than
-    substitutions, which wait for one division after the other.
+    Eight products follow with every inverse: for a dozen states they cost less than substitutions,
+    which wait for one division after the other.
     """
     n, width = a.shape
     for i in range(n):
@@ -120,7 +122,7 @@ def invert(fx, rate, a, order, transposed):
 
 @kernel
 def factor(a, order):
-    """Replace a [n, n] by its triangular factors, rows swapped as `order` [n] records."""
+    """Replace a [n, n] by its LU factors, partial pivoting recorded in `order` [n]."""
     n = a.shape[0]
     for k in range(n):
         pivot = k
@@ -142,7 +144,7 @@ def factor(a, order):
 
 @kernel
 def solve(a, order, b):
-    """Replace the right-hand side b [n] by the solution, with the factors from `factor`."""
+    """Replace the right-hand side b [n] by the solution, with the LU factors from `factor`."""
     n = len(b)
     for k in range(n):
         pivot = order[k]

@@ -55,9 +55,10 @@ class Equations(NamedTuple):
 
 
 class Inputs(NamedTuple):
-    """Inputs as an InputTable; `held`: they change at stops only.
+    """Inputs as an InputTable; `held`: zero-order hold, with jumps at stops only.
 
-    u [nu]: the values asked for last; ahead [nu]: values or slopes at another time.
+    cursor [nu]: pieces found last; u [nu]: the values asked for last; ahead [nu]: values, or slopes
+    per s, at another time.
     """
 
     table: Any
@@ -68,14 +69,14 @@ class Inputs(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What is known at the start of a step, what an attempt found, and the curve between.
+    """What is known at the start of a step, what an attempt found, and its dense output.
 
-    Rows have a width w of n rounded up to a multiple of LANES (see `lanes`), zero beyond n.
-    slope, by_time [w]: dx/dt at the start and its derivative by time alone; stage, k [8, w];
-    end [n]; dense [5, w]: the state as a polynomial in the fraction of the step; fx [n, n],
-    fu [n, nu], fp [n, np] at the start; inverse of the matrix of the implicit stages, also by
-    columns [n, w], with no tangents without the sampled states, and its row exchanges
-    `order` [n]; point, right, added [w]: scratch.
+    Rows have a width w of n rounded up to a multiple of LANES (see `lanes`), zero beyond n. slope,
+    by_time [w]: dx/dt at the start and its partial derivative by time; stage, k [8, w]; end [n];
+    dense [5, w]: coefficients of the state by powers of the fraction of the step; fx [n, n], fu
+    [n, nu], fp [n, np] at the start; inverse of the matrix of the implicit stages, also by columns
+    [n, w], with no tangents without the sampled states, and its pivots `order` [n]; point, right,
+    added [w]: scratch.
     """
 
     slope: Any
@@ -96,13 +97,14 @@ class Step(NamedTuple):
 
 
 class Watch(NamedTuple):
-    """Guards g, modes m and m_before, and how far every element is past the end of its mode.
+    """Guards g, modes m and m_before, and the event function of every element.
 
     at_start, at_middle, at_end [elements + limits] belong to the step, limits of the domain last;
-    gx, gp, by_x [n], by_p [np]: the derivatives of guards and of a violation; strike [c (n + 2)],
-    strike_x, strike_p: as `impacts` writes them, and their derivatives; lost [1]: energy that
-    strikes have taken; energies [2, 3]: two ledgers to compare; limited [limits]: index of every
-    state with bounds [limits, 2]; m_kept, trial [n]: modes, and dx/dt in others tried instead.
+    gx, gp, by_x [n], by_p [np]: the Jacobians of guards, the gradient of an event function; strike
+    [c (n + 2)], strike_x, strike_p: as `impacts` writes them, and their Jacobians; lost [1]: energy
+    in J that impacts have taken; energies [2, 3]: two ledgers to compare; limited [limits]: index
+    of every state with bounds [limits, 2]; before, after [n]: dx/dt at an event; m_kept, trial [n]:
+    modes, and dx/dt in others tried instead.
     """
 
     g: Any
@@ -132,9 +134,9 @@ class Tangents(NamedTuple):
     """Derivatives of the state: first by the parameters `columns`, then by others.
 
     s [n * ns] row by row, and the same as `table` [n, ns], ns rounded up to a multiple of LANES;
-    delay_column [nu]: per input the column of its delay, or -1; k [8, n * ns], point, right,
-    along [n * ns]: stages; fx [3, n, n], by [3, n * ns], matrix [n, n], fu, fp: the variational
-    equation along the step.
+    delay_column [nu]: per input the column of its delay, or -1; k [8, n * ns], point, right, along
+    [n * ns]: stages; fx [3, n, n], by [3, n * ns], matrix [n, n], fu, fp: the variational equation
+    along the step.
     """
 
     s: Any
@@ -153,11 +155,13 @@ class Tangents(NamedTuple):
 
 
 class Record(NamedTuple):
-    """Output at `times` [k]: x [k, n], s [k, n, ns], ledger [k, 3] (or no rows), events [c, 3].
+    """Results at `times` [k] in s: x [k, n], s [k, n, ns], ledger [k, 3] in J (or no rows), events
+    [c, 3].
 
-    totals [3]: work so far; powers [4, 3]: stored energy, power in and dissipated power over the
-    step; clock [2]: time, next step length; counts [6]: outputs, events, steps, instant events, the
-    stamp of the sources that the runner was compiled from, steps whose ledger would not close.
+    totals [3]: work so far in J; powers [4, 3]: stored energy in J, power in and dissipated power
+    in W over the step; clock [2]: time and next step length in s; counts [6]: outputs, events,
+    steps, instant events, the stamp of the sources that the runner was compiled from, steps whose
+    ledger would not close.
     """
 
     times: Any

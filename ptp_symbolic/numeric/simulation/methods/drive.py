@@ -1,4 +1,4 @@
-"""What drives a step from outside: time, inputs that are late, and parameters."""
+"""The inhomogeneous term of the variational equation: parameters, and inputs that are delayed."""
 
 from ptp_symbolic.numeric.simulation.kernels.records import inlined
 
@@ -7,7 +7,9 @@ TIME_DIFFERENCE = 1e-5  # s; of the difference quotient by time
 
 @inlined
 def fill_drive(inputs, tangents, out):
-    """Write what drives the tangents apart from themselves: parameters, and delays of inputs."""
+    """Write the inhomogeneous term [n * ns] of the variational equation: fp of the parameters, and
+    -fu du/dt of the delays, du/dt in inputs.ahead.
+    """
     n, columns = tangents.fp.shape[0], tangents.columns
     width = len(out) // n
     for a in range(n):

@@ -80,7 +80,7 @@ class Propagator(NamedTuple):
 
 
 def new_propagator(modes: int, moving: int, n: int) -> Propagator:
-    """Room for a machine of n states, of which the first `moving` move by themselves."""
+    """Preallocated propagator of n states, the first `moving` of which are not set by samplers."""
     z = np.zeros
     return Propagator(
         z(modes),
@@ -93,7 +93,7 @@ def new_propagator(modes: int, moving: int, n: int) -> Propagator:
 
 @merged
 def reach_sample(equations, inputs, target, x, limits, atol, step, watch, record, propagator):
-    """Try to go from x to the sample at `target` in one step; False with x as it was."""
+    """Try an exponential step from x [n] to the sample at `target` in s; False with x as it was."""
     t, clock = record.clock[TIME], propagator.clock
     length = target - t
     again = abs(length - clock[PERIOD]) <= TIME_RESOLUTION
@@ -136,7 +136,7 @@ def reach_sample(equations, inputs, target, x, limits, atol, step, watch, record
 
 @kernel
 def is_driven_by_time(equations, inputs, t, x, m, propagator):
-    """Whether dx/dt changes with time alone."""
+    """Whether dx/dt depends on time explicitly."""
     derivative(equations, t + TIME_DIFFERENCE, x, inputs.u, m, propagator.right)
     return not are_equal(propagator.right, propagator.slope)
 
@@ -152,7 +152,8 @@ def are_equal(a, b):
 
 @inlined
 def propagate(equations, inputs, t, h, x, limits, atol, m, step, propagator):
-    """Fill middle (step.point) and end of a step; returns its correction over the tolerance.
+    """Fill middle (step.point [w]) and end [n] of a step of h s; returns its largest correction
+    over the tolerance.
 
     Where next to nothing moves, nothing needs to be corrected.
     """
@@ -194,7 +195,9 @@ def propagate(equations, inputs, t, h, x, limits, atol, m, step, propagator):
 
 @inlined
 def may_end_a_mode(equations, inputs, t, h, step, watch):
-    """Whether a mode or the domain may end in the step, by its start, middle, end and summits."""
+    """Whether a mode or the domain may end in the step, by the event functions at its start, middle
+    and end and by the vertices of their parabolas.
+    """
     if not is_finite(step.end, LARGEST_STATE):
         return True
     if fill_violations(equations, inputs, t + h, step.end, watch, watch.at_end) > 0.0:
@@ -210,7 +213,7 @@ def may_end_a_mode(equations, inputs, t, h, step, watch):
 
 @kernel
 def take_linear_part(equations, inputs, t, x, m, step, propagator):
-    """Take the Jacobian of the moving states at x for the modes m."""
+    """Linearise at x [n]: the Jacobian [moving, moving] of the moving states in the modes m."""
     jacobian(equations, t, x, inputs.u, m, step.fx, step.fu, step.fp)
     for i in range(propagator.linear.shape[0]):
         for j in range(propagator.linear.shape[0]):
@@ -240,7 +243,7 @@ def fill_propagator(h, propagator):
 
 @inlined
 def fill_columns(factor, matrix, columns):
-    """Write a factor times `matrix` [moving, moving] by columns [moving, w]."""
+    """Write a factor times `matrix` [moving, moving], transposed, into columns [moving, w]."""
     for i in range(matrix.shape[0]):
         for j in range(matrix.shape[0]):
             columns[j, i] = factor * matrix[i, j]

@@ -1,7 +1,7 @@
 """One step of fixed length: an order-2 step in given modes, and an implicit step that finds them.
 
-Both solve one linear system after another with the emitted Jacobian; a sticking rate is a row of
-that system, so that it ends at exactly zero.
+Both are linearly implicit, with the emitted Jacobian; a sticking rate is a row of the linear
+system, so that it ends at exactly zero.
 """
 
 import math
@@ -25,8 +25,8 @@ GAMMA = 1.0 - math.sqrt(0.5)
 
 
 class StepWork(NamedTuple):
-    """Room for one step: Jacobians fx [n, n], fu [n, nu], fp [n, np]; the factored matrix [n, n]
-    and its row exchanges; slopes k1, k2 and state end [n]; refused [f, 2].
+    """Preallocated arrays of a step: Jacobians fx [n, n], fu [n, nu], fp [n, np]; LU factors [n, n]
+    and pivots [n]; stages k1, k2 and state end [n]; refused [f, 2].
     """
 
     fx: Any
@@ -42,7 +42,7 @@ class StepWork(NamedTuple):
 
 @kernel
 def factor_step(equations, reach, t, x, u, m, work):
-    """Factor the matrix of an implicit step of length `reach` in s; sticking rates are pinned."""
+    """LU-factor I - `reach` fx, `reach` in s; rows of sticking rates are those of the identity."""
     n, a = len(x), work.matrix
     jacobian(equations, t, x, u, m, work.fx, work.fu, work.fp)
     for i in range(n):
@@ -60,7 +60,7 @@ def factor_step(equations, reach, t, x, u, m, work):
 
 @inlined
 def rest(equations, m, k):
-    """Set the slope of every sticking rate to zero."""
+    """Zero the derivative k [n] of every sticking rate."""
     for f in range(len(equations.friction_rates)):
         if m[f] == 0.0:
             k[equations.friction_rates[f]] = 0.0
@@ -68,7 +68,7 @@ def rest(equations, m, k):
 
 @kernel
 def fixed_mode_step(equations, t, h, x, u_start, u_end, m, work):
-    """Write the state after a step of order 2 in the modes m into `work.end` [n]."""
+    """Write the state after an order-2 Rosenbrock step in the modes m into `work.end` [n]."""
     n, k1, k2, end = len(x), work.k1, work.k2, work.end
     factor_step(equations, GAMMA * h, t, x, u_start, m, work)
     derivative(equations, t, x, u_start, m, k1)
@@ -87,7 +87,8 @@ def fixed_mode_step(equations, t, h, x, u_start, u_end, m, work):
 
 @kernel
 def mode_finding_step(equations, t, h, x, u, watch, work):
-    """Write the state after an implicit Euler step into `work.end` [n], its modes into `watch.m`.
+    """Write the state after a linearly implicit Euler step into `work.end` [n], its modes into
+    `watch.m`.
 
     Returns the number of mode sets tried, or 0 when none of MOST_SWEEPS sets is consistent.
     """
@@ -116,14 +117,14 @@ def mode_finding_step(equations, t, h, x, u, watch, work):
 
 @inlined
 def allow_all(refused):
-    """Forget which directions of which friction have failed."""
+    """Clear the directions `refused` [f, 2] of every friction."""
     for f in range(len(refused)):
         refused[f, 0], refused[f, 1] = 0, 0
 
 
 @kernel
 def correct_a_mode(x, m, g, friction_rates, refused):
-    """Change the first mode that does not fit state and guards; False when all of them fit."""
+    """Change the first mode that does not fit x [n] and guards g; False when all of them fit."""
     for f in range(len(friction_rates)):
         if correct_friction(f, x[friction_rates[f]], m, g, refused):
             for other in range(len(friction_rates)):
@@ -179,7 +180,7 @@ def correct_contact(contact, frictions, m, g):
 
 @kernel
 def choose_start_modes(equations, t, x, u, watch, work):
-    """Write the modes that fit the state at the start into `watch.m`; False when none do."""
+    """Write modes consistent with the initial state x [n] into `watch.m`; False when none are."""
     m = watch.m
     for i in range(len(m)):
         m[i] = 0.0

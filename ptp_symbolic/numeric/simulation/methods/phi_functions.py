@@ -1,7 +1,7 @@
-"""The exponential of a small matrix, and the two functions that go with it.
+"""The exponential of a small matrix, and the two phi functions that go with it.
 
 phi0(z) = exp(z), phi1(z) = (phi0(z) - 1) / z, phi2(z) = (phi1(z) - 1) / z (Hochbruck and Ostermann,
-Acta Numerica 19, 2010, Eq. 2.10): a series for a fraction of the matrix, doubled until it is whole.
+Acta Numerica 19, 2010, Eq. 2.10), by scaling and squaring of a Taylor series.
 """
 
 from ptp_symbolic.numeric.simulation.kernels.records import copy_matrix, inlined, kernel
@@ -34,7 +34,7 @@ def fill_phi_functions(matrix, scale, phi0, phi1, phi2, product):
 
 @kernel
 def double(phi0, phi1, phi2, product):
-    """Go from the functions of z to those of 2 z (Skaflestad and Wright, Appl. Numer. Math. 59)."""
+    """Square: from z to 2 z (Skaflestad and Wright, Appl. Numer. Math. 59); all [k, k]."""
     fill_product_and_diagonal(1.0, phi0, phi2, 0.0, product)
     for i in range(len(phi2)):
         for j in range(len(phi2)):
@@ -49,7 +49,7 @@ def double(phi0, phi1, phi2, product):
 
 @inlined
 def largest_row_sum(matrix):
-    """The norm of `matrix` that belongs to the largest entry of a vector."""
+    """Maximum norm of `matrix` [k, k]."""
     largest = 0.0
     for i in range(len(matrix)):
         total = 0.0

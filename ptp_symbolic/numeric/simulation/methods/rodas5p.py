@@ -11,7 +11,7 @@ import numpy as np
 STAGES = 8
 GAMMA = 0.21193756319429014
 
-# Where every stage lies in the step, and the weight of the derivative by time.
+# Nodes of the stages, fractions of the step, and weights of the partial derivative by time.
 C = np.array(
     [0.0, 0.6358126895828704, 0.4095798393397535, 0.9769306725060716, 0.4288403609558664, 1, 1, 1]
 )
@@ -28,7 +28,7 @@ D = np.array(
     ]
 )
 
-# Weights of the stages before, in the point where a stage is taken.
+# Weights of the earlier stages in the argument of a stage.
 A = np.zeros((STAGES, STAGES))
 A[1, :1] = [3.0]
 A[2, :2] = [2.849394379747939, 0.45842242204463923]
@@ -44,7 +44,7 @@ A[5, :5] = [
 A[6, :5], A[6, 5] = A[5, :5], 1.0
 A[7, :6], A[7, 6] = A[6, :6], 1.0
 
-# Weights of the stages before, over the step length, on the right-hand side of a stage.
+# Weights of the earlier stages, over the step length, on the right-hand side of a stage.
 COUPLING = np.zeros((STAGES, STAGES))
 COUPLING[1, :1] = [-14.155112264123755]
 COUPLING[2, :2] = [-17.97296035885952, -2.859693295451294]
@@ -80,7 +80,7 @@ COUPLING[7, :7] = [
     -9.48861652309627,
 ]
 
-# Weights of the stages in the interpolant
+# Weights of the stages in the dense output
 # y(s) = (1 - s) y0 + s (y1 + (1 - s) (h0 + s (h1 + s h2))).
 H = np.array(
     [

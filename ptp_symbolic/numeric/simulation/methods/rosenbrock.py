@@ -22,7 +22,7 @@ from ptp_symbolic.numeric.simulation.signals.input_values import (
 
 @kernel
 def begin(equations, inputs, t, x, m, step):
-    """Take slope, Jacobian and derivative by time at the start of a step."""
+    """Evaluate dx/dt, the Jacobians and the partial derivative by time at the start of a step."""
     n = len(x)
     derivative(equations, t, x, inputs.u, m, step.slope)
     jacobian(equations, t, x, inputs.u, m, step.fx, step.fu, step.fp)
@@ -44,9 +44,9 @@ def begin(equations, inputs, t, x, m, step):
 
 @kernel
 def attempt(equations, inputs, t, h, x, m, step):
-    """Try a step of length h in s: fill the increments k and the end point.
+    """Try a step of length h in s: fill the stages k [8, w] and the end point [n].
 
-    States that samplers hold come last; the inverse may leave them out.
+    States that samplers set come last; the inverse may leave them out.
     """
     point, right, added = step.point, step.right, step.added
     invert(step.fx, 1.0 / (h * GAMMA), step.inverse, step.order, step.columns)
@@ -70,7 +70,7 @@ def attempt(equations, inputs, t, h, x, m, step):
 
 @inlined
 def place_stage(i, x, k, point):
-    """Write the point of stage i; the last two go on from the stage before them."""
+    """Write the argument `point` [w] of stage i; the last two go on from the stage before them."""
     if i > 5:
         for a in range(len(x)):
             point[a] += k[i - 1, a]
@@ -83,7 +83,7 @@ def place_stage(i, x, k, point):
 
 @inlined
 def fill_dense(x, step):
-    """Write the interpolant of the step as a polynomial in the fraction of the step."""
+    """Write the dense output of the step, coefficients [5, w] by powers of its fraction."""
     d = step.dense
     for e in range(0, d.shape[1], LANES):
         first = weighted(H, 0, STAGES, step.k, e)
@@ -100,12 +100,12 @@ def fill_dense(x, step):
 
 @kernel
 def push_tangents(equations, inputs, t, h, m, step, tangents):
-    """Carry the tangents over an accepted step with the same method and the same inverse.
+    """Propagate the tangents over an accepted step with the same method and the same inverse.
 
     The variational equation is linear; its coefficients are a parabola in time through start,
-    middle and end of the step, so that three Jacobians do where the stages would need sixteen.
-    With W = rate I - fx at the start, inverse(W) fx s = rate inverse(W) s - s: only the change of
-    fx over the step is ever multiplied, and it has few entries.
+    middle and end of the step, so that three Jacobians do where the stages would need sixteen. With
+    W = rate I - fx at the start, inverse(W) fx s = rate inverse(W) s - s: only the change of fx
+    over the step is ever multiplied, and it has few entries.
     """
     rate = 1.0 / (h * GAMMA)
     s, point, right, along = tangents.s, tangents.point, tangents.right, tangents.along
@@ -134,7 +134,7 @@ def push_tangents(equations, inputs, t, h, m, step, tangents):
 
 @inlined
 def fit_coefficients(equations, inputs, t, h, m, step, tangents):
-    """Write the parabolas of the variational equation in the fraction of the step."""
+    """Interpolate the coefficients of the variational equation by parabolas over the step."""
     n = len(step.end)
     for node in range(3):
         time, fraction = t + 0.5 * node * h, 0.5 * node
@@ -169,7 +169,7 @@ def fit_coefficients(equations, inputs, t, h, m, step, tangents):
 
 @inlined
 def parabola(start, middle, end):
-    """Replace values at start, middle and end by coefficients in the fraction of the step."""
+    """Replace values [m] at start, middle and end of a step by coefficients of its fraction."""
     for e in range(len(start)):
         a, b, c = start[e], middle[e], end[e]
         middle[e] = 4.0 * b - 3.0 * a - c
@@ -178,7 +178,7 @@ def parabola(start, middle, end):
 
 @inlined
 def place_coefficients(fraction, tangents):
-    """Write the change of fx and what drives the tangents at a fraction of the step."""
+    """Write the change of fx and the inhomogeneous term at a fraction of the step."""
     square = fraction * fraction
     start, first, second = tangents.by[0], tangents.by[1], tangents.by[2]
     for e in range(0, len(start), LANES):

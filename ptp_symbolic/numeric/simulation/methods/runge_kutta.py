@@ -14,7 +14,7 @@ from ptp_symbolic.numeric.simulation.signals.input_values import (
 
 @kernel
 def attempt(equations, inputs, t, h, x, m, step):
-    """Try a step of length h in s: fill stages, slopes k and the end point."""
+    """Try a step of length h in s: fill stages, slopes k [8, w] and the end point [n]."""
     n = len(x)
     for a in range(n):
         step.stage[0, a] = x[a]
@@ -34,7 +34,7 @@ def attempt(equations, inputs, t, h, x, m, step):
 
 @inlined
 def error_of(h, a, step):
-    """Estimated error of state a."""
+    """Embedded estimate of the local error of state a, in its unit."""
     e = 0.0
     for i in range(STAGES):
         e += ERROR[i] * step.k[i, a]
@@ -43,7 +43,7 @@ def error_of(h, a, step):
 
 @inlined
 def fill_dense(h, x, step):
-    """Write the interpolant of the step as a polynomial in the fraction of the step."""
+    """Write the dense output of the step, coefficients [5, w] by powers of its fraction."""
     for a in range(len(x)):
         step.dense[0, a] = x[a]
     for power in range(4):
@@ -54,7 +54,7 @@ def fill_dense(h, x, step):
 
 @kernel
 def push_tangents(equations, inputs, t, h, m, step, tangents):
-    """Carry the tangents over an accepted step: the derivative of the step itself."""
+    """Propagate the tangents over an accepted step: the exact derivative of the discrete step."""
     for i in range(STAGES - 1):
         copy(tangents.s, tangents.point)
         add_stages(i, A, h, tangents.k, tangents.point)

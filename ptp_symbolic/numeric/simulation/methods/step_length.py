@@ -1,4 +1,4 @@
-"""Try a step, and plan the next from its error; the plan is kept over stops and events."""
+"""Step size control: try a step, plan the next from its error; stops and events keep the plan."""
 
 import numpy as np
 
@@ -27,14 +27,14 @@ from ptp_symbolic.numeric.simulation.outputs import (
 
 @inlined
 def next_length(remaining, largest, clock):
-    """Length of the next attempt: as planned, but so that equal steps reach the stop."""
+    """Length in s of the next attempt: as planned, but so that equal steps reach the stop."""
     planned = min(clock[LENGTH], largest)
     return remaining if planned >= remaining else remaining / np.ceil(remaining / planned)
 
 
 @inlined
 def accept(error, length, clock):
-    """Plan the next step from the error of an attempt; False when it must be repeated.
+    """Plan the next step from the scaled local error of an attempt; False when it must be repeated.
 
     A step that a stop has cut short says that longer ones are possible, not how long: the plan
     stays where it is longer.
@@ -54,7 +54,9 @@ def accept(error, length, clock):
 
 @inlined
 def try_step(method, equations, inputs, t, length, x, limits, atol, step, watch, record):
-    """Try a step and plan the next; leaves its curve and powers. False when it must be repeated."""
+    """Try a step of `length` s and plan the next; leaves dense output and powers. False when it
+    must be repeated.
+    """
     record.counts[STEPS] += 1
     attempt(method, equations, inputs, t, length, x, watch.m, step)
     error = error_norm(method, length, x, step, limits[0], atol)
@@ -68,7 +70,7 @@ def try_step(method, equations, inputs, t, length, x, limits, atol, step, watch,
 
 @inlined
 def is_balanced(equations, inputs, t, length, limits, step, watch, record):
-    """Take the powers anew over a step that an event has shortened; False to repeat it."""
+    """Check the energy balance of a step that an event has shortened; False to repeat it."""
     if len(record.ledger) == 0:
         return True
     fill_powers(equations, inputs, t, length, watch.m, step, record)
@@ -78,7 +80,7 @@ def is_balanced(equations, inputs, t, length, limits, step, watch, record):
 
 @merged
 def leave(method, equations, inputs, t, length, t_new, x, step, watch, tangents, record):
-    """Go to the end of an accepted step: outputs inside it, work done over it, tangents."""
+    """Commit an accepted step: outputs inside it, work over it in J, tangents, x [n] in place."""
     write_inside(equations, inputs, t, length, t_new, watch.m, step, record)
     if len(record.ledger) > 0:
         for c in range(1, 3):

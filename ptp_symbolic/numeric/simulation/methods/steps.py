@@ -1,4 +1,4 @@
-"""One step by either method, behind one face: begin, attempt, error, curve, tangents."""
+"""One step by either method, behind one face: begin, attempt, error, dense output, tangents."""
 
 import math
 
@@ -19,7 +19,7 @@ LAST_EXPLICIT, LAST_IMPLICIT = runge_kutta.STAGES - 1, rosenbrock.STAGES - 1
 
 @inlined
 def begin(method, equations, inputs, t, x, m, step):
-    """Take what the method needs to know at the start of a step; leaves inputs.u as it is there."""
+    """Evaluate what the method needs at the start x [n] of a step; leaves inputs.u as there."""
     if not inputs.held:
         evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)
     if method == ROSENBROCK:
@@ -30,7 +30,7 @@ def begin(method, equations, inputs, t, x, m, step):
 
 @kernel
 def attempt(method, equations, inputs, t, h, x, m, step):
-    """Try a step of length h in s from x at t."""
+    """Try a step of length h in s from x [n] at t, in the modes m."""
     if method == ROSENBROCK:
         _attempt_implicit(equations, inputs, t, h, x, m, step)
     else:
@@ -39,7 +39,7 @@ def attempt(method, equations, inputs, t, h, x, m, step):
 
 @inlined
 def error_norm(method, h, x, step, rtol, atol):
-    """Largest estimated error of an attempt over its tolerance."""
+    """Maximum norm of the estimated local error of an attempt over its tolerance; atol [n]."""
     worst = 0.0
     for a in range(len(x)):
         if method == ROSENBROCK:
@@ -53,19 +53,19 @@ def error_norm(method, h, x, step, rtol, atol):
 
 @inlined
 def larger(one, other):
-    """The larger of two numbers; not a number where either is none."""
+    """The larger of two numbers; NaN where either is."""
     return one if other <= one or math.isnan(one) else other
 
 
 @inlined
 def over_tolerance(error, start, end, rtol, atol):
-    """An error of a state over what is allowed between its values at both ends of a step."""
+    """Error of a state over its mixed absolute and relative tolerance, by both ends of a step."""
     return abs(error) / (atol + rtol * max(abs(start), abs(end)))
 
 
 @kernel
 def fill_dense(method, h, x, step):
-    """Write the curve of an accepted attempt as a polynomial in the fraction of the step."""
+    """Write the dense output of an accepted step, coefficients [5, w] by powers of its fraction."""
     if method == ROSENBROCK:
         _dense_implicit(x, step)
     else:
@@ -74,7 +74,7 @@ def fill_dense(method, h, x, step):
 
 @inlined
 def curve(fraction, step, out):
-    """Write the state at a fraction of the step into out [n]."""
+    """Evaluate the dense output at a fraction of the step into out [n]."""
     d = step.dense
     for a in range(len(out)):
         high = d[2, a] + fraction * (d[3, a] + fraction * d[4, a])
@@ -83,7 +83,7 @@ def curve(fraction, step, out):
 
 @merged
 def push_tangents(method, equations, inputs, t, h, m, step, tangents):
-    """Carry the tangents over an accepted step."""
+    """Propagate the tangents [n, ns] over an accepted step of length h in s."""
     if method == ROSENBROCK:
         _push_implicit(equations, inputs, t, h, m, step, tangents)
     else:
@@ -92,7 +92,7 @@ def push_tangents(method, equations, inputs, t, h, m, step, tangents):
 
 @inlined
 def end_slope(method, equations, inputs, t, m, step, out):
-    """Write dx/dt at the end of an accepted attempt in the modes before any switch."""
+    """Write dx/dt [n] at the end of an accepted attempt in the modes before any switch."""
     if method == ROSENBROCK:
         derivative(equations, t, step.end, inputs.u, m, out)
     else:

@@ -1,4 +1,4 @@
-"""Inputs that reach the machine late, as tables shifted in time."""
+"""Input delays, as tables shifted in time."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ def delays_of(model: Model, p: FloatArray) -> FloatArray:
 
 
 def delayed(table: InputTable, delays: FloatArray) -> InputTable:
-    """`table` with every signal late by its entry of `delays` [nu] in s."""
+    """`table` with every signal delayed by its entry of `delays` [nu] in s."""
     if not np.any(delays):
         return table
     breaks, sines, sweeps = table.breaks.copy(), table.sines.copy(), table.sweeps.copy()
@@ -32,6 +32,6 @@ def delayed(table: InputTable, delays: FloatArray) -> InputTable:
 
 
 def delay_columns(model: Model, columns: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Per input the tangent column of its delay among parameter `columns`, or -1."""
+    """Per input [nu] the tangent column of its delay among parameter `columns`, or -1."""
     where = {int(c): k for k, c in enumerate(columns)}
     return np.array([where.get(int(i), -1) if i >= 0 else -1 for i in model.input_delays], np.int64)

@@ -45,7 +45,7 @@ def evaluate_input_slopes(
     cursor,
     slope,
 ):
-    """Fill slope [nu] with du/dt of every signal at time t in s, as `evaluate_inputs` does u."""
+    """Fill slope [nu] with du/dt per s at time t in s, as `evaluate_inputs` does u."""
     for j in range(slope.shape[0]):
         row, s = _find_piece(t, side, breaks, offsets, cursor, j)
         c = coefficients[row]

@@ -60,7 +60,7 @@ class InputSignal:
 
     @cached_property
     def jumps(self) -> FloatArray:
-        """Times at which the value or a derivative differs before and after."""
+        """Times in s at which the value or a derivative has a discontinuity."""
         c0, c1, c2, c3 = self.coefficients.T
         s = np.diff(self.breaks)
         values, slopes = c0 + s * (c1 + s * (c2 + s * c3)), c1 + s * (2 * c2 + 3 * s * c3)
@@ -102,7 +102,10 @@ def step(before: float, after: float, at: float) -> InputSignal:
 
 
 def ramp(start: float, end: float, t0: float, t1: float, then: float | None = None) -> InputSignal:
-    """A straight line from `start` at t0 to `end` at t1 (s), afterwards `then` (None: `end`)."""
+    """A straight line from `start` at t0 to `end` at t1 (s), afterwards `then` (None: `end`).
+
+    Raises InputError unless t0 < t1.
+    """
     _refuse_unsorted(np.array([t0, t1]), "start and end of the ramp")
     slope = (end - start) / (t1 - t0)
     return _signal([(t0, start, slope), (t1, end if then is None else then)])
@@ -132,7 +135,7 @@ def trapezoid(
 def cubic_transition(start: float, end: float, t0: float, t1: float) -> InputSignal:
     """A cubic from `start` at t0 to `end` at t1 (s) with zero slope at both ends.
 
-    The motion profile of the thesis (Tables 5.2 and 5.4).
+    The motion profile of the thesis (Tables 5.2 and 5.4). Raises InputError unless t0 < t1.
     """
     _refuse_unsorted(np.array([t0, t1]), "start and end of the cubic transition")
     length, change = t1 - t0, end - start
@@ -142,7 +145,10 @@ def cubic_transition(start: float, end: float, t0: float, t1: float) -> InputSig
 
 
 def sine_sweep(amplitude: float, first: float, last: float, t0: float, t1: float) -> InputSignal:
-    """A sine whose frequency runs linearly from `first` to `last` Hz over [t0, t1] s, else zero."""
+    """A sine whose frequency runs linearly from `first` to `last` Hz over [t0, t1] s, else zero.
+
+    Raises InputError for a negative frequency and unless t0 < t1.
+    """
     if first < 0.0 or last < 0.0:
         raise InputError(
             f"Sine sweep: {first:g} Hz to {last:g} Hz; give frequencies of zero or more."
@@ -155,7 +161,10 @@ def sine_sweep(amplitude: float, first: float, last: float, t0: float, t1: float
 def multisine(
     amplitudes: Sequence[float], frequencies: Sequence[float], phases: Sequence[float] | None = None
 ) -> InputSignal:
-    """A sum of sines: amplitudes, frequencies in Hz, phases in rad (None: all zero), one each."""
+    """A sum of sines: amplitudes, frequencies in Hz, phases in rad (None: all zero), one each.
+
+    Raises InputError where their numbers differ or are zero.
+    """
     angles = [0.0] * len(frequencies) if phases is None else phases
     if not len(amplitudes) == len(frequencies) == len(angles) > 0:
         raise InputError(
@@ -169,8 +178,9 @@ def multisine(
 def table(times: ArrayLike, values: ArrayLike, interpolation: str = "hold") -> InputSignal:
     """Samples `values` [n] at `times` [n] in s, constant outside.
 
-    interpolation: "hold" keeps each value until the next sample (columns of a log), "linear" joins
-    them, "cubic" is the twice differentiable spline (not-a-knot). Raises InputError otherwise.
+    interpolation: "hold" is the zero-order hold (columns of a log), "linear" joins the samples,
+    "cubic" is the twice differentiable spline (not-a-knot). Raises InputError for another one, for
+    shapes that differ, too few samples, and times that do not increase.
     """
     at, value = np.asarray(times, dtype=np.float64), np.asarray(values, dtype=np.float64)
     least = 1 if interpolation == "hold" else 2
@@ -230,7 +240,7 @@ class InputTable:
 
     @property
     def held(self) -> bool:
-        """True when every signal is constant between stops."""
+        """True when every signal is a zero-order hold, constant between stops."""
         moving = len(self.sines) or len(self.sweeps) or np.any(self.coefficients[:, 1:])
         return not moving
 
@@ -240,7 +250,7 @@ class InputTable:
         return np.union1d(times, self.stops[inner])
 
     def new_cursor(self) -> IntArray:
-        """Where each signal was found last, [nu]; one per integration, evaluate_inputs moves it."""
+        """Piece [nu] of every signal found last; one per integration, evaluate_inputs moves it."""
         return np.zeros(len(self.offsets) - 1, dtype=np.int64)
 
 

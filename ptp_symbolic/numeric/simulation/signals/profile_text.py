@@ -37,7 +37,8 @@ def as_signals(
 ) -> dict[str, InputSignal]:
     """Return the inputs `given` to a model whose inputs are `names`, profiles read into signals.
 
-    Raises InputError for a name that is no input, and as `parse_profile` does.
+    `duration` in s is that of the run. Raises InputError for a name that is no input, for what is
+    neither signal nor text, and as `parse_profile` does.
     """
     signals = {}
     for name, signal in given.items():
