@@ -27,7 +27,7 @@ from ptp_symbolic.numeric.diagnose.findings import Search
 from ptp_symbolic.numeric.diagnose.floor import carried_noise, floor_of
 from ptp_symbolic.numeric.diagnose.preparation import task_of
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.refits import fit_declared, refitted_without_chaos
+from ptp_symbolic.numeric.diagnose.refits import fit_declared, refitted_in_windows
 from ptp_symbolic.numeric.diagnose.remainder import hints, remainder
 from ptp_symbolic.numeric.diagnose.residual_tests import residual_tests
 from ptp_symbolic.numeric.diagnose.search import search
@@ -40,7 +40,7 @@ from ptp_symbolic.numeric.diagnose.summary import (
     ranking,
     repeatability_table,
 )
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, accuracy
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
 from ptp_symbolic.numeric.diagnose.verdict import Verdict, decide
 from ptp_symbolic.numeric.identify.fit import (
     Effort,
@@ -111,7 +111,7 @@ def fit_platform(
         trial = begun
         if task.free:
             progress("fitting")
-            task, trial = refitted_without_chaos(task, fit_declared(task, propose(task)))
+            task, trial = refitted_in_windows(task, fit_declared(task, propose(task)))
             trial = replace(trial, fit=with_finite_differences(trial.fit, executor))
         floor = floor_of(task, trial, carried_noise(task, trial.fit))
     units = model.units
@@ -138,7 +138,7 @@ def fit_platform(
 def _as_declared(task: Task) -> Trial:
     """The declared start values, with nothing but the starts of the runs fitted."""
     values = {**task.fixed, **all_values_at_start(task.free)}
-    effort = Effort(START_ITERATIONS, 1e-3, accuracy(task, START_SHARE))
+    effort = Effort(START_ITERATIONS, 1e-3, tolerance_for(task, START_SHARE))
     return Trial(
         (), fit_parameters(task.model, task.train, (), values, None, effort, task.executor)
     )

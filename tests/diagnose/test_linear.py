@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import null_space, orth, subspace_angles
 
-from ptp_symbolic.numeric.diagnose.linear import canonical_correlation, outside
+from ptp_symbolic.numeric.diagnose.linear import canonical_correlation, projected_off
 
 RNG = np.random.default_rng(31)
 COLUMNS = RNG.normal(size=(200, 3))
@@ -14,7 +14,7 @@ AWAY = RNG.normal(size=(200, 4)) * [1.0, 1e-6, 1e6, 0.0]  # units differ, and on
 def test_what_lies_outside_is_the_remainder_of_a_least_squares_fit() -> None:
     used = AWAY[:, :3] * [1.0, 1e6, 1e-6]
     expected = COLUMNS - used @ np.linalg.lstsq(used, COLUMNS)[0]
-    assert outside(COLUMNS, AWAY) == pytest.approx(expected, abs=1e-12)
+    assert projected_off(COLUMNS, AWAY) == pytest.approx(expected, abs=1e-12)
 
 
 @pytest.mark.parametrize("apart", [1e-2, 1e-5, 1e-7, 1e-9, 1e-12, 0.0])
@@ -22,7 +22,7 @@ def test_nothing_of_nearly_equal_columns_is_left(apart: float) -> None:
     """Directions less than 1e-8 of the largest apart count as one; no more than that is left."""
     away = np.column_stack([AWAY[:, 0], 1e3 * (AWAY[:, 0] + apart * RNG.normal(size=200))])
     unit = away / np.linalg.norm(away, axis=0)
-    left = outside(COLUMNS, away)
+    left = projected_off(COLUMNS, away)
     assert np.max(np.abs(unit.T @ left)) < 1e-8 * np.linalg.norm(COLUMNS)
     assert np.linalg.norm(left) > 0.98 * np.linalg.norm(COLUMNS)
 
@@ -30,17 +30,17 @@ def test_nothing_of_nearly_equal_columns_is_left(apart: float) -> None:
 def test_a_column_that_is_there_twice_counts_once() -> None:
     """What tells a copy from its original is rounding, which is no direction."""
     once, twice = AWAY[:, :2], AWAY[:, [0, 1, 0, 0, 1]] * [1.0, 1.0, 1 / 3, -7.0, 0.1]
-    assert outside(COLUMNS, twice) == pytest.approx(outside(COLUMNS, once), abs=1e-10)
+    assert projected_off(COLUMNS, twice) == pytest.approx(projected_off(COLUMNS, once), abs=1e-10)
     expected = canonical_correlation(COLUMNS[:, 0], once)
     assert canonical_correlation(COLUMNS[:, 0], twice) == pytest.approx(expected, rel=1e-10)
 
 
 def test_what_is_outside_stays_so_and_nothing_takes_nothing_away() -> None:
-    left = outside(COLUMNS, AWAY)
-    assert outside(left, AWAY) == pytest.approx(left, abs=1e-12)
-    assert outside(COLUMNS, 0.0 * AWAY) == pytest.approx(COLUMNS)
-    assert outside(COLUMNS, AWAY[:, :0]) == pytest.approx(COLUMNS)
-    assert outside(AWAY[:, :2] @ [[1.0], [1e6]], AWAY) == pytest.approx(0.0, abs=1e-12)
+    left = projected_off(COLUMNS, AWAY)
+    assert projected_off(left, AWAY) == pytest.approx(left, abs=1e-12)
+    assert projected_off(COLUMNS, 0.0 * AWAY) == pytest.approx(COLUMNS)
+    assert projected_off(COLUMNS, AWAY[:, :0]) == pytest.approx(COLUMNS)
+    assert projected_off(AWAY[:, :2] @ [[1.0], [1e6]], AWAY) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_the_cosine_between_a_vector_and_a_plane() -> None:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.linear import outside
+from ptp_symbolic.numeric.diagnose.linear import projected_off
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose
 from ptp_symbolic.numeric.diagnose.subsets import remainder
 from tests.diagnose.spring_table import spring_table
@@ -39,8 +39,8 @@ def test_the_spring_takes_up_what_the_declared_model_leaves(proposals: Proposals
     shares = {}
     for s in rows.signatures:
         columns = np.column_stack([base, s.columns * root[:, None]])
-        whole = float(outside(left[:, None], base)[:, 0] @ left)
-        after = outside(left[:, None], columns)[:, 0]
+        whole = float(projected_off(left[:, None], base)[:, 0] @ left)
+        after = projected_off(left[:, None], columns)[:, 0]
         key = s.candidate.key
         shares[key] = min(shares.get(key, 1.0), float(after @ after) / whole)
     assert min(shares, key=lambda key: shares[key]) == "cable_spring@pan"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.identify.weak_form import weak_average
+from ptp_symbolic.numeric.identify.weak_form import curvature_noise, weak_average
 
 HALF_WIDTH = 0.08
 
@@ -45,3 +45,14 @@ def test_what_a_coarse_grid_shows_the_samples_show_too() -> None:
     fine = weak_average(time, np.ones((len(time), 1)), HALF_WIDTH, 0, grid)[:, 0]
     assert np.isfinite(coarse).any()
     assert np.all(np.isfinite(fine[np.isfinite(coarse)]))
+
+
+@pytest.mark.parametrize("period, half_width", [(1e-3, 0.08), (5e-3, 0.1), (2e-3, 0.02)])
+def test_noise_of_a_second_derivative_is_the_sum_of_its_weights(
+    period: float, half_width: float
+) -> None:
+    """The average is linear: unit impulses show the weight of every sample."""
+    time = np.arange(-1.5 * half_width, 1.5 * half_width, period)
+    middle = np.array([len(time) // 2])
+    weights = weak_average(time, np.eye(len(time)), half_width, 2, middle)[0]
+    assert curvature_noise(period, half_width) == pytest.approx(np.linalg.norm(weights), rel=5e-3)

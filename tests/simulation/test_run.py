@@ -127,5 +127,6 @@ def test_no_event_is_dropped_where_the_room_is_small(
 @pytest.mark.parametrize("name", ["rtol", "atol", "largest_step"])
 @pytest.mark.parametrize("value", [-1.0, 0.0, np.nan])
 def test_tolerances_that_mean_nothing_are_refused(drive, name: str, value: float) -> None:
-    with pytest.raises(InputError, match=rf"{name} = .*; give a number above zero"):
-        ptp_symbolic.simulate(drive, 0.1, **{name: value})
+    for simulated in (ptp_symbolic.simulate, ptp_symbolic.sensitivity):
+        with pytest.raises(InputError, match=rf"{name} = .*; give a number above zero"):
+            simulated(drive, 0.1, **{name: value})

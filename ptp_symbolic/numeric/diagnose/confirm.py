@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.linear import effect_of, outside, stacked
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, accuracy
+from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
 from ptp_symbolic.numeric.identify.blocks import leave_blocks_out, without_outliers
 from ptp_symbolic.numeric.identify.constants import ELSEWHERE, FALSE_ALARM, MOST, NEAR_BOUND, SHARP
 from ptp_symbolic.numeric.identify.evaluate import evaluate
@@ -82,8 +82,8 @@ def unstable_without(fit: Fit, candidate: Candidate) -> str | None:
     own = [k for k, f in enumerate(fit.free) if f.name in candidate.parameters]
     others = [k for k in range(len(fit.free)) if k not in own]
     whole = effect_of(fit, candidate.vanishing, columns) + columns[:, own] @ step[own]
-    effect = outside(whole[:, None], columns[:, others])[:, 0]
-    mine = outside(columns[:, own], columns[:, others])
+    effect = projected_off(whole[:, None], columns[:, others])[:, 0]
+    mine = projected_off(columns[:, own], columns[:, others])
     square = float(effect @ effect)
     if square == 0.0:
         return None
@@ -108,7 +108,7 @@ def answers_to_inputs(task: Task, trial: Trial) -> bool:
         idle = replace(
             run, inputs=stack([table(run.time, c, "hold") for c in quiet.T]), held_inputs=quiet
         )
-        found = evaluate(task.model, idle, p, z, none, False, accuracy(task, SHARP))
+        found = evaluate(task.model, idle, p, z, none, False, tolerance_for(task, SHARP))
         if found.failed is None:
             changed += float(np.sum((found.residual - e.residual) ** 2))
             left += float(np.sum(e.residual**2))

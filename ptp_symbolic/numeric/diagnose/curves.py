@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.errors import Pair, by_source
+from ptp_symbolic.numeric.diagnose.errors import Pair, pairs_by_run
 from ptp_symbolic.numeric.identify.evaluate import simulated_signals
 from ptp_symbolic.numeric.identify.fit import Fit
 
@@ -22,8 +22,8 @@ def curves_of(parts: Mapping[str, tuple[Fit, Fit]]) -> dict[str, Any]:
     for name, (before_fit, after_fit) in parts.items():
         units = before_fit.model.units
         groups = zip(
-            by_source(before_fit.pairs()).items(),
-            by_source(after_fit.pairs()).values(),
+            pairs_by_run(before_fit.pairs()).items(),
+            pairs_by_run(after_fit.pairs()).values(),
             strict=True,
         )
         for (source, before), later in groups:

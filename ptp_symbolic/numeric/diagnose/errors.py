@@ -23,7 +23,7 @@ DEFINITION = (
 )
 
 
-def by_source(pairs: Sequence[Pair]) -> dict[str, list[Pair]]:
+def pairs_by_run(pairs: Sequence[Pair]) -> dict[str, list[Pair]]:
     """Pairs by run, the windows of one run together."""
     grouped: dict[str, list[Pair]] = {}
     for run, evaluation in pairs:
@@ -44,7 +44,7 @@ def error_of(fit: Fit, units: dict[str, str], floor: FloatArray | None = None) -
     pairs = fit.pairs()
     return {
         "total": _error(pairs, floor),
-        "by_run": {name: _error(group, floor) for name, group in by_source(pairs).items()},
+        "by_run": {name: _error(group, floor) for name, group in pairs_by_run(pairs).items()},
         "by_signal": {
             name: _signal_error(pairs, k, units[name], floor)
             for k, name in enumerate(fit.runs[0].signals)

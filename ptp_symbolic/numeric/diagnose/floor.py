@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, huber, mean_squares
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, huber_loss, mean_squares
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, MANY_RUNS, POLES, TUNING
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.least_squares import weighted_median
@@ -56,7 +56,7 @@ def left_over(fit: Fit) -> FloatArray:
     usual = weighted_median(squares, size)
     if len(squares) >= MANY_RUNS:
         return np.asarray(np.sqrt(usual))
-    bounded = huber(squares, TUNING**2 * np.maximum(usual, 1.0))
+    bounded = huber_loss(squares, TUNING**2 * np.maximum(usual, 1.0))
     return np.asarray(np.sqrt(size @ bounded / size.sum()))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from ptp_symbolic.numeric.diagnose.trial import Trial, huber
+from ptp_symbolic.numeric.diagnose.trial import Trial, huber_loss
 from ptp_symbolic.numeric.identify.blocks import (
     block_labels,
     block_length,
@@ -65,7 +65,9 @@ def gain(larger: Trial, smaller: Trial) -> Gain:
     squares = [_predicted_squares(parts, label, signals) for parts in residuals]
     size = np.bincount(label)
     scale = np.maximum(weighted_median(squares[0], size.astype(np.float64)), 1e-300)
-    losses = [size * huber(s / scale, np.full(signals, TUNING**2)).sum(axis=1) for s in squares]
+    losses = [
+        size * huber_loss(s / scale, np.full(signals, TUNING**2)).sum(axis=1) for s in squares
+    ]
     return compared(losses[0], losses[1])
 
 

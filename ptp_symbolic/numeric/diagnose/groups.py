@@ -14,7 +14,12 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
-from ptp_symbolic.numeric.diagnose.linear import canonical_correlation, effect_of, outside, stacked
+from ptp_symbolic.numeric.diagnose.linear import (
+    canonical_correlation,
+    effect_of,
+    projected_off,
+    stacked,
+)
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import started_anew
 from ptp_symbolic.numeric.diagnose.responses import Columns, least, response_columns
@@ -130,12 +135,12 @@ def alike_along_motion(found: Proposals, chosen: Trial, member: Candidate) -> li
     ]
     rest = [s.columns for s in rows.signatures if s.candidate.key in own - {member.key}]
     away = np.column_stack([rows.base, *rest]) * root
-    target = outside(np.sum(parts, axis=0)[:, None] * root, away)[:, 0]
+    target = projected_off(np.sum(parts, axis=0)[:, None] * root, away)[:, 0]
     correlation: dict[str, tuple[float, Candidate]] = {}
     for s in rows.signatures:
         if s.candidate.key in own:
             continue
-        value = canonical_correlation(target, outside(s.columns * root, away))
+        value = canonical_correlation(target, projected_off(s.columns * root, away))
         if value > max(SIMILAR, correlation.get(s.candidate.key, (0.0, s.candidate))[0]):
             correlation[s.candidate.key] = value, s.candidate
     return [c for _, c in sorted(correlation.values(), key=lambda pair: -pair[0])]
@@ -171,7 +176,7 @@ def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[S
     others = [k for k in range(len(fit.free)) if k not in own]
     effect = effect_of(fit, member.vanishing, table)
     away = table[:, others]
-    target = outside(effect[:, None], away)[:, 0]
+    target = projected_off(effect[:, None], away)[:, 0]
     size = float(np.linalg.norm(target))
     if size == 0.0:
         return []
@@ -186,7 +191,7 @@ def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[S
         found = response_columns(task, trial, candidate, shape, most)
         if found is None:
             return None
-        correlation = canonical_correlation(target, outside(found.table, away))
+        correlation = canonical_correlation(target, projected_off(found.table, away))
         if correlation < SIMILAR:
             return None
         values = _instead(base, fit, others, residual - effect, away, found)

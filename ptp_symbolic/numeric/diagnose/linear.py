@@ -33,7 +33,7 @@ def effect_of(fit: Fit, vanishing: Mapping[str, float], table: FloatArray) -> Fl
     return effect
 
 
-def outside(columns: FloatArray, away: FloatArray) -> FloatArray:
+def projected_off(columns: FloatArray, away: FloatArray) -> FloatArray:
     """Projection of `columns` [n, k] onto the orthogonal complement of those of `away` [n, m]."""
     size = np.linalg.norm(away, axis=0)
     kept = away[:, size > 0.0] / size[size > 0.0]

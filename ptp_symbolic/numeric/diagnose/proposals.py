@@ -32,10 +32,11 @@ from ptp_symbolic.numeric.identify.constants import (
     REFINEMENTS,
     SHORT,
 )
-from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
 from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace, prepare_equation_space
-from ptp_symbolic.numeric.identify.fit import all_values_at_start
+from ptp_symbolic.numeric.identify.fit import all_values, all_values_at_start
+from ptp_symbolic.numeric.identify.requirements import nearest_possible
 
 FloatArray = NDArray[np.float64]
 
@@ -76,7 +77,7 @@ def propose(task: Task) -> Proposals:
     if space is None:
         return Proposals(start, (), task.candidates, False, None, None)
     first = fit_equations(space, task.free, start, 4, task.executor)
-    values = possible(task, {**start, **first.values})
+    values = possible(task, task.free, {**start, **first.values})
     here = {f.name: values[f.name] for f in task.free}
     found = linearised(space, task.free, values, here, task.executor, own_torque=True)
     equation, run, time = space.labels()
@@ -107,7 +108,7 @@ def _refined(
     placed = tuple(own[c.key, c.member] for c in candidates)
     free = (*task.free, *(restarted(f, begun[f.name]) for c in placed for f in c.free))
     found = fit_equations(space, free, begun, REFINEMENTS)
-    return Proposal(placed, possible(task, {**begun, **found.values}))
+    return Proposal(placed, possible(task, free, {**begun, **found.values}))
 
 
 def with_lines(candidates: Sequence[Candidate], found: Proposals) -> tuple[Candidate, ...]:
@@ -167,25 +168,23 @@ def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | No
         )
     except InputError:
         return None
-    enough = min(int(rows.kept.sum()) for rows in space.rows_of) >= 0
     total = sum(int(rows.kept.sum()) for rows in space.rows_of)
-    return space if enough and total > 4 * (len(task.free) + 1) else None
+    return space if total > 4 * (len(task.free) + 1) else None
 
 
-def possible(task: Task, values: Mapping[str, float]) -> dict[str, float]:
-    """`values` with the relations met that the machine needs: as long as one is broken, relation
-    after relation gets the largest value of its parameters for all of them.
+def possible(
+    task: Task, free: Sequence[FreeParameter], values: Mapping[str, float]
+) -> dict[str, float]:
+    """`values` with `free` projected onto the boundary of every relation of the machine that they
+    break, as a fit does with its start.
     """
-    found = dict(values)
-    margin = np.zeros(len(task.model.module.REQUIREMENTS))
-    for names, *_ in task.model.module.REQUIREMENTS:
-        task.model.module.margins(task.model.parameter_vector(found), margin)
-        if np.all(margin >= 0.0):
-            break
-        most = max(found[name] for name in names)
-        for name in names:
-            found[name] = most
-    return found
+
+    def parameters(phi: FloatArray) -> FloatArray:
+        return task.model.parameter_vector({**values, **all_values(free, phi)})
+
+    phi = to_search(free, values)
+    found = nearest_possible(task.model, free, parameters, phi)
+    return dict(values) if found is phi else {**values, **all_values(free, found)}
 
 
 def _best_sets(rows: Regression) -> tuple[Subset, list[Subset], Regression]:
@@ -273,4 +272,5 @@ def start_of(
                 result.update(dict.fromkeys(f.names, value))
             for signature, shape in zip(found, shapes, strict=True):
                 result.update(signature.candidate.shapes[shape])
-    return possible(task, result)
+    every = (*task.free, *(f for s in found for f in s.candidate.free))
+    return possible(task, every, result)

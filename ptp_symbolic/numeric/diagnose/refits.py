@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.floor import carried_noise, leaves_white_noise, left_over
-from ptp_symbolic.numeric.diagnose.linear import effect_of, outside, stacked
+from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, declared_start
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
@@ -36,7 +36,7 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.gap_places import gears_in_place
-from ptp_symbolic.numeric.identify.windows import without_chaos
+from ptp_symbolic.numeric.identify.windows import cut_where_noise_grows
 
 FloatArray = NDArray[np.float64]
 
@@ -69,26 +69,26 @@ def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]
     ]
 
 
-def refitted_without_chaos(task: Task, declared: Trial) -> tuple[Task, Trial]:
+def refitted_in_windows(task: Task, declared: Trial) -> tuple[Task, Trial]:
     """The task with runs cut into windows where the fitted model amplifies the noise of the inputs
-    beyond that of the outputs (see `without_chaos`), and the declared model refitted.
+    beyond that of the outputs (see `cut_where_noise_grows`), and the declared model refitted.
     """
     model, noise = task.model, task.input_noise
     p = model.parameter_vector(declared.values)
     left = np.sqrt(mean_squares(declared.fit.evaluations, task.train))
-    train = without_chaos(model, task.train, declared.fit.z, left, p, noise)
+    train = cut_where_noise_grows(model, task.train, declared.fit.z, left, p, noise)
     if len(train) == len(task.train):
         return task, declared
     task.progress("refitting, runs that multiply the noise of their inputs in windows")
     starts = [run.guess for run in task.validate]
     any_left = np.zeros((len(starts), left.shape[1]))
-    validate = without_chaos(model, task.validate, starts, any_left, p, noise)
+    validate = cut_where_noise_grows(model, task.validate, starts, any_left, p, noise)
     task = replace(task, train=train, validate=validate)
     begun = fitted(task, (), declared.values, None)
     return task, polished(task, begun, carried_noise(task, begun.fit))
 
 
-def unbiased(trial: Trial) -> Trial:
+def without_misleading(trial: Trial) -> Trial:
     """The trial with its record of misleading derivatives cleared: they are looked for anew."""
     return replace(trial, fit=replace(trial.fit, misleading=None))
 
@@ -186,7 +186,7 @@ def _to_its_end(task: Task, trial: Trial, carried: FloatArray) -> Trial:
         smooth = continued(task, trial, POLISH, executor=task.executor)
         if leaves_white_noise(smooth, carried):
             return smooth
-        trial = continued(task, unbiased(smooth), POLISH, ROUGH, WIDE_STEP, task.executor)
+        trial = continued(task, without_misleading(smooth), POLISH, ROUGH, WIDE_STEP, task.executor)
         if is_alike(trial, smooth):
             break
     return trial
@@ -197,7 +197,7 @@ def sharpened(task: Task, trial: Trial, carried: FloatArray) -> Trial:
     if trial.fit.failed or not leaves_white_noise(trial, carried):
         return trial
     trial = continued(task, trial, POLISH, SHARP, executor=task.executor)
-    return continued(task, unbiased(trial), POLISH, SHARP, STEP, task.executor)
+    return continued(task, without_misleading(trial), POLISH, SHARP, STEP, task.executor)
 
 
 def expected_gain(trial: Trial, vanishing: Mapping[str, float]) -> float:
@@ -208,7 +208,7 @@ def expected_gain(trial: Trial, vanishing: Mapping[str, float]) -> float:
     residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
     columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
     others = [k for k, f in enumerate(fit.free) if f.name not in vanishing]
-    effect = outside(effect_of(fit, vanishing, columns)[:, None], columns[:, others])[:, 0]
+    effect = projected_off(effect_of(fit, vanishing, columns)[:, None], columns[:, others])[:, 0]
     taken = float(effect @ effect)
     return taken / max(taken + float(residual @ residual), 1e-300)
 

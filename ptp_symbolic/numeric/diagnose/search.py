@@ -13,7 +13,7 @@ from ptp_symbolic.numeric.diagnose.proposals import (
 )
 from ptp_symbolic.numeric.diagnose.refits import (
     fit_declared,
-    refitted_without_chaos,
+    refitted_in_windows,
 )
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import started
@@ -38,7 +38,7 @@ def search(task: Task) -> Search:
     task = replace(task, candidates=with_lines(task.candidates, proposals))
     task.progress("fitting the declared model")
     declared = fit_declared(task, proposals)
-    task, declared = refitted_without_chaos(task, declared)
+    task, declared = refitted_in_windows(task, declared)
     seeker = Seeker(task, declared, proposals, carried_noise(task, declared.fit))
     return _from_declared(seeker)
 

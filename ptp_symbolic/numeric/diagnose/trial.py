@@ -67,7 +67,7 @@ class Trial:
         return dict(self.fit.values)
 
 
-def freed(
+def all_free(
     task: Task, candidates: Sequence[Candidate], values: Mapping[str, float]
 ) -> tuple[FreeParameter, ...]:
     """The declared free parameters and those of `candidates`, started at `values`."""
@@ -97,13 +97,13 @@ def fitted(
     """Fit from `values` (all parameters of the model) and the starts `z`, each [nz], of the runs.
 
     `secants` is the step of the differences that replace derivatives which mislead; those that
-    misled the parent are known to mislead. `share` is that of `accuracy`; values out of bounds are
-    projected onto them.
+    misled the parent are known to mislead. `share` is that of `tolerance_for`; values out of bounds
+    are projected onto them.
     """
-    free = freed(task, candidates, values)
+    free = all_free(task, candidates, values)
     names = {name for f in free for name in f.names}
     fixed = {name: value for name, value in task.fixed.items() if name not in names}
-    effort = Effort(iterations, GAIN * share, accuracy(task, share), secants=secants)
+    effort = Effort(iterations, GAIN * share, tolerance_for(task, share), secants=secants)
     known = None if secants is None else _inherited(parent, free)
     fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known)
     return Trial(tuple(candidates), fit)
@@ -122,7 +122,7 @@ def _inherited(parent: Fit | None, free: Sequence[FreeParameter]) -> list[tuple[
     return found + [(run, k) for run in range(len(parent.runs)) for k in fresh]
 
 
-def accuracy(task: Task, share: float) -> Tolerance:
+def tolerance_for(task: Task, share: float) -> Tolerance:
     """Integration tolerance that keeps angles good to a `share` of their noise: a coarser one makes
     a misfit jump wherever friction lets go a sample later.
     """
@@ -162,7 +162,7 @@ def simulated(
     values out of bounds.
     """
     p, none = task.model.parameter_vector({**fit.values, **values}), np.zeros(0, dtype=np.int64)
-    tolerance = accuracy(task, ROUGH)
+    tolerance = tolerance_for(task, ROUGH)
 
     def one(pair: tuple[Run, FloatArray]) -> Evaluation:
         return evaluate(task.model, pair[0], p, pair[1], none, False, tolerance)
@@ -196,17 +196,18 @@ def misfits(trials: Sequence[Trial]) -> list[float]:
         if not np.all(np.isfinite(square)):
             result.append(np.inf)
             continue
-        bounded = huber(square, TUNING**2 * np.maximum(usual, 1.0))
+        bounded = huber_loss(square, TUNING**2 * np.maximum(usual, 1.0))
         mean = size @ bounded / size.sum()
         result.append(float(size.sum() * np.sum(np.log(np.maximum(mean, 1e-300)))))
     return result
 
 
-def huber(square: FloatArray, tuning: FloatArray) -> FloatArray:
-    """Huber's loss of the squares `square`, linear in their root beyond the squared tuning constant
-    `tuning`; shapes broadcast.
+def huber_loss(square: FloatArray, squared_tuning: FloatArray) -> FloatArray:
+    """Huber's loss of the squares `square`, linear in their root beyond the tuning constant,
+    which comes squared; shapes broadcast.
     """
-    return np.where(square <= tuning, square, 2.0 * np.sqrt(tuning * square) - tuning)
+    linear = 2.0 * np.sqrt(squared_tuning * square) - squared_tuning
+    return np.where(square <= squared_tuning, square, linear)
 
 
 def ranked(trials: Sequence[Trial]) -> list[Trial]:

@@ -12,7 +12,14 @@ from ptp_symbolic.numeric.diagnose.gain import Gain, compared, gain
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
 from ptp_symbolic.numeric.diagnose.refits import forms
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, accuracy, huber, mean_squares, ranked
+from ptp_symbolic.numeric.diagnose.trial import (
+    Task,
+    Trial,
+    huber_loss,
+    mean_squares,
+    ranked,
+    tolerance_for,
+)
 from ptp_symbolic.numeric.identify.constants import (
     BIGGEST,
     GAIN,
@@ -261,7 +268,7 @@ def _is_quiet(after: Fit, floor: Floor) -> bool:
 
 def held_out_fit(task: Task, trial: Trial) -> Fit:
     """The validation runs by the model of a trial, nothing but their start unknowns fitted."""
-    effort = Effort(POLISH, GAIN * ROUGH, accuracy(task, SHARP))
+    effort = Effort(POLISH, GAIN * ROUGH, tolerance_for(task, SHARP))
     return fit_parameters(task.model, task.validate, (), trial.values, None, effort, task.executor)
 
 
@@ -273,5 +280,5 @@ def held_out_gain(after: Fit, before: Fit) -> Gain:
     squares = [mean_squares(fit.evaluations, fit.runs) for fit in (after, before)]
     usual = np.min([weighted_median(s, size) for s in squares], axis=0)
     tuning = TUNING**2 * np.maximum(usual, 1.0)
-    losses = [size * huber(np.minimum(s, BIGGEST), tuning).sum(axis=1) for s in squares]
+    losses = [size * huber_loss(np.minimum(s, BIGGEST), tuning).sum(axis=1) for s in squares]
     return compared(losses[0], losses[1])

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.linear import outside, stacked
+from ptp_symbolic.numeric.diagnose.linear import projected_off, stacked
 from ptp_symbolic.numeric.diagnose.responses import response_columns
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.identify.constants import NOTHING, REACH, SEEN
@@ -66,6 +66,6 @@ def _smallest(column: FloatArray, others: FloatArray) -> float:
     """The amount whose response, `column` [n] per unit, stands out of unit noise beside what
     `others` [n, k] can follow.
     """
-    size = float(np.linalg.norm(outside(column[:, None], others)))
+    size = float(np.linalg.norm(projected_off(column[:, None], others)))
     least = np.sqrt(NOTHING) * float(np.linalg.norm(column))
     return SEEN / size if size > least else float("inf")

@@ -17,7 +17,7 @@ from ptp_symbolic.numeric.identify.constants import (
     SAMPLES_PER_WINDOW,
 )
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.weak_form import noise_gain, weak_average
+from ptp_symbolic.numeric.identify.weak_form import curvature_noise, weak_average
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -46,7 +46,7 @@ def half_width_of(
     for half_width in HALF_WIDTHS:
         if 2.0 * half_width / period < MOST_COARSE:
             continue
-        gain = noise_gain(period, half_width, 2)
+        gain = curvature_noise(period, half_width)
         curved = [
             weak_average(
                 run.time,

@@ -9,6 +9,7 @@ function is (1 - s^2)^4 over a window that is centred on the sample.
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+from scipy.special import beta
 
 from ptp_symbolic.numeric.identify.constants import LARGEST_GAP, LEAST_SAMPLES
 
@@ -119,18 +120,12 @@ def local_motion(time, values, half_width):
     return result
 
 
-def noise_gain(period: float, half_width: float, derivative: int) -> float:
-    """Standard deviation of a weak average of white noise of deviation 1, sampled every `period` s;
-    per s^2 of its second `derivative` (0 or 2 only).
+def curvature_noise(period: float, half_width: float) -> float:
+    """Standard deviation in 1/s^2 of the weak average of the second derivative of white noise of
+    deviation 1, sampled every `period` s.
 
-    Continuous limit of the sums above: the integrals of the squared test function and of its
-    squared second derivative are h B(1/2, 9) and
-    (8^2 / h^3) (B(1/2, 7) - 12 B(3/2, 6) + 36 B(5/2, 5)).
+    Continuous limit of the sums above, with w = (1 - s^2)^4: the integral of w is B(1/2, 5), that
+    of w''^2 is 64 (49 B(5/2, 5) - 14 B(3/2, 5) + B(1/2, 5)).
     """
-    s = np.linspace(-1.0, 1.0, 2001)
-    base = 1.0 - s**2
-    weight = base**4 if derivative == 0 else base**2 * (48.0 * s**2 - 8.0 * base)
-    whole = np.trapezoid(base**4, s) * half_width
-    square = np.trapezoid(weight**2, s) * half_width
-    scale = 1.0 if derivative == 0 else half_width**2
-    return float(np.sqrt(period * square) / whole / scale)
+    square = 64.0 * (49.0 * beta(2.5, 5.0) - 14.0 * beta(1.5, 5.0) + beta(0.5, 5.0))
+    return float(np.sqrt(period / half_width * square) / beta(0.5, 5.0) / half_width**2)

@@ -141,7 +141,7 @@ def propagated_noise(
     return np.sqrt(squares)
 
 
-def without_chaos(
+def cut_where_noise_grows(
     model: Model,
     runs: Sequence[Run],
     z: Sequence[FloatArray],

@@ -8,7 +8,7 @@ saltation matrix, the jump of the vector field times the shift of the event time
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,9 +17,8 @@ from ptp_symbolic.errors import unknown
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.integration import (
     METHODS,
-    Accuracy,
+    checked_accuracy,
     integrate,
-    tolerance_weights,
 )
 from ptp_symbolic.numeric.simulation.run import (
     checked_parameters,
@@ -74,8 +73,9 @@ def sensitivity(
     parameter are off by half a percent; smaller steps converge to these derivatives, until rounding
     spoils them.
 
-    Raises InputError for unknown names and methods, parameters out of bounds and times that do not
-    increase, and SimulationError when the simulation cannot go on.
+    Raises InputError for unknown names and methods, parameters out of bounds, times that do not
+    increase and a tolerance or largest step that is not above zero, and
+    SimulationError when the simulation cannot go on.
     """
     t, p = output_times(times), checked_parameters(model, parameters or {})
     table = input_table(model, inputs or {}, p, float(t[-1]))
@@ -86,8 +86,9 @@ def sensitivity(
     for offset, name in enumerate(by_initial):
         s[_index(model.state_names, name, "state"), len(columns) + offset] = 1.0
     chosen = chosen_method(model, method, tuple(METHODS))
+    accuracy = checked_accuracy(model, rtol, atol, largest_step)
     if chosen == EXPLICIT:
-        largest_step = min(largest_step, stable_step(model, p, x))
+        accuracy = replace(accuracy, largest_step=min(largest_step, stable_step(model, p, x)))
     found = integrate(
         model,
         chosen,
@@ -97,7 +98,7 @@ def sensitivity(
         table.held,
         table.with_stops(t),
         t,
-        Accuracy(rtol, atol * tolerance_weights(model), largest_step),
+        accuracy,
         s,
         columns,
         delay_columns(model, columns),

@@ -83,6 +83,19 @@ def default_method(model: Model) -> str:
     return "runge_kutta" if smooth else "rosenbrock"
 
 
+def checked_accuracy(
+    model: Model, rtol: float, atol: float, largest_step: float, most_steps: int = MOST_STEPS
+) -> Accuracy:
+    """The accuracy of a run of `model`, atol in rad (see `tolerance_weights`), largest step in s.
+
+    Raises InputError for a tolerance or a largest step that is not above zero.
+    """
+    for name, value in (("rtol", rtol), ("atol", atol), ("largest_step", largest_step)):
+        if not value > 0.0:
+            raise InputError(f"{name} = {value:g}; give a number above zero.")
+    return Accuracy(rtol, atol * tolerance_weights(model), largest_step, most_steps)
+
+
 def tolerance_weights(model: Model) -> FloatArray:
     """Factor [n] from an absolute tolerance in rad to that of every state; 1 for free bodies, whose
     errors do not decay.

@@ -19,11 +19,10 @@ from ptp_symbolic.numeric.simulation.fixed_integration import (
 from ptp_symbolic.numeric.simulation.integration import (
     METHODS,
     MOST_STEPS,
-    Accuracy,
     Solution,
+    checked_accuracy,
     default_method,
     integrate,
-    tolerance_weights,
 )
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CHATTERING,
@@ -112,14 +111,11 @@ def simulate(
     x, p = start_of(model, initial or {}), checked_parameters(model, parameters or {})
     table = input_table(model, inputs or {}, p, float(t[-1]))
     chosen, kept = chosen_method(model, method), _columns_of(model, save)
-    for name, value in (("rtol", rtol), ("atol", atol), ("largest_step", largest_step)):
-        if not value > 0.0:
-            raise InputError(f"{name} = {value:g}; give a number above zero.")
+    accuracy = checked_accuracy(model, rtol, atol, largest_step, most_steps)
 
     def run(event_room: int) -> Solution | FixedSolution:
         if chosen == FIXED_STEP:
             return integrate_in_fixed_steps(model, p, x, table, t, step, event_room)
-        accuracy = Accuracy(rtol, atol * tolerance_weights(model), largest_step, most_steps)
         return integrate(
             model,
             chosen,
