@@ -203,7 +203,18 @@ def task_for(
         runs = [prepare_runs(model, platform, tuple(logs)) for logs in (train, validate)]
     free, known = free_parameters(platform, model), known_values(platform, model)
     noises = {s.signal: s.noise for s in platform.signals}
-    return task_of(model, runs[0], runs[1], free, known, declared, noises, executor, progress)
+    return task_of(
+        model,
+        runs[0],
+        runs[1],
+        free,
+        known,
+        declared,
+        noises,
+        platform.window,
+        executor,
+        progress,
+    )
 
 
 def _write_up(

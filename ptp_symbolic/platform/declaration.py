@@ -67,7 +67,8 @@ class SignalDeclaration:
 class Platform:
     """A declared machine. `axes` are ordered pan, tilt; `gravity` is in m/s^2.
 
-    `source` is the file that says so, for messages; None where there is none.
+    `window` is the length in s of the windows into which a fit cuts runs, None where it finds that
+    by itself. `source` is the file that says so, for messages; None where there is none.
     """
 
     name: str
@@ -77,6 +78,7 @@ class Platform:
     effects: tuple[EffectDeclaration, ...]
     parameters: tuple[ParameterDeclaration, ...]
     signals: tuple[SignalDeclaration, ...]
+    window: float | None = None
     source: str | None = field(default=None, compare=False, repr=False)
 
 

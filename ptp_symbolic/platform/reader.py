@@ -18,6 +18,7 @@ from ptp_symbolic.platform.declaration import (
     Platform,
     SignalDeclaration,
 )
+from ptp_symbolic.platform.fit_settings import window_of
 from ptp_symbolic.platform.text_file import read_text_bytes
 from ptp_symbolic.platform.units import to_si
 
@@ -43,7 +44,9 @@ def read_platform(source: str | Path) -> Platform:
     """
     path = platform_file(source)
     where = str(path)
-    document = fields.table(_parse(path), where, ("platform", "effects", "parameters", "signals"))
+    document = fields.table(
+        _parse(path), where, ("platform", "effects", "parameters", "signals", "fit")
+    )
     head = fields.table(
         fields.required(document, "platform", where),
         f"{where}: platform",
@@ -61,6 +64,7 @@ def read_platform(source: str | Path) -> Platform:
         effects=_effects(fields.required(document, "effects", where), axes, where),
         parameters=_parameters(document.get("parameters", {}), where),
         signals=_signals(document.get("signals", {}), where),
+        window=window_of(document.get("fit", {}), f"{where}: fit"),
         source=where,
     )
 

@@ -24,6 +24,7 @@ def platform_text(platform: Platform) -> str:
         ],
         "parameters": {p.name: _parameter(p) for p in platform.parameters},
         "signals": {s.signal: _signal(s) for s in platform.signals},
+        "fit": {} if platform.window is None else {"window": f"{platform.window!r} s"},
     }
     return tomlkit.dumps({name: section for name, section in sections.items() if section})
 

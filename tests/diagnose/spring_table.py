@@ -103,6 +103,7 @@ def spring_table(folder: Path) -> Iterator[Task]:
             known,
             effect_keys(platform),
             noises,
+            None,
             executor,
             lambda text: None,
         )

@@ -117,7 +117,7 @@ GAP, COUNTS = line_of("value = 1.5"), line_of("= 7200")
 # (what is replaced, by what, what the refusal says)
 REFUSALS = [
     ('name = "bench"\n', "", r"platform: 'name' is missing"),
-    ("[platform]", "[platfrom]", r"bench.toml: unknown key 'platfrom'; allowed are effects, para"),
+    ("[platform]", "[platfrom]", r"bench.toml: unknown key 'platfrom'; allowed are effects, fit, p"),
     ('title = "Pan', 'titel = "Pan', r"platform: unknown key 'titel'; allowed are axes, gravity"),
     ('name = "bench"', 'name = "my-bench"', r"platform.name: 'my-bench' is not a name; use 1 to"),
     ('name = "bench"', 'name = "class"', r"platform.name: 'class' is a Python keyword"),
@@ -210,6 +210,18 @@ def test_a_mistake_is_refused_in_one_line(tmp_path: Path, old: str, new: str, me
     assert "\n" not in str(refusal.value)
     assert str(refusal.value).startswith(str(path))
     assert len(str(refusal.value)) < len(str(path)) + 300
+
+
+def test_the_length_of_windows_arrives_in_seconds(tmp_path: Path) -> None:
+    assert read_platform(write(tmp_path, GOOD)).window is None
+    for text, seconds in (("500 ms", 0.5), ("0.25 s", 0.25), ("1.5 min", 90.0)):
+        assert read_platform(write(tmp_path, f'{GOOD}[fit]\nwindow = "{text}"\n')).window == seconds
+
+
+@pytest.mark.parametrize("given", ["0.5", '"0.5"', '"0 s"', '"-1 s"', '"nan s"', '"1 m"', '"s"'])
+def test_a_window_that_is_no_time_is_refused(tmp_path: Path, given: str) -> None:
+    with pytest.raises(InputError, match=r'fit.window: .* is not a time above zero; write "0.5 s"'):
+        read_platform(write(tmp_path, f"{GOOD}[fit]\nwindow = {given}\n"))
 
 
 @pytest.mark.parametrize(

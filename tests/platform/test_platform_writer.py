@@ -76,7 +76,14 @@ def platforms(draw: st.DrawFn) -> Platform:
     )
     gravity = draw(st.floats(0, 100))
     return Platform(
-        draw(names), draw(lines), axes, gravity, tuple(effects), draw(parameters()), draw(signals())
+        draw(names),
+        draw(lines),
+        axes,
+        gravity,
+        tuple(effects),
+        draw(parameters()),
+        draw(signals()),
+        draw(st.none() | st.floats(1e-6, 1e6)),
     )
 
 

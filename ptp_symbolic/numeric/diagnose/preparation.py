@@ -24,6 +24,7 @@ def task_of(
     known: Mapping[str, tuple[float, float | None]],
     declared: Sequence[str],
     noises: Mapping[str, float | None],
+    window: float | None,
     executor: Executor,
     progress: Progress,
 ) -> Task:
@@ -31,13 +32,16 @@ def task_of(
 
     `known` are the known values with the most by which each may be off, `declared` the keys of the
     effects that are no candidates, `noises` the declared noise (rms) of every signal in its unit
-    (None: not declared). Raises InputError for values out of bounds.
+    (None: not declared), `window` the length in s of the windows (None: as far as the noise of the
+    inputs allows, see `window_length`). Raises InputError for values out of bounds.
     """
     off = vanished(model, declared) if declared else {}
     fixed = {**model.defaults, **off, **{name: value for name, (value, _) in known.items()}}
     start = model.parameter_vector({**fixed, **all_values_at_start(free)})
     noise = tuple(noises[name] for name in model.input_names)
-    length = window_length(model, train, start, noise)
+    length = window_length(model, train, start, noise) if window is None else window
+    if length is not None and length >= max(float(run.time[-1] - run.time[0]) for run in train):
+        length = None
     few = [thinned(run, WINDOW_PERIOD) for run in train]
     windows = (_spread(cut(model, few, SHORT)), cut(model, few, LONG)) if length is None else ()
     return Task(
