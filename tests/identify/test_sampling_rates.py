@@ -32,7 +32,12 @@ F_s_pan = { same_as = "F_c_pan" }
 F_v_pan = { start = 0.1, bounds = [0.0, 10.0] }
 [signals]
 tau_pan = { role = "input", column = "torque", unit = "N m", noise = 0.0 }
-theta_pan = { role = "output", column = "angle", unit = "rad", counts_per_revolution = 65536, noise = 0.0 }
+[signals.theta_pan]
+role = "output"
+column = "angle"
+unit = "rad"
+counts_per_revolution = 65536
+noise = 0.0
 """
 
 

@@ -117,7 +117,7 @@ GAP, COUNTS = line_of("value = 1.5"), line_of("= 7200")
 # (what is replaced, by what, what the refusal says)
 REFUSALS = [
     ('name = "bench"\n', "", r"platform: 'name' is missing"),
-    ("[platform]", "[platfrom]", r"bench.toml: unknown key 'platfrom'; allowed are effects, fit, p"),
+    ("[platform]", "[platfrom]", r"bench.toml: unknown key 'platfrom'; allowed are effects, fit"),
     ('title = "Pan', 'titel = "Pan', r"platform: unknown key 'titel'; allowed are axes, gravity"),
     ('name = "bench"', 'name = "my-bench"', r"platform.name: 'my-bench' is not a name; use 1 to"),
     ('name = "bench"', 'name = "class"', r"platform.name: 'class' is a Python keyword"),
