@@ -85,6 +85,11 @@ def _exponent(value: Any) -> int:
     return math.floor(math.log10(abs(value))) if _usable(value) and value else 0
 
 
+def degrees(angle: Any) -> str:
+    """An angle in rad as degrees; a dash where it is none."""
+    return f"{number(math.degrees(angle))}°" if _usable(angle) else NOTHING
+
+
 def in_degrees(quantity: Mapping[str, Any] | None) -> str:
     """The value in degrees when its unit is rad, else nothing."""
     if not quantity or quantity.get("unit") != "rad" or not _usable(quantity.get("value")):

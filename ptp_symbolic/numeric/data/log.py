@@ -78,9 +78,7 @@ def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...
     Logs of the same file name are told apart by their folder (`train/crawl`). Raises InputError as
     `read_log` does, for a folder without logs, and for a log that is given twice.
     """
-    files = [file for path in paths for file in csv_files(Path(path))]
-    if not files:
-        raise InputError("No log is given; name at least one CSV or a folder of them.")
+    files = log_files(paths)
     places = [file.resolve() for file in files]
     for file, place in zip(files, places, strict=True):
         if places.count(place) > 1:
@@ -94,6 +92,14 @@ def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...
             log = Log(name, log.time, log.inputs, log.outputs)
         logs.append(log)
     return tuple(logs)
+
+
+def log_files(paths: Iterable[Path | str]) -> list[Path]:
+    """The files of logs given as files and folders. Raises InputError where there are none."""
+    files = [file for path in paths for file in csv_files(Path(path))]
+    if not files:
+        raise InputError("No log is given; name at least one CSV or a folder of them.")
+    return files
 
 
 def csv_files(path: Path) -> list[Path]:
