@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.platform.units import to_si
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 _LONGEST_TEXT = 200
@@ -84,3 +85,20 @@ def required(entries: Mapping[str, Any], key: str, where: str) -> Any:
     if key not in entries:
         raise InputError(f"{where}: '{key}' is missing; add it.")
     return entries[key]
+
+
+def unit(entry: Mapping[str, Any], where: str) -> tuple[float, str]:
+    """Return (factor, SI unit) of the entry 'unit', which must be a unit text."""
+    given = text(required(entry, "unit", where), f"{where}.unit")
+    try:
+        return to_si(given)
+    except InputError as error:
+        raise InputError(f"{where}.unit: {error}") from error
+
+
+def scaled(value: object, factor: float, where: str) -> float:
+    """Return the number `value` times `factor`, finite."""
+    result = number(value, where) * factor
+    if not math.isfinite(result):
+        raise InputError(f"{where}: {shown(value)} is too large in SI units.")
+    return result
