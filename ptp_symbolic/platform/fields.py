@@ -73,6 +73,21 @@ def number(value: object, where: str) -> float:
     return result
 
 
+def time(value: object, where: str, lowest: float = -math.inf) -> float:
+    """Return a time such as "0.5 s" or "20 ms" in s, above `lowest` (zero, or none)."""
+    above = " above zero" if lowest == 0.0 else ""
+    wrong = InputError(f'{where}: {shown(value)} is not a time{above}; write "0.5 s" or "500 ms".')
+    given, _, name = value.strip().partition(" ") if isinstance(value, str) else ("", "", "")
+    try:
+        factor, si = to_si(name.strip())
+        result = float(given) * factor
+    except (InputError, ValueError) as error:
+        raise wrong from error
+    if si != "s" or not lowest < result < math.inf:
+        raise wrong
+    return result
+
+
 def choice(value: object, choices: Collection[str], where: str) -> str:
     """Return `value` if it is one of `choices`."""
     if not isinstance(value, str) or value not in choices:

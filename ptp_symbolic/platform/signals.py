@@ -1,10 +1,23 @@
 """Read the signals that a platform declares: which column of a log is which quantity."""
 
+from typing import Any
+
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import fields
 from ptp_symbolic.platform.declaration import SignalDeclaration
 
 ROLES = ("input", "output")
+ALLOWED = (
+    "role",
+    "column",
+    "unit",
+    "counts_per_revolution",
+    "noise",
+    "scale",
+    "offset",
+    "delay",
+)
+LONGEST_DELAY = 10.0  # s: beyond it stands a slip of the unit
 
 
 def read_signals(given: object, file: str) -> tuple[SignalDeclaration, ...]:
@@ -26,8 +39,7 @@ def read_signals(given: object, file: str) -> tuple[SignalDeclaration, ...]:
 
 
 def _signal(name: str, given: object, where: str) -> SignalDeclaration:
-    allowed = ("role", "column", "unit", "counts_per_revolution", "noise")
-    entry = fields.table(given, where, allowed)
+    entry = fields.table(given, where, ALLOWED)
     role = fields.choice(fields.required(entry, "role", where), ROLES, f"{where}.role")
     column = fields.text(fields.required(entry, "column", where), f"{where}.column")
     if column != column.strip() or column == "time" or any(mark in column for mark in '[],"'):
@@ -46,4 +58,30 @@ def _signal(name: str, given: object, where: str) -> SignalDeclaration:
     noise = fields.scaled(entry["noise"], factor, f"{where}.noise") if "noise" in entry else None
     if noise is not None and noise < 0:
         raise InputError(f"{where}.noise: {entry['noise']} {entry['unit']} rms is negative.")
-    return SignalDeclaration(name, column, unit, role, counts, noise)
+    return SignalDeclaration(
+        name, column, unit, role, counts, noise, *_raw(entry, factor, where), _delay(entry, where)
+    )
+
+
+def _raw(entry: dict[str, Any], factor: float, where: str) -> tuple[float | None, float]:
+    """Scale in SI per number of the column, and offset: in such numbers, without a scale in SI."""
+    offset = entry.get("offset", 0.0)
+    if "scale" not in entry:
+        return None, fields.scaled(offset, factor, f"{where}.offset")
+    scale = fields.scaled(entry["scale"], factor, f"{where}.scale")
+    if scale == 0.0:
+        raise InputError(
+            f"{where}.scale: is zero, which leaves nothing of the column; give {entry['unit']} per"
+            " number in it, negative to turn the sign."
+        )
+    return scale, fields.number(offset, f"{where}.offset")
+
+
+def _delay(entry: dict[str, Any], where: str) -> float:
+    delay = fields.time(entry["delay"], f"{where}.delay") if "delay" in entry else 0.0
+    if abs(delay) > LONGEST_DELAY:
+        raise InputError(
+            f"{where}.delay: {entry['delay']} is more than {LONGEST_DELAY:g} s; correct its unit,"
+            " or the time stamps of the log."
+        )
+    return delay
