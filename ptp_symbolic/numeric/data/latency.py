@@ -1,7 +1,7 @@
 """Signals that are logged late or act late: put on one clock, that of the motion.
 
-Outputs that share a delay keep their samples, which move on the time axis as they are. Inputs are
-averaged from sample to sample of that clock, or moved where the delay is a whole number of samples.
+Outputs that share a delay keep their samples, which move on the time axis as they are. Inputs keep
+the steps at which they really change, and are averaged from sample to sample of that clock beside.
 """
 
 from collections.abc import Sequence
@@ -15,6 +15,7 @@ from ptp_symbolic.numeric.data.zero_order_hold import held_averages
 from ptp_symbolic.platform import SignalDeclaration
 
 FloatArray = NDArray[np.float64]
+Steps = tuple[FloatArray, FloatArray]  # times in s, and the values that hold from them on
 
 SAME_TIME = 1e-6  # of a sampling period: what rounding may leave between equal times
 
@@ -25,16 +26,16 @@ def on_one_clock(
     values: FloatArray,
     inputs: Sequence[SignalDeclaration],
     outputs: Sequence[SignalDeclaration],
-) -> tuple[FloatArray, FloatArray]:
-    """Return the times [k] in s at which the outputs were measured, and all signals [k, nu + ny]
-    at them, from the `values` [n, nu + ny] that are logged at `time` [n].
+) -> tuple[FloatArray, FloatArray, tuple[Steps, ...]]:
+    """Return the times [k] in s at which the outputs were measured, all signals [k, nu + ny] at
+    them, and the steps of the inputs, from the `values` [n, nu + ny] that are logged at `time` [n].
 
     Samples for which a signal is not there yet, or no more, are left out. Raises InputError for an
     encoder that would be interpolated.
     """
     signals = (*inputs, *outputs)
     if not any(s.delay for s in signals):
-        return time, values
+        return time, values, ()
     leader = next((s for s in outputs if s.counts_per_revolution), outputs[0])
     late = [s.delay for s in inputs] + [-s.delay for s in outputs]
     rounding = SAME_TIME * float(np.median(np.diff(time)))
@@ -49,7 +50,11 @@ def on_one_clock(
         _output(path, time - s.delay, column, s, leader, clock)
         for s, column in zip(outputs, values[:, len(inputs) :].T, strict=True)
     ]
-    return clock, np.column_stack([moved, *seen])
+    steps = [
+        (time + s.delay, column) if _samples_at(time + s.delay, clock) is None else (clock, acting)
+        for s, column, acting in zip(inputs, values.T, moved.T, strict=False)
+    ]
+    return clock, np.column_stack([moved, *seen]), tuple(steps)
 
 
 def delayed_inputs(
@@ -61,10 +66,15 @@ def delayed_inputs(
     edges = np.append(clock, 2.0 * clock[-1] - clock[-2])
     moved = []
     for signal, column in zip(inputs, values.T, strict=True):
-        at = _samples_at(time + signal.delay, clock)
-        moved.append(
-            held_averages(time + signal.delay, column, edges) if at is None else column[at]
-        )
+        acts = time + signal.delay
+        at = _samples_at(acts, clock)
+        if at is None:
+            at = np.maximum(np.searchsorted(acts, edges, side="right") - 1, 0)
+            changes = column[at[1:]] != column[at[:-1]]
+            averages = held_averages(acts, column, edges)
+            moved.append(np.where(changes | (np.diff(at) > 1), averages, column[at[:-1]]))
+        else:
+            moved.append(column[at])
     return np.column_stack([np.empty((len(clock), 0)), *moved])
 
 

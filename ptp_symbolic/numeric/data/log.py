@@ -1,7 +1,7 @@
 """Logs of a machine: the columns that its platform names, in SI units."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data.calibration import calibrated, factor_of, unit_factor
-from ptp_symbolic.numeric.data.latency import delayed_inputs, on_one_clock
+from ptp_symbolic.numeric.data.latency import Steps, delayed_inputs, on_one_clock
 from ptp_symbolic.numeric.data.table import Table, read_numbers, read_table
 from ptp_symbolic.platform import Platform, SignalDeclaration, naming_file
 
@@ -22,13 +22,15 @@ class Log:
 
     Columns are in the order of the platform's signals of that role and in their units (SI), scales,
     offsets and delays of the signals applied. The sampling may be irregular; inputs are zero-order
-    hold.
+    hold. Where they change between samples, being delayed, `inputs` are averages from sample to
+    sample, and `steps` the times in s and values [m] of every input (empty: as `inputs` say).
     """
 
     name: str
     time: NDArray[np.float64]
     inputs: NDArray[np.float64]
     outputs: NDArray[np.float64]
+    steps: tuple[Steps, ...] = ()
 
 
 def read_log(path: Path | str, platform: Platform) -> Log:
@@ -47,7 +49,8 @@ def read_log(path: Path | str, platform: Platform) -> Log:
                 f"Platform '{platform.name}' has no output signal to compare with {path}; add one, "
                 "such as [signals.theta_pan]."
             )
-    time, values = on_one_clock(path, *_read_signals(path, [*inputs, *outputs]), inputs, outputs)
+    given = _read_signals(path, [*inputs, *outputs])
+    time, values, steps = on_one_clock(path, *given, inputs, outputs)
     _refuse_short(path, time)
     split = len(inputs)
     return Log(
@@ -55,6 +58,7 @@ def read_log(path: Path | str, platform: Platform) -> Log:
         time,
         np.ascontiguousarray(values[:, :split]),
         np.ascontiguousarray(values[:, split:]),
+        steps,
     )
 
 
@@ -95,7 +99,7 @@ def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...
         log = read_log(file, platform)
         if stems.count(file.stem) > 1:
             name = f"{place.parent.name}/{place.stem}"
-            log = Log(name, log.time, log.inputs, log.outputs)
+            log = replace(log, name=name)
         logs.append(log)
     return tuple(logs)
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.data.zero_order_hold import held_averages
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
+from ptp_symbolic.numeric.identify.run_inputs import with_inputs
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -45,14 +45,12 @@ def thinned(run: Run, period: float) -> Run:
     kept = np.arange(0, len(run.time), every)
     time, last = run.time[kept], run.held_inputs[kept[-1:]]
     means = [held_averages(run.time, column, time) for column in run.held_inputs.T]
-    held = np.ascontiguousarray(np.vstack([np.column_stack(means), last]))
-    return replace(
+    few = replace(
         run,
         time=np.ascontiguousarray(time),
-        inputs=stack([table(time, column, "hold") for column in held.T]),
-        held_inputs=held,
         measured=np.ascontiguousarray(run.measured[kept]),
     )
+    return with_inputs(few, np.vstack([np.column_stack(means), last]))
 
 
 def grid_averages(values: FloatArray, grid: IntArray) -> FloatArray:

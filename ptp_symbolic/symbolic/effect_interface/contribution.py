@@ -82,6 +82,19 @@ class Input:
 
 
 @dataclass(frozen=True)
+class Sensor:
+    """What may be measured beside joint angles and states: name, unit, meaning, value.
+
+    It is an output of the platforms that declare a signal of that name.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    value: sp.Expr
+
+
+@dataclass(frozen=True)
 class Friction:
     """Set-valued dry friction that acts on one rate.
 
@@ -175,7 +188,7 @@ class Contribution:
     of the effect's own states, which its `torques` charge and discharge. `delays` hold back the
     inputs of an axis. `prescribed` gives joint rates an acceleration as input, in place of the
     torque on the joint; `commands` gives an axis other inputs than those of its drive. What a
-    sensor shows is the quantity ``reading_<state>``.
+    sensor shows is the quantity ``reading_<state>``, or ``reading_<name>`` of one of the `sensors`.
     """
 
     quantities: Mapping[str, sp.Expr] = field(default_factory=dict)
@@ -196,3 +209,4 @@ class Contribution:
     delays: Mapping[str, sp.Symbol] = field(default_factory=dict)
     limits: tuple[Limit, ...] = ()
     prescribed: Mapping[sp.Symbol, Input] = field(default_factory=dict)
+    sensors: tuple[Sensor, ...] = ()
