@@ -58,12 +58,7 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
     values = (resistance, winding * current**2, switched, command, applied)
     defined = {n.format(axis=place.axis): v for n, v in zip(names, values, strict=True)}
     state = State(str(current), "A", f"current of the {place.axis} motor", derivative)
-    rate = Sensor(
-        f"omega_motor_{place.axis}",
-        "rad/s",
-        f"rate of the {place.axis} motor",
-        speed,
-    )
+    rate = Sensor(f"omega_motor_{place.axis}", "rad/s", f"rate of the {place.axis} motor", speed)
     return Contribution(quantities=defined, drives=(drive,), states=(state,), sensors=(rate,))
 
 
