@@ -191,21 +191,24 @@ def _rigid_configuration(platform: Platform, contributions: Contributions) -> Ri
     return RigidConfiguration(platform.axes, bodies, sp.ImmutableMatrix(gravity), offsets)
 
 
-def _inputs(platform: Platform, contributions: Contributions) -> list[tuple[Input, str]]:
-    """The inputs, each with its axis: of what commands or drives it, else the joint's torque."""
+def _inputs(platform: Platform, contributions: Contributions) -> list[tuple[Input, str | None]]:
+    """The inputs, each with its axis: of what commands or drives it, else the joint's torque; then
+    those that drive none.
+    """
     drives = {drive.axis: drive.inputs for drive in contributions.drives}
     drives |= {kinematics.place_of(w): (given,) for w, given in contributions.prescribed.items()}
     for contribution in contributions.by_effect:
         drives |= contribution.commands
-    inputs = []
+    inputs: list[tuple[Input, str | None]] = []
     for axis in platform.axes:
         own = Input(str(kinematics.torque(axis)), "N m", f"torque on the {axis} joint")
         inputs += [(given, axis) for given in drives.get(axis, (own,))]
-    return inputs
+    return inputs + [(given, None) for c in contributions.by_effect for given in c.inputs]
 
 
-def _delay_of(axis: str, contributions: Contributions) -> sp.Symbol | None:
-    return next((c.delays[axis] for c in contributions.by_effect if axis in c.delays), None)
+def _delay_of(axis: str | None, contributions: Contributions) -> sp.Symbol | None:
+    delays = (d for c in contributions.by_effect for on, d in c.delays.items() if on == axis)
+    return next(delays, None)
 
 
 def _extra_states(

@@ -34,6 +34,9 @@ from ptp_symbolic.symbolic.effects.quadratic_drag import QUADRATIC_DRAG
 from ptp_symbolic.symbolic.effects.rate_dependent_breakaway import RATE_DEPENDENT_BREAKAWAY
 from ptp_symbolic.symbolic.effects.rigid_bodies import RIGID_BODIES
 from ptp_symbolic.symbolic.effects.shaft_compliance import SHAFT_COMPLIANCE
+from ptp_symbolic.symbolic.effects.temperature_dependent_friction import (
+    TEMPERATURE_DEPENDENT_FRICTION,
+)
 from ptp_symbolic.symbolic.effects.viscous_friction import VISCOUS_FRICTION
 from ptp_symbolic.symbolic.effects.voltage_offset import VOLTAGE_OFFSET
 from ptp_symbolic.symbolic.effects.voltage_saturation import VOLTAGE_SATURATION
@@ -55,6 +58,7 @@ EFFECTS: tuple[Effect, ...] = (
     LOAD_DEPENDENT_FRICTION,
     POSITION_DEPENDENT_FRICTION,
     RATE_DEPENDENT_BREAKAWAY,
+    TEMPERATURE_DEPENDENT_FRICTION,
     QUADRATIC_DRAG,
     BACKLASH,
     SHAFT_COMPLIANCE,
