@@ -1,7 +1,6 @@
 """Read a platform TOML into plain data, or refuse it in one line that names file and key."""
 
 import dataclasses
-import math
 import re
 import tomllib
 from pathlib import Path
@@ -16,13 +15,10 @@ from ptp_symbolic.platform.declaration import (
     EffectDeclaration,
     ParameterDeclaration,
     Platform,
-    SignalDeclaration,
 )
 from ptp_symbolic.platform.fit_settings import window_of
+from ptp_symbolic.platform.signals import read_signals
 from ptp_symbolic.platform.text_file import read_text_bytes
-from ptp_symbolic.platform.units import to_si
-
-ROLES = ("input", "output")
 
 _MAX_BYTES = 1_000_000
 # tomllib needs a time that grows with the square of the parts of a dotted key.
@@ -63,7 +59,7 @@ def read_platform(source: str | Path) -> Platform:
         gravity=_gravity(head, f"{where}: platform.gravity"),
         effects=_effects(fields.required(document, "effects", where), axes, where),
         parameters=_parameters(document.get("parameters", {}), where),
-        signals=_signals(document.get("signals", {}), where),
+        signals=read_signals(document.get("signals", {}), where),
         window=window_of(document.get("fit", {}), f"{where}: fit"),
         source=where,
     )
@@ -181,8 +177,8 @@ def _parameters(given: object, file: str) -> tuple[ParameterDeclaration, ...]:
 
 def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDeclaration:
     key = "start" if "start" in entry else "value"
-    factor, unit = _unit(entry, where) if "unit" in entry else (1.0, None)
-    value = _scaled(entry[key], factor, f"{where}.{key}")
+    factor, unit = fields.unit(entry, where) if "unit" in entry else (1.0, None)
+    value = fields.scaled(entry[key], factor, f"{where}.{key}")
     lower = upper = None
     if "bounds" in entry:
         bounds = entry["bounds"]
@@ -190,7 +186,7 @@ def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDecla
             raise InputError(
                 f"{where}.bounds: {fields.shown(bounds)}: write two numbers, [lower, upper]."
             )
-        lower, upper = (_scaled(bound, factor, f"{where}.bounds") for bound in bounds)
+        lower, upper = (fields.scaled(bound, factor, f"{where}.bounds") for bound in bounds)
         unit_text = f" {entry['unit']}" if "unit" in entry else ""
         if lower >= upper:
             raise InputError(
@@ -204,7 +200,7 @@ def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDecla
             )
     uncertainty = None
     if "uncertainty" in entry:
-        uncertainty = _scaled(entry["uncertainty"], factor, f"{where}.uncertainty")
+        uncertainty = fields.scaled(entry["uncertainty"], factor, f"{where}.uncertainty")
         if key == "start" or uncertainty < 0.0:
             raise InputError(
                 f"{where}.uncertainty: {fields.shown(entry['uncertainty'])}: give zero or more, and"
@@ -231,57 +227,3 @@ def _tied(
     return dataclasses.replace(
         independent[target], name=name, free=False, lower=None, upper=None, same_as=target
     )
-
-
-def _signals(given: object, file: str) -> tuple[SignalDeclaration, ...]:
-    found: dict[str, SignalDeclaration] = {}
-    for name, entry in fields.table(given, f"{file}: signals").items():
-        where = f"{file}: signals.{fields.name(name, f'{file}: signals')}"
-        signal = _signal(name, entry, where)
-        if signal.column in found:
-            raise InputError(
-                f"{where}.column: {fields.shown(signal.column)} is also the column of "
-                f"{found[signal.column].signal}; give each signal its own."
-            )
-        found[signal.column] = signal
-    return tuple(found.values())
-
-
-def _signal(name: str, given: object, where: str) -> SignalDeclaration:
-    allowed = ("role", "column", "unit", "counts_per_revolution", "noise")
-    entry = fields.table(given, where, allowed)
-    role = fields.choice(fields.required(entry, "role", where), ROLES, f"{where}.role")
-    column = fields.text(fields.required(entry, "column", where), f"{where}.column")
-    if column != column.strip() or column == "time" or any(mark in column for mark in '[],"'):
-        raise InputError(
-            f"{where}.column: {fields.shown(column)}: give the CSV column without its [unit], "
-            "without quotes and commas; 'time' is the time base."
-        )
-    fields.required(entry, "unit", where)
-    factor, unit = _unit(entry, where)
-    counts = entry.get("counts_per_revolution")
-    if counts is not None and (type(counts) is not int or not 1 <= counts <= 2**40):
-        raise InputError(
-            f"{where}.counts_per_revolution: {fields.shown(counts)} is not a whole number above 0."
-        )
-    if counts is not None and unit != "rad":
-        raise InputError(f"{where}.counts_per_revolution: only for an angle, not for [{unit}].")
-    noise = _scaled(entry["noise"], factor, f"{where}.noise") if "noise" in entry else None
-    if noise is not None and noise < 0:
-        raise InputError(f"{where}.noise: {entry['noise']} {entry['unit']} rms is negative.")
-    return SignalDeclaration(name, column, unit, role, counts, noise)
-
-
-def _unit(entry: dict[str, Any], where: str) -> tuple[float, str]:
-    text = fields.text(entry["unit"], f"{where}.unit")
-    try:
-        return to_si(text)
-    except InputError as error:
-        raise InputError(f"{where}.unit: {error}") from error
-
-
-def _scaled(value: object, factor: float, where: str) -> float:
-    result = fields.number(value, where) * factor
-    if not math.isfinite(result):
-        raise InputError(f"{where}: {fields.shown(value)} is too large in SI units.")
-    return result

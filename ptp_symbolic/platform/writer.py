@@ -52,6 +52,9 @@ def _signal(signal: SignalDeclaration) -> dict[str, Any]:
         unit=signal.unit,
         counts_per_revolution=signal.counts_per_revolution,
         noise=_decimal(signal.noise),
+        scale=_decimal(signal.scale),
+        offset=float(signal.offset) if signal.offset else None,
+        delay=f"{float(signal.delay)!r} s" if signal.delay else None,
     )
 
 

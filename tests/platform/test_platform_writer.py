@@ -54,7 +54,12 @@ def signals(draw: st.DrawFn) -> tuple[SignalDeclaration, ...]:
         counts = draw(st.none() | st.integers(1, 10**6)) if unit == "rad" else None
         noise = draw(st.none() | st.floats(0, 1e300))
         role = draw(st.sampled_from(["input", "output"]))
-        found.append(SignalDeclaration(name, f"{name} col", unit, role, counts, noise))
+        scale = draw(st.none() | numbers.filter(bool))
+        delay = draw(st.floats(-10.0, 10.0))
+        offset = draw(numbers)
+        found.append(
+            SignalDeclaration(name, f"{name} col", unit, role, counts, noise, scale, offset, delay)
+        )
     return tuple(found)
 
 

@@ -2,7 +2,13 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Drive, Input, State
+from ptp_symbolic.symbolic.effect_interface.contribution import (
+    Contribution,
+    Drive,
+    Input,
+    Sensor,
+    State,
+)
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
@@ -52,7 +58,8 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
     values = (resistance, winding * current**2, switched, command, applied)
     defined = {n.format(axis=place.axis): v for n, v in zip(names, values, strict=True)}
     state = State(str(current), "A", f"current of the {place.axis} motor", derivative)
-    return Contribution(quantities=defined, drives=(drive,), states=(state,))
+    rate = Sensor(f"omega_motor_{place.axis}", "rad/s", f"rate of the {place.axis} motor", speed)
+    return Contribution(quantities=defined, drives=(drive,), states=(state,), sensors=(rate,))
 
 
 def _contribute(place: Place) -> Contribution:

@@ -1,0 +1,87 @@
+"""Read the signals that a platform declares: which column of a log is which quantity."""
+
+from typing import Any
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.platform import fields
+from ptp_symbolic.platform.declaration import SignalDeclaration
+
+ROLES = ("input", "output")
+ALLOWED = (
+    "role",
+    "column",
+    "unit",
+    "counts_per_revolution",
+    "noise",
+    "scale",
+    "offset",
+    "delay",
+)
+LONGEST_DELAY = 10.0  # s: beyond it stands a slip of the unit
+
+
+def read_signals(given: object, file: str) -> tuple[SignalDeclaration, ...]:
+    """Return the signals that the `[signals]` table of the platform `file` declares, in SI units.
+
+    Raises InputError that names the file and the key.
+    """
+    found: dict[str, SignalDeclaration] = {}
+    for name, entry in fields.table(given, f"{file}: signals").items():
+        where = f"{file}: signals.{fields.name(name, f'{file}: signals')}"
+        signal = _signal(name, entry, where)
+        if signal.column in found:
+            raise InputError(
+                f"{where}.column: {fields.shown(signal.column)} is also the column of "
+                f"{found[signal.column].signal}; give each signal its own."
+            )
+        found[signal.column] = signal
+    return tuple(found.values())
+
+
+def _signal(name: str, given: object, where: str) -> SignalDeclaration:
+    entry = fields.table(given, where, ALLOWED)
+    role = fields.choice(fields.required(entry, "role", where), ROLES, f"{where}.role")
+    column = fields.text(fields.required(entry, "column", where), f"{where}.column")
+    if column != column.strip() or column == "time" or any(mark in column for mark in '[],"'):
+        raise InputError(
+            f"{where}.column: {fields.shown(column)}: give the CSV column without its [unit], "
+            "without quotes and commas; 'time' is the time base."
+        )
+    factor, unit = fields.unit(entry, where)
+    counts = entry.get("counts_per_revolution")
+    if counts is not None and (type(counts) is not int or not 1 <= counts <= 2**40):
+        raise InputError(
+            f"{where}.counts_per_revolution: {fields.shown(counts)} is not a whole number above 0."
+        )
+    if counts is not None and unit != "rad":
+        raise InputError(f"{where}.counts_per_revolution: only for an angle, not for [{unit}].")
+    noise = fields.scaled(entry["noise"], factor, f"{where}.noise") if "noise" in entry else None
+    if noise is not None and noise < 0:
+        raise InputError(f"{where}.noise: {entry['noise']} {entry['unit']} rms is negative.")
+    return SignalDeclaration(
+        name, column, unit, role, counts, noise, *_raw(entry, factor, where), _delay(entry, where)
+    )
+
+
+def _raw(entry: dict[str, Any], factor: float, where: str) -> tuple[float | None, float]:
+    """Scale in SI per number of the column, and offset: in such numbers, without a scale in SI."""
+    offset = entry.get("offset", 0.0)
+    if "scale" not in entry:
+        return None, fields.scaled(offset, factor, f"{where}.offset")
+    scale = fields.scaled(entry["scale"], factor, f"{where}.scale")
+    if scale == 0.0:
+        raise InputError(
+            f"{where}.scale: is zero, which leaves nothing of the column; give {entry['unit']} per"
+            " number in it, negative to turn the sign."
+        )
+    return scale, fields.number(offset, f"{where}.offset")
+
+
+def _delay(entry: dict[str, Any], where: str) -> float:
+    delay = fields.time(entry["delay"], f"{where}.delay") if "delay" in entry else 0.0
+    if abs(delay) > LONGEST_DELAY:
+        raise InputError(
+            f"{where}.delay: {entry['delay']} is more than {LONGEST_DELAY:g} s; correct its unit,"
+            " or the time stamps of the log."
+        )
+    return delay
