@@ -57,6 +57,7 @@ class SignalDeclaration:
     With a `scale`, in `unit` per number of the column, the signal is scale (number - offset);
     without one it is the column, its unit converted, less the `offset` in `unit`. An output whose
     time stamp is t was measured at t - `delay`, an input acts on the machine at t + `delay`, in s.
+    `column_unit` is the unit of a column whose heading has none; None for `unit`.
     """
 
     signal: str
@@ -68,6 +69,17 @@ class SignalDeclaration:
     scale: float | None = None
     offset: float = 0.0
     delay: float = 0.0
+    column_unit: str | None = None
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The times of a log: name of their column (None: time or t), and its unit where the heading
+    gives none.
+    """
+
+    column: str | None = None
+    unit: str | None = None
 
 
 @dataclass(frozen=True)
@@ -75,7 +87,7 @@ class Platform:
     """A declared machine. `axes` are ordered pan, tilt; `gravity` is in m/s^2.
 
     `window` is the length in s of the windows into which a fit cuts runs, None where it finds that
-    by itself. `source` is the file that says so, for messages; None where there is none.
+    by itself; `clock` is the column of times. `source` is the file that says so, for messages; None where there is none.
     """
 
     name: str
@@ -86,6 +98,7 @@ class Platform:
     parameters: tuple[ParameterDeclaration, ...]
     signals: tuple[SignalDeclaration, ...]
     window: float | None = None
+    clock: Clock = Clock()
     source: str | None = field(default=None, compare=False, repr=False)
 
 

@@ -16,7 +16,7 @@ from ptp_symbolic.platform.declaration import (
     ParameterDeclaration,
     Platform,
 )
-from ptp_symbolic.platform.fit_settings import window_of
+from ptp_symbolic.platform.fit_settings import clock_of, window_of
 from ptp_symbolic.platform.signals import read_signals
 from ptp_symbolic.platform.text_file import read_text_bytes
 
@@ -41,7 +41,7 @@ def read_platform(source: str | Path) -> Platform:
     path = platform_file(source)
     where = str(path)
     document = fields.table(
-        _parse(path), where, ("platform", "effects", "parameters", "signals", "fit")
+        _parse(path), where, ("platform", "effects", "parameters", "signals", "log", "fit")
     )
     head = fields.table(
         fields.required(document, "platform", where),
@@ -60,6 +60,7 @@ def read_platform(source: str | Path) -> Platform:
         effects=_effects(fields.required(document, "effects", where), axes, where),
         parameters=_parameters(document.get("parameters", {}), where),
         signals=read_signals(document.get("signals", {}), where),
+        clock=clock_of(document.get("log", {}), f"{where}: log"),
         window=window_of(document.get("fit", {}), f"{where}: fit"),
         source=where,
     )

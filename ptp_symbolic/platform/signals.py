@@ -5,6 +5,7 @@ from typing import Any
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import fields
 from ptp_symbolic.platform.declaration import SignalDeclaration
+from ptp_symbolic.platform.units import compatible, to_si
 
 ROLES = ("input", "output")
 ALLOWED = (
@@ -16,6 +17,7 @@ ALLOWED = (
     "scale",
     "offset",
     "delay",
+    "column_unit",
 )
 LONGEST_DELAY = 10.0  # s: beyond it stands a slip of the unit
 
@@ -59,8 +61,24 @@ def _signal(name: str, given: object, where: str) -> SignalDeclaration:
     if noise is not None and noise < 0:
         raise InputError(f"{where}.noise: {entry['noise']} {entry['unit']} rms is negative.")
     return SignalDeclaration(
-        name, column, unit, role, counts, noise, *_raw(entry, factor, where), _delay(entry, where)
+        name,
+        column,
+        unit,
+        role,
+        counts,
+        noise,
+        *_raw(entry, factor, where),
+        _delay(entry, where),
+        _column_unit(entry, unit, where),
     )
+
+
+def _column_unit(entry: dict[str, Any], unit: str, where: str) -> str | None:
+    """Unit of a column whose heading has none: 'column_unit', or else 'unit'."""
+    given = fields.text(entry.get("column_unit", entry["unit"]), f"{where}.column_unit")
+    if not compatible(given, unit):
+        raise InputError(f"{where}.column_unit: {given} is no unit of [{unit}]; correct it.")
+    return None if to_si(given) == (1.0, unit) else given
 
 
 def _raw(entry: dict[str, Any], factor: float, where: str) -> tuple[float | None, float]:

@@ -24,6 +24,7 @@ def platform_text(platform: Platform) -> str:
         ],
         "parameters": {p.name: _parameter(p) for p in platform.parameters},
         "signals": {s.signal: _signal(s) for s in platform.signals},
+        "log": _given(time=platform.clock.column, time_unit=platform.clock.unit),
         "fit": {} if platform.window is None else {"window": f"{platform.window!r} s"},
     }
     return tomlkit.dumps({name: section for name, section in sections.items() if section})
@@ -55,6 +56,7 @@ def _signal(signal: SignalDeclaration) -> dict[str, Any]:
         scale=_decimal(signal.scale),
         offset=float(signal.offset) if signal.offset else None,
         delay=f"{float(signal.delay)!r} s" if signal.delay else None,
+        column_unit=signal.column_unit,
     )
 
 

@@ -87,11 +87,6 @@ def test_a_rate_in_counts_and_a_temperature_in_celsius(tmp_path: Path) -> None:
     ("line", "heading", "message"),
     [
         (
-            'unit = "V"',
-            "x",
-            "write 'x [V]', or give the scale of u_pan in V per count",
-        ),
-        (
             'unit = "V", scale = -1.0',
             "x [mV]",
             'its scale makes -1 V each; write unit = "mV"',

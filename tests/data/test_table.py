@@ -3,7 +3,7 @@
 import tracemalloc
 from pathlib import Path
 
-from ptp_symbolic.numeric.data.table import read_numbers, read_table
+from ptp_symbolic.numeric.data.formats import read_table
 
 
 def test_a_log_without_a_last_line_end_takes_no_more_memory(tmp_path: Path) -> None:
@@ -14,7 +14,7 @@ def test_a_log_without_a_last_line_end_takes_no_more_memory(tmp_path: Path) -> N
         path.write_text(f"time [s],pan_angle [rad]\n{rows}{end}", encoding="utf-8")
         table = read_table(path)
         tracemalloc.start()
-        read_numbers(table, (0, 1))
+        table.numbers((0, 1))
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert peaks[1] < 1.1 * peaks[0]

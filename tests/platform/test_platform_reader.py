@@ -89,7 +89,9 @@ def test_every_entry_arrives_in_si(tmp_path: Path) -> None:
         ),
         signals=(
             SignalDeclaration("u_pan", "pan voltage", "V", "input", None, 0.008),
-            SignalDeclaration("theta_pan", "pan_angle", "rad", "output", 7200, 0.1 * degree),
+            SignalDeclaration(
+                "theta_pan", "pan_angle", "rad", "output", 7200, 0.1 * degree, column_unit="deg"
+            ),
         ),
     )
 
@@ -117,7 +119,11 @@ GAP, COUNTS = line_of("value = 1.5"), line_of("= 7200")
 # (what is replaced, by what, what the refusal says)
 REFUSALS = [
     ('name = "bench"\n', "", r"platform: 'name' is missing"),
-    ("[platform]", "[platfrom]", r"bench.toml: unknown key 'platfrom'; allowed are effects, fit"),
+    (
+        "[platform]",
+        "[platfrom]",
+        r"bench.toml: unknown key 'platfrom'; allowed are effects, fit, l",
+    ),
     ('title = "Pan', 'titel = "Pan', r"platform: unknown key 'titel'; allowed are axes, gravity"),
     ('name = "bench"', 'name = "my-bench"', r"platform.name: 'my-bench' is not a name; use 1 to"),
     ('name = "bench"', 'name = "class"', r"platform.name: 'class' is a Python keyword"),

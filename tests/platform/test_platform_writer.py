@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from ptp_symbolic.platform import (
+    Clock,
     EffectDeclaration,
     ParameterDeclaration,
     Platform,
@@ -89,6 +90,7 @@ def platforms(draw: st.DrawFn) -> Platform:
         draw(parameters()),
         draw(signals()),
         draw(st.none() | st.floats(1e-6, 1e6)),
+        Clock(draw(st.none() | names), draw(st.sampled_from([None, "s", "ms"]))),
     )
 
 

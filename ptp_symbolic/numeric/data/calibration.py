@@ -17,12 +17,13 @@ def factor_of(where: str, signal: SignalDeclaration, unit: str | None) -> float:
     """Return by what a number of the column is multiplied: its unit in SI, or the declared scale.
 
     `unit` is that of the heading, if it has one; `where` begins a refusal. With a scale the numbers
-    are taken as they stand, whatever unit the heading gives them. Raises InputError for a column
-    without unit or scale, a wrong unit, and a scale that contradicts the unit of the heading.
+    are taken as they stand, whatever unit the heading gives them. A heading without a unit has that
+    of the platform file. Raises InputError for a wrong unit, and for a scale that contradicts the
+    unit of the heading.
     """
     if signal.scale is None:
-        hint = f", or give the scale of {signal.signal} in {signal.unit} per count"
-        return unit_factor(where, signal.column, signal.signal, signal.unit, unit, hint)
+        given = unit or signal.column_unit or signal.unit
+        return unit_factor(where, signal.column, signal.signal, signal.unit, given)
     if unit and _fits(unit, signal.unit):
         factor = to_si(unit)[0]
         if factor != 1.0 and abs(math.log(abs(signal.scale))) < abs(
@@ -35,15 +36,13 @@ def factor_of(where: str, signal: SignalDeclaration, unit: str | None) -> float:
     return signal.scale
 
 
-def unit_factor(
-    where: str, column: str, signal: str, wanted: str, unit: str | None, hint: str = ""
-) -> float:
+def unit_factor(where: str, column: str, signal: str, wanted: str, unit: str | None) -> float:
     """Return the factor from the `unit` of a heading to the `wanted` SI unit of the signal.
 
-    Raises InputError, begun by `where`, for no unit (with a `hint`) and for one that does not fit.
+    Raises InputError, begun by `where`, for no unit and for one that does not fit.
     """
     if not unit:
-        raise InputError(f"{where} has no unit; write '{column} [{wanted}]'{hint}.")
+        raise InputError(f"{where} has no unit; write '{column} [{wanted}]'.")
     try:
         fits = compatible(unit, wanted)
         factor = to_si(unit)[0]

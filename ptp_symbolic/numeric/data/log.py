@@ -9,11 +9,14 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data.calibration import calibrated, factor_of, unit_factor
+from ptp_symbolic.numeric.data.continuity import Wraps, unwrapped
+from ptp_symbolic.numeric.data.formats import files_at, read_table
 from ptp_symbolic.numeric.data.latency import Steps, delayed_inputs, on_one_clock
-from ptp_symbolic.numeric.data.table import Table, read_numbers, read_table
-from ptp_symbolic.platform import Platform, SignalDeclaration, naming_file
+from ptp_symbolic.numeric.data.table import Table
+from ptp_symbolic.platform import Clock, Platform, SignalDeclaration, naming_file
 
 MIN_ROWS = 10
+LONGEST_PERIOD = 1.0  # s between samples; no machine here is that slow
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +27,7 @@ class Log:
     offsets and delays of the signals applied. The sampling may be irregular; inputs are zero-order
     hold. Where they change between samples, being delayed, `inputs` are averages from sample to
     sample, and `steps` the times in s and values [m] of every input (empty: as `inputs` say).
+    `wraps` tells of which angles turns, or ends of a counter, were taken out.
     """
 
     name: str
@@ -31,10 +35,11 @@ class Log:
     inputs: NDArray[np.float64]
     outputs: NDArray[np.float64]
     steps: tuple[Steps, ...] = ()
+    wraps: tuple[Wraps, ...] = ()
 
 
 def read_log(path: Path | str, platform: Platform) -> Log:
-    """Read one CSV log with the signals that `platform` declares.
+    """Read one log (see `read_table`) with the signals that `platform` declares.
 
     Raises InputError, with the line where there is one, for a file that is missing, not text or
     truncated, a missing signal or a wrong unit, cells that are no finite numbers, time stamps that
@@ -49,8 +54,10 @@ def read_log(path: Path | str, platform: Platform) -> Log:
                 f"Platform '{platform.name}' has no output signal to compare with {path}; add one, "
                 "such as [signals.theta_pan]."
             )
-    given = _read_signals(path, [*inputs, *outputs])
-    time, values, steps = on_one_clock(path, *given, inputs, outputs)
+    clock, numbers = _read_signals(path, [*inputs, *outputs], platform.clock)
+    whole = [unwrapped(c, s) for c, s in zip(numbers.T, [*inputs, *outputs], strict=True)]
+    numbers = np.column_stack([column for column, _ in whole])
+    time, values, steps = on_one_clock(path, clock, numbers, inputs, outputs)
     _refuse_short(path, time)
     split = len(inputs)
     return Log(
@@ -59,6 +66,7 @@ def read_log(path: Path | str, platform: Platform) -> Log:
         np.ascontiguousarray(values[:, :split]),
         np.ascontiguousarray(values[:, split:]),
         steps,
+        tuple(wraps for _, wraps in whole if wraps is not None),
     )
 
 
@@ -76,12 +84,12 @@ def read_inputs(
                 f"Platform '{platform.name}' has no input signal to read from {path}; add one, "
                 "such as [signals.u_pan]."
             )
-    time, values = _read_signals(Path(path), inputs)
+    time, values = _read_signals(Path(path), inputs, platform.clock)
     return time, delayed_inputs(time, values, inputs, time)
 
 
 def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...]:
-    """Read logs from files and folders; a folder stands for all *.csv in it, sorted by name.
+    """Read logs from files and folders; a folder stands for all logs in it, sorted by name.
 
     Logs of the same file name are told apart by their folder (`train/crawl`). Raises InputError as
     `read_log` does, for a folder without logs, and for a log that is given twice.
@@ -104,49 +112,42 @@ def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...
 
 def log_files(paths: Iterable[Path | str]) -> list[Path]:
     """The files of logs given as files and folders. Raises InputError where there are none."""
-    files = [file for path in paths for file in csv_files(Path(path))]
+    files = [file for path in paths for file in files_at(Path(path))]
     if not files:
-        raise InputError("No log is given; name at least one CSV or a folder of them.")
-    return files
-
-
-def csv_files(path: Path) -> list[Path]:
-    """The logs at `path`: itself, or those of a folder. Raises InputError where it has none."""
-    if not path.is_dir():
-        return [path]
-    files = sorted(file for file in path.glob("*.csv") if not file.name.startswith("."))
-    if not files:
-        raise InputError(f"{path}: the folder has no *.csv in it; name the folder of the logs.")
+        raise InputError("No log is given; name at least one log or a folder of them.")
     return files
 
 
 def _read_signals(
-    path: Path, signals: Sequence[SignalDeclaration]
+    path: Path, signals: Sequence[SignalDeclaration], declared: Clock
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return time [n] and the signals [n, len(signals)] in SI."""
     table = read_table(path)
-    names = [name for name, _ in table.headings]
-    if "time" not in names:
-        raise InputError(f"{path}:1: column 'time [s]' is missing; {_listing(table)}.")
-    clock = table.headings[names.index("time")][1]
-    second = unit_factor(f"{path}:1: column 'time'", "time", "time", "s", clock)
-    missing = [signal.column for signal in signals if signal.column not in names]
+    clock = table.clock(declared)
+    if clock is None:
+        raise InputError(
+            f"{table.head}: column '{declared.column or 'time'} [s]' is missing; {_listing(table)}."
+        )
+    places = {signal.column: table.place(signal.column) for signal in signals}
+    missing = [column for column, place in places.items() if place is None]
     if missing:
         raise InputError(
-            f"{path}:1: signal {', '.join(repr(name) for name in missing)} is missing; "
+            f"{table.head}: signal {', '.join(repr(name) for name in missing)} is missing; "
             f"{_listing(table)}."
         )
-    columns = [names.index("time"), *(names.index(signal.column) for signal in signals)]
+    found = [place for place in places.values() if place is not None]
     factors = [
-        factor_of(f"{path}:1: column '{s.column}'", s, table.headings[k][1])
-        for s, k in zip(signals, columns[1:], strict=True)
+        factor_of(f"{table.head}: column '{s.column}'", s, unit)
+        for s, (_, unit) in zip(signals, found, strict=True)
     ]
-    numbers = read_numbers(table, columns)
+    numbers = table.numbers([clock[0], *(index for index, _ in found)])
     _refuse_short(path, numbers)
     time = np.ascontiguousarray(numbers[:, 0])
-    _check_time(path, time, clock or "s")
+    _check_time(table, time, clock[1])
+    second = unit_factor(f"{table.head}: column 'time'", "time", "time", "s", clock[1])
     if second != 1.0:
         time *= second
+    _refuse_slow(table, time)
     return time, calibrated(numbers[:, 1:], signals, factors)
 
 
@@ -163,12 +164,28 @@ def _listing(table: Table) -> str:
     return "the header has " + (text if len(text) <= 300 else text[:297] + "...")
 
 
-def _check_time(path: Path, time: NDArray[np.float64], unit: str) -> None:
+def _refuse_slow(table: Table, time: NDArray[np.float64]) -> None:
+    period = float(np.median(np.diff(time)))
+    if period > LONGEST_PERIOD:
+        raise InputError(
+            f"{table.head}: one sample every {period:.6g} s; at most {LONGEST_PERIOD:g} s are"
+            " allowed: if the times are in ms, write 'time [ms]'."
+        )
+
+
+def _check_time(table: Table, time: NDArray[np.float64], unit: str | None) -> None:
+    if unit is None:
+        step = float(np.median(np.diff(time)))
+        raise InputError(
+            f"{table.head}: column 'time' has no unit, and mostly steps of {step:.6g}; write"
+            f" 'time [s]' where that is {step:.6g} s, 'time [ms]' where it is {step:.6g} ms, or"
+            " give [log] time_unit in the platform file."
+        )
     wrong = np.flatnonzero(np.diff(time) <= 0)
     if len(wrong):
         row = int(wrong[0]) + 1
         what = "repeats" if time[row] == time[row - 1] else "goes back from"
         raise InputError(
-            f"{path}:{row + 2}: time {float(time[row])!r} {unit} {what} {float(time[row - 1])!r} "
+            f"{table.row(row)}: time {float(time[row])!r} {unit} {what} {float(time[row - 1])!r} "
             f"{unit} of the line before; time stamps must increase."
         )

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data.continuity import LONG_PAUSE, Wraps
 from ptp_symbolic.numeric.data.log import Log
 from ptp_symbolic.platform import Platform, SignalDeclaration
 
@@ -15,7 +16,6 @@ HALF_TURN = np.pi  # rad: no platform turns further from one sample to the next
 FEW_COUNTS = 3.0  # of an encoder: an angle that stays within them did not move
 SATURATED = 0.5  # share of the samples at the largest or smallest value of a signal that changes
 FEW_LEVELS = 5  # of a signal that is switched
-LONG_PAUSE = 10.0  # sampling periods between two samples
 JITTER = 0.2  # of the sampling period, rms
 
 
@@ -72,6 +72,7 @@ def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
                 " the samples: it may be saturated, and the rest tells little."
             )
     for log in logs:
+        found += [_wrap_remark(log.name, wraps) for wraps in log.wraps]
         found += _clock_remarks(log)
     return tuple(found)
 
@@ -97,6 +98,14 @@ def _at_ends(values: FloatArray) -> float:
     return float(np.mean((values == levels[0]) | (values == levels[-1])))
 
 
+def _wrap_remark(name: str, wraps: Wraps) -> str:
+    times = "once" if wraps.count == 1 else f"{wraps.count} times"
+    return (
+        f"{name}: '{wraps.column}' jumps {times} by {np.degrees(wraps.span):.6g} deg, where it"
+        " wraps or its counter runs over; it is taken to go on."
+    )
+
+
 def _clock_remarks(log: Log) -> list[str]:
     step = np.diff(log.time)
     period = float(np.median(step))
@@ -105,7 +114,7 @@ def _clock_remarks(log: Log) -> list[str]:
         row = int(np.argmax(step))
         found.append(
             f"{log.name}: no samples from {log.time[row]:.6g} s to {log.time[row + 1]:.6g} s;"
-            " inputs are taken to hold meanwhile."
+            " the parts before and after it are fitted as runs of their own."
         )
     usual = step[step <= LONG_PAUSE * period]
     jitter = float(np.std(usual)) / period

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.data.continuity import uninterrupted
 from ptp_symbolic.numeric.identify.constants import (
     ANYWHERE,
     FAR,
@@ -112,7 +113,8 @@ class Around:
 
 
 def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple[Run, ...]:
-    """Match the columns of `logs` to `model` and guess the start of every run.
+    """Match the columns of `logs` to `model` and guess the start of every run; a gap in a log ends
+    one run and begins another.
 
     Raises InputError when the platform's signals do not fit the model or one has no noise.
     """
@@ -138,7 +140,25 @@ def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple
             for k, (s, q) in enumerate(zip(outputs, counts, strict=True))
         ]
     )
-    return tuple(_prepare(model, outputs, log, order, counts, sigma) for log in logs)
+    pieces = [piece for log in logs for piece in _pieces(log)]
+    return tuple(_prepare(model, outputs, log, order, counts, sigma) for log in pieces)
+
+
+def _pieces(log: Log) -> list[Log]:
+    """The parts of a log between its gaps, named as windows of it."""
+    parts = uninterrupted(log.time)
+    if len(parts) == 1:
+        return [log]
+    return [
+        replace(
+            log,
+            name=f"{log.name}{WINDOW}{number}",
+            time=log.time[part],
+            inputs=log.inputs[part],
+            outputs=log.outputs[part],
+        )
+        for number, part in enumerate(parts, start=1)
+    ]
 
 
 def _prepare(

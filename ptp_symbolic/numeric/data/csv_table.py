@@ -1,0 +1,173 @@
+"""Read a CSV of numbers with a header row `name [unit]`, or refuse it with file and line."""
+
+import csv
+import io
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data.dialect import LONGEST_LINE, plain_text
+from ptp_symbolic.numeric.data.table import MOST_ROWS, Table, checked_headings, heading
+from ptp_symbolic.platform.fields import shown
+from ptp_symbolic.platform.text_file import read_text_bytes
+
+_MAX_BYTES = 200_000_000
+_CHUNK = 1 << 22
+NEW_LINE = b"\n"
+_PLAIN = b"0123456789+-.eE, \t\n"
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+
+
+@dataclass(frozen=True)
+class CsvTable(Table):
+    """The text of a CSV in the plain form; its rows, not parsed yet, begin in `first_line`."""
+
+    body: bytes
+    first_line: int
+    head_line: int
+
+    @property
+    def head(self) -> str:
+        """Where the headings stand."""
+        return f"{self.path}:{self.head_line}"
+
+    def row(self, number: int) -> str:
+        """Where row `number`, counted from zero, stands."""
+        return f"{self.path}:{self.first_line + number}"
+
+    def numbers(self, columns: Sequence[int]) -> NDArray[np.float64]:
+        """The given columns as [n, len(columns)].
+
+        Raises InputError with the line for a row with too few or too many cells and for a cell of
+        these columns that is empty or not a finite decimal number, and for more than ten million
+        rows or a truncated last number. Other columns may hold anything.
+        """
+        return _parse(self, columns)
+
+
+def read_csv(path: Path) -> CsvTable:
+    """Read a CSV and its header row; semicolons, tabs, decimal commas, comments above the header
+    and a row of units are understood (see `plain_text`).
+
+    Raises InputError for a file that is missing, larger than 200 MB, empty or not text, and for a
+    header with a column twice, over 1000 columns or a malformed heading.
+    """
+    content = read_text_bytes(path, _MAX_BYTES, "a CSV log")
+    if not content.strip():
+        raise InputError(f"{path}: is empty; give a CSV with a header row such as 'time [s],...'.")
+    text = plain_text(path, content)
+    where = f"{path}:{text.head_line}"
+    cells = zip(text.headings, text.units, strict=True)
+    headings = checked_headings(where, [heading(where, cell, unit) for cell, unit in cells])
+    return CsvTable(path, headings, text.body, text.first_line, text.head_line)
+
+
+def _parse(table: CsvTable, columns: Sequence[int]) -> NDArray[np.float64]:
+    body = table.body.rstrip(b"\n \t")
+    cut_off = body if len(body) == len(table.body) else b""
+    if body.count(b"\n") >= MOST_ROWS:
+        raise InputError(f"{table.path}: has more than {MOST_ROWS} rows; split the log.")
+    blocks = []
+    start, line = 0, table.first_line
+    while start < len(body):
+        end = body.find(b"\n", start + _CHUNK)
+        chunk = body[start : len(body) if end < 0 else end]
+        block = _parse_plain(chunk, len(table.headings), columns)
+        if block is None:
+            block = _parse_rows(table, chunk, columns, line)
+        blocks.append(block)
+        start += len(chunk) + 1
+        line += len(block)
+    _refuse_cut_number(table, cut_off)
+    return np.concatenate(blocks) if blocks else np.empty((0, len(columns)))
+
+
+def _cells(line: str, where: str) -> list[str]:
+    if len(line) > LONGEST_LINE:
+        raise InputError(f"{where}: line has more than {LONGEST_LINE} characters; is this a CSV?")
+    try:
+        return next(csv.reader([line])) if '"' in line else line.split(",")
+    except csv.Error as error:
+        raise InputError(f"{where}: is not a row of a CSV ({error}).") from error
+
+
+def _parse_plain(chunk: bytes, width: int, columns: Sequence[int]) -> NDArray[np.float64] | None:
+    """Parse rows that hold decimal numbers only; None if anything at all is odd."""
+    # numpy would take nan, and skip empty lines.
+    if chunk.translate(None, _PLAIN) or b"\n\n" in chunk or chunk.startswith(b"\n"):
+        return None
+    rows = chunk.count(b"\n") + 1
+    if chunk.count(b",") != rows * (width - 1):
+        return None
+    try:
+        block = np.loadtxt(io.BytesIO(chunk), delimiter=",", comments=None, ndmin=2)
+    except ValueError:
+        return None
+    if block.shape != (rows, width):
+        return None
+    block = block[:, columns]
+    return block if np.isfinite(block).all() else None
+
+
+def _parse_rows(
+    table: CsvTable, chunk: bytes, columns: Sequence[int], first_line: int
+) -> NDArray[np.float64]:
+    """Parse row by row, to find the line of an error or to step over columns that are text."""
+    width = len(table.headings)
+    rows = []
+    for line, row in enumerate(chunk.decode().split("\n"), start=first_line):
+        where = f"{table.path}:{line}"
+        cells = _cells(row, where)
+        if len(cells) != width:
+            raise InputError(
+                f"{where}: has {len(cells)} cells where the header has {width}; the row is "
+                "truncated or a comma is wrong."
+            )
+        rows.append([_number(cells[k], table.headings[k][0], where) for k in columns])
+    return np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
+
+
+def _number(cell: str, name: str, where: str) -> float:
+    cell = cell.strip()
+    if not cell:
+        raise InputError(f"{where}: '{name}' is missing; every row needs a value.")
+    if not _NUMBER.fullmatch(cell) or not math.isfinite(float(cell)):
+        raise InputError(
+            f"{where}: '{name}' is {shown(cell)}, not a finite decimal number; correct it or remove"
+            " the row (time stamps may have gaps, an input holds across them)."
+        )
+    return float(cell)
+
+
+def _refuse_cut_number(table: CsvTable, body: bytes) -> None:
+    """Refuse a file without a last line end whose last number is shorter than all before it.
+
+    A file cut inside its last number has the right number of cells and a wrong value. With a fixed
+    number of decimals, as loggers write, the cut shows.
+    """
+    last = _decimals(body[body.rfind(b"\n") + 1 :])
+    usual = _decimals(body.partition(b"\n")[0])
+    if usual > last and all(_decimals(row) == usual for row in _rows_but_last(body)):
+        raise InputError(
+            f"{table.row(body.count(NEW_LINE))}: the last number has {last} decimals where all"
+            f" others have {usual}, and no line end follows; the file is truncated, copy it again."
+        )
+
+
+def _decimals(row: bytes) -> int:
+    """Decimals of the last number in a row."""
+    return len(row.rpartition(b",")[2].partition(b".")[2])
+
+
+def _rows_but_last(body: bytes) -> Iterator[bytes]:
+    """One after another: all of ten million at once take a gigabyte."""
+    start = 0
+    while (end := body.find(NEW_LINE, start)) >= 0:
+        yield body[start:end]
+        start = end + 1
