@@ -2,10 +2,11 @@
 
 from dataclasses import replace
 
-from ptp_symbolic.errors import unknown
+from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform, naming_file
+from ptp_symbolic.platform.units import compatible
 
 
 def free_parameters(platform: Platform, model: Model) -> tuple[FreeParameter, ...]:
@@ -45,7 +46,7 @@ def known_values(platform: Platform, model: Model) -> dict[str, tuple[float, flo
 
 
 def refuse_unknown_signals(platform: Platform, model: Model) -> None:
-    """Raise InputError for a signal of `platform` that `model` does not have.
+    """Raise InputError for a signal of `platform` that `model` does not have, or in another unit.
 
     An input more than the model takes is let be, unless one that it takes is missing.
     """
@@ -61,3 +62,10 @@ def refuse_unknown_signals(platform: Platform, model: Model) -> None:
             for name in given:
                 if name not in known:
                     raise unknown(f"{role} signal", name, known)
+        for signal in platform.signals:
+            unit = model.units.get(signal.signal, signal.unit)
+            if not compatible(signal.unit, unit):
+                raise InputError(
+                    f"Signal '{signal.signal}' is declared in '{signal.unit}', but it has the unit"
+                    f" '{unit}'; correct its unit."
+                )

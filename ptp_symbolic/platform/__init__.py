@@ -2,6 +2,7 @@
 
 from ptp_symbolic.platform.declaration import (
     AXES,
+    JOINTS,
     SITES,
     STANDARD_GRAVITY,
     EffectDeclaration,
@@ -15,6 +16,7 @@ from ptp_symbolic.platform.writer import platform_text
 
 __all__ = [
     "AXES",
+    "JOINTS",
     "SITES",
     "STANDARD_GRAVITY",
     "EffectDeclaration",

@@ -1,7 +1,6 @@
 """Read a platform TOML into plain data, or refuse it in one line that names file and key."""
 
 import dataclasses
-import math
 import re
 import tomllib
 from pathlib import Path
@@ -11,18 +10,17 @@ from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.platform import fields
 from ptp_symbolic.platform.declaration import (
     AXES,
+    JOINTS,
     SITES,
     STANDARD_GRAVITY,
     EffectDeclaration,
     ParameterDeclaration,
     Platform,
-    SignalDeclaration,
 )
 from ptp_symbolic.platform.fit_settings import window_of
+from ptp_symbolic.platform.quantity import scaled, unit_of
+from ptp_symbolic.platform.signals import signals_of
 from ptp_symbolic.platform.text_file import read_text_bytes
-from ptp_symbolic.platform.units import to_si
-
-ROLES = ("input", "output")
 
 _MAX_BYTES = 1_000_000
 # tomllib needs a time that grows with the square of the parts of a dotted key.
@@ -50,7 +48,7 @@ def read_platform(source: str | Path) -> Platform:
     head = fields.table(
         fields.required(document, "platform", where),
         f"{where}: platform",
-        ("name", "title", "axes", "gravity"),
+        ("name", "title", "axes", "joints", "gravity"),
     )
     name = fields.name(
         fields.required(head, "name", f"{where}: platform"), f"{where}: platform.name"
@@ -63,8 +61,9 @@ def read_platform(source: str | Path) -> Platform:
         gravity=_gravity(head, f"{where}: platform.gravity"),
         effects=_effects(fields.required(document, "effects", where), axes, where),
         parameters=_parameters(document.get("parameters", {}), where),
-        signals=_signals(document.get("signals", {}), where),
+        signals=signals_of(document.get("signals", {}), where),
         window=window_of(document.get("fit", {}), f"{where}: fit"),
+        linear_axes=_linear_axes(head.get("joints", {}), axes, f"{where}: platform.joints"),
         source=where,
     )
 
@@ -124,6 +123,20 @@ def _axes(head: dict[str, Any], where: str) -> tuple[str, ...]:
     return tuple(axis for axis in AXES if axis in given)
 
 
+def _linear_axes(given: object, axes: tuple[str, ...], where: str) -> tuple[str, ...]:
+    """Those of `axes` whose joint is said to be linear; it must be the pan axis, alone."""
+    kinds = fields.table(given, where, axes)
+    for axis, kind in kinds.items():
+        fields.choice(kind, JOINTS, f"{where}.{axis}")
+    linear = tuple(axis for axis in axes if kinds.get(axis) == "linear")
+    if linear and axes != ("pan",):
+        raise InputError(
+            f"{where}.{linear[0]}: a linear joint is the only one of its platform, with axes ="
+            f' ["pan"]; the axes here are {" and ".join(axes)}: leave out the others.'
+        )
+    return linear
+
+
 def _gravity(head: dict[str, Any], where: str) -> float:
     gravity = fields.number(head.get("gravity", STANDARD_GRAVITY), where)
     if gravity < 0:
@@ -181,8 +194,8 @@ def _parameters(given: object, file: str) -> tuple[ParameterDeclaration, ...]:
 
 def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDeclaration:
     key = "start" if "start" in entry else "value"
-    factor, unit = _unit(entry, where) if "unit" in entry else (1.0, None)
-    value = _scaled(entry[key], factor, f"{where}.{key}")
+    factor, unit = unit_of(entry, where) if "unit" in entry else (1.0, None)
+    value = scaled(entry[key], factor, f"{where}.{key}")
     lower = upper = None
     if "bounds" in entry:
         bounds = entry["bounds"]
@@ -190,7 +203,7 @@ def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDecla
             raise InputError(
                 f"{where}.bounds: {fields.shown(bounds)}: write two numbers, [lower, upper]."
             )
-        lower, upper = (_scaled(bound, factor, f"{where}.bounds") for bound in bounds)
+        lower, upper = (scaled(bound, factor, f"{where}.bounds") for bound in bounds)
         unit_text = f" {entry['unit']}" if "unit" in entry else ""
         if lower >= upper:
             raise InputError(
@@ -204,7 +217,7 @@ def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDecla
             )
     uncertainty = None
     if "uncertainty" in entry:
-        uncertainty = _scaled(entry["uncertainty"], factor, f"{where}.uncertainty")
+        uncertainty = scaled(entry["uncertainty"], factor, f"{where}.uncertainty")
         if key == "start" or uncertainty < 0.0:
             raise InputError(
                 f"{where}.uncertainty: {fields.shown(entry['uncertainty'])}: give zero or more, and"
@@ -231,57 +244,3 @@ def _tied(
     return dataclasses.replace(
         independent[target], name=name, free=False, lower=None, upper=None, same_as=target
     )
-
-
-def _signals(given: object, file: str) -> tuple[SignalDeclaration, ...]:
-    found: dict[str, SignalDeclaration] = {}
-    for name, entry in fields.table(given, f"{file}: signals").items():
-        where = f"{file}: signals.{fields.name(name, f'{file}: signals')}"
-        signal = _signal(name, entry, where)
-        if signal.column in found:
-            raise InputError(
-                f"{where}.column: {fields.shown(signal.column)} is also the column of "
-                f"{found[signal.column].signal}; give each signal its own."
-            )
-        found[signal.column] = signal
-    return tuple(found.values())
-
-
-def _signal(name: str, given: object, where: str) -> SignalDeclaration:
-    allowed = ("role", "column", "unit", "counts_per_revolution", "noise")
-    entry = fields.table(given, where, allowed)
-    role = fields.choice(fields.required(entry, "role", where), ROLES, f"{where}.role")
-    column = fields.text(fields.required(entry, "column", where), f"{where}.column")
-    if column != column.strip() or column == "time" or any(mark in column for mark in '[],"'):
-        raise InputError(
-            f"{where}.column: {fields.shown(column)}: give the CSV column without its [unit], "
-            "without quotes and commas; 'time' is the time base."
-        )
-    fields.required(entry, "unit", where)
-    factor, unit = _unit(entry, where)
-    counts = entry.get("counts_per_revolution")
-    if counts is not None and (type(counts) is not int or not 1 <= counts <= 2**40):
-        raise InputError(
-            f"{where}.counts_per_revolution: {fields.shown(counts)} is not a whole number above 0."
-        )
-    if counts is not None and unit != "rad":
-        raise InputError(f"{where}.counts_per_revolution: only for an angle, not for [{unit}].")
-    noise = _scaled(entry["noise"], factor, f"{where}.noise") if "noise" in entry else None
-    if noise is not None and noise < 0:
-        raise InputError(f"{where}.noise: {entry['noise']} {entry['unit']} rms is negative.")
-    return SignalDeclaration(name, column, unit, role, counts, noise)
-
-
-def _unit(entry: dict[str, Any], where: str) -> tuple[float, str]:
-    text = fields.text(entry["unit"], f"{where}.unit")
-    try:
-        return to_si(text)
-    except InputError as error:
-        raise InputError(f"{where}.unit: {error}") from error
-
-
-def _scaled(value: object, factor: float, where: str) -> float:
-    result = fields.number(value, where) * factor
-    if not math.isfinite(result):
-        raise InputError(f"{where}: {fields.shown(value)} is too large in SI units.")
-    return result

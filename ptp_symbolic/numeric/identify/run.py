@@ -33,7 +33,7 @@ class StartUnknown:
     unknown is the place in that gap, from -1 (lower face) to 1 (upper face), and beyond where the
     shaft is wound up; `column` is the measured angle of the joint behind it. `sigma` is that of its
     prior. A search begins at `guess`, and may begin at other values `instead`: at rest, or turning
-    back. All are in rad or rad/s, places in half gaps.
+    back. All are in rad or rad/s (m or m/s of a linear joint), places in half gaps.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Run:
     """One run or window: time [k] in s, inputs [k, nu], measured [k, ny], `weight` [ny] (1/sigma).
 
     `outputs` [ny] gives the model output of every measured column, `counts` [ny] the size of one
-    encoder count in rad (nan for analog signals); `start` [n] guesses the state at the first
+    encoder count in rad or m (nan for analog signals); `start` [n] guesses the state at the first
     sample.
     """
 
@@ -123,12 +123,7 @@ def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple
                 f" {', '.join(model.output_names)}; declare it under [signals.{missing[0]}]."
             )
     order = [[s.signal for s in given].index(name) for name in model.input_names]
-    counts = np.array(
-        [
-            2 * np.pi / s.counts_per_revolution if s.counts_per_revolution else np.nan
-            for s in outputs
-        ]
-    )
+    counts = np.array([np.nan if s.count is None else s.count for s in outputs])
     sigma = np.array(
         [
             _sigma(s, q, [log.outputs[:, k] for log in logs])
@@ -172,10 +167,15 @@ def _sigma(signal: SignalDeclaration, count: float, measured: Sequence[FloatArra
     sigma = float(np.hypot(rounding, noise or 0.0))
     if sigma == 0.0:
         raise InputError(
-            f"Signal '{signal.signal}' has neither counts_per_revolution nor noise;"
+            f"Signal '{signal.signal}' has neither {_resolution(signal.unit)} nor noise;"
             f" give its noise (rms) in {signal.unit}."
         )
     return sigma
+
+
+def _resolution(unit: str) -> str:
+    """What gives the resolution of an encoder whose signal has this unit."""
+    return "counts_per_metre" if unit == "m" else "counts_per_revolution"
 
 
 def with_start(model: Model, run: Run, around: Around | None = None) -> Run:

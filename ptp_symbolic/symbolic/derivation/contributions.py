@@ -129,7 +129,7 @@ def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Cont
     one which nothing defines, and where one refers to itself.
     """
     placed = list(placed)
-    contributions = tuple(effect.contribute(place) for effect, place in placed)
+    contributions = tuple(effect.contribution_at(place) for effect, place in placed)
     values: dict[str, sp.Expr] = {name: ZERO for name in PLATFORM_QUANTITIES}
     for axis in axes:
         values[f"transmitted_torque_{axis}"] = _transmitted(axis, contributions)
