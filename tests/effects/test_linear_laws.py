@@ -9,6 +9,7 @@ import pytest
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.platform import EffectDeclaration, Platform
+from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.kane import kane
 from ptp_symbolic.symbolic.derivation.lagrange import lagrange
@@ -48,7 +49,7 @@ def with_effect(effect: Effect) -> Platform:
     for base in (BARE, DRY, DRIVEN, GEARED):
         try:
             platform = carriage(*base, effect.id)
-            emission.assemble(platform)
+            refuse_impossible(assemble(platform))
         except InputError:
             continue
         return platform
