@@ -60,7 +60,7 @@ def _resolution(entry: dict[str, Any], key: str, unit: str, where: str) -> float
     counts, (of, what, wholly) = entry[key], RESOLUTIONS[key]
     number = type(counts) is int or (type(counts) is float and not wholly)
     if not number or not 1 <= counts <= 2**40:
-        said = "a whole number above 0" if wholly else "a number from 1 to 1e12"
+        said = "a whole number above 0" if wholly else "a number from 1 to 2^40"
         raise InputError(f"{where}.{key}: {fields.shown(counts)} is not {said}.")
     if unit != of:
         other = next((k for k, row in RESOLUTIONS.items() if row[0] == unit), None)

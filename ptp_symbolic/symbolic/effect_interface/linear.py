@@ -26,7 +26,7 @@ def linear_unit(unit: str) -> str:
 def linear_words(text: str) -> str:
     """`text` about a rotary joint in the words of a linear one: torque becomes force."""
     for rotary, linear in _WORDS.items():
-        text = re.sub(rf"\b{rotary}(s?)\b", rf"{linear}\1", text)
+        text = re.sub(rf"\b{rotary}(s?)\b(?! of change)", rf"{linear}\1", text)
     return text
 
 
