@@ -12,6 +12,7 @@ MASS, SPRING, REST = 12.0, 1500.0, 0.02  # kg, N/m, m
 COULOMB, VISCOUS = 6.0, 25.0  # N, N s/m
 LEAD, GEAR = 5e-3, 2.0  # m per turn of the spindle; turns of the motor per turn of the spindle
 INDUCTANCE, RESISTANCE, CONSTANT, ROTOR = 2e-3, 1.5, 0.04, 2e-5  # H, ohm, N m/A, kg m^2
+PITCH = 24e-3  # m from a pair of magnets of a linear motor to the next
 COUNTS = 2e6  # per metre
 
 MACHINE = f"""
@@ -81,11 +82,12 @@ def voltage_at(t: float) -> float:
 
 @dataclass
 class Carriage:
-    """The carriage, driven by the force or, with its `motor`, by the voltage; `way` is -1, 0 (it
-    stands still) or 1.
+    """The carriage, driven by the force or, with its `motor`, by the voltage; a force of size
+    `ripple` in N comes back with every pair of magnets; `way` is -1, 0 (it stands still) or 1.
     """
 
     motor: bool
+    ripple: float = 0.0
     way: float = 0.0
 
     @property
@@ -96,7 +98,8 @@ class Carriage:
     def push(self, t: float, state: FloatArray) -> float:
         """What acts on the carriage in N, dry friction apart."""
         drive = self.ratio * CONSTANT * state[2] if self.motor else force_at(t)
-        return float(drive - SPRING * (state[0] - REST) - VISCOUS * state[1])
+        wave = self.ripple * np.sin(2.0 * np.pi * state[0] / PITCH)
+        return float(drive + wave - SPRING * (state[0] - REST) - VISCOUS * state[1])
 
     def slope(self, t: float, state: FloatArray) -> list[float]:
         """Rates of position, speed and current."""
@@ -124,9 +127,9 @@ class Turning:
         return float(state[1] if moving else abs(self.carriage.push(t, state)) - COULOMB)
 
 
-def truth(times: FloatArray, motor: bool) -> FloatArray:
+def truth(times: FloatArray, motor: bool, ripple: float = 0.0) -> FloatArray:
     """Position in m, speed in m/s and current in A [k, 3] at `times`, from rest at 0."""
-    carriage, found = Carriage(motor), np.zeros((len(times), 3))
+    carriage, found = Carriage(motor, ripple), np.zeros((len(times), 3))
     t, state = float(times[0]), np.zeros(3)
     while True:
         pushed = carriage.push(t, state)

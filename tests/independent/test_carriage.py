@@ -6,7 +6,19 @@ import numpy as np
 import pytest
 
 import ptp_symbolic
-from tests.independent.carriage import MACHINE, MOTOR, POSITION, VOLTAGE, truth
+from ptp_symbolic.diagnosis_workflow import diagnose_platform
+from ptp_symbolic.platform import read_platform
+from tests.independent.carriage import (
+    COUNTS,
+    FORCE,
+    MACHINE,
+    MOTOR,
+    PITCH,
+    POSITION,
+    VOLTAGE,
+    force_at,
+    truth,
+)
 
 
 def test_a_voltage_moves_the_carriage_as_newton_says(tmp_path: Path) -> None:
@@ -21,3 +33,26 @@ def test_a_voltage_moves_the_carriage_as_newton_says(tmp_path: Path) -> None:
     for column, name in enumerate(model.state_names):
         size = np.ptp(wanted[:, column])
         assert found[name] == pytest.approx(wanted[:, column], abs=1e-6 * size), name
+
+
+@pytest.mark.long
+def test_a_force_that_repeats_with_the_magnets_is_named_with_their_pitch(tmp_path: Path) -> None:
+    """Of 3 N, every 24 mm; one log to fit, and the other, which starts 5 s later, to judge by."""
+    platform = tmp_path / "carriage.toml"
+    platform.write_text(MACHINE.replace("m_pan = { value", "m_pan = { start") + FORCE + POSITION)
+    times = np.arange(0.0, 10.0, 2e-3)
+    position = np.round(truth(times, motor=False, ripple=3.0)[:, 0] * COUNTS) / COUNTS
+    force = np.array([force_at(t + 1e-3) for t in times])  # held over the next two milliseconds
+    table = np.column_stack([times, force, position])
+    logs = []
+    for name, part in (("train", table[:2500]), ("validate", table[2500:])):
+        logs.append(tmp_path / f"{name}.csv")
+        head = "time [s],force [N],position [m]"
+        np.savetxt(logs[-1], part, delimiter=",", header=head, comments="", fmt="%.12g")
+    found = diagnose_platform(read_platform(platform), logs[:1], logs[1:]).summary
+    cogging = next(added for added in found["added"] if added["effect"] == "cogging")
+    number = cogging["parameters"]["n_cog_pan"]
+    assert number["unit"] == "rad/m"
+    assert number["value"] == pytest.approx(2.0 * np.pi / PITCH, rel=1e-4)
+    assert cogging["parameters"]["T_sin_pan"]["value"] == pytest.approx(3.0, rel=1e-2)
+    assert found["error"]["validate"]["after"]["total"]["rmse_counts"] < 2.0
