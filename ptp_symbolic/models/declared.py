@@ -2,10 +2,11 @@
 
 from dataclasses import replace
 
-from ptp_symbolic.errors import unknown
+from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform, naming_file
+from ptp_symbolic.platform.units import compatible
 from ptp_symbolic.symbolic.derivation.contributions import sensors_on
 from ptp_symbolic.symbolic.derivation.placement import place_effects
 
@@ -47,7 +48,7 @@ def known_values(platform: Platform, model: Model) -> dict[str, tuple[float, flo
 
 
 def refuse_unknown_signals(platform: Platform, model: Model) -> None:
-    """Raise InputError for a signal of `platform` that `model` does not have.
+    """Raise InputError for a signal of `platform` that `model` does not have, or in another unit.
 
     An input more than the model takes is let be, unless one that it takes is missing.
     """
@@ -56,7 +57,8 @@ def refuse_unknown_signals(platform: Platform, model: Model) -> None:
     )
     complete = set(model.input_names) <= set(inputs)
     placed = place_effects(platform)
-    sensors = sensors_on(platform.axes, [e.contribute(place) for e, place in placed])
+    contributions = [e.contribution_at(place) for e, place in placed]
+    sensors = sensors_on(platform.axes, contributions, platform.linear_axes)
     choices = dict.fromkeys((*model.output_names, *(s.name for s in sensors)))
     with naming_file(platform):
         for role, given, known in (
@@ -66,3 +68,10 @@ def refuse_unknown_signals(platform: Platform, model: Model) -> None:
             for name in given:
                 if name not in known:
                     raise unknown(f"{role} signal", name, known)
+        for signal in platform.signals:
+            unit = model.units.get(signal.signal, signal.unit)
+            if not compatible(signal.unit, unit):
+                raise InputError(
+                    f"Signal '{signal.signal}' is declared in '{signal.unit}', but it has the unit"
+                    f" '{unit}'; correct its unit."
+                )

@@ -26,6 +26,7 @@ def candidate_effects(platform: Platform) -> tuple[EffectDeclaration, ...]:
             for effect in EFFECTS
             for axis in (platform.axes if effect.on_axis else (None,))
             if effect.searched
+            and not (platform.linear_axes and effect.instead_on_linear)
             and (effect.id, axis) not in declared | {(e.effect, e.axis) for e in found}
             and {need.format(axis=axis) for need in effect.needs} <= available
         ]

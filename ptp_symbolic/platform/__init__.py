@@ -2,6 +2,7 @@
 
 from ptp_symbolic.platform.declaration import (
     AXES,
+    JOINTS,
     SITES,
     STANDARD_GRAVITY,
     Clock,
@@ -16,6 +17,7 @@ from ptp_symbolic.platform.writer import platform_text
 
 __all__ = [
     "AXES",
+    "JOINTS",
     "SITES",
     "STANDARD_GRAVITY",
     "Clock",

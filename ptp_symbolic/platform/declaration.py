@@ -1,5 +1,6 @@
 """The declared machine as plain data: what a platform TOML says, checked and in SI units."""
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -9,6 +10,7 @@ from ptp_symbolic.errors import InputError
 AXES = ("pan", "tilt")  # that a platform may have, base first
 STANDARD_GRAVITY = 9.81  # m/s^2
 SITES = ("gear", "joint")  # where on its axis an effect may sit
+JOINTS = ("rotary", "linear")  # kinds of a joint
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,8 @@ class SignalDeclaration:
 
     `signal` is the model's name (u_pan, theta_pan), `column` the CSV column without its unit,
     `unit` the SI unit of the model, `role` "input" or "output". `noise` is the rms noise in `unit`,
-    `counts_per_revolution` the resolution of an encoder, both of the signal, not of its column.
+    `counts_per_revolution` the resolution of an encoder on a rotary joint, `counts_per_metre` that
+    of one on a linear joint, all of the signal, not of its column.
 
     With a `scale`, in `unit` per number of the column, the signal is scale (number - offset);
     without one it is the column, its unit converted, less the `offset` in `unit`. An output whose
@@ -66,10 +69,23 @@ class SignalDeclaration:
     role: str
     counts_per_revolution: int | None = None
     noise: float | None = None
+    counts_per_metre: float | None = None
     scale: float | None = None
     offset: float = 0.0
     delay: float = 0.0
     column_unit: str | None = None
+
+    @property
+    def count(self) -> float | None:
+        """The size of one encoder count in rad or m; None of a signal without an encoder."""
+        if self.counts_per_revolution is not None:
+            return 2.0 * math.pi / self.counts_per_revolution
+        return None if self.counts_per_metre is None else 1.0 / self.counts_per_metre
+
+    @property
+    def is_position(self) -> bool:
+        """Whether it is the angle of a rotary joint or the position of a linear one."""
+        return self.unit in ("rad", "m")
 
 
 @dataclass(frozen=True)
@@ -86,8 +102,10 @@ class Clock:
 class Platform:
     """A declared machine. `axes` are ordered pan, tilt; `gravity` is in m/s^2.
 
+    The joints of `linear_axes` slide, in m, N and kg; those of all other axes turn.
     `window` is the length in s of the windows into which a fit cuts runs, None where it finds that
-    by itself; `clock` is the column of times. `source` is the file that says so, for messages; None where there is none.
+    by itself; `clock` is the column of times. `source` is the file that says so, for messages; None
+    where there is none.
     """
 
     name: str
@@ -99,6 +117,7 @@ class Platform:
     signals: tuple[SignalDeclaration, ...]
     window: float | None = None
     clock: Clock = Clock()
+    linear_axes: tuple[str, ...] = ()
     source: str | None = field(default=None, compare=False, repr=False)
 
 

@@ -10,6 +10,7 @@ from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.platform import fields
 from ptp_symbolic.platform.declaration import (
     AXES,
+    JOINTS,
     SITES,
     STANDARD_GRAVITY,
     EffectDeclaration,
@@ -46,7 +47,7 @@ def read_platform(source: str | Path) -> Platform:
     head = fields.table(
         fields.required(document, "platform", where),
         f"{where}: platform",
-        ("name", "title", "axes", "gravity"),
+        ("name", "title", "axes", "joints", "gravity"),
     )
     name = fields.name(
         fields.required(head, "name", f"{where}: platform"), f"{where}: platform.name"
@@ -62,6 +63,7 @@ def read_platform(source: str | Path) -> Platform:
         signals=read_signals(document.get("signals", {}), where),
         clock=clock_of(document.get("log", {}), f"{where}: log"),
         window=window_of(document.get("fit", {}), f"{where}: fit"),
+        linear_axes=_linear_axes(head.get("joints", {}), axes, f"{where}: platform.joints"),
         source=where,
     )
 
@@ -119,6 +121,20 @@ def _axes(head: dict[str, Any], where: str) -> tuple[str, ...]:
     if len(set(given)) != len(given):
         raise InputError(f"{where}.axes: {fields.shown(given)} names an axis twice.")
     return tuple(axis for axis in AXES if axis in given)
+
+
+def _linear_axes(given: object, axes: tuple[str, ...], where: str) -> tuple[str, ...]:
+    """Those of `axes` whose joint is said to be linear; it must be the pan axis, alone."""
+    kinds = fields.table(given, where, axes)
+    for axis, kind in kinds.items():
+        fields.choice(kind, JOINTS, f"{where}.{axis}")
+    linear = tuple(axis for axis in axes if kinds.get(axis) == "linear")
+    if linear and axes != ("pan",):
+        raise InputError(
+            f"{where}.{linear[0]}: a linear joint is the only one of its platform, with axes ="
+            f' ["pan"]; the axes here are {" and ".join(axes)}: leave out the others.'
+        )
+    return linear
 
 
 def _gravity(head: dict[str, Any], where: str) -> float:

@@ -8,11 +8,16 @@ from ptp_symbolic.platform.declaration import SignalDeclaration
 from ptp_symbolic.platform.units import compatible, to_si
 
 ROLES = ("input", "output")
+# How the resolution of an encoder is given: for which unit, what that is, whether it is whole.
+RESOLUTIONS = {
+    "counts_per_revolution": ("rad", "an angle", True),
+    "counts_per_metre": ("m", "the position of a linear joint", False),
+}
 ALLOWED = (
     "role",
     "column",
     "unit",
-    "counts_per_revolution",
+    *RESOLUTIONS,
     "noise",
     "scale",
     "offset",
@@ -50,13 +55,7 @@ def _signal(name: str, given: object, where: str) -> SignalDeclaration:
             "without quotes and commas; 'time' is the time base."
         )
     factor, unit = fields.unit(entry, where)
-    counts = entry.get("counts_per_revolution")
-    if counts is not None and (type(counts) is not int or not 1 <= counts <= 2**40):
-        raise InputError(
-            f"{where}.counts_per_revolution: {fields.shown(counts)} is not a whole number above 0."
-        )
-    if counts is not None and unit != "rad":
-        raise InputError(f"{where}.counts_per_revolution: only for an angle, not for [{unit}].")
+    turn, metre = (_resolution(entry, key, unit, where) for key in RESOLUTIONS)
     noise = fields.scaled(entry["noise"], factor, f"{where}.noise") if "noise" in entry else None
     if noise is not None and noise < 0:
         raise InputError(f"{where}.noise: {entry['noise']} {entry['unit']} rms is negative.")
@@ -65,12 +64,29 @@ def _signal(name: str, given: object, where: str) -> SignalDeclaration:
         column,
         unit,
         role,
-        counts,
+        None if turn is None else int(turn),
         noise,
+        metre,
         *_raw(entry, factor, where),
         _delay(entry, where),
         _column_unit(entry, unit, where),
     )
+
+
+def _resolution(entry: dict[str, Any], key: str, unit: str, where: str) -> float | None:
+    """Counts of an encoder per turn of an angle, a whole number, or per metre of a position."""
+    if key not in entry:
+        return None
+    counts, (of, what, wholly) = entry[key], RESOLUTIONS[key]
+    number = type(counts) is int or (type(counts) is float and not wholly)
+    if not number or not 1 <= counts <= 2**40:
+        said = "a whole number above 0" if wholly else "a number from 1 to 2^40"
+        raise InputError(f"{where}.{key}: {fields.shown(counts)} is not {said}.")
+    if unit != of:
+        other = next((k for k, row in RESOLUTIONS.items() if row[0] == unit), None)
+        instead = f"; write {other}" if other else ""
+        raise InputError(f"{where}.{key}: only for {what}, not for [{unit}]{instead}.")
+    return float(counts)
 
 
 def _column_unit(entry: dict[str, Any], unit: str, where: str) -> str | None:

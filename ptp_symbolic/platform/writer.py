@@ -17,6 +17,7 @@ def platform_text(platform: Platform) -> str:
             "name": platform.name,
             "title": platform.title,
             "axes": list(platform.axes),
+            **_joints(platform),
             "gravity": float(platform.gravity),
         },
         "effects": [
@@ -28,6 +29,15 @@ def platform_text(platform: Platform) -> str:
         "fit": {} if platform.window is None else {"window": f"{platform.window!r} s"},
     }
     return tomlkit.dumps({name: section for name, section in sections.items() if section})
+
+
+def _joints(platform: Platform) -> dict[str, Any]:
+    """The kinds of the joints, said where one is linear."""
+    if not platform.linear_axes:
+        return {}
+    kinds = tomlkit.inline_table()
+    kinds.update({axis: "linear" for axis in platform.linear_axes})
+    return {"joints": kinds}
 
 
 def _parameter(parameter: ParameterDeclaration) -> dict[str, Any]:
@@ -52,6 +62,7 @@ def _signal(signal: SignalDeclaration) -> dict[str, Any]:
         column=signal.column,
         unit=signal.unit,
         counts_per_revolution=signal.counts_per_revolution,
+        counts_per_metre=_decimal(signal.counts_per_metre),
         noise=_decimal(signal.noise),
         scale=_decimal(signal.scale),
         offset=float(signal.offset) if signal.offset else None,

@@ -73,12 +73,19 @@ def _routes(equations: Equations) -> str:
         worst = compare_numerically(derived[name], reference, numbers, states=10_000, seed=1)
         left = "0" if proof.equal else "not 0"
         rows.append([f"{name} -- Lagrange", f"${left}$", f"${_power(worst)}$"])
-    text = r"""\section{Three routes to the rigid equations}
+    sliding = equations.rigid.sliding
+    joints = "force is that along it" if sliding else "torques are the moments about the axes"
+    text = (
+        r"""\section{Three routes to the rigid equations}
 \emph{Newton--Euler}: rates and accelerations of every body are carried outward along the axes,
-forces and moments inward; the joint torques are the moments about the axes. \emph{Kane}: partial
+forces and moments inward; the joint """
+        + joints
+        + r""". \emph{Kane}: partial
 velocities of every body project its inertia and gravity forces. \emph{Lagrange}: kinetic and
 potential energy give
-""" + formulas([("T", sp.expand(reference.kinetic)), ("V", reference.potential)])
+"""
+        + formulas([("T", sp.expand(reference.kinetic)), ("V", reference.potential)])
+    )
     head = ["routes", "symbolic difference", "largest relative difference / cond"]
     claims = [
         f"The mass matrix is {'symmetric' if is_symmetric(reference) else 'not symmetric'}",
@@ -110,7 +117,8 @@ def _results(equations: Equations) -> str:
         rate, direction = (symbol_latex(str(s)) for s in (friction.rate, slide(friction.axis)))
         parts.append(
             rf"Dry friction acts on ${rate}$ against the direction ${direction}=\pm1$ of sliding;"
-            rf" at rest, ${direction}=0$, it takes up the torque that acts, up to breakaway:"
+            rf" at rest, ${direction}=0$, it takes up the {equations.worded('torque')} that acts,"
+            " up to breakaway:"
         )
         parts.append(_displayed(friction_statements(friction)))
     for contact in equations.contacts:

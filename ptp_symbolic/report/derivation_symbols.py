@@ -18,12 +18,18 @@ BODY_RATES = (
     r" The body rates of the tilt body are $(-\omega_{\mathrm{pan}}\sin\theta_{\mathrm{tilt}},\;"
     r"\omega_{\mathrm{tilt}},\;\omega_{\mathrm{pan}}\cos\theta_{\mathrm{tilt}})$ (thesis Eq.~3.1)."
 )
+SLIDE = (
+    r"The pan body slides along the horizontal $x$ axis of the base, without turning; its position"
+    r" is $\theta_{\mathrm{pan}}$."
+)
 CATALOGUE = "default of the catalogue"
 
 
 def frames(equations: Equations) -> str:
     """The frames that this platform has, and gravity in its base."""
-    if equations.axes == ("pan",):
+    if equations.rigid.sliding:
+        text = SLIDE
+    elif equations.axes == ("pan",):
         text = f"{PAN}; the boresight is its $x$ axis."
     elif equations.axes == ("tilt",):
         base = TILT.format(base=r"base, which is level,")
@@ -86,7 +92,8 @@ def _variables(equations: Equations) -> Iterator[tuple[str, str, str, str]]:
     meanings = {s.name: (escaped(s.meaning), s.unit) for s in equations.extra_states}
     for symbol in equations.state_symbols:
         name = str(symbol)
-        yield name, *(meanings.get(name) or _joint_state(name)), "state"
+        meaning, unit = meanings.get(name) or _joint_state(name)
+        yield name, equations.worded(meaning), equations.unit(unit), "state"
     for given in equations.inputs:
         yield given.name, escaped(given.meaning), given.unit, "input"
     for friction in equations.frictions:
@@ -96,7 +103,8 @@ def _variables(equations: Equations) -> Iterator[tuple[str, str, str, str]]:
     for contact in equations.contacts:
         face = f"face of the gap in the {contact.axis} drive that is touched: $-1$, $1$, none 0"
         yield str(contact.side), face, "1", "mode"
-        yield str(contact.active), "1 while this face transmits torque, else 0", "1", "mode"
+        transmits = equations.worded("1 while this face transmits torque, else 0")
+        yield str(contact.active), transmits, "1", "mode"
     for switch in equations.switches:
         name = escaped(switch.name)
         beyond = f"threshold that {name} is beyond: the lower $-1$, the upper $1$, none 0"

@@ -81,9 +81,9 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
     curves: {run: {"set": "train" or "validate", "time": [n] s, "signals": {signal: {"unit",
     "measured", "before", "after" (or None): [n], "counts": size of one count or None}},
     "inputs": {name: {"unit", "values": [n]}} (optional),
-    "angle": {axis: [n] rad}, "rate": {axis: [n] rad/s}, "borders": [k] s, the starts of windows
-    after the first (optional), "run": the name of the run where the key is not (optional)}}. Loads
-    nothing from elsewhere.
+    "angle": {axis: [n] rad}, "rate": {axis: [n] rad/s}, "angle_unit": {axis: "m" where the joint is
+    linear} (optional), "borders": [k] s, the starts of windows after the first (optional), "run":
+    the name of the run where the key is not (optional)}}. Loads nothing from elsewhere.
     """
     verdict = VERDICTS[diagnosis["verdict"]]
     if not diagnosis.get("added"):
@@ -110,6 +110,7 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
         window=_window(curves),
         script=Markup(script),
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+        words=_words(curves),
     )
 
 
@@ -150,6 +151,12 @@ def _window(curves: Curves) -> float | None:
         if len(curve.get("borders") or ())
     ]
     return float(np.median(np.concatenate(lengths))) if lengths else None
+
+
+def _words(curves: Curves) -> quantities.JointWords:
+    """The words of the joints: a linear one is alone on its platform."""
+    axes = [(curve, axis) for curve in curves.values() for axis in curve.get("angle") or {}]
+    return quantities.joint_words(*axes[0]) if axes else quantities.ROTARY
 
 
 def _environment() -> jinja2.Environment:
@@ -272,9 +279,11 @@ def write_curves_csv(curves: Curves) -> dict[str, str]:
 def _columns(curve: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     yield "time [s]", curve["time"]
     for axis, angle in (curve.get("angle") or {}).items():
-        yield f"angle_{axis} [rad]", angle
+        words = quantities.joint_words(curve, axis)
+        yield f"{words.angle}_{axis} [{words.unit}]", angle
     for axis, rate in (curve.get("rate") or {}).items():
-        yield f"rate_{axis} [rad/s]", rate
+        words = quantities.joint_words(curve, axis)
+        yield f"{words.rate}_{axis} [{words.unit}/s]", rate
     for name, given in (curve.get("inputs") or {}).items():
         yield f"{name} [{given['unit']}]", given["values"]
     for name, signal in curve["signals"].items():

@@ -124,7 +124,7 @@ def _draw_input(
 def set_margins(figure: Figure, rows: int, columns: int) -> None:
     """Leave fixed room, in inches, for labels; a layout engine would draw every figure twice."""
     width, height = figure.get_size_inches()
-    left, right, bottom, top = 0.62, 0.08, 0.44, 0.26
+    left, right, bottom, top = 0.68, 0.08, 0.44, 0.26
     gap_across, gap_down = 0.2, 0.33
     figure.subplots_adjust(
         left=left / width,

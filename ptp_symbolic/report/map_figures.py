@@ -23,6 +23,7 @@ from ptp_symbolic.report.figures import (
     set_margins,
     svg_of,
 )
+from ptp_symbolic.report.quantities import joint_words
 
 DOTS = 700
 
@@ -30,15 +31,18 @@ DOTS = 700
 def residual_map_figure(
     signal_name: str, axis: str, curves: Mapping[str, Mapping[str, Any]], floor: float | None
 ) -> str:
-    """Residual of one signal against angle and rate of `axis` and time, runs pooled, as SVG.
+    """Residual of one signal against angle or position of `axis`, its rate, and time, runs pooled,
+    as SVG.
 
     Dots are samples, the line their median in equal bins, the band twice the noise floor (rms),
     given in the unit of the residual.
     """
     runs = [run for run in curves.values() if signal_name in run["signals"]]
+    words = joint_words(runs[0], axis)
+    scale, unit = plot_unit(words.unit)
     against = [
-        (f"angle of {axis} [deg]", [np.degrees(run["angle"][axis]) for run in runs], 30),
-        (f"rate of {axis} [deg/s]", [np.degrees(run["rate"][axis]) for run in runs], 30),
+        (f"{words.angle} of {axis} [{unit}]", [scale * run["angle"][axis] for run in runs], 30),
+        (f"{words.rate} of {axis} [{unit}/s]", [scale * run["rate"][axis] for run in runs], 30),
         ("time [s]", [np.asarray(run["time"], float) for run in runs], 8),
     ]
     signals = [run["signals"][signal_name] for run in runs]
@@ -77,7 +81,7 @@ def torque_map_figure(maps: Sequence[Mapping[str, Any]], unit: str) -> str:
             axes.errorbar(x, found["mean"], bars, color=AFTER, marker=".", elinewidth=0.9)
             axes.set_xlabel(f"{found['against']} [{shown}]")
             axes.set_title(f"{100.0 * found['share']:.0f} % of the variance")
-        grid[0].set_ylabel(f"torque left [{unit}]")
+        grid[0].set_ylabel(f"{'force' if unit == 'N' else 'torque'} left [{unit}]")
         return svg_of(figure)
 
 

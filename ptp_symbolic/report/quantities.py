@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 NOTHING = "–"
@@ -21,6 +22,27 @@ def number(value: Any, digits: int = 3) -> str:
     else:
         text = f"{mantissa} × 10{str(exponent).translate(_RAISED)}"
     return text.replace("-", "−")
+
+
+@dataclass(frozen=True)
+class JointWords:
+    """What the coordinate of a joint, its rate and what acts on it are called, and the unit of the
+    coordinate.
+    """
+
+    angle: str
+    rate: str
+    torque: str
+    unit: str
+
+
+ROTARY = JointWords("angle", "rate", "torque", "rad")
+LINEAR = JointWords("position", "speed", "force", "m")
+
+
+def joint_words(curve: Mapping[str, Any], axis: str) -> JointWords:
+    """The words of the joint of `axis`, which is rotary unless the `curve` says m."""
+    return LINEAR if (curve.get("angle_unit") or {}).get(axis) == "m" else ROTARY
 
 
 def unit(text: str | None) -> str:

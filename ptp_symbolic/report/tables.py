@@ -88,13 +88,15 @@ def error_of(diagnosis: Record, set_name: str, stage: str, run: str | None = Non
 
 
 def error_measure(totals: Iterable[Record]) -> tuple[str, str]:
-    """Key and unit in which errors are shown: encoder counts where every angle has them, else rad.
+    """Key and unit in which errors are shown: encoder counts where every angle has them, else rad
+    (m of a linear joint).
 
     A platform has the same encoders in all runs: one total in counts tells of all.
     """
-    if any(usable(total.get("rmse_counts")) for total in totals):
+    known = list(totals)
+    if any(usable(total.get("rmse_counts")) for total in known):
         return "rmse_counts", "counts"
-    return "rmse", "rad"
+    return "rmse", next((str(total["unit"]) for total in known if total.get("unit")), "rad")
 
 
 def declared_totals(diagnosis: Record) -> list[Record]:

@@ -11,7 +11,7 @@ from ptp_symbolic.models.declared import free_parameters, known_values, refuse_u
 from ptp_symbolic.numeric.data import Log, refuse_motionless, refuse_wrapped_angles, remarks
 from ptp_symbolic.numeric.diagnose.preparation import task_of
 from ptp_symbolic.numeric.diagnose.trial import Task
-from ptp_symbolic.numeric.identify.run import prepare_runs
+from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform, naming_file
 from ptp_symbolic.workflows.result import Progress

@@ -68,19 +68,25 @@ def test_erratum_27_products_of_inertia_and_offsets_couple_at_any_speed() -> Non
     assert normal_form(offset.forcing[1].xreplace(at_rest) - gravity) == 0
 
 
+def rotation(axes: tuple[str, ...], frame: str) -> sp.ImmutableMatrix:
+    """Rotation of vectors of `frame` into the base."""
+    still = sp.ImmutableMatrix([0, 0, 0])
+    return RigidConfiguration(axes, (), still).rotation_to_base(frame)
+
+
 def test_equation_3_1_gives_the_rates_of_the_tilt_body() -> None:
-    rotation = kinematics.rotation_to_base(("pan", "tilt"), "tilt")
+    turned = rotation(("pan", "tilt"), "tilt")
     rates = [(kinematics.angle(axis), kinematics.rate(axis)) for axis in ("pan", "tilt")]
-    spin = sum((rotation.T * rotation.diff(q) * w for q, w in rates), sp.zeros(3, 3))
+    spin = sum((turned.T * turned.diff(q) * w for q, w in rates), sp.zeros(3, 3))
     spin = spin.applyfunc(normal_form)
     body_rates = [spin[2, 1], spin[0, 2], spin[1, 0]]
     assert body_rates == [-PAN_RATE * SIN, TILT_RATE, PAN_RATE * COS]
 
 
 def test_a_positive_tilt_lowers_the_boresight() -> None:
-    boresight = kinematics.rotation_to_base(("pan", "tilt"), "tilt") * sp.Matrix([1, 0, 0])
+    boresight = rotation(("pan", "tilt"), "tilt") * sp.Matrix([1, 0, 0])
     assert boresight[2] == -SIN
-    alone = kinematics.rotation_to_base(("tilt",), "pan")
+    alone = rotation(("tilt",), "pan")
     assert alone == sp.eye(3)
 
 

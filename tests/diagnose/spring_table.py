@@ -16,7 +16,7 @@ from ptp_symbolic.models import declared, emission, variants
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose.preparation import task_of
 from ptp_symbolic.numeric.diagnose.trial import Task
-from ptp_symbolic.numeric.identify.run import prepare_runs
+from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.preparation import effect_keys
 

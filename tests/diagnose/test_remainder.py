@@ -49,7 +49,7 @@ def test_a_wave_is_found_whatever_its_phase_in_every_run(frequency: float) -> No
     time = np.tile(np.sort(rng.uniform(0.0, 10.0, 400)), 3)
     phase = np.array([0.3, 2.0, 4.4])[runs]
     left = np.sin(2.0 * np.pi * frequency * time + phase) + 0.5 * rng.standard_normal(1200)
-    found = strongest_line(time, left, runs, 0.08, np.ones(1200), by_angle=False)
+    found = strongest_line(time, left, runs, 0.08, np.ones(1200))
     assert found is not None
     assert found[0] == pytest.approx(frequency, abs=0.05)
     assert found[1] == pytest.approx(0.5 / 0.75, abs=0.1)
@@ -58,7 +58,7 @@ def test_a_wave_is_found_whatever_its_phase_in_every_run(frequency: float) -> No
 def test_too_short_a_range_has_no_line() -> None:
     angle = np.linspace(0.0, 0.2, 300)
     none = np.zeros(300, dtype=np.int64)
-    assert strongest_line(angle, angle, none, 0.08, np.full(300, 20.0), by_angle=True) is None
+    assert strongest_line(angle, angle, none, 0.08, np.full(300, 20.0 / (2.0 * np.pi))) is None
 
 
 def test_noise_has_no_line_and_a_constant_side_explains_nothing() -> None:
@@ -68,7 +68,7 @@ def test_noise_has_no_line_and_a_constant_side_explains_nothing() -> None:
     shares = []
     for _ in range(40):
         left = overlapping_noise(rng, 480)
-        found = strongest_line(time, left, runs, 0.08, np.ones(480), by_angle=False)
+        found = strongest_line(time, left, runs, 0.08, np.ones(480))
         assert found is not None
         shares.append(found[1])
     assert np.mean(np.array(shares) > 0.1) < 0.2
@@ -82,20 +82,23 @@ def test_a_joint_that_rests_has_lines_within_two_rows_of_a_cycle() -> None:
     angle = np.cumsum(np.r_[np.zeros(200), np.full(200, 0.01)])
     left = np.sin(2.0 * np.pi * 9.0 * angle)
     rate = np.r_[np.zeros(200), np.full(200, 0.5)]
-    found = strongest_line(angle, left, np.zeros(400, np.int64), 0.08, rate, by_angle=True)
+    found = strongest_line(angle, left, np.zeros(400, np.int64), 0.08, rate / (2.0 * np.pi))
     assert found is not None
     assert found[0] == pytest.approx(9.0, abs=0.2)
 
 
 def test_a_side_without_values_gives_no_hint() -> None:
     empty = binned(np.full(50, np.nan), np.ones(50))
-    assert hints({"maps": [{"axis": "pan", "against": "rate", **empty}], "lines": []}) == []
+    assert (
+        hints({"unit": "N m", "maps": [{"axis": "pan", "against": "rate", **empty}], "lines": []})
+        == []
+    )
 
 
 def test_hints_name_the_strongest_first() -> None:
     m = {"axis": "pan", "against": "angle", "mean": [0.5, -2.0], "share": 0.4}
     weak = {**m, "against": "rate", "share": 0.05}
     line = {"axis": "pan", "frequency": 2.4, "unit": "Hz", "share": 0.6}
-    said = hints({"maps": [m, weak], "lines": [line]})
+    said = hints({"unit": "N m", "maps": [m, weak], "lines": [line]})
     assert ["2.4 Hz" in said[0], "angle (40 %" in said[1], len(said)] == [True, True, 2]
     assert hints(None) == []

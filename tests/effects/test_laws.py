@@ -4,7 +4,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pint
 import pytest
 import sympy as sp
 
@@ -17,6 +16,7 @@ from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.placement import place_effects
 from ptp_symbolic.symbolic.effects import EFFECTS, Effect
 from tests.effects.bases import BASES, IDS, vanishing, with_effect, without
+from tests.effects.other_units import refuse_misfit
 
 
 def test_every_effect_has_its_file_and_one_import() -> None:
@@ -125,47 +125,6 @@ def test_an_unknown_effect_is_refused() -> None:
         assemble(replace(base, effects=(*base.effects, EffectDeclaration("wings", None, None))))
 
 
-def unit_factor(unit: str) -> float:
-    """How a number in `unit` changes when kg, m, s, A and K change; m = s^2 keeps gravity."""
-    scales = {"[mass]": 3.0, "[length]": 4.0, "[time]": 2.0, "[current]": 7.0}
-    scales["[temperature]"] = 5.0
-    dimension = pint.get_application_registry()(unit if unit != "1" else "").to_base_units()
-    factor = 1.0
-    for base, exponent in dimension.dimensionality.items():
-        factor *= scales[base] ** exponent
-    return factor
-
-
 @pytest.mark.parametrize("effect", EFFECTS, ids=IDS)
 def test_other_units_give_the_same_motion(effect: Effect) -> None:
-    model, rng = emission.emit(with_effect(effect)), np.random.default_rng(2)
-    units = model.units
-    names = (model.state_names, model.input_names, model.parameter_names)
-    x, u = (rng.normal(size=len(n)) for n in names[:2])
-    p = model.parameter_vector({q.name: q.default or q.upper * 1e-4 for q in model.parameters})
-    m = np.ones(len(model.mode_names))
-    scaled = [
-        a * np.array([unit_factor(units[n]) for n in group])
-        for a, group in zip((x, u, p), names, strict=True)
-    ]
-    t, later = 0.7, 0.7 * unit_factor("s")
-    outputs = [unit_factor(units[name]) for name in model.output_names]
-    guards = [unit_factor("N m")] * 3 * len(model.friction_rates)
-    for _ in model.module.CONTACT_ANGLES:
-        guards += [1.0, 1.0, unit_factor("N m"), unit_factor("N m")]
-    guards += [np.nan] * (3 * len(model.friction_rates) + 4 * len(model.contacts) - len(guards))
-    rates = [unit_factor(units[n]) / unit_factor("s") for n in names[0]]
-    powers = [unit_factor("J"), unit_factor("W"), unit_factor("W")]
-    for function, factors, modes in (
-        (model.module.mode_derivative, rates, (m,)),
-        (model.module.guards, guards, (m,)),
-        (model.module.energy, powers, (m,)),
-        (model.module.outputs, outputs, ()),
-    ):
-        here, other = np.zeros((2, len(factors)))
-        function(t, x, u, p, *modes, here)
-        function(later, *scaled, *modes, other)
-        known = np.isfinite(factors)
-        wanted = (here * factors)[known]
-        fits = np.isclose(other[known], wanted, rtol=1e-9, atol=1e-12)
-        assert fits.all(), f"units of {effect.id} do not fit {function.__name__}: {fits}"
+    refuse_misfit(emission.emit(with_effect(effect)), effect.id, "N m")

@@ -8,7 +8,7 @@ import pytest
 
 import ptp_symbolic
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.identify.run import prepare_runs
+from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.platform import Platform, SignalDeclaration
 from tests.identify.curves import Floats
 

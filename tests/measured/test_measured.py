@@ -26,7 +26,7 @@ def positioning_system(source: Path, folder: Path) -> tuple[list[Path], list[Pat
         force = float(data["gtau"].item()) * data["vir"].ravel()
         table = np.column_stack([data["t"].ravel(), force, data["qm"].ravel()])
         paths.append(folder / f"{name}.csv")
-        header = "time [s],force [N m],position [rad]"
+        header = "time [s],force [N],position [m]"
         np.savetxt(paths[-1], table, delimiter=",", header=header, comments="", fmt="%.9g")
     return paths[:1], paths[1:]
 

@@ -24,7 +24,7 @@ names = st.from_regex(r"[A-Za-z][A-Za-z0-9_]{0,20}", fullmatch=True).filter(
     lambda name: not keyword.iskeyword(name)
 )
 numbers = st.floats(allow_nan=False, allow_infinity=False)
-si_units = st.sampled_from(["N m", "kg m^2", "rad", "N m s/rad", "1", "ohm", "Hz", "N/m^2"])
+si_units = st.sampled_from(["N m", "kg m^2", "rad", "m", "N m s/rad", "1", "ohm", "Hz", "N/m^2"])
 lines = st.text(
     st.characters(codec="utf-8", exclude_categories=["C", "Zl", "Zp"]), min_size=1, max_size=40
 ).filter(lambda text: bool(text.strip()))
@@ -55,12 +55,11 @@ def signals(draw: st.DrawFn) -> tuple[SignalDeclaration, ...]:
         counts = draw(st.none() | st.integers(1, 10**6)) if unit == "rad" else None
         noise = draw(st.none() | st.floats(0, 1e300))
         role = draw(st.sampled_from(["input", "output"]))
+        per_metre = draw(st.none() | st.floats(1.0, 1e12)) if unit == "m" else None
         scale = draw(st.none() | numbers.filter(bool))
-        delay = draw(st.floats(-10.0, 10.0))
-        offset = draw(numbers)
-        found.append(
-            SignalDeclaration(name, f"{name} col", unit, role, counts, noise, scale, offset, delay)
-        )
+        raw = (scale, draw(numbers), draw(st.floats(-10.0, 10.0)))
+        column = f"{name} col"
+        found.append(SignalDeclaration(name, column, unit, role, counts, noise, per_metre, *raw))
     return tuple(found)
 
 
@@ -91,6 +90,7 @@ def platforms(draw: st.DrawFn) -> Platform:
         draw(signals()),
         draw(st.none() | st.floats(1e-6, 1e6)),
         Clock(draw(st.none() | names), draw(st.sampled_from([None, "s", "ms"]))),
+        draw(st.sampled_from([(), ("pan",)])) if axes == ("pan",) else (),
     )
 
 

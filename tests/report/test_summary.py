@@ -82,7 +82,7 @@ def _verdict(word: str, final: Trial, **more: Any) -> Any:
 
 
 def _errors(counts: float | None = 0.5) -> dict[str, Any]:
-    stage = {"total": {"rmse_counts": counts, "rmse": 5.4321e-4}}
+    stage = {"total": {"rmse_counts": counts, "rmse": 5.4321e-4, "unit": "rad"}}
     return {"validate": {"before": stage, "after": stage, "noise_floor": stage}}
 
 

@@ -36,7 +36,7 @@ def on_one_clock(
     signals = (*inputs, *outputs)
     if not any(s.delay for s in signals):
         return time, values, ()
-    leader = next((s for s in outputs if s.counts_per_revolution), outputs[0])
+    leader = next((s for s in outputs if s.count is not None), outputs[0])
     late = [s.delay for s in inputs] + [-s.delay for s in outputs]
     rounding = SAME_TIME * float(np.median(np.diff(time)))
     clock = time - leader.delay
@@ -90,7 +90,7 @@ def _output(
     at = _samples_at(measured, clock)
     if at is not None:
         return column[at]
-    if signal.counts_per_revolution is not None:
+    if signal.count is not None:
         raise InputError(
             f"{path}: the delays of the encoders '{leader.column}' and '{signal.column}' differ by"
             f" {1e3 * abs(leader.delay - signal.delay):g} ms, no whole number of samples, and"

@@ -34,10 +34,10 @@ def refuse_wrapped_angles(logs: Sequence[Log], platform: Platform) -> None:
 
 
 def refuse_motionless(logs: Sequence[Log], platform: Platform) -> None:
-    """Raise InputError where no angle of any log moves, peak to peak, by more than 3 counts of its
-    encoder and 6 standard deviations of its declared noise.
+    """Raise InputError where no angle or position of any log moves, peak to peak, by more than 3
+    counts of its encoder and 6 standard deviations of its declared noise.
     """
-    angles = [(k, s) for k, s in enumerate(_outputs(platform)) if s.unit == "rad"]
+    angles = [(k, s) for k, s in enumerate(_outputs(platform)) if s.is_position]
     if angles and not any(_moves(logs, k, s) for k, s in angles):
         names = " and ".join(f"'{s.column}'" for _, s in angles)
         verb = "stays" if len(angles) == 1 else "stay"
@@ -55,7 +55,7 @@ def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
     outputs = _outputs(platform)
     inputs = [s for s in platform.signals if s.role == "input"]
     for k, signal in enumerate(outputs):
-        if signal.unit == "rad" and not _moves(logs, k, signal):
+        if signal.is_position and not _moves(logs, k, signal):
             found.append(f"'{signal.column}' never moves: nothing can be told of that axis.")
     if inputs and all(np.ptp(log.inputs[:, k]) == 0.0 for log in logs for k in range(len(inputs))):
         found.append(
@@ -82,9 +82,8 @@ def _outputs(platform: Platform) -> list[SignalDeclaration]:
 
 
 def _moves(logs: Sequence[Log], column: int, signal: SignalDeclaration) -> bool:
-    """Whether an angle leaves its first values by more than rounding and noise."""
-    count = 2.0 * np.pi / signal.counts_per_revolution if signal.counts_per_revolution else 0.0
-    still = max(FEW_COUNTS * count, 2.0 * FEW_COUNTS * (signal.noise or 0.0))
+    """Whether an angle or a position leaves its first values by more than rounding and noise."""
+    still = max(FEW_COUNTS * (signal.count or 0.0), 2.0 * FEW_COUNTS * (signal.noise or 0.0))
     return any(float(np.ptp(log.outputs[:, column])) > still for log in logs)
 
 

@@ -60,12 +60,13 @@ def _curve(
         for column, name in enumerate(names)
     }
     time = _joined([r.time for r, _ in before])
-    angle, rate = {}, {}
+    angle, rate, unit = {}, {}, {}
     for signal, data in signals.items():
         if signal.startswith("theta_"):
             axis = signal.removeprefix("theta_")
             angle[axis] = data["after"]
             rate[axis] = np.gradient(data["after"], time)
+            unit[axis] = data["unit"]
     return {
         "set": kind,
         "time": time,
@@ -73,6 +74,7 @@ def _curve(
         "inputs": inputs,
         "angle": angle,
         "rate": rate,
+        "angle_unit": unit,
         "borders": [float(r.time[0]) for r, _ in before[1:]],
     }
 

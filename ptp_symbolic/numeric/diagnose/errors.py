@@ -1,7 +1,8 @@
 """The error of a fit, in one definition for every place that shows one.
 
 Root mean square over all samples of all runs (or windows) of a part, nothing left out: of the angle
-signals in rad and in counts of each signal's own encoder, and of every signal in its own unit.
+signals in rad (the position of a linear joint in m) and in counts of each signal's own encoder, and
+of every signal in its own unit.
 """
 
 from collections.abc import Sequence
@@ -19,7 +20,8 @@ Pair = tuple[Run, Evaluation]
 
 DEFINITION = (
     "root mean square over all samples of all runs of the part, the state at the start of each run"
-    " or window fitted; of the angles together in rad, and in counts of their own encoders"
+    " or window fitted; of the angles together in rad (positions in m), and in counts of their own"
+    " encoders"
 )
 
 
@@ -42,8 +44,9 @@ def error_of(fit: Fit, units: dict[str, str], floor: FloatArray | None = None) -
     noise of every signal, where one is given.
     """
     pairs = fit.pairs()
+    unit = units[fit.runs[0].signals[angle_columns(fit.runs[0])[0]]]
     return {
-        "total": _error(pairs, floor),
+        "total": {**_error(pairs, floor), "unit": unit},
         "by_run": {name: _error(group, floor) for name, group in pairs_by_run(pairs).items()},
         "by_signal": {
             name: _signal_error(pairs, k, units[name], floor)

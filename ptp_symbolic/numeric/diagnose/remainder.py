@@ -41,32 +41,38 @@ def remainder(space: EquationSpace | None, values: Mapping[str, float]) -> dict[
         if int(own.sum()) < BINS * ROWS_PER_WINDOW:
             continue
         left, motion = rows[own], row_motion(space, axis)
+        linear = space.model.is_linear(name)
+        angle, turn = ("position", "m") if linear else ("angle", "turn")
         inputs = list(_inputs(space, number[own], time[own]))
-        for against, unit, x in (*_sides(motion), *inputs):
+        for against, unit, x in (*_sides(motion, linear), *inputs):
             if np.isfinite(x).any() and np.nanmin(x) < np.nanmax(x):
                 maps.append({"axis": name, "against": against, "unit": unit, **binned(x, left)})
-        for place, unit, x in (
-            ("time", "Hz", time[own]),
-            ("angle", "1/turn", motion.angle / (2.0 * np.pi)),
+        in_time, once = number[own], np.zeros(len(left), dtype=np.int64)
+        cycle = 1.0 if linear else 2.0 * np.pi
+        for place, unit, x, speed, runs in (
+            ("time", "Hz", time[own], np.ones(len(left)), in_time),
+            (angle, f"1/{turn}", motion.angle / cycle, motion.rate / cycle, once),
         ):
-            runs = number[own] if place == "time" else np.zeros(len(left), dtype=np.int64)
-            found = strongest_line(x, left, runs, space.half_width, motion.rate, place == "angle")
+            found = strongest_line(x, left, runs, space.half_width, speed)
             if found is not None:
                 frequency, share = found
                 line = {"axis": name, "against": place, "unit": unit}
                 lines.append({**line, "frequency": frequency, "share": share})
-    return {"unit": "N m", "maps": maps, "lines": lines}
+    sliding = any(space.model.is_linear(name) for name in space.model.module.AXES)
+    return {"unit": "N" if sliding else "N m", "maps": maps, "lines": lines}
 
 
 def hints(found: Mapping[str, Any] | None) -> list[str]:
     """What the residual torque depends on most, in plain words, the largest share first."""
     if found is None:
         return []
-    sides = [(m["share"], _said(m)) for m in found["maps"] if m["share"] >= MATERIAL]
+    unit = found["unit"]
+    what = "force" if unit == "N" else "torque"
+    sides = [(m["share"], _said(m, what, unit)) for m in found["maps"] if m["share"] >= MATERIAL]
     sides += [
         (
             line["share"],
-            f"The torque that is left on {line['axis']} has a line at {line['frequency']:.3g}"
+            f"The {what} that is left on {line['axis']} has a line at {line['frequency']:.3g}"
             f" {line['unit']} ({100.0 * line['share']:.0f} % of its variance).",
         )
         for line in found["lines"]
@@ -74,16 +80,17 @@ def hints(found: Mapping[str, Any] | None) -> list[str]:
     return [text for share, text in sorted(sides, reverse=True) if share >= MATERIAL]
 
 
-def _said(m: Mapping[str, Any]) -> str:
+def _said(m: Mapping[str, Any], what: str, unit: str) -> str:
+    largest = float(np.max(np.abs(m["mean"])))
     return (
-        f"The torque that is left on {m['axis']} follows the {m['against']}"
-        f" ({100.0 * m['share']:.0f} % of its variance, up to {np.max(np.abs(m['mean'])):.3g} N m)."
+        f"The {what} that is left on {m['axis']} follows the {m['against']}"
+        f" ({100.0 * m['share']:.0f} % of its variance, up to {largest:.3g} {unit})."
     )
 
 
-def _sides(motion: RowMotion) -> Iterator[Side]:
-    yield "angle", "rad", motion.angle
-    yield "rate", "rad/s", motion.rate
+def _sides(motion: RowMotion, linear: bool) -> Iterator[Side]:
+    yield ("position", "m", motion.angle) if linear else ("angle", "rad", motion.angle)
+    yield ("speed", "m/s", motion.rate) if linear else ("rate", "rad/s", motion.rate)
     yield "time since reversal", "s", motion.since_reversal
 
 
@@ -132,18 +139,17 @@ def strongest_line(
     left: FloatArray,
     runs: NDArray[np.int64],
     half_width: float,
-    rate: FloatArray,
-    by_angle: bool,
+    speed: FloatArray,
 ) -> tuple[float, float] | None:
-    """The strongest line of `left` [n] over a `place` [n] (time in s run by run, or turns) in Hz or
-    1/turn and the share of the variance in it (Lomb, 1976; Scargle, 1982), beyond that of the
-    strongest of white noise (Fisher, 1929); None where the range holds too few cycles. Frequencies
-    end where a window of `half_width` s averages two cycles away at `rate` [n] in rad/s, or at two
-    rows in a cycle.
+    """The strongest line of `left` [n] over a `place` [n] (time in s run by run, turns or m), in
+    Hz, 1/turn or 1/m, and the share of the variance in it (Lomb, 1976; Scargle, 1982), beyond that
+    of the strongest of white noise (Fisher, 1929); None where the range holds too few cycles.
+    Frequencies end where a window of `half_width` s averages two cycles away at the `speed` [n] of
+    the place per s, or at two rows in a cycle.
     """
     span = max(float(np.ptp(place[runs == k])) for k in np.unique(runs))
-    moving = np.abs(rate[rate != 0.0])
-    slow = float(np.quantile(moving, 0.1)) / (2.0 * np.pi) if by_angle and moving.size else 1.0
+    moving = np.abs(speed[speed != 0.0])
+    slow = float(np.quantile(moving, 0.1)) if moving.size else 1.0
     lowest = LEAST_CYCLES / max(span, 1e-12)
     highest = min(1.0 / max(half_width * slow, 1e-12), 0.5 * left.size / max(span, 1e-12))
     if not lowest < highest:

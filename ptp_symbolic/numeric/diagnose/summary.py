@@ -58,10 +58,10 @@ def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -
     return text
 
 
-def _worded(error: dict[str, float | None]) -> str:
-    """An error in counts, or in rad where there is no encoder."""
+def _worded(error: Mapping[str, Any]) -> str:
+    """An error in counts, or in its unit where there is no encoder."""
     if error["rmse_counts"] is None:
-        return f"{error['rmse']:.3g} rad rms"
+        return f"{error['rmse']:.3g} {error['unit']} rms"
     return f"{error['rmse_counts']:.3f} counts rms"
 
 

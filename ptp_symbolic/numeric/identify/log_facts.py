@@ -20,8 +20,8 @@ class SignalFacts:
     """One signal of a log, in its unit: range, white noise (rms, of rounding too), the step between
     its levels (None where it has no few levels), and the share of samples at its ends.
 
-    Of an angle `resting` is the share of the time in which it stays within its noise for a tenth of
-    a second, and `fastest` its largest rate per second over that span.
+    Of an angle or a position `resting` is the share of the time in which it stays within its noise
+    for a tenth of a second, and `fastest` its largest rate per second over that span.
     """
 
     name: str
@@ -65,7 +65,7 @@ def facts_of(run: Run, units: Mapping[str, str]) -> LogFacts:
     ]
     span = max(LEAST_START, int(np.ceil(START_SPAN / period)))
     for name, column, weight in zip(run.signals, run.measured.T, run.weight, strict=True):
-        if units[name] != "rad":
+        if units[name] not in ("rad", "m"):
             signals.append(_signal(name, "output", column))
             continue
         reach = maximum_filter1d(column, span) - minimum_filter1d(column, span)

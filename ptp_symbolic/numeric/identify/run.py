@@ -1,15 +1,11 @@
 """A run prepared for fitting: inputs as tables, measured signals with weights, unknown starts."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.data.continuity import uninterrupted
 from ptp_symbolic.numeric.identify.constants import (
     ANYWHERE,
     FAR,
@@ -17,11 +13,9 @@ from ptp_symbolic.numeric.identify.constants import (
     ROUNDING,
     START_SPAN,
 )
-from ptp_symbolic.numeric.identify.noise import white_noise
-from ptp_symbolic.numeric.identify.rate_signals import has_angle, refuse_unseen_angles
+from ptp_symbolic.numeric.identify.rate_signals import has_angle
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import InputTable, stack, table
-from ptp_symbolic.platform import Platform, SignalDeclaration
+from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 
 FloatArray = NDArray[np.float64]
 
@@ -36,7 +30,7 @@ class StartUnknown:
     unknown is the place in that gap, from -1 (lower face) to 1 (upper face), and beyond where the
     shaft is wound up; `column` is the measured angle of the joint behind it. `sigma` is that of its
     prior. A search begins at `guess`, and may begin at other values `instead`: at rest, or turning
-    back. All are in rad or rad/s, places in half gaps.
+    back. All are in rad or rad/s (m or m/s of a linear joint), places in half gaps.
     """
 
     name: str
@@ -55,7 +49,7 @@ class Run:
     """One run or window: time [k] in s, inputs [k, nu], measured [k, ny], `weight` [ny] (1/sigma).
 
     `outputs` [ny] gives the model output of every measured column, `counts` [ny] the size of one
-    encoder count in rad (nan for analog signals); `start` [n] guesses the state at the first
+    encoder count in rad or m (nan for analog signals); `start` [n] guesses the state at the first
     sample.
     """
 
@@ -110,96 +104,6 @@ class Around:
     time: FloatArray
     measured: FloatArray
     first: int
-
-
-def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple[Run, ...]:
-    """Match the columns of `logs` to `model` and guess the start of every run; a gap in a log ends
-    one run and begins another.
-
-    Raises InputError when the platform's signals do not fit the model or one has no noise.
-    """
-    given = [s for s in platform.signals if s.role == "input"]
-    outputs = [s for s in platform.signals if s.role == "output"]
-    for wanted, found, what in (
-        (model.input_names, {s.signal for s in given}, "input"),
-        ({s.signal for s in outputs}, set(model.output_names), "output"),
-    ):
-        missing = [name for name in wanted if name not in found]
-        if missing:
-            raise InputError(
-                f"No {what} signal '{missing[0]}' to pair with; "
-                f"the model has inputs {', '.join(model.input_names)} and outputs"
-                f" {', '.join(model.output_names)}; declare it under [signals.{missing[0]}]."
-            )
-    refuse_unseen_angles(model, [s.signal for s in outputs])
-    order = [[s.signal for s in given].index(name) for name in model.input_names]
-    counts = np.array([2 * np.pi / (s.counts_per_revolution or np.nan) for s in outputs])
-    sigma = np.array(
-        [
-            _sigma(s, q, [log.outputs[:, k] for log in logs])
-            for k, (s, q) in enumerate(zip(outputs, counts, strict=True))
-        ]
-    )
-    pieces = [piece for log in logs for piece in _pieces(log)]
-    return tuple(_prepare(model, outputs, log, order, counts, sigma) for log in pieces)
-
-
-def _pieces(log: Log) -> list[Log]:
-    """The parts of a log between its gaps, named as windows of it."""
-    parts = uninterrupted(log.time)
-    if len(parts) == 1:
-        return [log]
-    return [
-        replace(
-            log,
-            name=f"{log.name}{WINDOW}{number}",
-            time=log.time[part],
-            inputs=log.inputs[part],
-            outputs=log.outputs[part],
-        )
-        for number, part in enumerate(parts, start=1)
-    ]
-
-
-def _prepare(
-    model: Model,
-    outputs: Sequence[SignalDeclaration],
-    log: Log,
-    order: list[int],
-    counts: FloatArray,
-    sigma: FloatArray,
-) -> Run:
-    steps = log.steps or [(log.time, column) for column in log.inputs.T]
-    run = Run(
-        name=log.name,
-        time=np.ascontiguousarray(log.time),
-        inputs=stack([table(*steps[k]) for k in order]),
-        held_inputs=np.ascontiguousarray(log.inputs[:, order]),
-        measured=np.ascontiguousarray(log.outputs),
-        outputs=np.array([model.output_names.index(s.signal) for s in outputs], dtype=np.int64),
-        weight=1.0 / sigma,
-        counts=counts,
-        signals=tuple(s.signal for s in outputs),
-        start=np.empty(0),
-        unknowns=(),
-    )
-    return with_start(model, run)
-
-
-def _sigma(signal: SignalDeclaration, count: float, measured: Sequence[FloatArray]) -> float:
-    """Standard deviation of a signal: rounding, and the declared noise or else that in the logs."""
-    rounding = 0.0 if np.isnan(count) else count * ROUNDING
-    noise = signal.noise
-    if noise is None and rounding > 0.0:
-        seen = float(np.median([white_noise(column) for column in measured]))
-        noise = float(np.sqrt(max(seen**2 - rounding**2, 0.0)))
-    sigma = float(np.hypot(rounding, noise or 0.0))
-    if sigma == 0.0:
-        raise InputError(
-            f"Signal '{signal.signal}' has neither counts_per_revolution nor noise;"
-            f" give its noise (rms) in {signal.unit}."
-        )
-    return sigma
 
 
 def with_start(model: Model, run: Run, around: Around | None = None) -> Run:

@@ -142,6 +142,10 @@ class Model:
         )
         return dict(zip(names, units, strict=True))
 
+    def is_linear(self, axis: str) -> bool:
+        """Whether the joint of `axis` slides (m, N) and does not turn (rad, N m)."""
+        return self.units[f"theta_{axis}"] == "m"
+
     @cached_property
     def friction_rates(self) -> NDArray[np.int64]:
         """State index [f] of the rate on which every friction acts."""

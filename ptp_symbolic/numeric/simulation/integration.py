@@ -33,7 +33,7 @@ from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-FACE_WIDTH = 1e-9  # rad
+FACE_WIDTH = 1e-9  # rad, or m
 METHODS = {"runge_kutta": RUNGE_KUTTA, "rosenbrock": ROSENBROCK}
 
 
@@ -97,8 +97,8 @@ def checked_accuracy(
 
 
 def tolerance_weights(model: Model) -> FloatArray:
-    """Factor [n] from an absolute tolerance in rad to that of every state; 1 for free bodies, whose
-    errors do not decay.
+    """Factor [n] from an absolute tolerance in rad or m to that of every state; 1 for free bodies,
+    whose errors do not decay.
     """
     if default_method(model) == "runge_kutta":
         return np.ones(len(model.state_names))
@@ -106,12 +106,12 @@ def tolerance_weights(model: Model) -> FloatArray:
 
 
 def geared_weights(model: Model) -> FloatArray:
-    """Factor [n] from an absolute tolerance in rad to that of every state of a geared machine.
+    """Factor [n] from an absolute tolerance in rad or m to that of every state of a geared machine.
 
-    An error of a rate (rad/s) counts a hundredth and any other, such as a current, a thousandth: it
-    decays before it reaches an angle.
+    An error of a rate (rad/s, m/s) counts a hundredth and any other, such as a current, a
+    thousandth: it decays before it reaches an angle or a position.
     """
-    factors = {"rad": 1.0, "rad/s": 100.0}
+    factors = {"rad": 1.0, "m": 1.0, "rad/s": 100.0, "m/s": 100.0}
     return np.array([factors.get(unit, 1000.0) for unit in model.module.STATE_UNITS])
 
 
@@ -202,10 +202,11 @@ def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watc
     model.module.guards(0.0, x, u, p, watch.m, watch.g)
     for contact, (_, joint, rule) in enumerate(model.contacts):
         separation, half_gap = watch.g[contact_guards(frictions, contact) :][:2]
+        unit = model.module.STATE_UNITS[joint].removesuffix("/s")
         if rule and abs(separation) > half_gap + FACE_WIDTH:
             raise InputError(
-                f"The gear output starts {separation:.6g} rad ahead of the joint, beyond a rigid"
-                f" face at {half_gap:.6g} rad; start it within the gap."
+                f"The gear output starts {separation:.6g} {unit} ahead of the joint, beyond a rigid"
+                f" face at {half_gap:.6g} {unit}; start it within the gap."
             )
         if (
             rule == STICKS
@@ -213,6 +214,6 @@ def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watc
             and x[joint] != 0.0
         ):
             raise InputError(
-                f"State '{model.state_names[joint]}' starts at {x[joint]:.6g} rad/s in the gap,"
+                f"State '{model.state_names[joint]}' starts at {x[joint]:.6g} {unit}/s in the gap,"
                 " where friction holds the joint; start it at rest."
             )

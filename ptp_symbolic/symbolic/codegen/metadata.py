@@ -171,8 +171,8 @@ def _search(p: Parameter) -> str:
 
 
 def _state_units(equations: Equations) -> list[str]:
-    units = {str(q): "rad" for q in equations.coordinates}
-    units.update({str(w): "rad/s" for w in equations.rates})
+    units = {str(q): equations.unit("rad") for q in equations.coordinates}
+    units.update({str(w): equations.unit("rad/s") for w in equations.rates})
     units.update({state.name: state.unit for state in equations.extra_states})
     return [units[str(symbol)] for symbol in equations.state_symbols]
 
@@ -287,7 +287,8 @@ def _members(placed: PlacedEffect, used: set[str]) -> str:
     """The nested members of an effect, those that lack a parameter here left out."""
     rows = []
     for member in placed.effect.members:
-        own = [name.format(axis=placed.axis) for name in member.parameters]
+        named = [name.format(axis=placed.axis) for name in member.parameters]
+        own = [name for name in named if name in placed.parameters]
         tied = [tuple(n.format(axis=placed.axis) for n in pair) for pair in member.tied.items()]
         if set(own) <= used:
             pairs = listed(f"({repr_text(a)}, {repr_text(b)})" for a, b in tied)

@@ -89,11 +89,11 @@ def _rows(equations: Equations, guards: int) -> dict[str, tuple[str, str]]:
     return {
         "dx": (f"{states}", rates),
         "f": (f"{states}", rates),
-        "g": (f"{guards}", "N m and rad"),
+        "g": (f"{guards}", equations.unit("N m and rad")),
         "strike": (f"{contacts * (states + 2)}", "STATE_UNITS, 1 and J"),
         "y": (f"{len(equations.outputs)}", "OUTPUT_UNITS"),
         "e": ("3", "J, W and W"),
-        "r": (f"{len(equations.rates) + further}", f"N m, then {rates}"),
+        "r": (f"{len(equations.rates) + further}", f"{equations.unit('N m')}, then {rates}"),
         "z": (f"{samples}", "s, s and 1 per sampler, then STATE_UNITS"),
         "bounds": (f"{len(equations.limits)}, 2", "STATE_UNITS: lower, upper"),
         "margin": (f"{len(equations.requirements)}", "units of what is compared"),

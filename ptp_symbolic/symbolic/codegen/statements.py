@@ -75,7 +75,11 @@ def aligned(left: str, right: sp.Expr) -> str:
 def statements(equations: Equations) -> list[Statement]:
     """All statements of a machine, those of the joints first; torques of shafts by their names."""
     return [
-        replace(s, right=_tidy(by_name(s.right, equations, s.left)))
+        replace(
+            s,
+            name=equations.worded(s.name),
+            right=_tidy(by_name(s.right, equations, s.left)),
+        )
         for s in _written_out(equations)
     ]
 

@@ -86,7 +86,7 @@ def assemble(platform: Platform) -> Equations:
         ledger=replace(ledger, power_in=ledger.power_in + power),
         effects=tuple(
             PlacedEffect(
-                effect,
+                effect.worded_at(place),
                 place.axis,
                 tuple(parameter.name for parameter in effect.parameters_at(place)),
                 acts_on(effect, place, placed),
@@ -188,7 +188,8 @@ def _rigid_configuration(platform: Platform, contributions: Contributions) -> Ri
     gravity = [g * d - a for d, a in zip(direction, acceleration, strict=True)]
     apart = contributions.resolve(contributions.values.get(quantity_symbol(AXIS_OFFSET), ZERO))
     offsets = {} if apart == 0 else {"tilt": sp.ImmutableMatrix([apart, 0, 0])}
-    return RigidConfiguration(platform.axes, bodies, sp.ImmutableMatrix(gravity), offsets)
+    base = sp.ImmutableMatrix(gravity)
+    return RigidConfiguration(platform.axes, bodies, base, offsets, platform.linear_axes)
 
 
 def _inputs(platform: Platform, contributions: Contributions) -> list[tuple[Input, str | None]]:
@@ -201,9 +202,15 @@ def _inputs(platform: Platform, contributions: Contributions) -> list[tuple[Inpu
         drives |= contribution.commands
     inputs: list[tuple[Input, str | None]] = []
     for axis in platform.axes:
-        own = Input(str(kinematics.torque(axis)), "N m", f"torque on the {axis} joint")
+        own = _own_input(axis, axis in platform.linear_axes)
         inputs += [(given, axis) for given in drives.get(axis, (own,))]
     return inputs + [(given, None) for c in contributions.by_effect for given in c.inputs]
+
+
+def _own_input(axis: str, linear: bool) -> Input:
+    """What acts on a joint without a drive: a torque, a force on a linear one."""
+    unit, word = ("N", "force") if linear else ("N m", "torque")
+    return Input(str(kinematics.torque(axis)), unit, f"{word} on the {axis} joint")
 
 
 def _delay_of(axis: str | None, contributions: Contributions) -> sp.Symbol | None:
@@ -254,7 +261,10 @@ def _outputs(
     """Measured signals, as their sensors show them: joint angles, extra states, and what else the
     platform declares.
     """
-    signals = {str(kinematics.angle(axis)): "rad" for axis in platform.axes}
+    signals = {
+        str(kinematics.angle(axis)): "m" if axis in platform.linear_axes else "rad"
+        for axis in platform.axes
+    }
     for contribution in contributions.by_effect:
         signals.update({state.name: state.unit for state in contribution.states})
     signals.update({sensor.name: sensor.unit for sensor in contributions.sensors})

@@ -19,6 +19,7 @@ from ptp_symbolic.symbolic.effect_interface.contribution import (
     Switch,
 )
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.linear import linear_sensor
 from ptp_symbolic.symbolic.effect_interface.place import Place, quantity_name
 from ptp_symbolic.symbolic.effect_interface.place import quantity as quantity_symbol
 from ptp_symbolic.symbolic.mechanics import kinematics
@@ -126,25 +127,39 @@ def slope_symbol(term: sp.Symbol, variable: sp.Symbol) -> sp.Symbol:
     return real(f"{term}_by_{variable}")
 
 
-def sensors_on(axes: Iterable[str], contributions: Sequence[Contribution]) -> list[Sensor]:
-    """The sensors that a machine may have: rates of its joints, torques of its shafts, and those
-    of its effects.
+def sensors_on(
+    axes: Iterable[str], contributions: Sequence[Contribution], linear: Collection[str] = ()
+) -> list[Sensor]:
+    """The sensors that a machine may have: rates of its joints, torques of its shafts (forces of
+    `linear` ones), and those of its effects.
     """
     rates = [
-        Sensor(str(w), "rad/s", f"rate of the {axis} joint, by a gyro or tachometer", w)
-        for axis, w in ((axis, kinematics.rate(axis)) for axis in axes)
+        (
+            axis,
+            Sensor(
+                str(kinematics.rate(axis)),
+                "rad/s",
+                f"rate of the {axis} joint, by a gyro or tachometer",
+                kinematics.rate(axis),
+            ),
+        )
+        for axis in axes
     ]
     torques = [
-        Sensor(
-            f"tau_shaft_{shaft.axis}",
-            "N m",
-            f"torque in the {shaft.axis} shaft",
-            quantity_symbol(f"measured_torque_{shaft.axis}"),
+        (
+            shaft.axis,
+            Sensor(
+                f"tau_shaft_{shaft.axis}",
+                "N m",
+                f"torque in the {shaft.axis} shaft",
+                quantity_symbol(f"measured_torque_{shaft.axis}"),
+            ),
         )
         for contribution in contributions
         for shaft in contribution.shafts
     ]
-    return [*rates, *torques, *(s for c in contributions for s in c.sensors)]
+    own = [linear_sensor(s) if axis in linear else s for axis, s in (*rates, *torques)]
+    return [*own, *(s for c in contributions for s in c.sensors)]
 
 
 def collect(
@@ -158,8 +173,9 @@ def collect(
     one which nothing defines, and where one refers to itself.
     """
     placed, axes = list(placed), tuple(axes)
-    contributions = tuple(effect.contribute(place) for effect, place in placed)
-    sensors = tuple(s for s in sensors_on(axes, contributions) if s.name in measured)
+    contributions = tuple(effect.contribution_at(place) for effect, place in placed)
+    linear = {place.axis for _, place in placed if place.linear}
+    sensors = tuple(s for s in sensors_on(axes, contributions, linear) if s.name in measured)
     values: dict[str, sp.Expr] = {name: ZERO for name in PLATFORM_QUANTITIES}
     for axis in axes:
         values[f"transmitted_torque_{axis}"] = _transmitted(axis, contributions)

@@ -14,6 +14,7 @@ from ptp_symbolic.symbolic.effect_interface.contribution import (
     Switch,
 )
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.linear import linear_unit, linear_words
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
@@ -104,6 +105,14 @@ class Equations:
     effects: tuple[PlacedEffect, ...]
     rigid: RigidConfiguration
     rigid_equations: RigidEquations
+
+    def unit(self, rotary: str) -> str:
+        """The unit here of what has the unit `rotary` on a rotary joint."""
+        return linear_unit(rotary) if self.rigid.sliding else rotary
+
+    def worded(self, rotary: str) -> str:
+        """A text about a rotary joint in the words of the joints here."""
+        return linear_words(rotary) if self.rigid.sliding else rotary
 
     @property
     def state_symbols(self) -> tuple[sp.Symbol, ...]:

@@ -64,12 +64,18 @@ def _frames(
         if axis in configuration.axes:
             place = configuration.axes.index(axis)
             frame = ReferenceFrame(f"{axis}_frame")
-            before, offset = origin, _vector(configuration.offset(axis), last)
-            origin = before.locatenew(f"{axis}_origin", offset)
-            origin.v2pt_theory(before, base, last)
-            direction = _vector(kinematics.joint_direction(axis), last)
-            frame.orient_axis(last, direction, angles[place])
-            frame.set_ang_vel(last, speeds[place] * direction)
+            moving = {kinematics.angle(axis): angles[place]}
+            offset = _vector(configuration.offset(axis).xreplace(moving), last)
+            before, origin = origin, origin.locatenew(f"{axis}_origin", offset)
+            if axis in configuration.sliding:
+                frame.orient_axis(last, last.x, 0)
+                origin.set_vel(last, speeds[place] * _vector(kinematics.ALONG, last))
+                origin.v1pt_theory(before, base, last)
+            else:
+                origin.v2pt_theory(before, base, last)
+                direction = _vector(kinematics.joint_direction(axis), last)
+                frame.orient_axis(last, direction, angles[place])
+                frame.set_ang_vel(last, speeds[place] * direction)
             last = frame
         frames[axis] = last, origin
     return frames

@@ -43,7 +43,7 @@ def lagrange(configuration: RigidConfiguration) -> RigidEquations:
 def _energies(body: Body, configuration: RigidConfiguration) -> tuple[sp.Expr, sp.Expr]:
     """Kinetic and potential energy of `body` in J; the potential is zero in the origin."""
     axes = configuration.axes
-    rotation = kinematics.rotation_to_base(axes, body.frame)
+    rotation = configuration.rotation_to_base(body.frame)
     origin = _origin(configuration, body.frame)
     spin = sp.zeros(3, 3)
     for axis in axes:
@@ -64,5 +64,5 @@ def _origin(configuration: RigidConfiguration, frame: str) -> sp.Matrix:
     rotation, origin = sp.eye(3), sp.zeros(3, 1)
     for axis in kinematics.joints_up_to(configuration.axes, frame):
         origin += rotation * configuration.offset(axis)
-        rotation = rotation * kinematics.joint_rotation(axis)
+        rotation = rotation * configuration.rotation(axis)
     return origin

@@ -67,14 +67,16 @@ def _outward(configuration: RigidConfiguration, accelerations: list[sp.Symbol]) 
     motions = [_Motion(still, still, sp.Matrix(configuration.gravity), still, still, still)]
     for axis, acceleration in zip(configuration.axes, accelerations, strict=True):
         before = motions[-1]
-        inwards = kinematics.joint_rotation(axis).T
-        direction = kinematics.joint_direction(axis)
-        relative = direction * kinematics.rate(axis)
+        inwards = configuration.rotation(axis).T
+        turns, slides = _directions(configuration, axis)
+        relative = turns * kinematics.rate(axis)
         carried = inwards * before.spin
-        spin_rate = inwards * before.spin_rate + direction * acceleration + carried.cross(relative)
+        spin_rate = inwards * before.spin_rate + turns * acceleration + carried.cross(relative)
         arm = sp.Matrix(configuration.offset(axis))
-        turning = before.spin.cross(arm)
-        drawn = before.spin_rate.cross(arm) + before.spin.cross(turning)
+        sliding = slides * kinematics.rate(axis)
+        turning = before.spin.cross(arm) + sliding
+        drawn = before.spin_rate.cross(arm) + before.spin.cross(turning + sliding)
+        drawn += slides * acceleration
         motions.append(
             _Motion(
                 carried + relative,
@@ -88,8 +90,19 @@ def _outward(configuration: RigidConfiguration, accelerations: list[sp.Symbol]) 
     return motions
 
 
+def _directions(configuration: RigidConfiguration, axis: str) -> tuple[sp.Matrix, sp.Matrix]:
+    """Unit vectors [3] about which the joint of `axis` turns and along which it slides, one zero;
+    the same in the frames before and behind it.
+    """
+    if axis in configuration.sliding:
+        return sp.zeros(3, 1), sp.Matrix(kinematics.ALONG)
+    return sp.Matrix(kinematics.joint_direction(axis)), sp.zeros(3, 1)
+
+
 def _inward(configuration: RigidConfiguration, motions: list[_Motion]) -> list[sp.Expr]:
-    """Moment in N m that each joint must give about its axis, base first."""
+    """Moment in N m, or force in N, that each joint must give about or along its axis, base
+    first.
+    """
     axes = configuration.axes
     moments: list[sp.Expr] = []
     moment, force = sp.zeros(3, 1), sp.zeros(3, 1)
@@ -100,8 +113,9 @@ def _inward(configuration: RigidConfiguration, motions: list[_Motion]) -> list[s
                 moment += _moment(body, motions[place]) + sp.Matrix(body.com).cross(pull)
                 force += pull
         axis = axes[place - 1]
-        moments.append(kinematics.joint_direction(axis).dot(moment))
-        outwards = kinematics.joint_rotation(axis)
+        turns, slides = _directions(configuration, axis)
+        moments.append(turns.dot(moment) + slides.dot(force))
+        outwards = configuration.rotation(axis)
         force = outwards * force
         moment = outwards * moment + sp.Matrix(configuration.offset(axis)).cross(force)
     return moments[::-1]

@@ -1,5 +1,6 @@
 """Place the declared effects of a platform and check its parameters against them."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from ptp_symbolic.errors import InputError, did_you_mean, unknown
@@ -75,7 +76,14 @@ def _placed(platform: Platform) -> list[tuple[Effect, Place]]:
                 f"Effect '{effect.id}' has no choice of site; remove its site ="
                 f' "{declaration.site}".'
             )
-        placed.append((effect, Place(platform.axes, declaration.axis, declaration.site, shafts)))
+        linear = bool(platform.linear_axes)
+        if linear and effect.instead_on_linear:
+            raise InputError(
+                f"Effect '{effect.id}' makes no sense on a linear joint:"
+                f" {effect.instead_on_linear}; remove it."
+            )
+        place = Place(platform.axes, declaration.axis, declaration.site, shafts, linear)
+        placed.append((effect, place))
     return placed
 
 
@@ -132,16 +140,21 @@ def acts_on(effect: Effect, place: Place, placed: list[tuple[Effect, Place]]) ->
     )
 
 
-def effects_that_define(quantity: str, axes: tuple[str, ...]) -> list[str]:
-    """Ids of the effects that define `quantity` on a machine with these axes."""
+def effects_that_define(quantity: str, axes: tuple[str, ...], linear: bool = False) -> list[str]:
+    """Ids of the effects that define `quantity` on a machine with these axes, linear or not."""
     return [
         effect.id
-        for effect in EFFECTS
-        if any(
-            quantity in effect.contribute(Place(axes, axis, None, frozenset())).quantities
-            for axis in (axes if effect.on_axis else (None,))
-        )
+        for effect, place in _everywhere(axes, linear)
+        if quantity in effect.contribute(place).quantities
     ]
+
+
+def _everywhere(axes: tuple[str, ...], linear: bool) -> Iterator[tuple[Effect, Place]]:
+    """Every effect of the catalogue at its places on a machine with these axes."""
+    for effect in EFFECTS:
+        if not (linear and effect.instead_on_linear):
+            for axis in axes if effect.on_axis else (None,):
+                yield effect, Place(axes, axis, None, frozenset(), linear)
 
 
 def _check_needs(placed: list[tuple[Effect, Place]]) -> None:
@@ -150,7 +163,7 @@ def _check_needs(placed: list[tuple[Effect, Place]]) -> None:
         for need in effect.needs:
             name = need.format(axis=place.axis)
             if name not in available:
-                bringing = " or ".join(effects_that_define(name, place.axes))
+                bringing = " or ".join(effects_that_define(name, place.axes, place.linear))
                 on_axis = "" if place.axis is None else f" on axis '{place.axis}'"
                 next_step = (
                     f"declare {bringing}{on_axis} too, or remove it"
@@ -185,7 +198,7 @@ def _check_parameters(platform: Platform, placed: list[tuple[Effect, Place]]) ->
     for declaration in platform.parameters:
         parameter = own.get(declaration.name)
         if parameter is None:
-            raise InputError(_no_owner(declaration.name, platform.axes, own))
+            raise InputError(_no_owner(declaration.name, platform, own))
         if declaration.unit is not None and not compatible(declaration.unit, parameter.unit):
             raise InputError(
                 f"Parameter '{declaration.name}' has unit '{declaration.unit}';"
@@ -208,13 +221,12 @@ def _check_parameters(platform: Platform, placed: list[tuple[Effect, Place]]) ->
                 )
 
 
-def _no_owner(name: str, axes: tuple[str, ...], own: dict[str, Parameter]) -> str:
+def _no_owner(name: str, platform: Platform, own: dict[str, Parameter]) -> str:
     """What to say of a parameter that no declared effect has, though another may have it."""
     owners = [
         effect.id
-        for effect in EFFECTS
-        for axis in (axes if effect.on_axis else (None,))
-        if name in {p.name for p in effect.parameters_at(Place(axes, axis, None, frozenset()))}
+        for effect, place in _everywhere(platform.axes, bool(platform.linear_axes))
+        if name in {p.name for p in effect.parameters_at(place)}
     ]
     guess = f": it is of {' or '.join(owners)}; declare one." if owners else did_you_mean(name, own)
     known = ", ".join(own)

@@ -6,10 +6,16 @@ placeholders such as ``winding_resistance_pan`` that one effect defines and othe
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 from ptp_symbolic.symbolic.effect_interface.conditions import Requirement
 from ptp_symbolic.symbolic.effect_interface.contribution import Contribution
+from ptp_symbolic.symbolic.effect_interface.linear import (
+    linear_contribution,
+    linear_parameter,
+    linear_words,
+)
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 
@@ -45,7 +51,8 @@ class Effect:
     motor, a body): declared, never searched for; nor is one that is `declared_only`. `sites`: where
     on its axis it may sit, if there is a choice. `has` tells which of its parameters it has at a
     place. `members` are nested versions of it, the simplest first and the whole last. Other `kinds`
-    share its id; this is the usual one.
+    share its id; this is the usual one. `linear` has the texts that are others on a linear joint,
+    where they do not follow word by word; what makes no sense there says `instead_on_linear` why.
 
     Raises ValueError for a parameter whose default, starts or vanishing value lie out of its
     bounds, and for a member with parameters that are not the effect's.
@@ -69,6 +76,8 @@ class Effect:
     members: tuple[Member, ...] = ()
     kind: str | None = None
     kinds: tuple["Effect", ...] = ()
+    linear: Mapping[str, str] | None = field(default=None, hash=False)
+    instead_on_linear: str = ""
 
     def __post_init__(self) -> None:
         for parameter in self.parameters:
@@ -89,4 +98,19 @@ class Effect:
 
     def parameters_at(self, place: Place) -> tuple[Parameter, ...]:
         """The parameters that the effect has at `place`, the name of its axis filled in."""
-        return tuple(p.at_axis(place.axis) for p in self.parameters if self.has(place, p))
+        own = (p.at_axis(place.axis) for p in self.parameters if self.has(place, p))
+        return tuple(map(linear_parameter, own) if place.linear else own)
+
+    def contribution_at(self, place: Place) -> Contribution:
+        """What the effect adds at `place`, in the units of the joint there."""
+        added = self.contribute(place)
+        return linear_contribution(added) if place.linear else added
+
+    def worded_at(self, place: Place) -> "Effect":
+        """The effect with its texts in the words of the joint at `place`."""
+        if not place.linear:
+            return self
+        texts: dict[str, Any] = {
+            n: linear_words(getattr(self, n)) for n in ("title", "separating_experiment")
+        }
+        return replace(self, **{**texts, **(self.linear or {})})

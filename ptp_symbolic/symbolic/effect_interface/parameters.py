@@ -1,6 +1,8 @@
 """Parameters of effects: name, unit, default, bounds, and where the effect vanishes."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import sympy as sp
 
@@ -18,6 +20,8 @@ class Parameter:
     (the rest angle of a spring without stiffness). `starts` are the values from which a search
     begins when the parameter is not declared. A parameter with a `period` wraps around. `locked_to`
     ("time" or "angle") marks a frequency that is searched at the strongest lines of the residual.
+    `linear` names the fields that are others on a linear joint, where they do not follow from
+    those here: the unit of what turns there too, bounds.
     """
 
     name: str
@@ -30,6 +34,7 @@ class Parameter:
     starts: tuple[float, ...] = ()
     period: float | None = None
     locked_to: str | None = None
+    linear: Mapping[str, Any] | None = field(default=None, hash=False)
 
     def check(self) -> None:
         """Raise ValueError where default, a start or the vanishing value lies out of bounds."""

@@ -15,12 +15,15 @@ LOADS = ("driving_torque", "load_torque", "load_inertia")
 
 @dataclass(frozen=True)
 class Place:
-    """Where an effect sits: axes of the machine, its own axis and site, axes with a shaft."""
+    """Where an effect sits: axes of the machine, its own axis and site, axes with a shaft, and
+    whether the joint is a linear one.
+    """
 
     axes: tuple[str, ...]
     axis: str | None
     site: str | None
     shafts: frozenset[str]
+    linear: bool = False
 
     def symbols(self, parameters: Iterable[Parameter]) -> tuple[sp.Symbol, ...]:
         """Symbols of `parameters` of the effect, the name of its axis filled in."""

@@ -44,4 +44,5 @@ AXIS_OFFSET = Effect(
     declared_only=True,
     needs=("tilt_axis_offset",),
     separating_experiment="Weigh the tilt body, and measure how far its axis is from the pan axis.",
+    instead_on_linear="it has no tilt axis",
 )

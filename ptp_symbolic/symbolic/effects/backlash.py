@@ -23,8 +23,10 @@ GAP = Parameter(
     "whole gap between the two faces",
     vanishes=0.0,
     starts=(0.005, 0.02),
+    linear={"default": 1e-4, "starts": (2e-5, 1e-4)},
 )
-OPEN_GAP = replace(GAP, lower=1e-6, vanishes=None, starts=())
+OPEN_LINEAR = {"default": 1e-4, "lower": 1e-7}
+OPEN_GAP = replace(GAP, lower=1e-6, vanishes=None, starts=(), linear=OPEN_LINEAR)
 RESTITUTION = Parameter(
     "e_gap_{axis}", "1", 0.5, 0.0, 1.0, "restitution: speed apart after a strike, per speed before"
 )

@@ -66,4 +66,5 @@ BASE_MOTION = Effect(
     needs=("payload_com_x",),
     separating_experiment="Hold the axes and log: a shaking base moves them in time, whatever the"
     " angle; an accelerometer on the base tells at once.",
+    instead_on_linear="it acts on a payload that turns",
 )

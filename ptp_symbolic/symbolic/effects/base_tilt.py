@@ -48,4 +48,5 @@ BASE_TILT = Effect(
     needs=("payload_com_x",),
     separating_experiment="Sweep the pan axis over a full turn (a spring keeps growing, gravity"
     " comes back), or level the base with shims and repeat.",
+    instead_on_linear="gravity along it is a constant force: declare constant_torque",
 )

@@ -15,6 +15,7 @@ PARAMETERS = (
         "linear stiffness of the cable wrap",
         vanishes=0.0,
         starts=(0.3,),
+        linear={"upper": 1e8},
     ),
     Parameter(
         "k3_cable_{axis}",
@@ -25,6 +26,7 @@ PARAMETERS = (
         "cubic stiffness of the cable wrap",
         vanishes=0.0,
         starts=(0.1,),
+        linear={"upper": 1e10},
     ),
     Parameter(
         "theta0_cable_{axis}",
@@ -56,6 +58,7 @@ CABLE_SPRING = Effect(
     parameters=PARAMETERS,
     contribute=_contribute,
     members=MEMBERS,
+    linear={"separating_experiment": "Unplug or unwind the cable and repeat."},
     separating_experiment="Unplug or unwind the cable and repeat; or sweep beyond +-180 deg, where"
     " gravity turns over and a spring does not.",
 )

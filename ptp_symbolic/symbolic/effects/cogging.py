@@ -16,7 +16,8 @@ AMPLITUDES = harmonics(
     Parameter("T_sin_{axis}", "N m", 0.0, -1e4, 1e4, OF_SINE, vanishes=0.0, starts=(0.2,)),
     Parameter("T_cos_{axis}", "N m", 0.0, -1e4, 1e4, OF_COSINE, vanishes=0.0, starts=(0.2,)),
 )
-CYCLES = Parameter("n_cog_{axis}", "1", 60.0, 0.5, 1e5, OF_CYCLES, locked_to="angle")
+LINEAR = {"unit": "rad/m", "meaning": "wave number of the cogging: 2 pi over its length"}
+CYCLES = Parameter("n_cog_{axis}", "1", 60.0, 0.5, 1e5, OF_CYCLES, locked_to="angle", linear=LINEAR)
 
 
 def _contribute(place: Place) -> Contribution:

@@ -1,5 +1,7 @@
 """A geared permanent-magnet DC motor, driven by a voltage."""
 
+from dataclasses import replace
+
 import sympy as sp
 
 from ptp_symbolic.symbolic.effect_interface.contribution import (
@@ -18,19 +20,26 @@ WINDING, LOSS = "winding_resistance_{axis}", "winding_loss_{axis}"
 VOLTAGES = ("motor_voltage_{axis}", "drive_voltage_{axis}", "command_{axis}")  # each from the next
 
 
+def _turning(parameter: Parameter) -> Parameter:
+    """A parameter of what turns before a linear joint too."""
+    return replace(parameter, linear={"unit": parameter.unit})
+
+
 def motor_parameters(values: tuple[float, float, float, float]) -> tuple[Parameter, ...]:
     """Parameters of a winding and a rotor; `values` are their defaults, in this order."""
     inductance, resistance, constant, rotor = values
     return (
         Parameter("L_{axis}", "H", inductance, 1e-9, 1e3, "winding inductance"),
         Parameter("R_{axis}", "ohm", resistance, 1e-6, 1e6, "winding resistance"),
-        Parameter("K_t_{axis}", "N m/A", constant, 1e-9, 1e4, "torque constant"),
-        Parameter("J_motor_{axis}", "kg m^2", rotor, 1e-12, 1e3, "rotor inertia"),
+        _turning(Parameter("K_t_{axis}", "N m/A", constant, 1e-9, 1e4, "torque constant")),
+        _turning(Parameter("J_motor_{axis}", "kg m^2", rotor, 1e-12, 1e3, "rotor inertia")),
     )
 
 
 MOTOR = motor_parameters((6.9e-3, 12.9, 0.0724, 1.1e-5))
-PARAMETERS = (*MOTOR, Parameter("N_{axis}", "1", 500.0, 1e-3, 1e6, "gear ratio"))
+SPINDLE = {"unit": "rad/m", "meaning": "motor angle per travel, 2 pi over the lead if direct"}
+RATIO = Parameter("N_{axis}", "1", 500.0, 1e-3, 1e6, "gear ratio", linear=SPINDLE)
+PARAMETERS = (*MOTOR, RATIO)
 
 
 def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Contribution:
@@ -63,7 +72,7 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
 
 
 def _contribute(place: Place) -> Contribution:
-    return electric_drive(place, place.parameter("N_{axis}"))
+    return electric_drive(place, place.parameter(RATIO.name))
 
 
 DC_MOTOR = Effect(

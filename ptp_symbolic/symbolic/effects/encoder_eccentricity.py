@@ -2,7 +2,12 @@
 
 from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
-from ptp_symbolic.symbolic.effect_interface.harmonics import harmonic_members, wave
+from ptp_symbolic.symbolic.effect_interface.harmonics import (
+    harmonic_members,
+    has_wave_number,
+    wave,
+    wave_number,
+)
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter, harmonics
 from ptp_symbolic.symbolic.effect_interface.place import Place
 
@@ -28,10 +33,11 @@ AMPLITUDES = harmonics(
         starts=(0.002,),
     ),
 )
+NUMBER = wave_number("n_enc_{axis}")
 
 
 def _contribute(place: Place) -> Contribution:
-    error = wave(place, AMPLITUDES, place.angle)
+    error = wave(place, AMPLITUDES, place.angle, NUMBER)
     return Contribution(changes={f"reading_{place.angle}": Change(addition=error)})
 
 
@@ -39,9 +45,10 @@ ENCODER_ECCENTRICITY = Effect(
     id="encoder_eccentricity",
     title="encoder off its centre",
     reference="Ellin and Dolsak (2008): eccentricity error of rotary encoders",
-    parameters=tuple(p for pair in AMPLITUDES for p in pair),
+    parameters=(*(p for pair in AMPLITUDES for p in pair), NUMBER),
+    has=has_wave_number,
     contribute=_contribute,
-    members=harmonic_members(AMPLITUDES),
+    members=harmonic_members(AMPLITUDES, (NUMBER.name,)),
     separating_experiment="Turn slowly against a second encoder or an optical polygon: the error"
     " depends on the angle alone, at any speed and load.",
 )

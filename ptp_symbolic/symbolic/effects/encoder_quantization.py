@@ -11,7 +11,13 @@ from ptp_symbolic.symbolic.effect_interface.place import Place
 
 PARAMETERS = (
     Parameter(
-        "q_count_{axis}", "rad", 8.726646259971648e-4, 1e-12, 1.0, "angle of one encoder count"
+        "q_count_{axis}",
+        "rad",
+        8.726646259971648e-4,
+        1e-12,
+        1.0,
+        "angle of one encoder count",
+        linear={"default": 1e-6, "meaning": "travel of one encoder count"},
     ),
 )
 

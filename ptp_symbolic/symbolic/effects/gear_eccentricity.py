@@ -2,7 +2,12 @@
 
 from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
-from ptp_symbolic.symbolic.effect_interface.harmonics import harmonic_members, wave
+from ptp_symbolic.symbolic.effect_interface.harmonics import (
+    harmonic_members,
+    has_wave_number,
+    wave,
+    wave_number,
+)
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter, harmonics
 from ptp_symbolic.symbolic.effect_interface.place import Place
 
@@ -28,10 +33,11 @@ AMPLITUDES = harmonics(
         starts=(0.002,),
     ),
 )
+NUMBER = wave_number("n_gear_{axis}")
 
 
 def _contribute(place: Place) -> Contribution:
-    error = wave(place, AMPLITUDES, place.gear_angle)
+    error = wave(place, AMPLITUDES, place.gear_angle, NUMBER)
     return Contribution(changes={f"transmission_error_{place.axis}": Change(addition=error)})
 
 
@@ -39,10 +45,11 @@ GEAR_ECCENTRICITY = Effect(
     id="gear_eccentricity",
     title="gear that runs out of true",
     reference="Smith (1999), transmission error of an eccentric wheel",
-    parameters=tuple(p for pair in AMPLITUDES for p in pair),
+    parameters=(*(p for pair in AMPLITUDES for p in pair), NUMBER),
+    has=has_wave_number,
     contribute=_contribute,
     needs=("half_gap_{axis}",),
-    members=harmonic_members(AMPLITUDES),
+    members=harmonic_members(AMPLITUDES, (NUMBER.name,)),
     separating_experiment="Compare an encoder on the motor with the one on the joint over a full"
     " slow turn both ways; an encoder error shows without load as well.",
 )

@@ -48,4 +48,5 @@ HARMONIC_DRIVE = Effect(
     dissipative=True,
     separating_experiment="Lock the motor and load the joint in slow loops of several sizes: the"
     " twist stiffens, and every loop leaves an area.",
+    instead_on_linear="it turns on both sides: declare shaft_compliance",
 )

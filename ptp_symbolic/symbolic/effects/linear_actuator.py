@@ -70,4 +70,5 @@ LINEAR_ACTUATOR = Effect(
     contribute=_contribute,
     structural=True,
     requires=_requires,
+    instead_on_linear="its linkage turns a joint: declare dc_motor, with N in rad/m",
 )

@@ -56,4 +56,5 @@ PAYLOAD = Effect(
     contribute=_contribute,
     on_axis=False,
     structural=True,
+    instead_on_linear="its mass is part of m_pan",
 )

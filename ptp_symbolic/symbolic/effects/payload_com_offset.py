@@ -44,4 +44,5 @@ PAYLOAD_COM_OFFSET = Effect(
     needs=("payload_com_x",),
     separating_experiment="Hold each axis at several angles and read the holding torque; repeat"
     " with the payload turned by 180 deg about the boresight.",
+    instead_on_linear="what slides has a mass alone, m_pan",
 )

@@ -4,7 +4,12 @@ import sympy as sp
 
 from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
-from ptp_symbolic.symbolic.effect_interface.harmonics import harmonic_members, wave
+from ptp_symbolic.symbolic.effect_interface.harmonics import (
+    harmonic_members,
+    has_wave_number,
+    wave,
+    wave_number,
+)
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter, harmonics
 from ptp_symbolic.symbolic.effect_interface.place import Place
 
@@ -30,11 +35,12 @@ AMPLITUDES = harmonics(
         starts=(0.1,),
     ),
 )
+NUMBER = wave_number("n_F_{axis}")
 
 
 def _contribute(place: Place) -> Contribution:
     added = Change(
-        addition=wave(place, AMPLITUDES, place.gear_angle),
+        addition=wave(place, AMPLITUDES, place.gear_angle, NUMBER),
         through=lambda torque: sp.Max(torque, 0),
     )
     return Contribution(
@@ -46,10 +52,11 @@ POSITION_DEPENDENT_FRICTION = Effect(
     id="position_dependent_friction",
     title="friction that depends on the angle",
     reference="Armstrong-Helouvry (1991), section 4: friction against position",
-    parameters=tuple(p for pair in AMPLITUDES for p in pair),
+    parameters=(*(p for pair in AMPLITUDES for p in pair), NUMBER),
+    has=has_wave_number,
     contribute=_contribute,
     needs=("coulomb_torque_{axis}", "static_torque_{axis}"),
-    members=harmonic_members(AMPLITUDES),
+    members=harmonic_members(AMPLITUDES, (NUMBER.name,)),
     separating_experiment="Pass the same angles both ways at two speeds: gravity keeps its sign,"
     " friction flips, an encoder error grows with the speed.",
 )

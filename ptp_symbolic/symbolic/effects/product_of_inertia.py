@@ -39,4 +39,5 @@ PRODUCT_OF_INERTIA = Effect(
     needs=("tilt_product_xy",),
     separating_experiment="Accelerate one axis at several angles with the other held by its drive"
     " and read the torque that holds it.",
+    instead_on_linear="what slides has a mass alone, m_pan",
 )

@@ -1,4 +1,6 @@
-"""The pan body and the tilt body, balanced, with principal axes along the joint axes."""
+"""The pan body and the tilt body, balanced, with principal axes along the joint axes; the one body
+of a linear joint.
+"""
 
 import sympy as sp
 
@@ -15,6 +17,7 @@ PARAMETERS = (
     Parameter("J_y_tilt", "kg m^2", 6.5e-4, 1e-12, 1e4, "inertia of the tilt body about y"),
     Parameter("J_z_tilt", "kg m^2", 2.7e-4, 1e-12, 1e4, "inertia of the tilt body about z"),
 )
+SLIDING = Parameter("m_pan", "kg", 1.0, 1e-9, 1e6, "mass that slides on the linear joint")
 ALONE: dict[tuple[str, ...], str] = {
     ("pan",): "J_pan",
     ("tilt",): "J_y_tilt",
@@ -22,12 +25,17 @@ ALONE: dict[tuple[str, ...], str] = {
 
 
 def _has(place: Place, parameter: Parameter) -> bool:
+    if place.linear or parameter is SLIDING:
+        return place.linear and parameter is SLIDING
     return parameter.name == ALONE.get(place.axes, parameter.name)
 
 
 def _contribute(place: Place) -> Contribution:
     symbol = place.parameter
     at_axes = sp.ImmutableMatrix([0, 0, 0])
+    if place.linear:
+        none = sp.ImmutableMatrix(sp.zeros(3))
+        return Contribution(bodies=(Body("pan_body", "pan", SLIDING.symbol, at_axes, none),))
     bodies, defined = [], {}
     if "pan" in place.axes:
         inertia = sp.ImmutableMatrix(sp.diag(0, 0, symbol("J_pan")))
@@ -54,9 +62,10 @@ RIGID_BODIES = Effect(
     id="rigid_bodies",
     title="pan body and tilt body",
     reference="thesis Eq. 3.8, Table 5.1",
-    parameters=PARAMETERS,
+    parameters=(*PARAMETERS, SLIDING),
     has=_has,
     contribute=_contribute,
     on_axis=False,
+    linear={"title": "sliding body", "reference": "Newton (1687), second law"},
     structural=True,
 )

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
+from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.kinematics import AXES
 
 
@@ -37,17 +38,33 @@ class RigidConfiguration:
 
     `gravity` is given in the base frame; a base that is not level tilts this vector. `axes` is
     ('pan', 'tilt'), ('pan',) or ('tilt',). `offsets` [3] in m are where the origins behind joints
-    lie in the frames before them, in the origin unless given.
+    lie in the frames before them, in the origin unless given. Joints in `sliding` do not turn: the
+    frame behind them moves along the x axis of the one before.
     """
 
     axes: tuple[str, ...]
     bodies: tuple[Body, ...]
     gravity: sp.ImmutableMatrix
     offsets: Mapping[str, sp.ImmutableMatrix] = field(default_factory=dict)
+    sliding: tuple[str, ...] = ()
 
     def offset(self, axis: str) -> sp.ImmutableMatrix:
         """Where [3] the origin behind the joint of `axis` lies in the frame before it, in m."""
-        return self.offsets.get(axis, sp.ImmutableMatrix([0, 0, 0]))
+        still = self.offsets.get(axis, sp.ImmutableMatrix([0, 0, 0]))
+        return still + kinematics.ALONG * kinematics.angle(axis) if axis in self.sliding else still
+
+    def rotation(self, axis: str) -> sp.ImmutableMatrix:
+        """Rotation [3, 3] that turns vectors behind the joint of `axis` into the frame before."""
+        if axis in self.sliding:
+            return sp.ImmutableMatrix(sp.eye(3))
+        return kinematics.joint_rotation(axis)
+
+    def rotation_to_base(self, frame: str) -> sp.ImmutableMatrix:
+        """Rotation [3, 3] that turns vectors of `frame` ('pan' or 'tilt') into the base frame."""
+        rotation = sp.ImmutableMatrix(sp.eye(3))
+        for axis in kinematics.joints_up_to(self.axes, frame):
+            rotation = rotation * self.rotation(axis)
+        return rotation
 
     def __post_init__(self) -> None:
         if not self.axes or self.axes != tuple(axis for axis in AXES if axis in self.axes):
@@ -61,7 +78,8 @@ class RigidEquations:
     """Equations of motion M(q) q'' = f(q, q') + tau of n joints, and the energies behind them.
 
     `mass_matrix` [n, n] in kg m^2, `forcing` [n] in N m (Coriolis, centrifugal and gravity
-    torques, without the joint torques tau), `kinetic` and `potential` in J.
+    torques, without the joint torques tau), of sliding joints in kg and N; `kinetic` and
+    `potential` in J.
     """
 
     axes: tuple[str, ...]

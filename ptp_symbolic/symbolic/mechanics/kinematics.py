@@ -3,7 +3,8 @@
 Pan turns about the base z axis (up), tilt about the y axis of the pan body. The origin of a frame
 lies on the axis behind which it is; the two axes cross unless a platform sets them apart. The
 boresight is the x axis of the tilt frame, so a positive tilt angle lowers it. On a platform with
-the tilt axis alone the pan frame is the base. Source: thesis section 3.1.1, Eq. 3.1.
+the tilt axis alone the pan frame is the base. A linear joint slides along the x axis of the base;
+its coordinate theta is then in m, its rate in m/s, tau in N. Source: thesis section 3.1.1, Eq. 3.1.
 """
 
 import sympy as sp
@@ -13,6 +14,7 @@ from ptp_symbolic.symbolic.symbols import real
 
 # Unit vector of every joint axis, the same in the frames before and behind the joint.
 DIRECTIONS = {"pan": sp.ImmutableMatrix([0, 0, 1]), "tilt": sp.ImmutableMatrix([0, 1, 0])}
+ALONG = sp.ImmutableMatrix([1, 0, 0])  # of a sliding joint, in the frames before and behind it
 TIME = real("t")
 
 
@@ -66,14 +68,6 @@ def joint_rotation(axis: str) -> sp.ImmutableMatrix:
 def joints_up_to(axes: tuple[str, ...], frame: str) -> tuple[str, ...]:
     """Those of `axes` that lie between the base and `frame` ('pan' or 'tilt'), base first."""
     return tuple(axis for axis in axes if AXES.index(axis) <= AXES.index(frame))
-
-
-def rotation_to_base(axes: tuple[str, ...], frame: str) -> sp.ImmutableMatrix:
-    """Rotation [3, 3] that turns vectors of `frame` ('pan' or 'tilt') into the base frame."""
-    rotation = sp.ImmutableMatrix(sp.eye(3))
-    for axis in joints_up_to(axes, frame):
-        rotation = rotation * joint_rotation(axis)
-    return rotation
 
 
 _PLACES = {of(axis): axis for of in (angle, rate) for axis in AXES}

@@ -1,0 +1,115 @@
+"""Logs made into runs: matched to the model, parted at gaps, with the noise of every signal."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.data.continuity import uninterrupted
+from ptp_symbolic.numeric.identify.constants import ROUNDING
+from ptp_symbolic.numeric.identify.noise import white_noise
+from ptp_symbolic.numeric.identify.rate_signals import refuse_unseen_angles
+from ptp_symbolic.numeric.identify.run import WINDOW, Run, with_start
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
+from ptp_symbolic.platform import Platform, SignalDeclaration
+
+FloatArray = NDArray[np.float64]
+
+
+def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple[Run, ...]:
+    """Match the columns of `logs` to `model` and guess the start of every run; a gap in a log ends
+    one run and begins another.
+
+    Raises InputError when the platform's signals do not fit the model or one has no noise.
+    """
+    given = [s for s in platform.signals if s.role == "input"]
+    outputs = [s for s in platform.signals if s.role == "output"]
+    for wanted, found, what in (
+        (model.input_names, {s.signal for s in given}, "input"),
+        ({s.signal for s in outputs}, set(model.output_names), "output"),
+    ):
+        missing = [name for name in wanted if name not in found]
+        if missing:
+            raise InputError(
+                f"No {what} signal '{missing[0]}' to pair with; "
+                f"the model has inputs {', '.join(model.input_names)} and outputs"
+                f" {', '.join(model.output_names)}; declare it under [signals.{missing[0]}]."
+            )
+    refuse_unseen_angles(model, [s.signal for s in outputs])
+    order = [[s.signal for s in given].index(name) for name in model.input_names]
+    counts = np.array([np.nan if s.count is None else s.count for s in outputs])
+    sigma = np.array(
+        [
+            _sigma(s, q, [log.outputs[:, k] for log in logs])
+            for k, (s, q) in enumerate(zip(outputs, counts, strict=True))
+        ]
+    )
+    pieces = [piece for log in logs for piece in _pieces(log)]
+    return tuple(_prepare(model, outputs, log, order, counts, sigma) for log in pieces)
+
+
+def _pieces(log: Log) -> list[Log]:
+    """The parts of a log between its gaps, named as windows of it."""
+    parts = uninterrupted(log.time)
+    if len(parts) == 1:
+        return [log]
+    return [
+        replace(
+            log,
+            name=f"{log.name}{WINDOW}{number}",
+            time=log.time[part],
+            inputs=log.inputs[part],
+            outputs=log.outputs[part],
+        )
+        for number, part in enumerate(parts, start=1)
+    ]
+
+
+def _prepare(
+    model: Model,
+    outputs: Sequence[SignalDeclaration],
+    log: Log,
+    order: list[int],
+    counts: FloatArray,
+    sigma: FloatArray,
+) -> Run:
+    steps = log.steps or [(log.time, column) for column in log.inputs.T]
+    run = Run(
+        name=log.name,
+        time=np.ascontiguousarray(log.time),
+        inputs=stack([table(*steps[k]) for k in order]),
+        held_inputs=np.ascontiguousarray(log.inputs[:, order]),
+        measured=np.ascontiguousarray(log.outputs),
+        outputs=np.array([model.output_names.index(s.signal) for s in outputs], dtype=np.int64),
+        weight=1.0 / sigma,
+        counts=counts,
+        signals=tuple(s.signal for s in outputs),
+        start=np.empty(0),
+        unknowns=(),
+    )
+    return with_start(model, run)
+
+
+def _sigma(signal: SignalDeclaration, count: float, measured: Sequence[FloatArray]) -> float:
+    """Standard deviation of a signal: rounding, and the declared noise or else that in the logs."""
+    rounding = 0.0 if np.isnan(count) else count * ROUNDING
+    noise = signal.noise
+    if noise is None and rounding > 0.0:
+        seen = float(np.median([white_noise(column) for column in measured]))
+        noise = float(np.sqrt(max(seen**2 - rounding**2, 0.0)))
+    sigma = float(np.hypot(rounding, noise or 0.0))
+    if sigma == 0.0:
+        raise InputError(
+            f"Signal '{signal.signal}' has neither {_resolution(signal.unit)} nor noise;"
+            f" give its noise (rms) in {signal.unit}."
+        )
+    return sigma
+
+
+def _resolution(unit: str) -> str:
+    """What gives the resolution of an encoder whose signal has this unit."""
+    return "counts_per_metre" if unit == "m" else "counts_per_revolution"
