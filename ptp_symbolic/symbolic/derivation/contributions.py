@@ -174,7 +174,7 @@ def collect(
     """
     placed, axes = list(placed), tuple(axes)
     contributions = tuple(effect.contribution_at(place) for effect, place in placed)
-    linear = {place.axis for _, place in placed if place.linear}
+    linear = {str(place.axis) for _, place in placed if place.linear}
     sensors = tuple(s for s in sensors_on(axes, contributions, linear) if s.name in measured)
     values: dict[str, sp.Expr] = {name: ZERO for name in PLATFORM_QUANTITIES}
     for axis in axes:
