@@ -35,8 +35,8 @@ def check(source: str, logs: tuple[str, ...], out: Path | None, as_json: bool) -
     The sizes are predicted by the declared model at its start values, for white noise.
     """
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
-    from ptp_symbolic.log_check import check_logs
     from ptp_symbolic.models.committed import declared_platform
+    from ptp_symbolic.workflows.log_check import check_logs
 
     platform = declared_platform(source)
     if out is not None:

@@ -1,6 +1,7 @@
 """`ptp-symbolic diagnose` and `fit`: a platform and its logs in, files out."""
 
 import json
+import shlex
 import sys
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -59,12 +60,14 @@ def diagnose(
 ) -> None:
     """Find the effect that a declared platform lacks, from its logs."""
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
-    from ptp_symbolic.diagnosis_workflow import diagnose_platform
     from ptp_symbolic.models.committed import declared_platform
+    from ptp_symbolic.workflows.diagnosis import diagnose_platform
 
     platform = declared_platform(source)
     check_writable(out)
-    found = diagnose_platform(platform, train, validate, progress_line())
+    words = ["diagnose", "--platform", source, "--train", *train, "--validate", *validate]
+    command = shlex.join(["ptp-symbolic", *words, "--out", str(out)])
+    found = diagnose_platform(platform, train, validate, progress_line(), command)
     write_files_atomically(out, found.files)
     note_defaults(platform)
     if as_json:
@@ -85,8 +88,8 @@ def fit(source: str, logs: tuple[str, ...], out: Path, as_json: bool) -> None:
     Writes fit.json, and platform.toml with the fitted values as starts.
     """
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
-    from ptp_symbolic.diagnosis_workflow import fit_platform
     from ptp_symbolic.models.committed import declared_platform
+    from ptp_symbolic.workflows.fit import fit_platform
 
     platform = declared_platform(source)
     check_writable(out)

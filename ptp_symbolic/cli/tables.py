@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data.calibration import raw_numbers
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.run import Trajectory
 from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, stack
-from ptp_symbolic.platform import Platform
+from ptp_symbolic.platform import Platform, SignalDeclaration
 
 FloatArray = NDArray[np.float64]
 
@@ -24,9 +25,9 @@ def trajectory_columns(
 ) -> dict[str, FloatArray]:
     """Columns [k] of `found` by heading: time, states, energies in J, inputs, measured signals.
 
-    Inputs and outputs stand under the columns that `platform` declares, so that the file is a log
-    of it; a state of the same name makes room for them. Raises InputError for a column that has the
-    name of an energy.
+    Inputs and outputs stand under the columns that `platform` declares, raw and late where it says
+    so: the file is a log of it. A state of the same name makes room for them. Raises InputError for
+    a column that has the name of an energy.
     """
     for signal in platform.signals:
         if signal.column in ENERGIES:
@@ -40,19 +41,29 @@ def trajectory_columns(
     }
     columns |= {name: ("J", getattr(found, name)) for name in ENERGIES}
     u = _input_values(model, signals, found.t)
-    declared = {s.signal: s for s in platform.signals}
-    for name, values in zip(model.input_names, u.T, strict=True):
-        column = declared[name].column if name in declared else name
-        columns[column] = (model.units[name], values)
+    declared = {s.signal: s for s in platform.signals if s.role == "input"}
+    for k, name in enumerate(model.input_names):
+        if name not in declared:
+            columns[name] = (model.units[name], u[:, k])
+            continue
+        own = declared[name]
+        sent = _input_values(model, signals, found.t + own.delay)[:, k] if own.delay else u[:, k]
+        columns[own.column] = (_heading_unit(own), raw_numbers(own, sent))
     measured = [s for s in platform.signals if s.role == "output"]
     y = _output_values(model, found, u) if measured else None
     for signal in measured:
         assert y is not None
-        index = model.output_names.index(signal.signal)
-        columns[signal.column] = (model.units[signal.signal], y[:, index])
+        seen = y[:, model.output_names.index(signal.signal)]
+        if signal.delay:
+            seen = np.interp(found.t - signal.delay, found.t, seen)
+        columns[signal.column] = (_heading_unit(signal), raw_numbers(signal, seen))
     return {"time [s]": found.t} | {
         f"{name} [{unit}]": values for name, (unit, values) in columns.items()
     }
+
+
+def _heading_unit(signal: SignalDeclaration) -> str:
+    return signal.unit if signal.scale is None else "1"
 
 
 def _input_values(model: Model, signals: Mapping[str, InputSignal], t: FloatArray) -> FloatArray:

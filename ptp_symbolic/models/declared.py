@@ -7,6 +7,8 @@ from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parame
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform, naming_file
 from ptp_symbolic.platform.units import compatible
+from ptp_symbolic.symbolic.derivation.contributions import sensors_on
+from ptp_symbolic.symbolic.derivation.placement import place_effects
 
 
 def free_parameters(platform: Platform, model: Model) -> tuple[FreeParameter, ...]:
@@ -54,10 +56,14 @@ def refuse_unknown_signals(platform: Platform, model: Model) -> None:
         [s.signal for s in platform.signals if s.role == r] for r in ("input", "output")
     )
     complete = set(model.input_names) <= set(inputs)
+    placed = place_effects(platform)
+    contributions = [e.contribute(place) for e, place in placed]
+    sensors = sensors_on(platform.axes, contributions, bool(platform.linear_axes))
+    choices = dict.fromkeys((*model.output_names, *(s.name for s in sensors)))
     with naming_file(platform):
         for role, given, known in (
             ("input", () if complete else inputs, model.input_names),
-            ("output", outputs, model.output_names),
+            ("output", outputs, tuple(choices)),
         ):
             for name in given:
                 if name not in known:

@@ -55,7 +55,11 @@ class SignalDeclaration:
     `signal` is the model's name (u_pan, theta_pan), `column` the CSV column without its unit,
     `unit` the SI unit of the model, `role` "input" or "output". `noise` is the rms noise in `unit`,
     `counts_per_revolution` the resolution of an encoder on a rotary joint, `counts_per_metre` that
-    of one on a linear joint.
+    of one on a linear joint, all of the signal, not of its column.
+
+    With a `scale`, in `unit` per number of the column, the signal is scale (number - offset);
+    without one it is the column, its unit converted, less the `offset` in `unit`. An output whose
+    time stamp is t was measured at t - `delay`, an input acts on the machine at t + `delay`, in s.
     """
 
     signal: str
@@ -64,6 +68,9 @@ class SignalDeclaration:
     role: str
     counts_per_revolution: int | None = None
     noise: float | None = None
+    scale: float | None = None
+    offset: float = 0.0
+    delay: float = 0.0
     counts_per_metre: float | None = None
 
     @property

@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.platform.units import to_si
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 _LONGEST_TEXT = 200
@@ -72,6 +73,21 @@ def number(value: object, where: str) -> float:
     return result
 
 
+def time(value: object, where: str, lowest: float = -math.inf) -> float:
+    """Return a time such as "0.5 s" or "20 ms" in s, above `lowest` (zero, or none)."""
+    above = " above zero" if lowest == 0.0 else ""
+    wrong = InputError(f'{where}: {shown(value)} is not a time{above}; write "0.5 s" or "500 ms".')
+    given, _, name = value.strip().partition(" ") if isinstance(value, str) else ("", "", "")
+    try:
+        factor, si = to_si(name.strip())
+        result = float(given) * factor
+    except (InputError, ValueError) as error:
+        raise wrong from error
+    if si != "s" or not lowest < result < math.inf:
+        raise wrong
+    return result
+
+
 def choice(value: object, choices: Collection[str], where: str) -> str:
     """Return `value` if it is one of `choices`."""
     if not isinstance(value, str) or value not in choices:
@@ -84,3 +100,20 @@ def required(entries: Mapping[str, Any], key: str, where: str) -> Any:
     if key not in entries:
         raise InputError(f"{where}: '{key}' is missing; add it.")
     return entries[key]
+
+
+def unit(entry: Mapping[str, Any], where: str) -> tuple[float, str]:
+    """Return (factor, SI unit) of the entry 'unit', which must be a unit text."""
+    given = text(required(entry, "unit", where), f"{where}.unit")
+    try:
+        return to_si(given)
+    except InputError as error:
+        raise InputError(f"{where}.unit: {error}") from error
+
+
+def scaled(value: object, factor: float, where: str) -> float:
+    """Return the number `value` times `factor`, finite."""
+    result = number(value, where) * factor
+    if not math.isfinite(result):
+        raise InputError(f"{where}: {shown(value)} is too large in SI units.")
+    return result

@@ -18,8 +18,7 @@ from ptp_symbolic.platform.declaration import (
     Platform,
 )
 from ptp_symbolic.platform.fit_settings import window_of
-from ptp_symbolic.platform.quantity import scaled, unit_of
-from ptp_symbolic.platform.signals import signals_of
+from ptp_symbolic.platform.signals import read_signals
 from ptp_symbolic.platform.text_file import read_text_bytes
 
 _MAX_BYTES = 1_000_000
@@ -61,7 +60,7 @@ def read_platform(source: str | Path) -> Platform:
         gravity=_gravity(head, f"{where}: platform.gravity"),
         effects=_effects(fields.required(document, "effects", where), axes, where),
         parameters=_parameters(document.get("parameters", {}), where),
-        signals=signals_of(document.get("signals", {}), where),
+        signals=read_signals(document.get("signals", {}), where),
         window=window_of(document.get("fit", {}), f"{where}: fit"),
         linear_axes=_linear_axes(head.get("joints", {}), axes, f"{where}: platform.joints"),
         source=where,
@@ -194,8 +193,8 @@ def _parameters(given: object, file: str) -> tuple[ParameterDeclaration, ...]:
 
 def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDeclaration:
     key = "start" if "start" in entry else "value"
-    factor, unit = unit_of(entry, where) if "unit" in entry else (1.0, None)
-    value = scaled(entry[key], factor, f"{where}.{key}")
+    factor, unit = fields.unit(entry, where) if "unit" in entry else (1.0, None)
+    value = fields.scaled(entry[key], factor, f"{where}.{key}")
     lower = upper = None
     if "bounds" in entry:
         bounds = entry["bounds"]
@@ -203,7 +202,7 @@ def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDecla
             raise InputError(
                 f"{where}.bounds: {fields.shown(bounds)}: write two numbers, [lower, upper]."
             )
-        lower, upper = (scaled(bound, factor, f"{where}.bounds") for bound in bounds)
+        lower, upper = (fields.scaled(bound, factor, f"{where}.bounds") for bound in bounds)
         unit_text = f" {entry['unit']}" if "unit" in entry else ""
         if lower >= upper:
             raise InputError(
@@ -217,7 +216,7 @@ def _independent(name: str, entry: dict[str, Any], where: str) -> ParameterDecla
             )
     uncertainty = None
     if "uncertainty" in entry:
-        uncertainty = scaled(entry["uncertainty"], factor, f"{where}.uncertainty")
+        uncertainty = fields.scaled(entry["uncertainty"], factor, f"{where}.uncertainty")
         if key == "start" or uncertainty < 0.0:
             raise InputError(
                 f"{where}.uncertainty: {fields.shown(entry['uncertainty'])}: give zero or more, and"

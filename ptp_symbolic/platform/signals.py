@@ -1,11 +1,10 @@
-"""The signals of a platform TOML: columns of a log, their units and resolution."""
+"""Read the signals that a platform declares: which column of a log is which quantity."""
 
 from typing import Any
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import fields
 from ptp_symbolic.platform.declaration import SignalDeclaration
-from ptp_symbolic.platform.quantity import scaled, unit_of
 
 ROLES = ("input", "output")
 # How the resolution of an encoder is given: for which unit, what that is, whether it is whole.
@@ -13,12 +12,23 @@ RESOLUTIONS = {
     "counts_per_revolution": ("rad", "an angle", True),
     "counts_per_metre": ("m", "the position of a linear joint", False),
 }
+ALLOWED = (
+    "role",
+    "column",
+    "unit",
+    *RESOLUTIONS,
+    "noise",
+    "scale",
+    "offset",
+    "delay",
+)
+LONGEST_DELAY = 10.0  # s: beyond it stands a slip of the unit
 
 
-def signals_of(given: object, file: str) -> tuple[SignalDeclaration, ...]:
-    """Return the signals of a `[signals]` table, their units and noise in SI.
+def read_signals(given: object, file: str) -> tuple[SignalDeclaration, ...]:
+    """Return the signals that the `[signals]` table of the platform `file` declares, in SI units.
 
-    Raises InputError for one that is not declared as it must be, and for two of one column.
+    Raises InputError that names the file and the key.
     """
     found: dict[str, SignalDeclaration] = {}
     for name, entry in fields.table(given, f"{file}: signals").items():
@@ -34,8 +44,7 @@ def signals_of(given: object, file: str) -> tuple[SignalDeclaration, ...]:
 
 
 def _signal(name: str, given: object, where: str) -> SignalDeclaration:
-    allowed = ("role", "column", "unit", *RESOLUTIONS, "noise")
-    entry = fields.table(given, where, allowed)
+    entry = fields.table(given, where, ALLOWED)
     role = fields.choice(fields.required(entry, "role", where), ROLES, f"{where}.role")
     column = fields.text(fields.required(entry, "column", where), f"{where}.column")
     if column != column.strip() or column == "time" or any(mark in column for mark in '[],"'):
@@ -43,14 +52,14 @@ def _signal(name: str, given: object, where: str) -> SignalDeclaration:
             f"{where}.column: {fields.shown(column)}: give the CSV column without its [unit], "
             "without quotes and commas; 'time' is the time base."
         )
-    fields.required(entry, "unit", where)
-    factor, unit = unit_of(entry, where)
+    factor, unit = fields.unit(entry, where)
     turn, metre = (_resolution(entry, key, unit, where) for key in RESOLUTIONS)
-    noise = scaled(entry["noise"], factor, f"{where}.noise") if "noise" in entry else None
+    noise = fields.scaled(entry["noise"], factor, f"{where}.noise") if "noise" in entry else None
     if noise is not None and noise < 0:
         raise InputError(f"{where}.noise: {entry['noise']} {entry['unit']} rms is negative.")
     whole = None if turn is None else int(turn)
-    return SignalDeclaration(name, column, unit, role, whole, noise, metre)
+    read = (*_raw(entry, factor, where), _delay(entry, where))
+    return SignalDeclaration(name, column, unit, role, whole, noise, *read, metre)
 
 
 def _resolution(entry: dict[str, Any], key: str, unit: str, where: str) -> float | None:
@@ -67,3 +76,27 @@ def _resolution(entry: dict[str, Any], key: str, unit: str, where: str) -> float
         instead = f"; write {other}" if other else ""
         raise InputError(f"{where}.{key}: only for {what}, not for [{unit}]{instead}.")
     return float(counts)
+
+
+def _raw(entry: dict[str, Any], factor: float, where: str) -> tuple[float | None, float]:
+    """Scale in SI per number of the column, and offset: in such numbers, without a scale in SI."""
+    offset = entry.get("offset", 0.0)
+    if "scale" not in entry:
+        return None, fields.scaled(offset, factor, f"{where}.offset")
+    scale = fields.scaled(entry["scale"], factor, f"{where}.scale")
+    if scale == 0.0:
+        raise InputError(
+            f"{where}.scale: is zero, which leaves nothing of the column; give {entry['unit']} per"
+            " number in it, negative to turn the sign."
+        )
+    return scale, fields.number(offset, f"{where}.offset")
+
+
+def _delay(entry: dict[str, Any], where: str) -> float:
+    delay = fields.time(entry["delay"], f"{where}.delay") if "delay" in entry else 0.0
+    if abs(delay) > LONGEST_DELAY:
+        raise InputError(
+            f"{where}.delay: {entry['delay']} is more than {LONGEST_DELAY:g} s; correct its unit,"
+            " or the time stamps of the log."
+        )
+    return delay

@@ -63,6 +63,9 @@ def _signal(signal: SignalDeclaration) -> dict[str, Any]:
         counts_per_revolution=signal.counts_per_revolution,
         counts_per_metre=_decimal(signal.counts_per_metre),
         noise=_decimal(signal.noise),
+        scale=_decimal(signal.scale),
+        offset=float(signal.offset) if signal.offset else None,
+        delay=f"{float(signal.delay)!r} s" if signal.delay else None,
     )
 
 

@@ -1,5 +1,7 @@
 """The diagnosis as one HTML page that works without a network, and its curves as CSV."""
 
+import base64
+import hashlib
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -10,9 +12,10 @@ import jinja2
 import numpy as np
 from markupsafe import Markup
 
-from ptp_symbolic.report import figures, quantities, tables
+from ptp_symbolic.report import figures, map_figures, quantities, tables
 from ptp_symbolic.report.tables import usable
 
+TEMPLATES = Path(__file__).parent / "templates"
 Curves = Mapping[str, Mapping[str, Any]]
 
 SHOWN_RUNS = 2
@@ -77,6 +80,7 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
 
     curves: {run: {"set": "train" or "validate", "time": [n] s, "signals": {signal: {"unit",
     "measured", "before", "after" (or None): [n], "counts": size of one count or None}},
+    "inputs": {name: {"unit", "values": [n]}} (optional),
     "angle": {axis: [n] rad}, "rate": {axis: [n] rad/s}, "angle_unit": {axis: "m" where the joint is
     linear} (optional), "borders": [k] s, the starts of windows after the first (optional), "run":
     the name of the run where the key is not (optional)}}. Loads nothing from elsewhere.
@@ -87,6 +91,7 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
     key, unit = tables.error_measure(tables.declared_totals(diagnosis))
     shown, folded = _motion(diagnosis, curves, key)
     page = _environment().get_template("diagnosis.html.j2")
+    script = (TEMPLATES / "diagnosis.js").read_text(encoding="utf-8")
     return page.render(
         diagnosis=diagnosis,
         verdict=verdict,
@@ -104,6 +109,8 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
         equations=_equations(diagnosis),
         window=_window(curves),
         words=_words(curves),
+        script=Markup(script),
+        script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
     )
 
 
@@ -154,7 +161,7 @@ def _words(curves: Curves) -> quantities.JointWords:
 
 def _environment() -> jinja2.Environment:
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates", encoding="utf-8"),
+        loader=jinja2.FileSystemLoader(TEMPLATES, encoding="utf-8"),
         autoescape=True,
         undefined=jinja2.ChainableUndefined,
         trim_blocks=True,
@@ -166,6 +173,7 @@ def _environment() -> jinja2.Environment:
         estimate=quantities.estimate,
         interval=quantities.interval,
         in_degrees=quantities.in_degrees,
+        travel=quantities.travel,
         gain=quantities.gain,
     )
     return environment
@@ -211,7 +219,7 @@ def _residual_maps(diagnosis: Mapping[str, Any], curves: Curves) -> list[dict[st
             continue
         axis = next((axis for axis in axes if signal.endswith(f"_{axis}")), axes[0])
         floor = _floors(diagnosis, runs[0]["set"]).get(signal)
-        svg = figures.residual_map_figure(signal, axis, pooled, floor)
+        svg = map_figures.residual_map_figure(signal, axis, pooled, floor)
         found.append(
             {"signal": signal, "svg": Markup(svg), "runs": len(runs), "set": runs[0]["set"]}
         )
@@ -225,7 +233,7 @@ def _torque_maps(left: Mapping[str, Any] | None) -> list[dict[str, Any]]:
         {
             "axis": axis,
             "svg": Markup(
-                figures.torque_map_figure([m for m in maps if m["axis"] == axis], left["unit"])
+                map_figures.torque_map_figure([m for m in maps if m["axis"] == axis], left["unit"])
             ),
         }
         for axis in dict.fromkeys(m["axis"] for m in maps)
@@ -276,6 +284,8 @@ def _columns(curve: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     for axis, rate in (curve.get("rate") or {}).items():
         words = quantities.joint_words(curve, axis)
         yield f"{words.rate}_{axis} [{words.unit}/s]", rate
+    for name, given in (curve.get("inputs") or {}).items():
+        yield f"{name} [{given['unit']}]", given["values"]
     for name, signal in curve["signals"].items():
         for stage in ("measured", "before", "after"):
             if signal.get(stage) is not None:

@@ -1,8 +1,8 @@
-"""Figures of the diagnosis page: inline SVG, the same bytes for the same curves."""
+"""Figures of a run in the diagnosis page: inline SVG, the same bytes for the same curves."""
 
 import io
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import matplotlib
@@ -14,12 +14,11 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from ptp_symbolic.report.quantities import joint_words
-
 FloatArray = NDArray[np.float64]
 
 MEASURED, BEFORE, AFTER, FLOOR = "#a9b1ba", "#c65d21", "#0d6a92", "#d3e4d8"
-BORDER = "#c3b8d6"
+BORDER, INPUT = "#c3b8d6", "#6b5b95"
+HEIGHTS = {"motion": 1.7, "residual": 0.95, "after": 0.85, "input": 0.7}  # of panels, inches
 COLOURS = {
     "measured": MEASURED,
     "before": BEFORE,
@@ -55,7 +54,6 @@ STYLE: dict[Any, Any] = {
     "path.simplify": True,
     "path.simplify_threshold": 0.2,
 }
-DOTS = 700
 
 
 def residual(signal: Mapping[str, Any], stage: str) -> FloatArray | None:
@@ -75,7 +73,10 @@ def residual_unit(signal: Mapping[str, Any]) -> str:
 
 
 def motion_figure(curve: Mapping[str, Any], floors: Mapping[str, float], points: int = 800) -> str:
-    """One run as SVG: every signal measured and simulated, and under it the residual.
+    """One run as SVG: every signal measured and simulated, under it the residual, then the inputs.
+
+    Its attributes `data-time` (s) and `data-span` (shares of the width) say where the time axis
+    begins and ends.
 
     `floors`: rms noise floor of signals, in the unit of their residual, drawn as a band of twice
     its height either side of zero. Each line is thinned to `points`, keeping its extremes. Where
@@ -88,25 +89,39 @@ def motion_figure(curve: Mapping[str, Any], floors: Mapping[str, float], points:
         for kind in ("motion", "residual", "after")
         if kind != "after" or signal.get("after") is not None
     ]
-    heights = [{"motion": 1.7, "residual": 0.95, "after": 0.85}[kind] for _, _, kind in panels]
+    panels += [(name, given, "input") for name, given in (curve.get("inputs") or {}).items()]
+    heights = [HEIGHTS[kind] for _, _, kind in panels]
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(6.0, 0.75 + sum(heights) + 0.33 * (len(panels) - 1)))
         grid = figure.subplots(
             len(panels), 1, sharex=True, squeeze=False, gridspec_kw={"height_ratios": heights}
         )[:, 0]
-        _set_margins(figure, len(panels), 1)
+        set_margins(figure, len(panels), 1)
         for axes, (name, signal, kind) in zip(grid, panels, strict=True):
             _draw_borders(axes, curve.get("borders"))
-            if kind == "motion":
+            if kind == "input":
+                _draw_input(axes, name, signal, time, points)
+            elif kind == "motion":
                 _draw_motion(axes, name, signal, time, points)
             else:
                 floor = floors.get(name)
                 _draw_residual(axes, signal, time, floor, points, zoomed=kind == "after")
         grid[-1].set_xlabel("time [s]")
-        return _svg(figure)
+        first, last = grid[-1].get_xlim()
+        frame = grid[-1].get_position()
+        where = f'data-time="{first:.6g} {last:.6g}" data-span="{frame.x0:.5f} {frame.x1:.5f}"'
+        return svg_of(figure).replace("<svg", f"<svg {where}", 1)
 
 
-def _set_margins(figure: Figure, rows: int, columns: int) -> None:
+def _draw_input(
+    axes: Axes, name: str, given: Mapping[str, Any], time: FloatArray, points: int
+) -> None:
+    values = np.asarray(given["values"], float)
+    axes.plot(*_thinned(time, values, points), color=INPUT, linewidth=0.9, drawstyle="steps-post")
+    axes.set_title(f"{name} [{given['unit']}]")
+
+
+def set_margins(figure: Figure, rows: int, columns: int) -> None:
     """Leave fixed room, in inches, for labels; a layout engine would draw every figure twice."""
     width, height = figure.get_size_inches()
     left, right, bottom, top = 0.68, 0.08, 0.44, 0.26
@@ -124,7 +139,7 @@ def _set_margins(figure: Figure, rows: int, columns: int) -> None:
 def _draw_motion(
     axes: Axes, name: str, signal: Mapping[str, Any], time: FloatArray, points: int
 ) -> None:
-    scale, unit = _plot_unit(str(signal.get("unit") or ""))
+    scale, unit = plot_unit(str(signal.get("unit") or ""))
     styles = (("measured", MEASURED, 3.2), ("before", BEFORE, 1.1), ("after", AFTER, 1.1))
     for stage, colour, width in styles:
         if signal.get(stage) is not None:
@@ -142,14 +157,14 @@ def _draw_residual(
     zoomed: bool,
 ) -> None:
     drawn = []
-    _draw_floor(axes, floor)
+    draw_floor(axes, floor)
     for stage, colour in (("before", BEFORE), ("after", AFTER)):
         values = residual(signal, stage)
         if values is None or (zoomed and stage == "before"):
             continue
         axes.plot(*_thinned(time, values, points), color=colour, linewidth=0.9)
         drawn.append(values)
-    _set_limit(axes, np.concatenate(drawn), floor)
+    set_limit(axes, np.concatenate(drawn), floor)
     what = "measured − simulated" + (" with the added effect, enlarged" if zoomed else "")
     axes.set_title(f"{what} [{residual_unit(signal)}]")
 
@@ -164,13 +179,14 @@ def _draw_borders(axes: Axes, borders: Any) -> None:
     axes.add_patch(PathPatch(lines, edgecolor=BORDER, linewidth=0.5, fill=False, transform=across))
 
 
-def _draw_floor(axes: Axes, floor: float | None) -> None:
+def draw_floor(axes: Axes, floor: float | None) -> None:
+    """The zero line, and a band of twice the noise floor either side of it."""
     if floor:
         axes.axhspan(-2.0 * floor, 2.0 * floor, color=FLOOR, linewidth=0)
     axes.axhline(0.0, color="#c9cfd6", linewidth=0.8)
 
 
-def _set_limit(axes: Axes, values: FloatArray, floor: float | None) -> None:
+def set_limit(axes: Axes, values: FloatArray, floor: float | None) -> None:
     """Show all values and the whole floor, zero in the middle."""
     largest = float(np.max(np.abs(values), initial=0.0, where=np.isfinite(values)))
     limit = 1.1 * max(largest, 2.3 * (floor or 0.0))
@@ -178,87 +194,7 @@ def _set_limit(axes: Axes, values: FloatArray, floor: float | None) -> None:
         axes.set_ylim(-limit, limit)
 
 
-def residual_map_figure(
-    signal_name: str, axis: str, curves: Mapping[str, Mapping[str, Any]], floor: float | None
-) -> str:
-    """Residual of one signal against angle or position of `axis`, its rate, and time, runs pooled,
-    as SVG.
-
-    Dots are samples, the line their median in equal bins, the band twice the noise floor (rms),
-    given in the unit of the residual.
-    """
-    runs = [run for run in curves.values() if signal_name in run["signals"]]
-    words = joint_words(runs[0], axis)
-    scale, unit = _plot_unit(words.unit)
-    against = [
-        (f"{words.angle} of {axis} [{unit}]", [scale * run["angle"][axis] for run in runs], 30),
-        (f"{words.rate} of {axis} [{unit}/s]", [scale * run["rate"][axis] for run in runs], 30),
-        ("time [s]", [np.asarray(run["time"], float) for run in runs], 8),
-    ]
-    signals = [run["signals"][signal_name] for run in runs]
-    stages = [s for s in ("before", "after") if all(x.get(s) is not None for x in signals)]
-    unit = residual_unit(signals[0])
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(10.4, 0.5 + 1.9 * len(stages)))
-        grid = figure.subplots(len(stages), 3, sharey="row", sharex="col", squeeze=False)
-        _set_margins(figure, len(stages), 3)
-        for row, stage in zip(grid, stages, strict=True):
-            left_over = [residual(signal, stage) for signal in signals]
-            values = np.concatenate([part for part in left_over if part is not None])
-            for axes, (_, coordinates, bins) in zip(row, against, strict=True):
-                _draw_floor(axes, floor)
-                _draw_cloud(axes, np.concatenate(coordinates), values, stage, bins)
-            _set_limit(row[0], values, floor)
-            row[0].set_ylabel(f"{stage} [{unit}]")
-        for axes, (label, _, _) in zip(grid[-1], against, strict=True):
-            axes.set_xlabel(label)
-        return _svg(figure)
-
-
-def torque_map_figure(maps: Sequence[Mapping[str, Any]], unit: str) -> str:
-    """Means of the residual torque of one axis, in `unit`, in bins of every side of `maps`, with
-    bars of twice their standard error, as SVG; the share of its variance stands above.
-    """
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(10.4, 2.4))
-        grid = figure.subplots(1, len(maps), sharey="row", squeeze=False)[0]
-        _set_margins(figure, 1, len(maps))
-        for axes, found in zip(grid, maps, strict=True):
-            scale, shown = _plot_unit(str(found["unit"]))
-            axes.axhline(0.0, color="#c9cfd6", linewidth=0.8)
-            bars = 2.0 * np.asarray(found["error"])
-            x = scale * np.asarray(found["at"])
-            axes.errorbar(x, found["mean"], bars, color=AFTER, marker=".", elinewidth=0.9)
-            axes.set_xlabel(f"{found['against']} [{shown}]")
-            axes.set_title(f"{100.0 * found['share']:.0f} % of the variance")
-        grid[0].set_ylabel(f"{'force' if unit == 'N' else 'torque'} left [{unit}]")
-        return _svg(figure)
-
-
-def _draw_cloud(axes: Axes, x: FloatArray, y: FloatArray, stage: str, bins: int) -> None:
-    """Draw about 700 samples as dots in one path, and the median of each bin."""
-    finite = np.isfinite(x) & np.isfinite(y)
-    x, y = x[finite], y[finite]
-    if not x.size:
-        return
-    # strides that grow slowly have no factor in common with anything periodic in the log
-    chosen = np.unique((np.linspace(0.0, 1.0, DOTS) ** 1.01 * (x.size - 1)).astype(int))
-    dots = Path(
-        np.repeat(np.column_stack([x[chosen], y[chosen]]), 2, axis=0),
-        np.tile([Path.MOVETO, Path.LINETO], len(chosen)),
-    )
-    colour = BEFORE if stage == "before" else AFTER
-    look = {"edgecolor": colour, "alpha": 0.45, "linewidth": 1.7, "capstyle": "round"}
-    axes.add_patch(PathPatch(dots, **look))
-    edges = np.linspace(x.min(), x.max(), bins + 1)
-    place = np.clip(np.digitize(x, edges) - 1, 0, bins - 1)
-    full = np.flatnonzero(np.bincount(place, minlength=bins) >= 8)
-    medians = [float(np.median(y[place == each])) for each in full]
-    axes.plot((edges[full] + edges[full + 1]) / 2.0, medians, color="#20262c")
-    axes.autoscale(axis="x")
-
-
-def _plot_unit(unit: str) -> tuple[float, str]:
+def plot_unit(unit: str) -> tuple[float, str]:
     """Angles and rates are drawn in degrees, everything else as it is."""
     if unit in ("rad", "rad/s"):
         return 180.0 / np.pi, unit.replace("rad", "deg")
@@ -278,7 +214,7 @@ def _thinned(time: FloatArray, values: FloatArray, points: int) -> tuple[FloatAr
     return time[kept], values[kept]
 
 
-def _svg(figure: Figure) -> str:
+def svg_of(figure: Figure) -> str:
     """The figure as SVG to put into a page: no prologue, size, metadata or group names."""
     FigureCanvasSVG(figure)
     buffer = io.StringIO()

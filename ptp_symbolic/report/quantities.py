@@ -107,6 +107,14 @@ def _exponent(value: Any) -> int:
     return math.floor(math.log10(abs(value))) if _usable(value) and value else 0
 
 
+def travel(error: Mapping[str, Any]) -> str:
+    """The rms of angles in degrees, of positions in m; a dash where there is none."""
+    rms = error.get("rmse")
+    if rms is None or not _usable(rms):
+        return NOTHING
+    return f"{number(rms)} m" if error.get("unit") == "m" else f"{number(math.degrees(rms))}°"
+
+
 def in_degrees(quantity: Mapping[str, Any] | None) -> str:
     """The value in degrees when its unit is rad, else nothing."""
     if not quantity or quantity.get("unit") != "rad" or not _usable(quantity.get("value")):

@@ -196,8 +196,8 @@ def ranking(diagnosis: Record, key: str) -> dict[str, Any]:
     """Candidates in the order of their error on the training runs, and the marks beside it.
 
     Those that were not fitted, and have no such error, are apart. `closest` is the best fit in the
-    order of the diagnosis where nothing was added. `clipped`: some error lies beyond the right end
-    of the axis.
+    order of the diagnosis where nothing was added. `margin` is an error over the smallest.
+    `clipped`: some error lies beyond the right end of the axis.
     """
     marks = {s: error_of(diagnosis, "train", s).get(key) for s in ("before", "noise_floor")}
     rows = [dict(candidate) for candidate in diagnosis.get("ranking") or []]
@@ -211,6 +211,7 @@ def ranking(diagnosis: Record, key: str) -> dict[str, Any]:
     axis = log_axis([*marks.values(), *[e for e in errors if e < ceiling]])
     for row, error in zip(fitted, errors, strict=True):
         row["place"] = axis.place(error)
+        row["margin"] = error / errors[0] if errors[0] else None
     return {
         "rows": fitted,
         "unfitted": [row for row in rows if not usable(row.get("train_error_after"))],

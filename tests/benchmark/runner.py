@@ -44,8 +44,8 @@ def diagnose_one(folder: Path, cores: Sequence[int], scale: str | None = None) -
         apply(scale)
     import resource
 
-    from ptp_symbolic.diagnosis_workflow import diagnose_platform
     from ptp_symbolic.platform import read_platform
+    from ptp_symbolic.workflows.diagnosis import diagnose_platform
 
     begun = time.monotonic()
     platform = read_platform(folder / "platform.toml")

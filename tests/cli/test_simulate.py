@@ -47,6 +47,31 @@ def test_a_trajectory_is_a_log_of_its_platform(call, tmp_path: Path) -> None:
         assert second[name] == pytest.approx(values, rel=1e-6, abs=1e-8), name
 
 
+def test_a_trajectory_is_a_log_of_raw_and_late_columns(call, tmp_path: Path) -> None:
+    text = platform_file("thesis-ideal").read_text(encoding="utf-8")
+    for column, more in (
+        ("pan_torque", 'scale = 1e-3\noffset = 512\ndelay = "30 ms"'),
+        ("pan_angle", 'scale = -1e-4\ndelay = "20 ms"'),
+        ("tilt_angle", 'offset = 0.25\ndelay = "20 ms"'),
+    ):
+        at = f'column = "{column}"'
+        assert at in text
+        text = text.replace(at, f"{at}\n{more}")
+    path = tmp_path / "raw.toml"
+    path.write_text(text, encoding="utf-8")
+    given = ("--input", "tau_pan=step:0.2@0.1", "--initial", "theta_tilt=0.3")
+    ends = ("--duration", 0.5, "--every", 0.01, "--out", tmp_path)
+    assert call("simulate", "--platform", path, *given, *ends).code == 0
+    found = columns(tmp_path / "trajectory.csv")
+    time, theta = found["time [s]"], found["theta_pan [rad]"]
+    assert found["pan_torque [1]"] == pytest.approx(512 + 200 * (time >= 0.07 - 1e-9))
+    assert found["pan_angle [1]"][2:] == pytest.approx(-1e4 * theta[:-2])
+    assert found["tilt_angle [rad]"][0] == pytest.approx(0.55)
+    log = read_log(tmp_path / "trajectory.csv", read_platform(path))
+    assert log.inputs[:, 0] == pytest.approx(0.2 * (log.time >= 0.1 - 1e-9))
+    assert log.outputs[:, 0] == pytest.approx(np.interp(log.time, time, theta), abs=1e-12)
+
+
 def test_without_a_platform_of_signals_inputs_have_the_names_of_the_model(
     call, tmp_path: Path
 ) -> None:

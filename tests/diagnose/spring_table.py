@@ -12,13 +12,13 @@ from pathlib import Path
 import numpy as np
 from scipy.linalg import expm
 
-from ptp_symbolic.diagnosis_workflow import effect_keys
 from ptp_symbolic.models import declared, emission, variants
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose.preparation import task_of
 from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.numeric.identify.run import prepare_runs
 from ptp_symbolic.platform import read_platform
+from ptp_symbolic.workflows.preparation import effect_keys
 
 INERTIA, DAMPING, STIFFNESS = 0.05, 0.1, 0.8  # kg m^2, N m s/rad, N m/rad
 PAYLOAD = 2.0 * 0.1**2  # kg m^2, of the inertia

@@ -1,13 +1,14 @@
 """The whole way: logs in, missing effect out by name."""
 
+import hashlib
 import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnosis_workflow import diagnose_platform
 from ptp_symbolic.platform import read_platform
+from ptp_symbolic.workflows.diagnosis import diagnose_platform
 
 SAMPLE = Path(__file__).parents[2] / "ptp_symbolic" / "samples" / "tilted_base"
 PLATFORMS = Path(__file__).parents[1] / "platforms"
@@ -29,6 +30,22 @@ def test_sample_made_by_mujoco_is_explained_by_base_tilt(sample) -> None:
     assert found["error"]["validate"]["before"]["total"]["rmse_counts"] > 10.0
     for run in found["error"]["validate"]["after"]["by_run"].values():
         assert run["rmse_counts"] < 0.35
+
+
+def test_the_headline_says_how_much_and_the_sources_are_named(sample) -> None:
+    found = sample.summary
+    assert "base that is not level (beta_base = 4 deg)" in found["summary"]
+    sources = found["provenance"]
+    assert [(log["part"], log["file"]) for log in sources["logs"]] == [
+        (part, file.name)
+        for part in ("train", "validate")
+        for file in sorted((SAMPLE / part).glob("*.csv"))
+    ]
+    for log in sources["logs"]:
+        file = SAMPLE / log["part"] / log["file"]
+        assert log["sha256"] == hashlib.sha256(file.read_bytes()).hexdigest()
+        assert log["samples"] == len(file.read_text().splitlines()) - 1
+    assert f"ptp-symbolic {sources['version']}" in sample.files["report.html"]
 
 
 def test_files_are_complete_and_the_extended_platform_reads(sample, tmp_path) -> None:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.diagnosis_workflow import diagnose_platform
 from ptp_symbolic.platform import read_platform
+from ptp_symbolic.workflows.diagnosis import diagnose_platform
 from tests.independent import make_logs
 
 PLATFORMS = Path(__file__).parents[1] / "platforms"

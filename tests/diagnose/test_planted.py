@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ptp_symbolic.diagnosis_workflow import diagnose_platform
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.diagnose.verdict import NOTHING_MISSING
@@ -25,6 +24,7 @@ from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.symbolic.derivation.placement import place_effects
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effects import EFFECTS
+from ptp_symbolic.workflows.diagnosis import diagnose_platform
 from tests.independent import pan_logs, two_axis_logs
 
 PLATFORMS = Path(__file__).parents[1] / "platforms"

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-from ptp_symbolic.diagnosis_workflow import fit_platform
 from ptp_symbolic.platform import read_platform
+from ptp_symbolic.workflows.fit import fit_platform
 
 TRUTH = {"J_pan": 0.26, "F_c_pan": 0.5, "F_v_pan": 0.4}
 COUNTS, STEP, DURATION = 65536, 1e-5, 6.0

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ptp_symbolic
-from ptp_symbolic.diagnosis_workflow import diagnose_platform
 from ptp_symbolic.platform import read_platform
+from ptp_symbolic.workflows.diagnosis import diagnose_platform
 from tests.independent.carriage import (
     COUNTS,
     FORCE,

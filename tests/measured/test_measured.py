@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import scipy.io
 
-from ptp_symbolic.diagnosis_workflow import diagnose_platform
 from ptp_symbolic.platform import read_platform
+from ptp_symbolic.workflows.diagnosis import diagnose_platform
 
 pytestmark = pytest.mark.long
 HERE = Path(__file__).parent

@@ -55,8 +55,11 @@ def signals(draw: st.DrawFn) -> tuple[SignalDeclaration, ...]:
         noise = draw(st.none() | st.floats(0, 1e300))
         role = draw(st.sampled_from(["input", "output"]))
         per_metre = draw(st.none() | st.floats(1.0, 1e12)) if unit == "m" else None
-        column = f"{name} col"
-        found.append(SignalDeclaration(name, column, unit, role, counts, noise, per_metre))
+        scale = draw(st.none() | numbers.filter(bool))
+        delay = draw(st.floats(-10.0, 10.0))
+        offset = draw(numbers)
+        own = (role, counts, noise, scale, offset, delay, per_metre)
+        found.append(SignalDeclaration(name, f"{name} col", unit, *own))
     return tuple(found)
 
 

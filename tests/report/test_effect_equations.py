@@ -9,15 +9,14 @@ from typing import Any
 
 import pytest
 
-from ptp_symbolic.diagnosis_workflow import _equations_tex
 from ptp_symbolic.models import variants
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.diagnosis import render_diagnosis
-from ptp_symbolic.report.latex_text import PREAMBLE
 from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects import EFFECTS
+from ptp_symbolic.workflows.write_up import equations_tex
 from tests.report.synthetic_diagnosis import synthetic_diagnosis
 
 PLATFORMS = Path(__file__).parent.parent / "platforms"
@@ -95,12 +94,11 @@ def test_the_formulas_pass_the_filter_of_the_page_and_wrap_between_terms(effect:
 
 def test_equations_tex_compiles_without_a_warning(tmp_path: Path) -> None:
     rows = [row for effect in SEARCHED for row in equations_of(effect)[0]]
-    text = _equations_tex(rows)
+    text = equations_tex(rows)
     assert text.count("\\[") == len(rows)
     if shutil.which("pdflatex") is None:
         pytest.skip("pdflatex is not installed")
-    page = f"{PREAMBLE}\n\\begin{{document}}\n{text}\\end{{document}}\n"
-    (tmp_path / "equations.tex").write_text(page, encoding="utf-8")
+    (tmp_path / "equations.tex").write_text(text, encoding="utf-8")
     subprocess.run(
         ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape", "equations.tex"],
         cwd=tmp_path,

@@ -65,7 +65,7 @@ def _fit(
         evaluations=(evaluation,) * windows,
         cost=float(residual @ residual),
         pairs=lambda: [(run, evaluation) for run in runs],
-        model=SimpleNamespace(parameters=(parameter,), units=UNITS),
+        model=SimpleNamespace(parameters=(parameter,), units=UNITS, input_names=()),
         values={"J_y_tilt": value},
         free=(),
         failed=None,
@@ -100,31 +100,47 @@ def test_a_declared_value_is_wrong_by_so_many_percent(
 ) -> None:
     candidate = _candidate("declared_value:J_y_tilt", declared=DECLARED)
     trial = _trial(candidate, value=DECLARED * (1.0 + share))
-    text = summary.headline(_verdict(EXPLAINED, trial), _errors())
+    text = summary.headline(_verdict(EXPLAINED, trial), _errors(), {})
     assert text.startswith(f"Declared value of J_y_tilt is {words} (inertia of the tilt body")
     assert ("statistically clear but small" in text) == small
 
 
 @pytest.mark.parametrize(("counts", "shown"), [(0.5, "0.500 counts"), (None, "0.000543 rad")])
 def test_an_effect_is_called_missing(counts: float | None, shown: str) -> None:
-    text = summary.headline(_verdict(EXPLAINED, _trial(_candidate("x"))), _errors(counts))
+    text = summary.headline(_verdict(EXPLAINED, _trial(_candidate("x"))), _errors(counts), {})
     assert text == f"Missing: a cause; validation error {shown} rms to {shown} rms."
+
+
+def test_the_size_is_that_of_the_parameter_clearest_of_zero_in_degrees() -> None:
+    """0.1 rad is 5.73 deg and ten widths from zero; 0.2 is one width."""
+    free = tuple(free_parameter(name, 0.1, -1.0, 1.0) for name in ("theta_tilt", "theta_pan"))
+    candidate = Candidate("x", None, "a cause", "", free, {"theta_tilt": 0.0, "theta_pan": 0.0})
+    intervals = {
+        "theta_tilt": Estimate("theta_tilt", 0.2, 0.1, 0.3, False, True),
+        "theta_pan": Estimate("theta_pan", 0.1, 0.095, 0.105, False, True),
+    }
+    sizes = summary.sizes_of(_trial(candidate), intervals)
+    assert sizes == {"x": "theta_pan = 5.73 deg"}
+    text = summary.headline(_verdict(EXPLAINED, _trial(candidate)), _errors(), sizes)
+    assert text.startswith("Missing: a cause (theta_pan = 5.73 deg); validation error")
 
 
 def test_look_alikes_and_a_remainder_are_in_the_headline() -> None:
     alike = {"x": ("gear_eccentricity@pan", "cogging@pan"), "y": ("cogging@pan",)}
     found = _verdict(PARTLY, _trial(_candidate("x")), confusable=alike)
-    text = summary.headline(found, _errors())
+    text = summary.headline(found, _errors(), {})
     assert "These logs cannot tell it from: cogging@pan, gear_eccentricity@pan." in text
     assert "a remainder is left unexplained" in text
 
 
 def test_what_cannot_be_confirmed_is_a_hint_and_not_a_name() -> None:
     closest = _trial(_candidate("cogging", "pan"), _candidate("backlash", "tilt"))
-    text = summary.headline(_verdict(UNEXPLAINED, _trial(), closest=closest), _errors())
+    text = summary.headline(_verdict(UNEXPLAINED, _trial(), closest=closest), _errors(), {})
     assert text.startswith("Something is missing")
     assert "closest candidate, not confirmed: backlash@tilt + cogging@pan." in text
-    assert "Nothing is missing" in summary.headline(_verdict(NOTHING_MISSING, _trial()), _errors())
+    assert "Nothing is missing" in summary.headline(
+        _verdict(NOTHING_MISSING, _trial()), _errors(), {}
+    )
 
 
 def test_a_declared_parameter_has_a_start_and_that_of_an_effect_has_none() -> None:
@@ -195,6 +211,8 @@ def test_every_signal_is_tested_against_every_input() -> None:
 
 def test_the_curves_of_a_run_carry_the_borders_of_its_windows() -> None:
     fit = _fit(np.zeros((200, 2)))
+    fit.model.input_names = ("tau_pan",)
+    fit.model.units = UNITS | {"tau_pan": "N m"}
     curves: Mapping[str, Any] = curves_of({"train": (fit, fit), "validate": (fit, fit)})
     assert {name: curve["set"] for name, curve in curves.items()} == {
         "run": "train",
@@ -205,3 +223,5 @@ def test_the_curves_of_a_run_carry_the_borders_of_its_windows() -> None:
         assert curve["borders"] == [4.0]
         assert len(curve["time"]) == 399
         assert curve["signals"]["theta_tilt"]["unit"] == "rad"
+        assert len(curve["inputs"]["tau_pan"]["values"]) == 399
+        assert curve["inputs"]["tau_pan"]["unit"] == "N m"

@@ -1,16 +1,17 @@
 """Logs of a machine: the columns that its platform names, in SI units."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data.calibration import calibrated, factor_of, unit_factor
+from ptp_symbolic.numeric.data.latency import Steps, delayed_inputs, on_one_clock
 from ptp_symbolic.numeric.data.table import Table, read_numbers, read_table
 from ptp_symbolic.platform import Platform, SignalDeclaration, naming_file
-from ptp_symbolic.platform.units import compatible, to_si
 
 MIN_ROWS = 10
 
@@ -19,14 +20,17 @@ MIN_ROWS = 10
 class Log:
     """One run: `time` [n] in s, strictly increasing; `inputs` [n, nu]; `outputs` [n, ny].
 
-    Columns are in the order of the platform's signals of that role and in their units (SI). The
-    sampling may be irregular; inputs are zero-order hold.
+    Columns are in the order of the platform's signals of that role and in their units (SI), scales,
+    offsets and delays of the signals applied. The sampling may be irregular; inputs are zero-order
+    hold. Where they change between samples, being delayed, `inputs` are averages from sample to
+    sample, and `steps` the times in s and values [m] of every input (empty: as `inputs` say).
     """
 
     name: str
     time: NDArray[np.float64]
     inputs: NDArray[np.float64]
     outputs: NDArray[np.float64]
+    steps: tuple[Steps, ...] = ()
 
 
 def read_log(path: Path | str, platform: Platform) -> Log:
@@ -45,13 +49,16 @@ def read_log(path: Path | str, platform: Platform) -> Log:
                 f"Platform '{platform.name}' has no output signal to compare with {path}; add one, "
                 "such as [signals.theta_pan]."
             )
-    time, values = _read_signals(path, [*inputs, *outputs])
+    given = _read_signals(path, [*inputs, *outputs])
+    time, values, steps = on_one_clock(path, *given, inputs, outputs)
+    _refuse_short(path, time)
     split = len(inputs)
     return Log(
         path.stem,
         time,
         np.ascontiguousarray(values[:, :split]),
         np.ascontiguousarray(values[:, split:]),
+        steps,
     )
 
 
@@ -69,7 +76,8 @@ def read_inputs(
                 f"Platform '{platform.name}' has no input signal to read from {path}; add one, "
                 "such as [signals.u_pan]."
             )
-    return _read_signals(Path(path), inputs)
+    time, values = _read_signals(Path(path), inputs)
+    return time, delayed_inputs(time, values, inputs, time)
 
 
 def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...]:
@@ -78,9 +86,7 @@ def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...
     Logs of the same file name are told apart by their folder (`train/crawl`). Raises InputError as
     `read_log` does, for a folder without logs, and for a log that is given twice.
     """
-    files = [file for path in paths for file in csv_files(Path(path))]
-    if not files:
-        raise InputError("No log is given; name at least one CSV or a folder of them.")
+    files = log_files(paths)
     places = [file.resolve() for file in files]
     for file, place in zip(files, places, strict=True):
         if places.count(place) > 1:
@@ -91,9 +97,17 @@ def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...
         log = read_log(file, platform)
         if stems.count(file.stem) > 1:
             name = f"{place.parent.name}/{place.stem}"
-            log = Log(name, log.time, log.inputs, log.outputs)
+            log = replace(log, name=name)
         logs.append(log)
     return tuple(logs)
+
+
+def log_files(paths: Iterable[Path | str]) -> list[Path]:
+    """The files of logs given as files and folders. Raises InputError where there are none."""
+    files = [file for path in paths for file in csv_files(Path(path))]
+    if not files:
+        raise InputError("No log is given; name at least one CSV or a folder of them.")
+    return files
 
 
 def csv_files(path: Path) -> list[Path]:
@@ -115,7 +129,7 @@ def _read_signals(
     if "time" not in names:
         raise InputError(f"{path}:1: column 'time [s]' is missing; {_listing(table)}.")
     clock = table.headings[names.index("time")][1]
-    second = _factor(f"{path}:1: column 'time'", "time", "time", "s", clock)
+    second = unit_factor(f"{path}:1: column 'time'", "time", "time", "s", clock)
     missing = [signal.column for signal in signals if signal.column not in names]
     if missing:
         raise InputError(
@@ -124,45 +138,29 @@ def _read_signals(
         )
     columns = [names.index("time"), *(names.index(signal.column) for signal in signals)]
     factors = [
-        _factor(f"{path}:1: column '{s.column}'", s.column, s.signal, s.unit, table.headings[k][1])
+        factor_of(f"{path}:1: column '{s.column}'", s, table.headings[k][1])
         for s, k in zip(signals, columns[1:], strict=True)
     ]
     numbers = read_numbers(table, columns)
-    if len(numbers) < MIN_ROWS:
-        raise InputError(
-            f"{path}: has {len(numbers)} rows of numbers; a log needs at least {MIN_ROWS}."
-        )
+    _refuse_short(path, numbers)
     time = np.ascontiguousarray(numbers[:, 0])
     _check_time(path, time, clock or "s")
     if second != 1.0:
         time *= second
-    values = np.ascontiguousarray(numbers[:, 1:])
-    if any(factor != 1.0 for factor in factors):
-        values *= np.array(factors)
-    return time, values
+    return time, calibrated(numbers[:, 1:], signals, factors)
+
+
+def _refuse_short(path: Path, rows: NDArray[np.float64]) -> None:
+    if len(rows) < MIN_ROWS:
+        raise InputError(
+            f"{path}: has {len(rows)} rows of numbers; a log needs at least {MIN_ROWS}."
+        )
 
 
 def _listing(table: Table) -> str:
     columns = [name if unit is None else f"{name} [{unit}]" for name, unit in table.headings]
     text = ", ".join(columns)
     return "the header has " + (text if len(text) <= 300 else text[:297] + "...")
-
-
-def _factor(where: str, column: str, signal: str, wanted: str, unit: str | None) -> float:
-    """Return the factor from the unit in the header to the `wanted` SI unit of the signal."""
-    if not unit:
-        raise InputError(f"{where} has no unit; write '{column} [{wanted}]'.")
-    try:
-        fits = compatible(unit, wanted)
-        factor = to_si(unit)[0]
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from error
-    if not fits:
-        raise InputError(
-            f"{where} is in {unit}, but {signal} is in {wanted}; correct the header "
-            "or the platform."
-        )
-    return factor
 
 
 def _check_time(path: Path, time: NDArray[np.float64], unit: str) -> None:

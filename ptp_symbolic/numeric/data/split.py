@@ -7,7 +7,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.log import Log, csv_files, read_logs
+from ptp_symbolic.numeric.data.log import Log, log_files, read_logs
 from ptp_symbolic.platform import Platform
 
 EXCERPT = 50  # samples in a row
@@ -22,7 +22,7 @@ def read_split_logs(
     Raises InputError as `read_logs` does, and for a run that is in both, under whatever name, whole
     or in part. A part that was resampled is not noticed.
     """
-    places = [[f for path in paths for f in csv_files(Path(path))] for paths in (train, validate)]
+    places = [log_files(paths) for paths in (train, validate)]
     fitted, judging = (read_logs(files, platform) for files in places)
     seen = [_excerpts(log) for log in fitted]
     for file, log in zip(places[1], judging, strict=True):

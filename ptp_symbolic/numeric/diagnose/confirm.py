@@ -1,7 +1,5 @@
 """What an effect must stand before it is named, besides its predictive gain."""
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,7 +11,7 @@ from ptp_symbolic.numeric.identify.constants import ELSEWHERE, FALSE_ALARM, MOST
 from ptp_symbolic.numeric.identify.evaluate import evaluate
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import chance_of_zero
-from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
+from ptp_symbolic.numeric.identify.run_inputs import with_inputs
 
 FloatArray = NDArray[np.float64]
 
@@ -104,10 +102,7 @@ def answers_to_inputs(task: Task, trial: Trial) -> bool:
     p, none = task.model.parameter_vector(trial.values), np.zeros(0, dtype=np.int64)
     changed = left = 0.0
     for (run, e), z in zip(trial.fit.pairs(), trial.fit.z, strict=True):
-        quiet = np.zeros_like(run.held_inputs)
-        idle = replace(
-            run, inputs=stack([table(run.time, c, "hold") for c in quiet.T]), held_inputs=quiet
-        )
+        idle = with_inputs(run, np.zeros_like(run.held_inputs))
         found = evaluate(task.model, idle, p, z, none, False, tolerance_for(task, SHARP))
         if found.failed is None:
             changed += float(np.sum((found.residual - e.residual) ** 2))

@@ -1,6 +1,6 @@
 """Measured and simulated signals of a diagnosis, run by run."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,9 +14,10 @@ FloatArray = NDArray[np.float64]
 
 
 def curves_of(parts: Mapping[str, tuple[Fit, Fit]]) -> dict[str, Any]:
-    """Measured and simulated signals [n] in SI of every run of each part ("train", "validate"), by
-    the declared and by the final model; the windows of a run joined at the times `borders` in s.
-    The key of a curve is its `run`, with the part where both parts have a run of that name.
+    """Inputs, measured and simulated signals [n] in SI of every run of each part ("train",
+    "validate"), by the declared and by the final model; the windows of a run joined at the times
+    `borders` in s. The key of a curve is its `run`, with the part where both parts have one of that
+    name.
     """
     curves: dict[str, Any] = {}
     for name, (before_fit, after_fit) in parts.items():
@@ -28,12 +29,17 @@ def curves_of(parts: Mapping[str, tuple[Fit, Fit]]) -> dict[str, Any]:
         )
         for (source, before), later in groups:
             key = source if source not in curves else f"{source} ({name})"
-            curves[key] = {"run": source, **_curve(name, before, later, units)}
+            inputs = before_fit.model.input_names
+            curves[key] = {"run": source, **_curve(name, before, later, units, inputs)}
     return curves
 
 
 def _curve(
-    kind: str, before: list[Pair], after: list[Pair], units: Mapping[str, str]
+    kind: str,
+    before: list[Pair],
+    after: list[Pair],
+    units: Mapping[str, str],
+    names: Sequence[str],
 ) -> dict[str, Any]:
     first = before[0][0]
     signals: dict[str, dict[str, Any]] = {}
@@ -46,6 +52,13 @@ def _curve(
             "after": _joined([simulated_signals(r, e)[:, column] for r, e in after]),
             "counts": float(count) if np.isfinite(count) else None,
         }
+    inputs = {
+        name: {
+            "unit": units[name],
+            "values": _joined([r.held_inputs[:, column] for r, _ in before]),
+        }
+        for column, name in enumerate(names)
+    }
     time = _joined([r.time for r, _ in before])
     angle, rate, unit = {}, {}, {}
     for signal, data in signals.items():
@@ -58,6 +71,7 @@ def _curve(
         "set": kind,
         "time": time,
         "signals": signals,
+        "inputs": inputs,
         "angle": angle,
         "rate": rate,
         "angle_unit": unit,

@@ -15,7 +15,7 @@ from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, MANY_RUNS, POLE
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.least_squares import weighted_median
 from ptp_symbolic.numeric.identify.noise import coloured_noise, hidden_from_differences
-from ptp_symbolic.numeric.identify.run import sizes
+from ptp_symbolic.numeric.identify.run_groups import sizes
 from ptp_symbolic.numeric.identify.windows import propagated_noise
 
 FloatArray = NDArray[np.float64]

@@ -26,7 +26,7 @@ from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import project_out
 from ptp_symbolic.numeric.identify.least_squares import weighted_median
-from ptp_symbolic.numeric.identify.run import by_source
+from ptp_symbolic.numeric.identify.run_groups import by_source
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -27,15 +27,18 @@ from ptp_symbolic.numeric.identify.run import Run
 SMALL = "The deviation is statistically clear but small."
 
 
-def headline(found: Verdict, errors: dict[str, Any]) -> str:
-    """What was found, in one or two sentences."""
+def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -> str:
+    """What was found, in one or two sentences; `sizes` say by key how large a named effect is."""
     before, after, floor = (
         _worded(errors["validate"][when]["total"]) for when in ("before", "after", "noise_floor")
     )
     if found.word == NOTHING_MISSING:
         return f"Nothing is missing: {before} on validation runs is the noise floor."
     if found.word in (EXPLAINED, UP_TO_GROUP, PARTLY):
-        causes = " and ".join(cause(c, found.final) for c in found.final.candidates)
+        causes = " and ".join(
+            f"{cause(c, found.final)}{f' ({sizes[c.key]})' if c.key in sizes else ''}"
+            for c in found.final.candidates
+        )
         declared = all(c.is_declared_value for c in found.final.candidates)
         begin = f"{causes[:1].upper()}{causes[1:]}" if declared else f"Missing: {causes}"
         sentences = [f"{begin}; validation error {before} to {after}."]
@@ -160,6 +163,29 @@ def added_effects(
         }
         for c in after.candidates
     ]
+
+
+def sizes_of(after: Trial, intervals: Mapping[str, Estimate]) -> dict[str, str]:
+    """How large every named effect of the trial `after` is, by its key: of the parameters that
+    switch it on the one that is clearest of zero, angles in degrees.
+    """
+    units, found = after.fit.model.units, {}
+    for c in after.candidates:
+        if c.is_declared_value or not c.defining:
+            continue
+        free = max(c.defining, key=lambda f: _clear_of_zero(intervals[f.name], c.vanishing[f.name]))
+        value, unit = intervals[free.name].value, units[free.name]
+        if unit in ("rad", "rad/s"):
+            value, unit = float(np.degrees(value)), unit.replace("rad", "deg")
+        found[c.key] = f"{free.name} = {value:.3g} {unit}".removesuffix(" 1")
+    return found
+
+
+def _clear_of_zero(estimate: Estimate, vanishing: float) -> float:
+    """Distance of a value from the one that switches its effect off, in widths of its interval."""
+    width = estimate.upper - estimate.lower
+    known = np.isfinite(width) and width > 0.0
+    return abs(estimate.value - vanishing) / width if known else 0.0
 
 
 def _value(estimate: Estimate, unit: str) -> dict[str, Any]:

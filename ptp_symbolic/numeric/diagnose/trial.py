@@ -15,7 +15,8 @@ from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
 from ptp_symbolic.numeric.identify.least_squares import weighted_median
-from ptp_symbolic.numeric.identify.run import Run, sizes
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.run_groups import sizes
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]

@@ -33,7 +33,7 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters, with_finite_differences
 from ptp_symbolic.numeric.identify.least_squares import weighted_median
-from ptp_symbolic.numeric.identify.run import sizes
+from ptp_symbolic.numeric.identify.run_groups import sizes
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"

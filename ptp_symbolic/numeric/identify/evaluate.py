@@ -183,7 +183,7 @@ def evaluate(
         x,
         table,
         True,
-        table.with_stops(run.time) if np.any(late) else run.time,
+        table.with_stops(run.time) if np.any(late) else run.stops,
         run.time,
         Accuracy(tolerance.relative, tolerance.absolute(model), 1.0),
         s if tangents else None,

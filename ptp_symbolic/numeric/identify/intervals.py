@@ -22,7 +22,7 @@ from ptp_symbolic.numeric.identify.blocks import (
 from ptp_symbolic.numeric.identify.constants import NOTHING, SAME, UNIDENTIFIED, WIDEST
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search, wrapped
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.run import by_source
+from ptp_symbolic.numeric.identify.run_groups import by_source
 
 FloatArray = NDArray[np.float64]
 

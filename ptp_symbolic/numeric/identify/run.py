@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from ptp_symbolic.numeric.identify.constants import (
     START_SPAN,
 )
 from ptp_symbolic.numeric.identify.noise import white_noise
+from ptp_symbolic.numeric.identify.rate_signals import has_angle, refuse_unseen_angles
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable, stack, table
 from ptp_symbolic.platform import Platform, SignalDeclaration
@@ -67,6 +69,11 @@ class Run:
     signals: tuple[str, ...]
     start: FloatArray
     unknowns: tuple[StartUnknown, ...]
+
+    @cached_property
+    def stops(self) -> FloatArray:
+        """Times [s] in s of the samples, and of the jumps of delayed inputs in between."""
+        return self.inputs.with_stops(self.time)
 
     @property
     def source(self) -> str:
@@ -122,6 +129,7 @@ def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple
                 f"the model has inputs {', '.join(model.input_names)} and outputs"
                 f" {', '.join(model.output_names)}; declare it under [signals.{missing[0]}]."
             )
+    refuse_unseen_angles(model, [s.signal for s in outputs])
     order = [[s.signal for s in given].index(name) for name in model.input_names]
     counts = np.array([np.nan if s.count is None else s.count for s in outputs])
     sigma = np.array(
@@ -130,22 +138,23 @@ def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple
             for k, (s, q) in enumerate(zip(outputs, counts, strict=True))
         ]
     )
-    return tuple(_prepare(model, outputs, log, log.inputs[:, order], counts, sigma) for log in logs)
+    return tuple(_prepare(model, outputs, log, order, counts, sigma) for log in logs)
 
 
 def _prepare(
     model: Model,
     outputs: Sequence[SignalDeclaration],
     log: Log,
-    inputs: FloatArray,
+    order: list[int],
     counts: FloatArray,
     sigma: FloatArray,
 ) -> Run:
+    steps = log.steps or [(log.time, column) for column in log.inputs.T]
     run = Run(
         name=log.name,
         time=np.ascontiguousarray(log.time),
-        inputs=stack([table(log.time, column, "hold") for column in inputs.T]),
-        held_inputs=np.ascontiguousarray(inputs),
+        inputs=stack([table(*steps[k]) for k in order]),
+        held_inputs=np.ascontiguousarray(log.inputs[:, order]),
         measured=np.ascontiguousarray(log.outputs),
         outputs=np.array([model.output_names.index(s.signal) for s in outputs], dtype=np.int64),
         weight=1.0 / sigma,
@@ -194,6 +203,13 @@ def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
         if signal not in states:
             continue
         axis = signal.removeprefix("theta_")
+        if signal.startswith("omega_"):
+            if not has_angle(run.signals, signal):
+                rates = [n for n in (signal, f"omega_gear{signal[5:]}") if n in states]
+                start[[states.index(name) for name in rates]] = run.measured[0, column]
+                sigma = 1.0 / run.weight[column]
+                unknowns.append(_unknown(states, signal, rates, ANYWHERE, sigma))
+            continue
         if axis == signal or f"omega_{axis}" not in states:
             start[states.index(signal)] = run.measured[0, column]
             continue
@@ -279,16 +295,3 @@ def _unknown(
     tangent = np.zeros(len(states))
     tangent[[states.index(c) for c in carried]] = 1.0
     return StartUnknown(name, tangent, -limit, limit, sigma, instead=instead)
-
-
-def by_source(runs: Sequence[Run]) -> list[list[int]]:
-    """Indices of the runs, the windows of one run together."""
-    grouped: dict[str, list[int]] = {}
-    for index, run in enumerate(runs):
-        grouped.setdefault(run.source, []).append(index)
-    return list(grouped.values())
-
-
-def sizes(runs: Sequence[Run]) -> FloatArray:
-    """Number of samples of every run [runs]."""
-    return np.array([len(run.time) for run in runs], dtype=np.float64)

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.numeric.data.zero_order_hold import held_averages
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
+from ptp_symbolic.numeric.identify.run_inputs import with_inputs
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -21,7 +22,7 @@ def cell_averages(run: Run, column: int, delay: float, grid: IntArray) -> FloatA
     edges = np.concatenate(
         [[1.5 * time[0] - 0.5 * time[1]], middle, [1.5 * time[-1] - 0.5 * time[-2]]]
     )
-    return _averages(run, column, edges - delay)
+    return held_averages(run.time, run.held_inputs[:, column], edges - delay)
 
 
 def part_averages(run: Run, column: int, delay: float, parts: int) -> FloatArray:
@@ -31,7 +32,7 @@ def part_averages(run: Run, column: int, delay: float, parts: int) -> FloatArray
     shares = np.arange(parts) / parts
     edges = run.time[:-1, None] + np.diff(run.time)[:, None] * shares
     flat = np.append(edges.ravel(), run.time[-1])
-    return _averages(run, column, flat - delay).reshape(-1, parts)
+    return held_averages(run.time, run.held_inputs[:, column], flat - delay).reshape(-1, parts)
 
 
 def thinned(run: Run, period: float) -> Run:
@@ -43,25 +44,13 @@ def thinned(run: Run, period: float) -> Run:
         return run
     kept = np.arange(0, len(run.time), every)
     time, last = run.time[kept], run.held_inputs[kept[-1:]]
-    means = [_averages(run, column, time) for column in range(run.held_inputs.shape[1])]
-    held = np.ascontiguousarray(np.vstack([np.column_stack(means), last]))
-    return replace(
+    means = [held_averages(run.time, column, time) for column in run.held_inputs.T]
+    few = replace(
         run,
         time=np.ascontiguousarray(time),
-        inputs=stack([table(time, column, "hold") for column in held.T]),
-        held_inputs=held,
         measured=np.ascontiguousarray(run.measured[kept]),
     )
-
-
-def _averages(run: Run, column: int, edges: FloatArray) -> FloatArray:
-    """Averages of a held input between neighbouring `edges`; before the first sample it is that."""
-    time, held = run.time, run.held_inputs[:, column]
-    integral = np.concatenate([[0.0], np.cumsum(held[:-1] * np.diff(time))])
-    at = np.interp(edges, time, integral)
-    at += np.where(edges < time[0], (edges - time[0]) * held[0], 0.0)
-    at += np.where(edges > time[-1], (edges - time[-1]) * held[-1], 0.0)
-    return np.diff(at) / np.diff(edges)
+    return with_inputs(few, np.vstack([np.column_stack(means), last]))
 
 
 def grid_averages(values: FloatArray, grid: IntArray) -> FloatArray:

@@ -28,8 +28,9 @@ from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.numeric.identify.intervals import project_out
 from ptp_symbolic.numeric.identify.noise import white_noise
 from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, with_start
+from ptp_symbolic.numeric.identify.run_inputs import with_inputs
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
+from ptp_symbolic.numeric.simulation.signals.inputs import part_of_held
 
 FloatArray = NDArray[np.float64]
 
@@ -106,14 +107,10 @@ def _replay(
     rng: np.random.Generator,
 ) -> tuple[FloatArray, FloatArray] | None:
     """Change of the weighted residuals by input noise, and the Jacobian by the start of the run."""
-    shaken = run.held_inputs + noise * rng.standard_normal(run.held_inputs.shape)
-    noisy = replace(
-        run,
-        inputs=stack([table(run.time, column, "hold") for column in shaken.T]),
-        held_inputs=np.ascontiguousarray(shaken),
-    )
+    shaken = noise * rng.standard_normal(run.held_inputs.shape)
+    both = [with_inputs(run, run.held_inputs + change) for change in (0.0, shaken)]
     none = np.zeros(0, dtype=np.int64)
-    plain, other = (evaluate(model, r, p, z, none, True, Tolerance()) for r in (run, noisy))
+    plain, other = (evaluate(model, r, p, z, none, True, Tolerance()) for r in both)
     if plain.failed or other.failed:
         return None
     return other.residual - plain.residual, plain.by_start
@@ -205,7 +202,7 @@ def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
             run,
             name=f"{run.name}{WINDOW}{number + 1}",
             time=np.ascontiguousarray(run.time[part]),
-            inputs=stack([table(run.time[part], c, "hold") for c in run.held_inputs[part].T]),
+            inputs=part_of_held(run.inputs, run.time[a], run.time[b]),
             held_inputs=np.ascontiguousarray(run.held_inputs[part]),
             measured=np.ascontiguousarray(run.measured[part]),
         )

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import sympy as sp
+from sympy.simplify.fu import TR10i
 
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.symbolic.codegen.latex import latex_lines, mathml_lines, plain_text_of
@@ -66,8 +67,10 @@ def _change(
         return []
     new, gone = (set(sp.Add.make_args(e)) for e in (statement.right, old.right))
     as_written = sp.Add(*(new - gone)) - sp.Add(*(gone - new))
-    multiplied_out = sp.factor_terms(sp.expand(statement.right - old.right))
-    added = min(as_written, multiplied_out, key=sp.count_ops)
+    difference = sp.expand(statement.right - old.right)
+    # sums and differences of angles as one: sin a cos b + cos a sin b
+    of_sums = sp.factor_terms(TR10i(difference))
+    added = min(as_written, sp.factor_terms(difference), of_sums, key=sp.count_ops)
     lines = latex_lines(added)
     latex = " \\\\\n".join(lines)
     if len(lines) > 1:

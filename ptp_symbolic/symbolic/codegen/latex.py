@@ -6,6 +6,8 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 from sympy.printing.mathml import mathml
 
+from ptp_symbolic.symbolic.symbols import real
+
 GREEK = {
     "theta",
     "omega",
@@ -80,8 +82,14 @@ class _Printer(LatexPrinter):
 def latex_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
     """LaTeX of an expression, the terms of a sum on as many lines as they need.
 
-    A term that is itself too long is multiplied out.
+    A product with a long sum in it breaks inside the sum; another term that is too long is
+    multiplied out.
     """
+    product = _long_product(expression, room)
+    if product is not None:
+        before, inner = product
+        sums = " \\\\\n& ".join(latex_lines(inner, room - _width(before)))
+        return [f"{latex_of(before)} \\left(\\begin{{aligned}}& {sums}\\end{{aligned}}\\right)"]
     lines: list[str] = []
     width = 0
     for number, term in enumerate(_terms(expression, room)):
@@ -95,6 +103,17 @@ def latex_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
             lines.append(signed)
             width = size
     return lines
+
+
+def _long_product(expression: sp.Expr, room: int) -> tuple[sp.Expr, sp.Expr] | None:
+    """Factors of a product wider than `room`: all but a sum, and the sum; None of anything else."""
+    if not isinstance(expression, sp.Mul) or _width(expression) <= room:
+        return None
+    sums = [factor for factor in expression.args if isinstance(factor, sp.Add)]
+    if len(sums) != 1:
+        return None
+    before = expression / sums[0]
+    return (before, sums[0]) if _width(before) < room // 2 else None
 
 
 def _terms(expression: sp.Expr, room: int) -> list[sp.Expr]:
@@ -141,6 +160,7 @@ def plain_text_of(expression: sp.Expr) -> str:
 def mathml_of(expression: sp.Expr) -> str:
     """Presentation MathML of an expression; exponentials as a function, not as small type."""
     written = _with_decimals(expression).replace(sp.exp, sp.Function("exp"))
+    written = written.xreplace({real(name): sp.Symbol(letter) for name, letter in LETTERS.items()})
     text = str(mathml(written, printer="presentation", order="lex"))
     text = text.replace("<mi>dc</mi>", "<mi>Δc</mi>").replace("<mi>dF</mi>", "<mi>ΔF</mi>")
     return text.replace("<mo>-</mo>", "<mo>−</mo>")
@@ -149,8 +169,16 @@ def mathml_of(expression: sp.Expr) -> str:
 def mathml_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
     """Presentation MathML of the terms of a sum, each with its sign, to be set one after another.
 
-    A reader may break the line between any two of them.
+    A reader may break the line between any two of them, also of a long sum in a product.
     """
+    product = _long_product(expression, room)
+    if product is not None:
+        before, inner = product
+        pieces = mathml_lines(inner, room)
+        opened, closed = (f'<mo stretchy="false">{mark}</mo>' for mark in "()")
+        pieces[0] = f"<mrow>{mathml_of(before)}{opened}{pieces[0]}</mrow>"
+        pieces[-1] = f"<mrow>{pieces[-1]}{closed}</mrow>"
+        return pieces
     pieces = []
     for number, term in enumerate(_terms(expression, room)):
         negative = term.could_extract_minus_sign()

@@ -11,7 +11,8 @@ from ptp_symbolic.symbolic.derivation.equations import Equations
 def outputs_text(equations: Equations, vectors: Vectors) -> str:
     """Text of `outputs`."""
     outputs = [(f"y[{i}]", e) for i, (_, _, e) in enumerate(equations.outputs)]
-    lines = share((), outputs, vocabulary(equations))
+    terms = [(str(symbol), term) for symbol, term in equations.terms]
+    lines = share(terms, outputs, vocabulary(equations))
     return kernel_text(
         "outputs", "t, x, u, p, y", "Write the measured signals into y.", vectors, lines
     )
@@ -20,7 +21,7 @@ def outputs_text(equations: Equations, vectors: Vectors) -> str:
 def output_jacobian_text(equations: Equations, vectors: Vectors) -> str:
     """Text of `output_jacobian`."""
     outputs = [
-        (f"y{letter}[{i}, {j}]", derivative(expression, variable))
+        (f"y{letter}[{i}, {j}]", derivative(equations.written_out(expression), variable))
         for letter, symbols in variables(equations)
         if letter != "u"
         for j, variable in enumerate(symbols)

@@ -46,7 +46,8 @@ def assemble(platform: Platform) -> Equations:
     with others, or whose expressions hold a symbol that nothing defines.
     """
     placed = place_effects(platform)
-    contributions = released(collect(platform.axes, placed))
+    measured = {s.signal for s in platform.signals if s.role == "output"}
+    contributions = released(collect(platform.axes, placed, measured))
     transmissions = [transmission(shaft, contributions) for shaft in contributions.shafts]
     contributions = _with_twists(contributions, transmissions)
     rigid = _rigid_configuration(platform, contributions)
@@ -103,8 +104,13 @@ def assemble(platform: Platform) -> Equations:
 def _with_twists(
     contributions: Contributions, transmissions: Sequence[Transmission]
 ) -> Contributions:
-    """`contributions` in which the torque and the twist of every shaft are quantities."""
+    """`contributions` in which the torque and the twist of every shaft are quantities, and the
+    torque that a sensor shows, where one is read.
+    """
     found = [item for t in transmissions for item in t.quantities.items()]
+    read = {symbol for sensor in contributions.sensors for symbol in sensor.value.free_symbols}
+    torques = {quantity_symbol(f"measured_torque_{t.axis}"): t.measured for t in transmissions}
+    found += [(symbol, torque) for symbol, torque in torques.items() if symbol in read]
     return replace(contributions, values={**contributions.values, **dict(found)})
 
 
@@ -186,17 +192,19 @@ def _rigid_configuration(platform: Platform, contributions: Contributions) -> Ri
     return RigidConfiguration(platform.axes, bodies, base, offsets, platform.linear_axes)
 
 
-def _inputs(platform: Platform, contributions: Contributions) -> list[tuple[Input, str]]:
-    """The inputs, each with its axis: of what commands or drives it, else the joint's torque."""
+def _inputs(platform: Platform, contributions: Contributions) -> list[tuple[Input, str | None]]:
+    """The inputs, each with its axis: of what commands or drives it, else the joint's torque; then
+    those that drive none.
+    """
     drives = {drive.axis: drive.inputs for drive in contributions.drives}
     drives |= {kinematics.place_of(w): (given,) for w, given in contributions.prescribed.items()}
     for contribution in contributions.by_effect:
         drives |= contribution.commands
-    inputs = []
+    inputs: list[tuple[Input, str | None]] = []
     for axis in platform.axes:
         own = _own_input(axis, axis in platform.linear_axes)
         inputs += [(given, axis) for given in drives.get(axis, (own,))]
-    return inputs
+    return inputs + [(given, None) for c in contributions.by_effect for given in c.inputs]
 
 
 def _own_input(axis: str, linear: bool) -> Input:
@@ -205,8 +213,9 @@ def _own_input(axis: str, linear: bool) -> Input:
     return Input(str(kinematics.torque(axis)), unit, f"{word} on the {axis} joint")
 
 
-def _delay_of(axis: str, contributions: Contributions) -> sp.Symbol | None:
-    return next((c.delays[axis] for c in contributions.by_effect if axis in c.delays), None)
+def _delay_of(axis: str | None, contributions: Contributions) -> sp.Symbol | None:
+    delays = (d for c in contributions.by_effect for on, d in c.delays.items() if on == axis)
+    return next(delays, None)
 
 
 def _extra_states(
@@ -249,13 +258,16 @@ def _samplers(contributions: Contributions) -> tuple[Sampler, ...]:
 def _outputs(
     platform: Platform, contributions: Contributions
 ) -> tuple[tuple[str, str, sp.Expr], ...]:
-    """Measured signals: joint angles, then extra states, as their sensors show them."""
+    """Measured signals, as their sensors show them: joint angles, extra states, and what else the
+    platform declares.
+    """
     signals = {
         str(kinematics.angle(axis)): "m" if axis in platform.linear_axes else "rad"
         for axis in platform.axes
     }
     for contribution in contributions.by_effect:
         signals.update({state.name: state.unit for state in contribution.states})
+    signals.update({sensor.name: sensor.unit for sensor in contributions.sensors})
     return tuple(
         (name, unit, contributions.resolve(quantity_symbol(f"reading_{name}")))
         for name, unit in signals.items()

@@ -1,6 +1,6 @@
 """What the placed effects contribute, flattened, with every named quantity resolved."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 
@@ -14,10 +14,12 @@ from ptp_symbolic.symbolic.effect_interface.contribution import (
     Friction,
     Input,
     Play,
+    Sensor,
     Shaft,
     Switch,
 )
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.linear import linear_sensor
 from ptp_symbolic.symbolic.effect_interface.place import Place, quantity_name
 from ptp_symbolic.symbolic.effect_interface.place import quantity as quantity_symbol
 from ptp_symbolic.symbolic.mechanics import kinematics
@@ -31,11 +33,14 @@ PLATFORM_QUANTITIES = (*GRAVITY_QUANTITIES, *BASE_ACCELERATION)
 
 @dataclass(frozen=True)
 class Contributions:
-    """Contributions of all effects, which of them only dissipate, and values of quantities."""
+    """Contributions of all effects, which of them only dissipate, values of quantities, and the
+    sensors that are read.
+    """
 
     by_effect: tuple[Contribution, ...]
     dissipative: tuple[bool, ...]
     values: Mapping[sp.Symbol, sp.Expr]
+    sensors: tuple[Sensor, ...] = ()
 
     def resolve(self, expression: sp.Expr) -> sp.Expr:
         """Replace quantity placeholders, also inside other quantities."""
@@ -122,19 +127,51 @@ def slope_symbol(term: sp.Symbol, variable: sp.Symbol) -> sp.Symbol:
     return real(f"{term}_by_{variable}")
 
 
-def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Contributions:
+def sensors_on(
+    axes: Iterable[str], contributions: Sequence[Contribution], linear: bool = False
+) -> list[Sensor]:
+    """The sensors that a machine may have: rates of its joints, torques of its shafts, and those
+    of its effects. On a `linear` axis rates are in m/s, torques forces in N.
+    """
+    rates = [
+        Sensor(str(w), "rad/s", f"rate of the {axis} joint, by a gyro or tachometer", w)
+        for axis, w in ((axis, kinematics.rate(axis)) for axis in axes)
+    ]
+    torques = [
+        Sensor(
+            f"tau_shaft_{shaft.axis}",
+            "N m",
+            f"torque in the {shaft.axis} shaft",
+            quantity_symbol(f"measured_torque_{shaft.axis}"),
+        )
+        for contribution in contributions
+        for shaft in contribution.shafts
+    ]
+    joints = [*rates, *torques]
+    own = (s for c in contributions for s in c.sensors)
+    return [*(map(linear_sensor, joints) if linear else joints), *own]
+
+
+def collect(
+    axes: Iterable[str], placed: Iterable[tuple[Effect, Place]], measured: Collection[str] = ()
+) -> Contributions:
     """Let every placed effect contribute, and apply all changes to the quantities.
+
+    Of the sensors that the machine may have those named in `measured` are read.
 
     Raises InputError where two effects define one quantity; ValueError for an effect that changes
     one which nothing defines, and where one refers to itself.
     """
-    placed = list(placed)
+    placed, axes = list(placed), tuple(axes)
     contributions = tuple(effect.contribution_at(place) for effect, place in placed)
+    linear = any(place.linear for _, place in placed)
+    sensors = tuple(s for s in sensors_on(axes, contributions, linear) if s.name in measured)
     values: dict[str, sp.Expr] = {name: ZERO for name in PLATFORM_QUANTITIES}
     for axis in axes:
         values[f"transmitted_torque_{axis}"] = _transmitted(axis, contributions)
         values[f"transmission_error_{axis}"] = ZERO
         values[f"reading_{kinematics.angle(axis)}"] = kinematics.angle(axis)
+    values.update({f"reading_{sensor.name}": sensor.value for sensor in sensors})
     _refuse_second_definitions(placed, contributions)
     for contribution in contributions:
         values.update(contribution.quantities)
@@ -149,7 +186,8 @@ def collect(axes: Iterable[str], placed: Iterable[tuple[Effect, Place]]) -> Cont
         values[name] = change.through(values[name])
     symbols = {quantity_symbol(name): value for name, value in values.items()}
     _refuse_circles(symbols)
-    return Contributions(contributions, tuple(effect.dissipative for effect, _ in placed), symbols)
+    dissipative = tuple(effect.dissipative for effect, _ in placed)
+    return Contributions(contributions, dissipative, symbols, sensors)
 
 
 def _refuse_second_definitions(

@@ -16,10 +16,13 @@ from ptp_symbolic.symbolic.symbols import ZERO
 @dataclass(frozen=True)
 class Transmission:
     """One shaft: torques in N m on the gear output and on the joint, its contact if it has play,
-    and the quantities that effects find on its axis.
+    and the quantities that effects find on its axis. `measured` is its torque in N m as a function
+    of the state alone, whatever the modes.
     """
 
+    axis: str
     torques: tuple[tuple[sp.Symbol, sp.Expr], ...]
+    measured: sp.Expr
     quantities: Mapping[sp.Symbol, sp.Expr]
     contact: Contact | None
     ledger: Ledger
@@ -46,7 +49,10 @@ def transmission(shaft: Shaft, contributions: Contributions) -> Transmission:
     torque = spring + losses
     transmitted = pushing * torque
     lost = pushing * losses - (1 - pushing) * spring
+    total = sp.diff(shaft.energy, twist) + shaft.losses
     return Transmission(
+        axis=axis,
+        measured=_pressed(total.subs(twist_rate, speed), twist, separation, half_gap),
         torques=((gear, -transmitted * ratio), (joint, transmitted)),
         quantities={quantity(f"shaft_torque_{axis}"): transmitted}
         | {symbol: touching * value for symbol, value in here.items()},
@@ -58,4 +64,18 @@ def transmission(shaft: Shaft, contributions: Contributions) -> Transmission:
             power_in=ZERO,
             dissipated=touching * lost * speed,
         ),
+    )
+
+
+def _pressed(torque: sp.Expr, twist: sp.Symbol, separation: sp.Expr, half_gap: sp.Expr) -> sp.Expr:
+    """The `torque` of a twist, at a `separation` of gear output and joint in rad: none within the
+    gap, and none that pulls at a face.
+    """
+    if half_gap == 0:
+        return torque.subs(twist, separation)
+    ahead, behind = (torque.subs(twist, separation + end) for end in (-half_gap, half_gap))
+    return sp.Piecewise(
+        (sp.Max(ahead, 0), separation > half_gap),
+        (sp.Min(behind, 0), separation < -half_gap),
+        (ZERO, True),
     )

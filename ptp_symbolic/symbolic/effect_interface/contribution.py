@@ -82,6 +82,19 @@ class Input:
 
 
 @dataclass(frozen=True)
+class Sensor:
+    """What may be measured beside joint angles and states: name, unit, meaning, value.
+
+    It is an output of the platforms that declare a signal of that name.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    value: sp.Expr
+
+
+@dataclass(frozen=True)
 class Friction:
     """Set-valued dry friction that acts on one rate.
 
@@ -174,8 +187,9 @@ class Contribution:
     `potential` is an energy of the coordinates, whose gradient acts as torques; `stored` an energy
     of the effect's own states, which its `torques` charge and discharge. `delays` hold back the
     inputs of an axis. `prescribed` gives joint rates an acceleration as input, in place of the
-    torque on the joint; `commands` gives an axis other inputs than those of its drive. What a
-    sensor shows is the quantity ``reading_<state>``.
+    torque on the joint; `commands` gives an axis other inputs than those of its drive; `inputs` are
+    those that drive no axis, such as a temperature. What a sensor shows is the quantity
+    ``reading_<state>``, or ``reading_<name>`` of one of the `sensors`.
     """
 
     quantities: Mapping[str, sp.Expr] = field(default_factory=dict)
@@ -196,3 +210,5 @@ class Contribution:
     delays: Mapping[str, sp.Symbol] = field(default_factory=dict)
     limits: tuple[Limit, ...] = ()
     prescribed: Mapping[sp.Symbol, Input] = field(default_factory=dict)
+    inputs: tuple[Input, ...] = ()
+    sensors: tuple[Sensor, ...] = ()

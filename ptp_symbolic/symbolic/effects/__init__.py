@@ -35,6 +35,9 @@ from ptp_symbolic.symbolic.effects.rate_dependent_breakaway import RATE_DEPENDEN
 from ptp_symbolic.symbolic.effects.rigid_bodies import RIGID_BODIES
 from ptp_symbolic.symbolic.effects.shaft_compliance import SHAFT_COMPLIANCE
 from ptp_symbolic.symbolic.effects.shear_thinning_friction import SHEAR_THINNING_FRICTION
+from ptp_symbolic.symbolic.effects.temperature_dependent_friction import (
+    TEMPERATURE_DEPENDENT_FRICTION,
+)
 from ptp_symbolic.symbolic.effects.viscous_friction import VISCOUS_FRICTION
 from ptp_symbolic.symbolic.effects.voltage_offset import VOLTAGE_OFFSET
 from ptp_symbolic.symbolic.effects.voltage_saturation import VOLTAGE_SATURATION
@@ -57,6 +60,7 @@ EFFECTS: tuple[Effect, ...] = (
     POSITION_DEPENDENT_FRICTION,
     RATE_DEPENDENT_BREAKAWAY,
     SHEAR_THINNING_FRICTION,
+    TEMPERATURE_DEPENDENT_FRICTION,
     QUADRATIC_DRAG,
     BACKLASH,
     SHAFT_COMPLIANCE,

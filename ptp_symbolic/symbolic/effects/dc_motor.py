@@ -1,10 +1,14 @@
 """A geared permanent-magnet DC motor, driven by a voltage."""
 
-from dataclasses import replace
-
 import sympy as sp
 
-from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Drive, Input, State
+from ptp_symbolic.symbolic.effect_interface.contribution import (
+    Contribution,
+    Drive,
+    Input,
+    Sensor,
+    State,
+)
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
@@ -14,19 +18,14 @@ WINDING, LOSS = "winding_resistance_{axis}", "winding_loss_{axis}"
 VOLTAGES = ("motor_voltage_{axis}", "drive_voltage_{axis}", "command_{axis}")  # each from the next
 
 
-def _turning(parameter: Parameter) -> Parameter:
-    """A parameter of what turns before a linear joint too."""
-    return replace(parameter, linear={"unit": parameter.unit})
-
-
 def motor_parameters(values: tuple[float, float, float, float]) -> tuple[Parameter, ...]:
     """Parameters of a winding and a rotor; `values` are their defaults, in this order."""
     inductance, resistance, constant, rotor = values
     return (
         Parameter("L_{axis}", "H", inductance, 1e-9, 1e3, "winding inductance"),
         Parameter("R_{axis}", "ohm", resistance, 1e-6, 1e6, "winding resistance"),
-        _turning(Parameter("K_t_{axis}", "N m/A", constant, 1e-9, 1e4, "torque constant")),
-        _turning(Parameter("J_motor_{axis}", "kg m^2", rotor, 1e-12, 1e3, "rotor inertia")),
+        Parameter("K_t_{axis}", "N m/A", constant, 1e-9, 1e4, "torque constant", turns=True),
+        Parameter("J_motor_{axis}", "kg m^2", rotor, 1e-12, 1e3, "rotor inertia", turns=True),
     )
 
 
@@ -61,7 +60,8 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
     values = (resistance, winding * current**2, switched, command, applied)
     defined = {n.format(axis=place.axis): v for n, v in zip(names, values, strict=True)}
     state = State(str(current), "A", f"current of the {place.axis} motor", derivative)
-    return Contribution(quantities=defined, drives=(drive,), states=(state,))
+    rate = Sensor(f"omega_motor_{place.axis}", "rad/s", f"rate of the {place.axis} motor", speed)
+    return Contribution(quantities=defined, drives=(drive,), states=(state,), sensors=(rate,))
 
 
 def _contribute(place: Place) -> Contribution:

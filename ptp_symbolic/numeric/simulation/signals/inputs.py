@@ -269,3 +269,14 @@ def stack(signals: Sequence[InputSignal]) -> InputTable:
     return InputTable(
         breaks, coefficients, offsets, sines, sine_offsets, sweeps, sweep_offsets, stops
     )
+
+
+def part_of_held(whole: InputTable, begin: float, end: float) -> InputTable:
+    """The zero-order holds of `whole` from `begin` to `end` in s; before it what holds then."""
+    signals = []
+    for j, (first, last) in enumerate(pairwise(whole.offsets)):
+        times, values = whole.breaks[first + j : last + j], whole.coefficients[first:last, 0]
+        a = max(0, int(np.searchsorted(times, begin, side="right")) - 1)
+        b = max(a + 1, int(np.searchsorted(times, end, side="right")))
+        signals.append(table(times[a:b], values[a:b], "hold"))
+    return stack(signals)

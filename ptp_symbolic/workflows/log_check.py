@@ -1,21 +1,11 @@
 """Look at logs before anything is fitted: what they hold, and what they can show."""
 
-import json
 import math
 from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from ptp_symbolic.diagnosis_workflow import (
-    SCHEMA_VERSION,
-    Output,
-    Progress,
-    effect_keys,
-    look_at,
-    task_for,
-    workers,
-)
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.data import read_logs
 from ptp_symbolic.numeric.diagnose.summary import repeatability_table
@@ -25,6 +15,8 @@ from ptp_symbolic.numeric.identify.fit import all_values_at_start
 from ptp_symbolic.numeric.identify.log_facts import facts_of
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
+from ptp_symbolic.workflows.preparation import effect_keys, look_at, task_for, workers
+from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, Progress, json_text
 
 
 def check_logs(
@@ -56,7 +48,7 @@ def check_logs(
         "simulates": not failed,
         "visible": [_row(v, model) for v in visible],
     }
-    return Output(summary, {"check.json": json.dumps(summary, indent=2) + "\n"})
+    return Output(summary, {"check.json": json_text(summary)})
 
 
 def _row(visible: Visible, model: Model) -> dict[str, Any]:

@@ -1,0 +1,42 @@
+"""Diagnose a declared platform: search for what it lacks, and decide."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from ptp_symbolic.models import emission, variants
+from ptp_symbolic.numeric.data import log_files, read_split_logs
+from ptp_symbolic.numeric.diagnose.search import search
+from ptp_symbolic.numeric.diagnose.verdict import decide
+from ptp_symbolic.platform import Platform
+from ptp_symbolic.workflows.preparation import effect_keys, look_at, task_for, workers
+from ptp_symbolic.workflows.provenance import provenance
+from ptp_symbolic.workflows.result import Output, Progress
+from ptp_symbolic.workflows.write_up import written_up
+
+
+def diagnose_platform(
+    platform: Platform,
+    train: Iterable[Path | str],
+    validate: Iterable[Path | str],
+    progress: Progress = lambda text: None,
+    command: str | None = None,
+) -> Output:
+    """Fit `platform` to the `train` logs, find what it lacks, judge on the `validate` logs.
+
+    `command` is the command line that asks for it, for the report. Raises InputError for logs and
+    platforms that do not fit each other, and for a run in both.
+    """
+    fitted, judging = log_files(train), log_files(validate)
+    train_logs, validate_logs = read_split_logs(fitted, judging, platform)
+    read = {"train": (fitted, train_logs), "validate": (judging, validate_logs)}
+    sources = provenance(platform, read, command)
+    noted = look_at(platform, train_logs, (*train_logs, *validate_logs), progress)
+    progress("deriving the equations of the platform and its candidates")
+    model = emission.emit(variants.with_candidates(platform))
+    with workers() as executor:
+        task = task_for(
+            platform, model, train_logs, validate_logs, effect_keys(platform), executor, progress
+        )
+        found = search(task)
+        verdict = decide(found)
+        return written_up(platform, task, found, verdict, noted, sources)

@@ -1,0 +1,85 @@
+"""Fit a declared platform to its logs."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+
+from ptp_symbolic.models import emission, variants
+from ptp_symbolic.numeric.data import read_logs
+from ptp_symbolic.numeric.diagnose.errors import error_of
+from ptp_symbolic.numeric.diagnose.floor import carried_noise, floor_of
+from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.refits import fit_declared, refitted_in_windows
+from ptp_symbolic.numeric.diagnose.summary import fit_table
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
+from ptp_symbolic.numeric.identify.fit import (
+    Effort,
+    all_values_at_start,
+    fit_parameters,
+    with_finite_differences,
+)
+from ptp_symbolic.numeric.identify.intervals import estimates
+from ptp_symbolic.platform import Platform, platform_text
+from ptp_symbolic.workflows.preparation import look_at, task_for, workers
+from ptp_symbolic.workflows.result import (
+    SCHEMA_VERSION,
+    Output,
+    Progress,
+    json_text,
+    windows_table,
+)
+
+FAR_FROM_FLOOR = 3.0  # times the floor: from here on a fit is called far from it
+START_ITERATIONS = 10  # for the starts of the runs at the declared values
+START_SHARE = 1e-2  # error of those simulations, as a share of the noise
+
+
+def fit_platform(
+    platform: Platform, paths: Iterable[Path | str], progress: Progress = lambda text: None
+) -> Output:
+    """Fit the free parameters of `platform` to all logs in `paths`.
+
+    The error before is that at the declared start values (None where they do not simulate), as
+    after with the state at the start of every run fitted. Raises InputError for logs and platforms
+    that do not fit each other.
+    """
+    logs = read_logs(paths, platform)
+    noted = look_at(platform, logs, logs, progress)
+    model = emission.emit(platform)
+    with workers() as executor:
+        task = task_for(platform, model, logs, logs, (), executor, progress)
+        begun = _as_declared(task)
+        trial = begun
+        if task.free:
+            progress("fitting")
+            task, trial = refitted_in_windows(task, fit_declared(task, propose(task)))
+            trial = replace(trial, fit=with_finite_differences(trial.fit, executor))
+        floor = floor_of(task, trial, carried_noise(task, trial.fit))
+    units = model.units
+    error = {
+        "before": None if begun.fit.failed else error_of(begun.fit, units),
+        "after": error_of(trial.fit, units),
+        "noise_floor": error_of(trial.fit, units, floor.level),
+    }
+    left, least = (error[when]["total"]["rmse"] for when in ("after", "noise_floor"))  # type: ignore[index]
+    fitted = variants.extended(platform, (), trial.values, ())
+    summary = {
+        "schema_version": SCHEMA_VERSION,
+        "platform": {"name": platform.name, "title": platform.title},
+        "parameters": fit_table(trial, estimates(trial.fit)),
+        "error": error,
+        "far_from_floor": trial.fit.failed is not None or left > FAR_FROM_FLOOR * least,
+        "windows": windows_table(task),
+        "remarks": list(noted),
+    }
+    files = {"platform.toml": platform_text(fitted), "fit.json": json_text(summary)}
+    return Output(summary, files)
+
+
+def _as_declared(task: Task) -> Trial:
+    """The declared start values, with nothing but the starts of the runs fitted."""
+    values = {**task.fixed, **all_values_at_start(task.free)}
+    effort = Effort(START_ITERATIONS, 1e-3, tolerance_for(task, START_SHARE))
+    return Trial(
+        (), fit_parameters(task.model, task.train, (), values, None, effort, task.executor)
+    )

@@ -1,0 +1,75 @@
+"""What comes before any fit: logs looked at, runs matched to the model, workers."""
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager
+
+from threadpoolctl import threadpool_limits
+
+from ptp_symbolic.models.declared import free_parameters, known_values, refuse_unknown_signals
+from ptp_symbolic.numeric.data import Log, refuse_motionless, refuse_wrapped_angles, remarks
+from ptp_symbolic.numeric.diagnose.preparation import task_of
+from ptp_symbolic.numeric.diagnose.trial import Task
+from ptp_symbolic.numeric.identify.run import prepare_runs
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.platform import Platform, naming_file
+from ptp_symbolic.workflows.result import Progress
+
+
+@contextmanager
+def workers() -> Iterator[Executor]:
+    """One thread per core that the process may use, for runs side by side; threads of the linear
+    algebra would be in their way.
+    """
+    affinity = getattr(os, "sched_getaffinity", None)  # Linux alone has one
+    cores = len(affinity(0)) if affinity else os.cpu_count()
+    with threadpool_limits(limits=1), ThreadPoolExecutor(cores) as executor:
+        yield executor
+
+
+def effect_keys(platform: Platform) -> list[str]:
+    """Keys of the declared effects, ``effect`` or ``effect@axis``."""
+    return [e.effect if e.axis is None else f"{e.effect}@{e.axis}" for e in platform.effects]
+
+
+def look_at(
+    platform: Platform, train: Sequence[Log], every: Sequence[Log], progress: Progress
+) -> tuple[str, ...]:
+    """Refuse logs that cannot be used, and say what is odd about the others before any fit."""
+    refuse_wrapped_angles(every, platform)
+    refuse_motionless(train, platform)
+    noted = remarks(train, platform)
+    for text in noted:
+        progress(text)
+    return noted
+
+
+def task_for(
+    platform: Platform,
+    model: Model,
+    train: Iterable[Log],
+    validate: Iterable[Log],
+    declared: Sequence[str],
+    executor: Executor,
+    progress: Progress,
+) -> Task:
+    """All that stays the same; `declared` are the keys of the effects that are not candidates."""
+    progress("preparing the simulation (compiles for about a minute once on a new machine)")
+    refuse_unknown_signals(platform, model)
+    with naming_file(platform):
+        runs = [prepare_runs(model, platform, tuple(logs)) for logs in (train, validate)]
+    free, known = free_parameters(platform, model), known_values(platform, model)
+    noises = {s.signal: s.noise for s in platform.signals}
+    return task_of(
+        model,
+        runs[0],
+        runs[1],
+        free,
+        known,
+        declared,
+        noises,
+        platform.window,
+        executor,
+        progress,
+    )

@@ -1,0 +1,113 @@
+"""A diagnosis written up: its summary, and every file of it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from ptp_symbolic.models import emission, variants
+from ptp_symbolic.numeric.diagnose.curves import curves_of
+from ptp_symbolic.numeric.diagnose.findings import Search
+from ptp_symbolic.numeric.diagnose.remainder import hints, remainder
+from ptp_symbolic.numeric.diagnose.residual_tests import residual_tests
+from ptp_symbolic.numeric.diagnose.summary import (
+    added_effects,
+    error_table,
+    fit_table,
+    gain_table,
+    headline,
+    ranking,
+    repeatability_table,
+    sizes_of,
+)
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial
+from ptp_symbolic.numeric.diagnose.verdict import Verdict
+from ptp_symbolic.numeric.identify.fit import with_finite_differences
+from ptp_symbolic.numeric.identify.intervals import estimates
+from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, platform_text
+from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
+from ptp_symbolic.report.latex_text import PREAMBLE, escaped
+from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
+from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, json_text, windows_table
+
+
+def written_up(
+    platform: Platform,
+    task: Task,
+    found: Search,
+    verdict: Verdict,
+    noted: Sequence[str],
+    sources: Mapping[str, Any],
+) -> Output:
+    """What was found, as data and as files; `sources` say what it rests on (see `provenance`)."""
+    after = replace(verdict.final, fit=with_finite_differences(verdict.final.fit, task.executor))
+    intervals = {e.name: e for e in estimates(after.fit)}
+    parts = {
+        "train": (found.declared.fit, after.fit),
+        "validate": (verdict.before, verdict.after),
+    }
+    errors = error_table(parts, verdict.floor)
+    extended = _extended(platform, after)
+    named = [c for c in after.candidates if not c.is_declared_value]
+    equations = [e for c in named for e in effect_equations(extended, c.id, c.axis)]
+    left = remainder(found.proposals.space, after.values) if verdict.leaves_more else None
+    summary = {
+        "schema_version": SCHEMA_VERSION,
+        "platform": {"name": platform.name, "title": platform.title},
+        "verdict": verdict.word,
+        "summary": headline(verdict, errors, sizes_of(after, intervals)),
+        "added": added_effects(verdict, after, intervals),
+        "ranking": ranking(found, verdict, task.candidates),
+        "error": errors,
+        "repeatability": repeatability_table(task.whole, task.model.units),
+        "residual_tests": residual_tests(verdict.after, task.model.input_names),
+        "fit": {
+            "before": {"parameters": fit_table(found.declared, estimates(found.declared.fit))},
+            "after": {"parameters": fit_table(after, tuple(intervals.values()))},
+        },
+        "held_out": None if verdict.held_out is None else gain_table(verdict.held_out),
+        "refused": dict(verdict.refused),
+        "remainder": left,
+        "hints": hints(left),
+        "windows": windows_table(task),
+        "remarks": list(noted),
+        "equations": equations,
+        "provenance": dict(sources),
+    }
+    curves = curves_of(parts)
+    files: dict[str, str | bytes] = {"platform.toml": platform_text(extended)}
+    files["equations.tex"] = equations_tex(equations)
+    files[f"{extended.name}.py"] = emission.module_of(extended)
+    files["report.html"] = render_diagnosis(summary, curves)
+    files.update({f"curves/{name}": text for name, text in write_curves_csv(curves).items()})
+    files["diagnosis.json"] = json_text(summary)
+    return Output(summary, files)
+
+
+def equations_tex(equations: list[dict[str, Any]]) -> str:
+    """The added equations as a LaTeX document of its own."""
+    rows = [f"\\[\n{e['latex']}\n\\]\n" for e in equations]
+    titles = [escaped(f"{e['title'][:1].upper()}{e['title'][1:]}") for e in equations]
+    text = "\n".join(f"{title}:\n{row}" for title, row in zip(titles, rows, strict=True))
+    text = text or "No effect was added to the equations.\n"
+    return f"{PREAMBLE}\n\\begin{{document}}\n{text}\\end{{document}}\n"
+
+
+def _extended(platform: Platform, after: Trial) -> Platform:
+    """`platform` with the accepted effects, and every fitted value as the new start."""
+    bounds = {p.name: p for p in after.fit.model.parameters}
+    added = [
+        EffectDeclaration(c.id, c.axis, None) for c in after.candidates if not c.is_declared_value
+    ]
+    fitted = [
+        ParameterDeclaration(
+            name,
+            bounds[name].unit,
+            after.values[name],
+            True,
+            bounds[name].lower,
+            bounds[name].upper,
+        )
+        for c in after.candidates
+        for name in c.parameters
+    ]
+    return variants.extended(platform, added, after.values, fitted)
