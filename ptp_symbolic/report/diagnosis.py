@@ -173,7 +173,7 @@ def _environment() -> jinja2.Environment:
         estimate=quantities.estimate,
         interval=quantities.interval,
         in_degrees=quantities.in_degrees,
-        degrees=quantities.degrees,
+        travel=quantities.travel,
         gain=quantities.gain,
     )
     return environment

@@ -107,9 +107,12 @@ def _exponent(value: Any) -> int:
     return math.floor(math.log10(abs(value))) if _usable(value) and value else 0
 
 
-def degrees(angle: Any) -> str:
-    """An angle in rad as degrees; a dash where it is none."""
-    return f"{number(math.degrees(angle))}°" if _usable(angle) else NOTHING
+def travel(error: Mapping[str, Any]) -> str:
+    """The rms of angles in degrees, of positions in m; a dash where there is none."""
+    rms = error.get("rmse")
+    if rms is None or not _usable(rms):
+        return NOTHING
+    return f"{number(rms)} m" if error.get("unit") == "m" else f"{number(math.degrees(rms))}°"
 
 
 def in_degrees(quantity: Mapping[str, Any] | None) -> str:

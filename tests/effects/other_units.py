@@ -7,8 +7,9 @@ from ptp_symbolic.numeric.runtime.model import Model
 
 
 def unit_factor(unit: str) -> float:
-    """How a number in `unit` changes when kg, m, s and A change; m = s^2 keeps gravity as it is."""
+    """How a number in `unit` changes when kg, m, s, A and K change; m = s^2 keeps gravity."""
     scales = {"[mass]": 3.0, "[length]": 4.0, "[time]": 2.0, "[current]": 7.0}
+    scales["[temperature]"] = 5.0
     dimension = pint.get_application_registry()(unit if unit != "1" else "").to_base_units()
     factor = 1.0
     for base, exponent in dimension.dimensionality.items():

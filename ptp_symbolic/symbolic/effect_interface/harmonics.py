@@ -23,7 +23,7 @@ def wave_number(name: str) -> Parameter:
         1e5,
         "wave number: one cycle, 2 pi, over its length (a screw: 2 pi over its lead)",
         locked_to="angle",
-        linear={"unit": "rad/m"},
+        turns=True,
     )
 
 

@@ -39,25 +39,28 @@ def linear_words(text: str) -> str:
 def linear_parameter(parameter: Parameter) -> Parameter:
     """`parameter` on a linear joint: what it says of one itself, and the rest by rule."""
     own = dict(parameter.linear or {})
-    by_rule = {"unit": linear_unit(parameter.unit)}
-    if "unit" not in own:
-        by_rule["meaning"] = linear_words(parameter.meaning)
-    return replace(parameter, **{**by_rule, **own})
+    if parameter.turns:
+        return replace(parameter, **own)
+    unit, meaning = linear_unit(parameter.unit), linear_words(parameter.meaning)
+    return replace(parameter, **{"unit": unit, "meaning": meaning, **own})
 
 
 def linear_contribution(given: Contribution) -> Contribution:
-    """`given` with the units and words of its states and inputs on a linear joint."""
+    """`given` with the units and words of its states and inputs on a linear joint; its sensors are
+    of the motor, which turns.
+    """
     return replace(
         given,
         states=tuple(map(_state, given.states)),
         drives=tuple(map(_drive, given.drives)),
         commands={axis: tuple(map(_input, inputs)) for axis, inputs in given.commands.items()},
         prescribed={rate: _input(own) for rate, own in given.prescribed.items()},
+        inputs=tuple(map(_input, given.inputs)),
     )
 
 
 def linear_sensor(sensor: Sensor) -> Sensor:
-    """`sensor` of a joint with the unit and words of a linear one."""
+    """`sensor` of a joint or shaft with its unit and words on a linear joint."""
     return replace(sensor, unit=linear_unit(sensor.unit), meaning=linear_words(sensor.meaning))
 
 

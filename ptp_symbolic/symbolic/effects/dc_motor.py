@@ -1,7 +1,5 @@
 """A geared permanent-magnet DC motor, driven by a voltage."""
 
-from dataclasses import replace
-
 import sympy as sp
 
 from ptp_symbolic.symbolic.effect_interface.contribution import (
@@ -20,19 +18,14 @@ WINDING, LOSS = "winding_resistance_{axis}", "winding_loss_{axis}"
 VOLTAGES = ("motor_voltage_{axis}", "drive_voltage_{axis}", "command_{axis}")  # each from the next
 
 
-def _turning(parameter: Parameter) -> Parameter:
-    """A parameter of what turns before a linear joint too."""
-    return replace(parameter, linear={"unit": parameter.unit})
-
-
 def motor_parameters(values: tuple[float, float, float, float]) -> tuple[Parameter, ...]:
     """Parameters of a winding and a rotor; `values` are their defaults, in this order."""
     inductance, resistance, constant, rotor = values
     return (
         Parameter("L_{axis}", "H", inductance, 1e-9, 1e3, "winding inductance"),
         Parameter("R_{axis}", "ohm", resistance, 1e-6, 1e6, "winding resistance"),
-        _turning(Parameter("K_t_{axis}", "N m/A", constant, 1e-9, 1e4, "torque constant")),
-        _turning(Parameter("J_motor_{axis}", "kg m^2", rotor, 1e-12, 1e3, "rotor inertia")),
+        Parameter("K_t_{axis}", "N m/A", constant, 1e-9, 1e4, "torque constant", turns=True),
+        Parameter("J_motor_{axis}", "kg m^2", rotor, 1e-12, 1e3, "rotor inertia", turns=True),
     )
 
 
