@@ -147,7 +147,7 @@ def _gravity(head: dict[str, Any], where: str) -> float:
 def _effects(given: object, axes: tuple[str, ...], file: str) -> tuple[EffectDeclaration, ...]:
     if not isinstance(given, list) or not given:
         raise InputError(f"{file}: effects: write at least one [[effects]] table.")
-    found: dict[tuple[str, str | None], EffectDeclaration] = {}
+    found: dict[tuple[str, str | None, str | None], EffectDeclaration] = {}
     for position, entry in enumerate(given, start=1):
         where = f"{file}: effects[{position}]"
         entry = fields.table(entry, where, ("effect", "axis", "site", "kind"))
@@ -156,10 +156,10 @@ def _effects(given: object, axes: tuple[str, ...], file: str) -> tuple[EffectDec
         axis = fields.choice(entry["axis"], axes, f"{where}.axis") if "axis" in entry else None
         site = fields.choice(entry["site"], SITES, f"{where}.site") if "site" in entry else None
         kind = fields.name(entry["kind"], f"{where}.kind") if "kind" in entry else None
-        if (effect, axis) in found:
+        if (effect, axis, kind) in found:
             on_axis = f" on axis {axis}" if axis else ""
             raise InputError(f"{where}: is declared twice{on_axis}; remove one of the two.")
-        found[effect, axis] = EffectDeclaration(effect, axis, site, kind)
+        found[effect, axis, kind] = EffectDeclaration(effect, axis, site, kind)
     return tuple(found.values())
 
 

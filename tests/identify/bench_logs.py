@@ -23,6 +23,7 @@ TRUTH = {
 INDUCTANCE, ROTOR, RATIO = 5e-3, 1e-5, 50.0
 PERIOD, HOLD, DURATION = 0.005, 0.05, 6.0
 COUNTS = 65536
+LAGS = {"t_lag_omega_pan": 0.008, "t_lag_i_pan": 0.003}  # s, of those who filter
 VOLTS_PER_COUNT, ZERO = 0.1875, 128  # of an unsigned 8-bit PWM at 24 V
 INPUT_DELAY, ENCODER_DELAY, GYRO_DELAY = 0.007, 0.004, 0.0093
 NOISE = {"omega_pan": 4e-3, "i_pan": 0.01, "tau_shaft_pan": 0.02, "omega_motor_pan": 0.2}
@@ -53,11 +54,11 @@ def motion(pwm: np.ndarray) -> dict[str, object]:
     """The signals as functions of time in s, at rest before the first command acts."""
     t = TRUTH
     ends = HOLD * np.arange(len(pwm) + 1) + INPUT_DELAY
-    state, pieces = np.zeros(5), []
+    state, pieces = np.zeros(7), []
     for volts, begin, end in zip(VOLTS_PER_COUNT * (pwm - ZERO), ends[:-1], ends[1:], strict=True):
 
         def rates(_, y, volts=volts):
-            angle, rate, gear, gear_rate, current = y
+            angle, rate, gear, gear_rate, current, gyro, shunt = y
             torque = t["k_shaft_pan"] * (gear - angle) + t["d_shaft_pan"] * (gear_rate - rate)
             return [
                 rate,
@@ -65,6 +66,8 @@ def motion(pwm: np.ndarray) -> dict[str, object]:
                 gear_rate,
                 (RATIO * t["K_t_pan"] * current - torque) / (ROTOR * RATIO**2),
                 (volts - t["R_pan"] * current - t["K_t_pan"] * RATIO * gear_rate) / INDUCTANCE,
+                (rate - gyro) / LAGS["t_lag_omega_pan"],
+                (current - shunt) / LAGS["t_lag_i_pan"],
             ]
 
         found = solve_ivp(
@@ -74,14 +77,14 @@ def motion(pwm: np.ndarray) -> dict[str, object]:
         state = found.y[:, -1]
 
     def states(at: np.ndarray) -> np.ndarray:
-        result = np.zeros((5, len(at)))
+        result = np.zeros((7, len(at)))
         index = np.clip(np.searchsorted(ends, at, side="right") - 1, -1, len(pieces) - 1)
         for k in np.unique(index[index >= 0]):
             result[:, index == k] = pieces[k](at[index == k])
         return result
 
     def torque(at: np.ndarray) -> np.ndarray:
-        angle, rate, gear, gear_rate, _ = states(at)
+        angle, rate, gear, gear_rate = states(at)[:4]
         return t["k_shaft_pan"] * (gear - angle) + t["d_shaft_pan"] * (gear_rate - rate)
 
     return {
@@ -90,11 +93,15 @@ def motion(pwm: np.ndarray) -> dict[str, object]:
         "omega_motor_pan": lambda at: RATIO * states(at)[3],
         "i_pan": lambda at: states(at)[4],
         "tau_shaft_pan": torque,
+        "filtered_omega_pan": lambda at: states(at)[5],
+        "filtered_i_pan": lambda at: states(at)[6],
     }
 
 
-def write_logs(folder: Path, seeds: Sequence[int], extra: Sequence[str] = ()) -> list[Path]:
-    """One log per seed with PWM, encoder and the signals named in `extra`."""
+def write_logs(
+    folder: Path, seeds: Sequence[int], extra: Sequence[str] = (), filtered: Sequence[str] = ()
+) -> list[Path]:
+    """One log per seed with PWM, encoder and the signals in `extra`, those in `filtered` late."""
     paths = []
     for seed in seeds:
         rng = np.random.default_rng(seed)
@@ -104,7 +111,8 @@ def write_logs(folder: Path, seeds: Sequence[int], extra: Sequence[str] = ()) ->
         time = PERIOD * np.arange(round(DURATION / PERIOD))
 
         def seen(name: str, delay: float, true=true, time=time, rng=rng) -> np.ndarray:
-            return true[name](time - delay) + NOISE.get(name, 0.0) * rng.standard_normal(len(time))
+            shown = true[f"filtered_{name}" if name in filtered else name](time - delay)
+            return shown + NOISE.get(name, 0.0) * rng.standard_normal(len(time))
 
         angle = seen("theta_pan", ENCODER_DELAY) + rng.uniform(0.0, 1e-4)
         columns: Mapping[str, np.ndarray] = {

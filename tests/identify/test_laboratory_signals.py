@@ -7,7 +7,7 @@ import pytest
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.fit import fit_platform
-from tests.identify.bench_logs import NOISE, TRUTH, platform_text, write_logs
+from tests.identify.bench_logs import LAGS, NOISE, TRUTH, platform_text, write_logs
 
 EXTRA = ("omega_pan", "i_pan", "tau_shaft_pan", "omega_motor_pan")
 MECHANICAL = ("J_pan", "b_pan", "k_shaft_pan")
@@ -88,3 +88,31 @@ def test_a_signal_that_the_machine_has_not_is_refused_with_those_it_has(tmp_path
     has = "theta_pan, i_pan, omega_pan, tau_shaft_pan, omega_motor_pan."
     with pytest.raises(InputError, match=f"'omega_yaw'.* Choose one of: {has}"):
         fitted(tmp_path, text, ("omega_pan",))
+
+
+def test_filters_of_gyro_and_current_are_found_beside_the_machine(tmp_path: Path) -> None:
+    filters = "".join(
+        f'[[effects]]\neffect = "measurement_lag"\naxis = "pan"\nkind = "{kind}"\n'
+        for kind in ("rate", "current")
+    )
+    extra = ("omega_pan", "i_pan")
+    text = platform_text(MECHANICAL, extra, filters)
+    free = "".join(f"{name} = {{ start = 0.005 }}\n" for name in LAGS)
+    path = tmp_path / "bench.toml"
+    path.write_text(text.replace("[signals]\n", f"{free}[signals]\n"), encoding="utf-8")
+    logs = write_logs(tmp_path, (1, 2), extra, filtered=extra)
+    found = fit_platform(read_platform(path), logs).summary
+    for name, value in LAGS.items():
+        assert found["parameters"][name]["value"] == pytest.approx(value, rel=5e-3), name
+    low, high = found["parameters"]["t_lag_i_pan"]["ci95"]
+    assert low < LAGS["t_lag_i_pan"] < high
+    left = found["error"]["after"]["by_signal"]
+    for name in extra:
+        assert left[name]["rmse"] == pytest.approx(NOISE[name], rel=0.05), name
+
+
+def test_a_filter_of_a_signal_that_is_no_output_is_refused(tmp_path: Path) -> None:
+    lag = '[[effects]]\neffect = "measurement_lag"\naxis = "pan"\nkind = "torque"\n'
+    message = r"of kind 'torque' filters 'tau_shaft_pan', .* declare \[signals.tau_shaft_pan\]"
+    with pytest.raises(InputError, match=message):
+        fitted(tmp_path, platform_text(MECHANICAL, (), lag), ())

@@ -119,6 +119,8 @@ def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
     friction_rates = {states[i] for i in model.friction_rates}
     unknowns: list[StartUnknown] = []
     for column, signal in enumerate(run.signals):
+        if f"shown_{signal}" in states:
+            start[states.index(f"shown_{signal}")] = run.measured[0, column]
         if signal not in states:
             continue
         axis = signal.removeprefix("theta_")

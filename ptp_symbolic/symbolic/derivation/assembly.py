@@ -109,7 +109,7 @@ def _with_twists(
     """
     found = [item for t in transmissions for item in t.quantities.items()]
     read = {symbol for sensor in contributions.sensors for symbol in sensor.value.free_symbols}
-    torques = {quantity_symbol(f"measured_torque_{t.axis}"): t.measured for t in transmissions}
+    torques = {quantity_symbol(f"torque_in_shaft_{t.axis}"): t.measured for t in transmissions}
     found += [(symbol, torque) for symbol, torque in torques.items() if symbol in read]
     return replace(contributions, values={**contributions.values, **dict(found)})
 

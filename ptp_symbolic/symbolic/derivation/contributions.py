@@ -152,7 +152,7 @@ def sensors_on(
                 f"tau_shaft_{shaft.axis}",
                 "N m",
                 f"torque in the {shaft.axis} shaft",
-                quantity_symbol(f"measured_torque_{shaft.axis}"),
+                quantity_symbol(f"torque_in_shaft_{shaft.axis}"),
             ),
         )
         for contribution in contributions
@@ -181,11 +181,13 @@ def collect(
         values[f"transmitted_torque_{axis}"] = _transmitted(axis, contributions)
         values[f"transmission_error_{axis}"] = ZERO
         values[f"reading_{kinematics.angle(axis)}"] = kinematics.angle(axis)
-    values.update({f"reading_{sensor.name}": sensor.value for sensor in sensors})
+    for word in ("reading", "measured"):
+        values.update({f"{word}_{sensor.name}": sensor.value for sensor in sensors})
     _refuse_second_definitions(placed, contributions)
     for contribution in contributions:
         values.update(contribution.quantities)
-        values.update({f"reading_{s.name}": s.symbol for s in contribution.states})
+        for word in ("reading", "measured"):
+            values.update({f"{word}_{s.name}": s.symbol for s in contribution.states})
     changes = [item for c in contributions for item in c.changes.items()]
     _refuse_changes_of_nothing(placed, contributions, values)
     for name, change in changes:

@@ -11,6 +11,7 @@ from ptp_symbolic.platform import (
     naming_file,
 )
 from ptp_symbolic.platform.units import compatible
+from ptp_symbolic.symbolic.derivation.contributions import sensors_on
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
@@ -49,7 +50,7 @@ def place_effects(platform: Platform) -> list[tuple[Effect, Place]]:
     """
     with naming_file(platform):
         placed = _placed(platform)
-        _check_needs(placed)
+        _check_needs(platform, placed)
         _check_ownership(placed)
         _check_parameters(platform, placed)
     return placed
@@ -157,11 +158,26 @@ def _everywhere(axes: tuple[str, ...], linear: bool) -> Iterator[tuple[Effect, P
                 yield effect, Place(axes, axis, None, frozenset(), linear)
 
 
-def _check_needs(placed: list[tuple[Effect, Place]]) -> None:
-    available = available_quantities(placed)
+def _readings(platform: Platform, placed: list[tuple[Effect, Place]]) -> set[str]:
+    """Quantities of what the declared outputs beside the angles show."""
+    added = [effect.contribution_at(place) for effect, place in placed]
+    known = {s.name for s in sensors_on(platform.axes, added, platform.linear_axes)}
+    known |= {state.name for c in added for state in c.states}
+    return {f"reading_{s.signal}" for s in platform.signals if s.signal in known}
+
+
+def _check_needs(platform: Platform, placed: list[tuple[Effect, Place]]) -> None:
+    available = available_quantities(placed) | _readings(platform, placed)
     for effect, place in placed:
         for need in effect.needs:
             name = need.format(axis=place.axis)
+            if name not in available and name.startswith("reading_"):
+                signal = name.removeprefix("reading_")
+                raise InputError(
+                    f"Effect '{effect.id}' of kind '{effect.kind}' filters '{signal}', which is no"
+                    f" output of the machine; declare [signals.{signal}] and what it measures, or"
+                    " remove it."
+                )
             if name not in available:
                 bringing = " or ".join(effects_that_define(name, place.axes, place.linear))
                 on_axis = "" if place.axis is None else f" on axis '{place.axis}'"

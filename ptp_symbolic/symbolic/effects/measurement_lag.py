@@ -1,4 +1,10 @@
-"""An encoder behind a filter of first order: its reading lags the joint."""
+"""A sensor behind a filter of first order: its reading lags what it measures.
+
+The kind says which signal of the axis is filtered; those beside the angle must be declared as
+outputs. An axis may have one of each.
+"""
+
+from dataclasses import replace
 
 from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution, State
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
@@ -22,8 +28,35 @@ def _contribute(place: Place) -> Contribution:
     )
 
 
+def _kind(kind: str, signal: str, unit: str) -> Effect:
+    """The filter of a `signal` that begins each run at what it shows; its state is the reading."""
+    given = replace(PARAMETERS[0], name=f"t_lag_{signal}_{{axis}}")
+    given = replace(given, meaning=f"time constant of the filter of the {{axis}} {kind}")
+
+    def contribute(place: Place) -> Contribution:
+        (time,) = place.symbols((given,))
+        name = f"{signal}_{place.axis}"
+        shown = real(f"shown_{name}")
+        rate = (place.quantity(f"measured_{name}") - shown) / time
+        return Contribution(
+            changes={f"reading_{name}": Change(through=lambda _: shown)},
+            states=(State(shown.name, unit, f"{place.axis} {kind} as it is shown", rate),),
+        )
+
+    return replace(
+        MEASUREMENT_LAG,
+        kind=kind,
+        title=f"{kind} behind a filter",
+        parameters=(given,),
+        contribute=contribute,
+        needs=(f"reading_{signal}_{{axis}}",),
+        kinds=(),
+    )
+
+
 MEASUREMENT_LAG = Effect(
     id="measurement_lag",
+    kind="angle",
     title="encoder behind a filter",
     reference="first-order low pass; Ljung (1999), section 4.2",
     parameters=PARAMETERS,
@@ -31,4 +64,13 @@ MEASUREMENT_LAG = Effect(
     structural=True,
     separating_experiment="Turn steadily at several rates past an index mark: the reading is behind"
     " in proportion to the rate.",
+)
+MEASUREMENT_LAG = replace(
+    MEASUREMENT_LAG,
+    kinds=(
+        _kind("rate", "omega", "rad/s"),
+        _kind("motor_rate", "omega_motor", "rad/s"),
+        _kind("current", "i", "A"),
+        _kind("torque", "tau_shaft", "N m"),
+    ),
 )
