@@ -1,5 +1,6 @@
 """What the README shows works as it stands there."""
 
+import math
 import re
 import subprocess
 import sys
@@ -49,6 +50,21 @@ def test_the_example_platform_is_accepted(readme: str, tmp_path: Path) -> None:
     assert values["c_x_payload"] == pytest.approx(0.1)
     free = [parameter.name for parameter in platform.parameters if parameter.free]
     assert free == ["F_c_pan", "F_s_pan", "F_v_pan", "b_tilt"]
+
+
+def test_the_examples_of_raw_signals_are_accepted(readme: str, tmp_path: Path) -> None:
+    lines = re.findall(
+        r"^\w+ = \{ role = .*delay.*|^\w+ = \{ role = .*scale.*", readme, re.MULTILINE
+    )
+    file = tmp_path / "turret.toml"
+    head = (
+        '[platform]\nname = "a"\naxes = ["pan"]\n[[effects]]\neffect = "rigid_bodies"\n[signals]\n'
+    )
+    file.write_text(head + "\n".join(lines), encoding="utf-8")
+    pwm, angle, gyro = read_platform(file).signals
+    assert (pwm.scale, pwm.offset) == (0.1875, 128)
+    assert angle.scale == pytest.approx(-2 * math.pi / 7200)
+    assert (gyro.delay, gyro.offset) == pytest.approx((0.009, math.radians(3.0)))
 
 
 def test_the_example_platform_declares_all_that_its_effects_need(
