@@ -53,14 +53,10 @@ def test_the_example_platform_is_accepted(readme: str, tmp_path: Path) -> None:
 
 
 def test_the_examples_of_raw_signals_are_accepted(readme: str, tmp_path: Path) -> None:
-    lines = re.findall(
-        r"^\w+ = \{ role = .*delay.*|^\w+ = \{ role = .*scale.*", readme, re.MULTILINE
-    )
+    lines = re.findall(r"^\w+ = \{ role = .*(?:delay|scale).*", readme, re.MULTILINE)
     file = tmp_path / "turret.toml"
-    head = (
-        '[platform]\nname = "a"\naxes = ["pan"]\n[[effects]]\neffect = "rigid_bodies"\n[signals]\n'
-    )
-    file.write_text(head + "\n".join(lines), encoding="utf-8")
+    head = '[platform]\nname = "a"\naxes = ["pan"]\n[[effects]]\neffect = "rigid_bodies"\n'
+    file.write_text("\n".join([head, "[signals]", *lines]), encoding="utf-8")
     pwm, angle, gyro = read_platform(file).signals
     assert (pwm.scale, pwm.offset) == (0.1875, 128)
     assert angle.scale == pytest.approx(-2 * math.pi / 7200)
