@@ -56,7 +56,7 @@ def friction_map(
     summary = fit_map(read, axis, confidence)
     text = json.dumps(summary, indent=2) + "\n"
     if out is not None:
-        files = {
+        files: dict[str, str | bytes] = {
             "friction.toml": platform_fragment(summary),
             "friction.png": friction_map_picture(summary),
             "friction.json": text,

@@ -22,7 +22,9 @@ def friction_map_picture(summary: Mapping[str, Any]) -> bytes:
     small = np.abs(points["torque"]).max() < 0.1
     scale, unit = (1e3, "mN m") if small else (1.0, "N m")
     left = scale * (points["torque"] - points["fitted"])
-    with matplotlib.rc_context({**STYLE, "font.size": 10.0, "axes.titlesize": 10.0}):
+    with matplotlib.rc_context(
+        {**STYLE, "font.size": 10.0, "axes.titlesize": 10.0, "axes.xmargin": 0.03}
+    ):
         figure = Figure(figsize=(8.0, 5.6), layout="constrained")
         FigureCanvasAgg(figure)
         above, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (2.2, 1.0)})

@@ -25,7 +25,9 @@ BATCH = 111  # replicates at a time; it ends where more of them cannot make the 
 class Comparison:
     """All members on one set of points.
 
-    `torque` [n] is weighted. `extra` is the standard deviation in N m beside those declared.
+    `torque` [n] is weighted. `rss` is infinite for a member whose best fit cannot exist; chance may
+    still bring it about, so that the tests reckon with it. `extra` is the standard deviation in N m
+    that the torques have beside those declared.
     """
 
     points: Points
@@ -34,6 +36,11 @@ class Comparison:
     blocks: Mapping[Member, tuple[Block, ...]]
     rss: Mapping[Member, float]
     extra: float | None
+
+    @property
+    def possible(self) -> list[Member]:
+        """Members whose best fit is a law that can exist."""
+        return [member for member, rss in self.rss.items() if np.isfinite(rss)]
 
     @cached_property
     def errors(self) -> dict[Member, FloatArray]:
@@ -87,12 +94,10 @@ def compare(points: Points) -> Comparison:
     if points.spread is None:
         return _compared(points, members, np.ones(len(points.rate)), None)
     spread = points.spread
-    largest = list(_compared(points, members, 1.0 / spread, 0.0).rss)[-1:]
 
     def excess(extra: float) -> float:
-        weight = 1.0 / np.hypot(spread, extra)
-        found = _compared(points, largest, weight, extra)
-        return found.rss[largest[0]] - found.left(largest[0])
+        found = _compared(points, members, 1.0 / np.hypot(spread, extra), extra)
+        return min(found.rss.values()) - min(map(found.left, found.rss))
 
     most = float(np.ptp(points.torque))
     extra = brentq(excess, 0.0, most) if excess(0.0) > 0.0 > excess(most) else 0.0
@@ -104,10 +109,10 @@ def _compared(
 ) -> Comparison:
     design = Design(points.rate, points.sign, weight)
     torque = weight * points.torque
-    blocks = {m: design.blocks(m) for m in members if len(torque) > m.size}
+    fits = {m: design.blocks(m) for m in members if len(torque) > m.size}
+    blocks = {m: b for m, b in fits.items() if all(block.sound.any() for block in b)}
     rss = {m: float(least_rss(b, torque[:, None])[0]) for m, b in blocks.items()}
-    found = {m: value for m, value in rss.items() if np.isfinite(value)}
-    return Comparison(points, design, torque, {m: blocks[m] for m in found}, found, extra)
+    return Comparison(points, design, torque, blocks, rss, extra)
 
 
 @dataclass(frozen=True)
@@ -122,12 +127,13 @@ def choose(found: Comparison, level: float = LEVEL, seed: int = 0) -> Verdict:
     """The smallest member that no larger one betters.
 
     A larger one betters it that predicts left-out rates better by more than one standard error,
-    where the larger ones also fit better at `level`, over all of them together. So the true law is
-    refused with probability `level` at most, if its scatter is normal. Sources: Marcus, Peritz and Gabriel, Biometrika 63
-    (1976) 655; Westfall and Young, Resampling-Based Multiple Testing (1993), least p.
+    where the larger ones also fit better at `level`, over all of them together. So the true law
+    is refused with probability `level` at most, if its scatter is normal. Sources: Marcus, Peritz
+    and Gabriel, Biometrika 63 (1976) 655; Westfall and Young, Resampling-Based Multiple Testing
+    (1993), least p.
     """
     p_values: dict[Member, float] = {}
-    order = sorted(found.rss, key=lambda member: (member.size, found.rss[member]))
+    order = sorted(found.possible, key=lambda member: (member.size, found.rss[member]))
     for member in order:
         p_values[member] = _p_value(found, member, level, np.random.default_rng(seed))
         if p_values[member] > level:
@@ -164,7 +170,11 @@ def _p_value(found: Comparison, member: Member, level: float, random: np.random.
 
 
 def _nominal(
-    found: Comparison, member: Member, other: Member, own: FloatArray, rss: FloatArray
+    found: Comparison,
+    member: Member,
+    other: Member,
+    own: float | FloatArray,
+    rss: float | FloatArray,
 ) -> FloatArray:
     """p-values of F-tests of `member` in `other`, as if Stribeck speeds were linear parameters."""
     added, left = other.size - member.size, found.left(other)

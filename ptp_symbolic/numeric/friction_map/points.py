@@ -16,7 +16,7 @@ FloatArray = NDArray[np.float64]
 
 MIN_POINTS = 4  # two for Coulomb and viscous friction, one for the scatter, one to leave out
 _PERCENT = re.compile(r"% of (.+)")
-_QUANTITY = re.compile(r"([0-9.]+(?:[eE][+-]?[0-9]+)?) *([^0-9].*)")
+_QUANTITY = re.compile(r"([0-9.]++(?:[eE][+-]?[0-9]+)?) *([^0-9].*)")
 
 
 @dataclass(frozen=True, eq=False)

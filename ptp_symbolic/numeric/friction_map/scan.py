@@ -49,7 +49,7 @@ class Block:
         safe = np.where(self.sound[:, None, None], self.triangle, np.eye(self.triangle.shape[1]))
         return np.where(self.sound[:, None, None], np.linalg.inv(safe), 0.0)
 
-    def left_out(self, torque: FloatArray, groups: FloatArray) -> FloatArray:
+    def left_out(self, torque: FloatArray, groups: NDArray[np.int64]) -> FloatArray:
         """Errors [m] of weighted `torque` [n] predicted from all rows of other `groups` [n].
 
         The speed is chosen anew each time; the rest follows in closed form from the whole fit.
@@ -122,7 +122,7 @@ def least_rss(blocks: tuple[Block, ...], torque: FloatArray) -> FloatArray:
 
 
 def left_out_errors(
-    blocks: tuple[Block, ...], torque: FloatArray, groups: FloatArray
+    blocks: tuple[Block, ...], torque: FloatArray, groups: NDArray[np.int64]
 ) -> FloatArray:
     """Errors [n] of weighted `torque` [n], each group of `groups` [n] predicted from the others."""
     errors = np.full(len(torque), np.inf)

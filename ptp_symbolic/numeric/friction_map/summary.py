@@ -64,7 +64,7 @@ def friction_map(points: Points, axis: str, confidence: float) -> dict[str, Any]
                 "left_out": _finite(found.prediction(m)),
                 "p_value": verdict.p_values.get(m),
             }
-            for m in found.rss
+            for m in found.possible
         ],
         "points": {
             "rate": points.rate.tolist(),
