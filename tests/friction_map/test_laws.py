@@ -3,6 +3,8 @@
 Truth and noise are typed apart from the package; noise has fixed seeds.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
@@ -152,3 +154,17 @@ def test_torques_with_a_larger_declared_scatter_weigh_less() -> None:
     found = friction_map(Points("s.csv", points.rate, wrong, spread), "pan", 0.95)
     assert found["parameters"]["F_c_pan"]["value"] == pytest.approx(0.3, abs=0.02)
     assert found["parts"] == ["Coulomb", "Stribeck", "viscous"]
+
+
+def test_viscous_friction_alone_leaves_no_coulomb_friction() -> None:
+    found = friction_map(drawn(0, Side(0.0, 0.0, 1.0, 0.1), Side(0.0, 0.0, 1.0, 0.1)), "pan", 0.95)
+    assert found["parts"] == ["Coulomb", "viscous"]
+    assert any("Coulomb friction cannot be told from none" in text for text in found["remarks"])
+
+
+@pytest.mark.parametrize("law", [np.sign, lambda v: v], ids=["Coulomb", "viscous"])
+def test_points_without_scatter_are_fitted_exactly(law: Callable[[float], float]) -> None:
+    rate = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
+    found = friction_map(Points("e.csv", rate, law(rate)), "pan", 0.95)
+    assert len(found["parts"]) == 1 + (law is not np.sign)
+    assert found["rms"]["law"] == pytest.approx(0.0, abs=1e-12)

@@ -38,7 +38,9 @@ class Block:
         """
         y = torque[self.rows]
         along = np.swapaxes(self.basis, 1, 2) @ y
-        rss = np.maximum((y * y).sum(axis=0) - (along * along).sum(axis=1), 0.0)
+        square = (y * y).sum(axis=0)
+        # the difference of two squares is known to their rounding
+        rss = np.maximum(square - (along * along).sum(axis=1), np.finfo(float).eps * square)
         coefficients = self.inverse @ along
         possible = (coefficients[:, one_sided(self.member)] >= 0.0).all(axis=1)
         return np.where(possible & self.sound[:, None], rss, np.inf), coefficients

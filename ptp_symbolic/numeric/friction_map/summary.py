@@ -156,6 +156,11 @@ def _remarks(found: Comparison, member: Member, estimates: Profile) -> Iterator[
             "All points turn one way: a difference by direction, and a constant torque beside"
             " Coulomb friction, cannot be told; measure the other direction too."
         )
+    weights = estimates.weights()
+    mean = sum((w["F_c"] for w in weights.values()), 0.0 * weights[estimates.signs[0]]["F_c"])
+    low = estimates.linear(mean / len(weights)).low
+    if low is not None and low <= 0.0:
+        yield "Coulomb friction cannot be told from none: its interval reaches zero."
     if not member.rise:
         at_rest = bool((points.rate == 0.0).any())
         yield (
