@@ -6,7 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ptp_symbolic.numeric.friction_map.summary import LARGEST_DIFFERENCE
 from ptp_symbolic.platform import read_platform
+from ptp_symbolic.symbolic.effects.direction_dependent_friction import PARAMETERS
 from tests.friction_map.laws import Side, drawn
 
 HEAD = '[platform]\nname = "t"\ntitle = "t"\naxes = ["pan"]\n[[effects]]\neffect = "rigid_bodies"\n'
@@ -53,6 +55,22 @@ def test_a_torque_that_pushes_both_ways_is_a_constant_torque(call, tmp_path: Pat
     values = {p.name: p.value for p in read_platform(platform).parameters}
     assert values["F_c_pan"] == pytest.approx(0.3, abs=0.01)
     assert values["tau0_pan"] == pytest.approx(-0.5, abs=0.01)
+
+
+def test_a_constant_torque_leaves_the_other_differences(call, tmp_path: Path) -> None:
+    sides = (Side(0.8, 0.8, 0.3, 0.06), Side(-0.2, -0.2, 0.3, 0.04))
+    out = tmp_path / "out"
+    call("friction-map", written(tmp_path / "p.csv", sides), "--out", out)
+    platform = tmp_path / "platform.toml"
+    platform.write_text(HEAD + (out / "friction.toml").read_text(encoding="utf-8"))
+    values = {p.name: p.value for p in read_platform(platform).parameters}
+    assert "a_F_c_pan" not in values
+    assert values["tau0_pan"] == pytest.approx(-0.5, abs=0.01)
+    assert values["a_F_v_pan"] == pytest.approx(0.2, abs=0.05)
+
+
+def test_the_largest_difference_is_the_bound_of_its_effect() -> None:
+    assert {p.upper for p in PARAMETERS} == {LARGEST_DIFFERENCE}
 
 
 def test_json_is_what_the_file_holds(call, tmp_path: Path) -> None:

@@ -30,16 +30,19 @@ def platform_fragment(summary: Mapping[str, Any]) -> str:
         entries[f"F_v_{axis}"] = {"value": 0.0, "unit": "N m s/rad"}
     effects = [{"effect": "csvs_friction", "axis": axis}]
     differences = {n: of["value"] for n, of in found.items() if n.startswith("a_")}
-    if max(map(abs, differences.values()), default=0.0) <= LARGEST_DIFFERENCE:
-        entries |= {name: {"value": value} for name, value in differences.items()}
-        if f"a_F_c_{axis}" in differences and not rise:
-            entries[f"a_F_s_{axis}"] = {"same_as": f"a_F_c_{axis}"}
-        effects += [{"effect": "direction_dependent_friction", "axis": axis}] * bool(differences)
-    else:
+    if max(map(abs, differences.values()), default=0.0) > LARGEST_DIFFERENCE:
+        torque = differences.pop(f"a_F_c_{axis}", 0.0) * found[f"F_c_{axis}"]["value"]
         effects.append({"effect": "constant_torque", "axis": axis})
         # what drives the joint against it has the other sign
-        torque = -differences.get(f"a_F_c_{axis}", 0.0) * found[f"F_c_{axis}"]["value"]
-        entries[f"tau0_{axis}"] = {"value": torque, "unit": "N m"}
+        entries[f"tau0_{axis}"] = {"value": -torque, "unit": "N m"}
+        if f"a_F_s_{axis}" in differences:
+            static = found[f"F_s_{axis}"]["value"]
+            differences[f"a_F_s_{axis}"] -= torque / static
+    elif differences and not rise and f"a_F_c_{axis}" in differences:
+        entries[f"a_F_s_{axis}"] = {"same_as": f"a_F_c_{axis}"}
+    if differences:
+        effects.append({"effect": "direction_dependent_friction", "axis": axis})
+        entries |= {name: {"value": value} for name, value in differences.items()}
     notes = [f"# {summary['member']}", *(f"# {text}" for text in summary["remarks"])]
     tables = tomlkit.table()
     for name, entry in entries.items():
