@@ -6,6 +6,7 @@ import click
 
 from ptp_symbolic.cli.check import check
 from ptp_symbolic.cli.diagnose import diagnose, fit
+from ptp_symbolic.cli.friction_map import friction_map
 from ptp_symbolic.cli.lists import effects, models, platforms
 from ptp_symbolic.cli.regenerate import regenerate
 from ptp_symbolic.cli.report import report
@@ -24,6 +25,7 @@ for command in (
     simulate,
     sensitivity,
     check,
+    friction_map,
     fit,
     diagnose,
     report,

@@ -1,0 +1,103 @@
+"""`ptp-symbolic friction-map`: the law of steady friction that points of rate and torque show."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ptp_symbolic.platform import AXES
+
+
+@click.command("friction-map")
+@click.argument("points", type=Path)
+@click.option("--rate", default="rate", show_default=True, help="Column of the rate.")
+@click.option("--torque", default="torque", show_default=True, help="Column of the torque.")
+@click.option("--spread", help="Column of the standard deviation of the torque.")
+@click.option("--nominal", help="Torque that % is of, such as '9.84 mN m'.")
+@click.option("--platform", "source", help="Platform TOML or packaged name that has the axis.")
+@click.option("--axis", type=click.Choice(AXES), default="pan", show_default=True)
+@click.option("--confidence", type=float, default=0.95, show_default=True)
+@click.option("--out", type=Path, help="Folder for friction.toml, friction.png, friction.json.")
+@click.option("--json", "as_json", is_flag=True, help="Print friction.json instead of tables.")
+def friction_map(
+    points: Path,
+    rate: str,
+    torque: str,
+    spread: str | None,
+    nominal: str | None,
+    source: str | None,
+    axis: str,
+    confidence: float,
+    out: Path | None,
+    as_json: bool,
+) -> None:
+    """Fit laws of friction to steady POINTS (a CSV: rate [rpm], torque [mN m]); name the smallest
+    that predicts as well as any other.
+
+    A point at rate 0 is a breakaway torque. The torque drives the joint: it has the sign of the
+    rate. Intervals are profile likelihoods for normal scatter.
+    """
+    from ptp_symbolic.atomic_files import check_writable, write_files_atomically
+    from ptp_symbolic.errors import InputError
+    from ptp_symbolic.numeric.friction_map.fragment import platform_fragment
+    from ptp_symbolic.numeric.friction_map.points import Columns, read_points
+    from ptp_symbolic.numeric.friction_map.summary import friction_map as fit_map
+    from ptp_symbolic.report.friction_map import friction_map_picture
+
+    if not 0.5 <= confidence < 1.0:
+        raise InputError(f"--confidence {confidence:g}: give at least 0.5 and less than 1.")
+    if source is not None:
+        _check_axis(source, axis)
+    read = read_points(points, Columns(rate, torque, spread, nominal))
+    if out is not None:
+        check_writable(out)
+    summary = fit_map(read, axis, confidence)
+    text = json.dumps(summary, indent=2) + "\n"
+    if out is not None:
+        files: dict[str, str | bytes] = {
+            "friction.toml": platform_fragment(summary),
+            "friction.png": friction_map_picture(summary),
+            "friction.json": text,
+        }
+        write_files_atomically(out, files)
+    if as_json:
+        click.echo(text, nl=False)
+    else:
+        _print(summary)
+
+
+def _check_axis(source: str, axis: str) -> None:
+    from ptp_symbolic.errors import InputError
+    from ptp_symbolic.models.committed import declared_platform
+
+    axes = declared_platform(source).axes
+    if axis not in axes:
+        raise InputError(f"--axis {axis}: '{source}' has {', '.join(axes)}; give one of these.")
+
+
+def _print(summary: Mapping[str, Any]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    rms = summary["rms"]
+    click.echo(f"{summary['source']}: {summary['member']}")
+    without = f", without its rise {rms['without_rise']:.3g}" if "without_rise" in rms else ""
+    click.echo(f"rms: Coulomb alone {rms['coulomb']:.3g}{without}, this law {rms['law']:.3g} N m")
+    percent = f"{100.0 * summary['confidence']:g} % interval"
+    table = Table("parameter", "value", percent, "unit", box=None)
+    for name, of in summary["parameters"].items():
+        ends = ["open" if of[end] is None else f"{of[end]:.4g}" for end in ("low", "high")]
+        table.add_row(name, f"{of['value']:.4g}", " to ".join(ends), of["unit"])
+    Console().print(table)
+    members = Table("parameters", "rms", "left out", "p", "law", box=None)
+    for row in summary["members"]:
+        if row["p_value"] is not None:
+            left_out = "" if row["left_out"] is None else f"{row['left_out']:.3g}"
+            cells = (f"{row['rms']:.3g}", left_out, f"{row['p_value']:.2g}", row["member"])
+            members.add_row(str(row["parameters"]), *cells)
+    click.echo("Laws tested, the named one last (p: chance that larger ones fit so much better):")
+    Console().print(members)
+    for text in summary["remarks"]:
+        click.echo(f"Note: {text}")

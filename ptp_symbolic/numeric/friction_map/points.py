@@ -1,0 +1,143 @@
+"""Steady-state points: rates and torques of a CSV, in SI units."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.numeric.data.formats import read_table
+from ptp_symbolic.numeric.data.table import Table
+from ptp_symbolic.platform.fields import shown
+from ptp_symbolic.platform.units import to_si
+
+FloatArray = NDArray[np.float64]
+
+MIN_POINTS = 4  # two for Coulomb and viscous friction, one for the scatter, one to leave out
+_PERCENT = re.compile(r"% of (.+)")
+_QUANTITY = re.compile(r"([0-9.]++(?:[eE][+-]?[0-9]+)?) *([^0-9].*)")
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Steady points: `rate` [n] in rad/s, `torque` [n] in N m that keeps it, `spread` [n].
+
+    `spread` is the standard deviation of each torque in N m, None where it is not known. A point at
+    rate zero is a breakaway torque. `name` is that of the file.
+    """
+
+    name: str
+    rate: FloatArray
+    torque: FloatArray
+    spread: FloatArray | None = None
+
+    @property
+    def sign(self) -> FloatArray:
+        """Direction [n] of motion, +1 or -1; at rest that of the torque."""
+        return np.sign(np.where(self.rate == 0.0, self.torque, self.rate))
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Names of the columns; `spread` None: the file gives no standard deviations.
+
+    `nominal` is the torque that percents are of, such as "9.84 mN m", None where none is declared.
+    """
+
+    rate: str = "rate"
+    torque: str = "torque"
+    spread: str | None = None
+    nominal: str | None = None
+
+
+def read_points(path: Path, wanted: Columns) -> Points:
+    """Read steady points from a CSV with units in its headings.
+
+    Raises InputError for a file that is damaged (see `read_table`), a missing
+    column, a unit that does not fit, a spread that is not positive, fewer than four points, one
+    rate alone, a breakaway torque of zero, and torques that brake the motion.
+    """
+    table = read_table(path)
+    names = [wanted.rate, wanted.torque, *([wanted.spread] if wanted.spread else [])]
+    places = [_place(table, name) for name in names]
+    factors = [_factor(table, places[0], "rad/s", "rpm, deg/s", None)]
+    factors += [_factor(table, k, "N m", "mN m", wanted.nominal) for k in places[1:]]
+    values = table.numbers(places) * np.array(factors)
+    spread = values[:, 2] if wanted.spread else None
+    points = Points(path.name, values[:, 0], values[:, 1], spread)
+    _check(path, points)
+    return points
+
+
+def _place(table: Table, name: str) -> int:
+    known = [heading for heading, _ in table.headings]
+    if name not in known:
+        raise InputError(f"{table.head}: {unknown('column', name, known)}")
+    return known.index(name)
+
+
+def _factor(table: Table, place: int, unit: str, others: str, nominal: str | None) -> float:
+    """The factor from the unit of a heading to `unit`."""
+    name, given = table.headings[place]
+    where = f"{table.head}: column '{name}'"
+    if not given:
+        raise InputError(f"{where} has no unit; write '{name} [{unit}]', or one of {others}.")
+    percent = _PERCENT.fullmatch(given)
+    if unit == "N m" and (given == "%" or percent):
+        text = percent[1] if percent else nominal
+        if text is None:
+            raise InputError(
+                f"{where} is in % of a torque that nobody declares; add --nominal '9.84 mN m', or"
+                f" write '{name} [% of 9.84 mN m]'."
+            )
+        return 0.01 * _torque(where, text)
+    try:
+        factor, found = to_si(given)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+    if found != unit:
+        raise InputError(f"{where} is in {given}; give {unit}, or one of {others}.")
+    return factor
+
+
+def _torque(where: str, text: str) -> float:
+    match = _QUANTITY.fullmatch(text.strip())
+    try:
+        value = float(match[1]) if match else 0.0
+        factor, unit = to_si(match[2].strip()) if match else (1.0, "")
+    except ValueError as error:
+        raise InputError(f"{where}: nominal torque {shown(text)}: {error}") from error
+    if unit != "N m" or not value > 0.0:
+        raise InputError(
+            f"{where}: {shown(text)} is no nominal torque; write a positive number and its unit,"
+            " such as '9.84 mN m'."
+        )
+    return factor * value
+
+
+def _check(path: Path, points: Points) -> None:
+    count, speeds = len(points.rate), np.unique(np.abs(points.rate))
+    if count < MIN_POINTS or len(speeds) < 2:
+        raise InputError(
+            f"{path}: has {count} points at {len(speeds)} speeds; a friction map needs at least"
+            f" {MIN_POINTS} points at two."
+        )
+    rest = np.flatnonzero((points.rate == 0.0) & (points.torque == 0.0))
+    if len(rest):
+        raise InputError(
+            f"{path}:{rest[0] + 2}: both rate and torque are zero; give the torque with its sign"
+            " at which the joint breaks away, or remove the row."
+        )
+    if points.spread is not None and not (points.spread > 0.0).all():
+        line = int(np.argmin(points.spread)) + 2
+        raise InputError(
+            f"{path}:{line}: the standard deviation is {points.spread.min():g} N m; give a positive"
+            " one in every row, or leave out --spread."
+        )
+    if points.torque @ points.rate < 0.0:
+        raise InputError(
+            f"{path}: most torques brake the motion; give the torque that drives the joint,"
+            " positive where the rate is positive."
+        )

@@ -1,0 +1,195 @@
+"""A friction map in words and numbers: the law, its parameters with intervals, what stays open."""
+
+from collections.abc import Iterator
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.friction_map.choice import Comparison, choose, compare
+from ptp_symbolic.numeric.friction_map.intervals import Estimate, Profile, profile
+from ptp_symbolic.numeric.friction_map.members import COULOMB, STRIBECK, Member
+from ptp_symbolic.numeric.friction_map.points import Points
+
+FloatArray = NDArray[np.float64]
+
+SCHEMA_VERSION = 1
+UNITS = {"F_c": "N m", "F_s": "N m", "v_s": "rad/s", "F_v": "N m s/rad"}
+LARGEST_DIFFERENCE = 0.95  # bound of the effect direction_dependent_friction
+
+
+def friction_map(points: Points, axis: str, confidence: float) -> dict[str, Any]:
+    """The smallest law of steady friction that predicts `points` as well as any other.
+
+    The result is plain data in SI units: `member`, `parameters` by name for `axis`, `by_direction`,
+    `rms` in N m, all `members`, `remarks`, and the `points` with their fitted torques.
+    """
+    found = compare(points)
+    verdict = choose(found)
+    member = verdict.member
+    estimates = profile(found, member, confidence)
+    fitted = found.fitted(member) / found.design.weight
+    names = {True: "positive", False: "negative"}
+    by_direction = {
+        names[sign > 0]: {n: asdict(estimates.linear(w)) for n, w in weights.items()}
+        for sign, weights in estimates.weights().items()
+    }
+    if member.rise == STRIBECK:
+        for k, sign in enumerate(estimates.signs):
+            if member.only in (0, sign):
+                speed = _speed(estimates, k if member.separate else 0)
+                by_direction[names[sign > 0]]["v_s"] = asdict(speed)
+    parameters = {
+        f"{name}_{axis}": {**asdict(estimate), "unit": UNITS.get(name, "1")}
+        for name, estimate in _parameters(estimates)
+    }
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "source": points.name,
+        "axis": axis,
+        "confidence": confidence,
+        "member": member.title,
+        "parts": list(member.parts),
+        "parameters": parameters,
+        "by_direction": by_direction,
+        "rms": _rms(found, member),
+        "extra_spread": found.extra,
+        "remarks": [*_remarks(found, member, estimates)],
+        "members": [
+            {
+                "member": m.title,
+                "parameters": m.size,
+                "rms": _root_mean_square(found, m),
+                "left_out": _finite(found.prediction(m)),
+                "p_value": verdict.p_values.get(m),
+            }
+            for m in found.possible
+        ],
+        "points": {
+            "rate": points.rate.tolist(),
+            "torque": points.torque.tolist(),
+            "fitted": fitted.tolist(),
+        },
+        "curve": _curve(points, estimates),
+    }
+
+
+def _parameters(estimates: Profile) -> Iterator[tuple[str, Estimate]]:
+    """Means over the directions, and relative half differences where they are not zero."""
+    weights = estimates.weights()
+    one = weights[estimates.signs[0]]
+    other = weights[estimates.signs[-1]]
+    member = estimates.member
+    for name in one:
+        mean, half = (one[name] + other[name]) / 2.0, (one[name] - other[name]) / 2.0
+        yield name, estimates.linear(mean)
+        if half.any():
+            yield f"a_{name}", estimates.ratio(half, mean)
+    if member.separate:
+        first, second = estimates.speeds.T
+        yield "v_s", estimates.of_speeds((first + second) / 2.0, bounded=True)
+        difference = (first - second) / (first + second)
+        yield "a_v_s", estimates.of_speeds(difference, bounded=True)
+    elif member.rise == STRIBECK:
+        yield "v_s", _speed(estimates, 0)
+
+
+def _speed(estimates: Profile, column: int) -> Estimate:
+    found = estimates.speeds[:, column]
+    low, high = float(found.min()), float(found.max())
+    return Estimate(
+        float(found[estimates.best]),
+        low if low > estimates.scanned[0] else None,
+        high if high < estimates.scanned[-1] else None,
+    )
+
+
+def _curve(points: Points, estimates: Profile) -> dict[str, list[float]]:
+    """The law along rates [k] for a plot, the directions one after the other."""
+    top = float(np.abs(points.rate).max())
+    at = np.linspace(0.0, top, 400)[1:]
+    rates, torques = [], []
+    for sign in estimates.signs[::-1]:
+        values = {
+            n: float(w @ estimates.coefficients[estimates.best])
+            for n, w in estimates.weights()[sign].items()
+        }
+        speeds = estimates.speeds[estimates.best]
+        speed = speeds[0 if sign > 0 else -1]
+        decay = np.exp(-((at / speed) ** 2)) if np.isfinite(speed) else np.zeros(len(at))
+        dry = values["F_c"] + (values.get("F_s", values["F_c"]) - values["F_c"]) * decay
+        torque = sign * (dry + values.get("F_v", 0.0) * at)
+        rates += (sign * at)[::sign].tolist()
+        torques += torque[::sign].tolist()
+    return {"rate": rates, "torque": torques}
+
+
+def _root_mean_square(found: Comparison, member: Member) -> float:
+    error = found.fitted(member) / found.design.weight - found.points.torque
+    return float(np.sqrt(np.mean(error * error)))
+
+
+def _rms(found: Comparison, member: Member) -> dict[str, float]:
+    """Of Coulomb friction alone, of the law, and of the law without its Stribeck curve."""
+    rms = {
+        "coulomb": _root_mean_square(found, Member("", False)),
+        "law": _root_mean_square(found, member),
+    }
+    if member.rise:
+        plain = Member("", member.viscous, member.by_direction & set(Member("", True).parts))
+        rms["without_rise"] = _root_mean_square(found, plain)
+    return rms
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def _remarks(found: Comparison, member: Member, estimates: Profile) -> Iterator[str]:
+    """What the points leave open, one sentence each."""
+    points, lowest = found.points, float(estimates.scanned[0])
+    if member == Member("", False):
+        yield "No law predicts these points better than Coulomb friction alone."
+    if len(estimates.signs) == 1:
+        yield (
+            "All points turn one way: a difference by direction, and a constant torque beside"
+            " Coulomb friction, cannot be told; measure the other direction too."
+        )
+    weights = estimates.weights()
+    mean = sum((w["F_c"] for w in weights.values()), 0.0 * weights[estimates.signs[0]]["F_c"])
+    low = estimates.linear(mean / len(weights)).low
+    if low is not None and low <= 0.0:
+        yield "Coulomb friction cannot be told from none: its interval reaches zero."
+    if not member.rise:
+        at_rest = bool((points.rate == 0.0).any())
+        yield (
+            f"Static friction does not show: a Stribeck curve that ends below {lowest:.3g} rad/s,"
+            " the lowest speed, would not; measure slower"
+            + ("." if at_rest else ", or add breakaway torques as points at rate 0.")
+        )
+    elif member.rise != STRIBECK:
+        yield (
+            "The Stribeck speed is not determined: static friction shows at rest alone, so it lies"
+            f" below {lowest:.3g} rad/s, the lowest speed."
+        )
+    elif estimates.speeds.min() <= lowest:
+        yield (
+            f"The Stribeck speed is not determined downwards: anything below {lowest:.3g} rad/s,"
+            " the lowest speed, fits; F_s is what the curve reaches there. Measure slower."
+        )
+    if member.rise == STRIBECK and estimates.speeds.max() >= estimates.scanned[-1]:
+        yield (
+            f"The Stribeck speed is not determined upwards: {estimates.scanned[-1]:.3g} rad/s, the"
+            " highest speed, fits. The torque is curved over the whole range; do not extrapolate."
+        )
+    if COULOMB in member.by_direction:
+        yield (
+            "Coulomb friction that differs by direction and a constant torque on the joint are the"
+            " same at steady rates; turn the axis over, or back-drive it, to tell them apart."
+        )
+    if found.extra:
+        yield (
+            f"The torques scatter by {found.extra:.2g} N m (rms) more than their declared standard"
+            " deviations: between the points something else changes."
+        )

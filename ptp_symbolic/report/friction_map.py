@@ -1,0 +1,49 @@
+"""The picture of a friction map: points, the law, and what is left."""
+
+import io
+from collections.abc import Mapping
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from ptp_symbolic.report.figures import AFTER, BEFORE, STYLE
+
+
+def friction_map_picture(summary: Mapping[str, Any]) -> bytes:
+    """A PNG of torque over rate with the law, and below it measured minus fitted torque.
+
+    `summary` is that of `friction_map`; torques are in N m or mN m, rates in rad/s.
+    """
+    points = {name: np.asarray(values) for name, values in summary["points"].items()}
+    curve = {name: np.asarray(values) for name, values in summary["curve"].items()}
+    small = np.abs(points["torque"]).max() < 0.1
+    scale, unit = (1e3, "mN m") if small else (1.0, "N m")
+    left = scale * (points["torque"] - points["fitted"])
+    with matplotlib.rc_context(
+        {**STYLE, "font.size": 10.0, "axes.titlesize": 10.0, "axes.xmargin": 0.03}
+    ):
+        figure = Figure(figsize=(8.0, 5.6), layout="constrained")
+        FigureCanvasAgg(figure)
+        above, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (2.2, 1.0)})
+        for direction in (1, -1):
+            at = curve["rate"] * direction > 0
+            label = "law" if direction > 0 or not (curve["rate"] > 0).any() else None
+            above.plot(curve["rate"][at], scale * curve["torque"][at], color=AFTER, label=label)
+        above.plot(
+            points["rate"], scale * points["torque"], ".", color=BEFORE, ms=7, label="measured"
+        )
+        above.axhline(0.0, color="#c9cfd6", linewidth=0.8)
+        above.set_ylabel(f"torque [{unit}]")
+        above.set_title(f"{summary['source']}, {summary['axis']}: {summary['member']}")
+        above.legend(frameon=False, loc="lower right")
+        below.axhline(0.0, color="#c9cfd6", linewidth=0.8)
+        below.plot(points["rate"], left, ".", color=AFTER, ms=7)
+        below.set_ylabel(f"left [{unit}]")
+        below.set_title(f"measured − law, rms {scale * summary['rms']['law']:.3g} {unit}")
+        below.set_xlabel("rate [rad/s]")
+        buffer = io.BytesIO()
+        figure.savefig(buffer, format="png", dpi=120, metadata={"Software": None})
+    return buffer.getvalue()
