@@ -1,6 +1,7 @@
 """The one exception that is meant for the person at the keyboard."""
 
 import difflib
+import math
 from collections.abc import Iterable
 
 
@@ -25,6 +26,16 @@ def unknown(what: str, name: str, known: Iterable[str], more: str = "") -> Input
     listed = f"Choose one of: {', '.join(choices)}" if choices else "There is none here"
     guess = did_you_mean(name, choices) or "."
     return InputError(f"Unknown {what} {shown}{guess} {listed}{more}.")
+
+
+def out_of_bounds(name: str, value: float, unit: str, lower: float, upper: float) -> InputError:
+    """Return the refusal of a parameter's `value` outside its bounds; an angle may be in degrees."""
+    in_degrees = unit == "rad" and lower <= math.radians(value) <= upper
+    advice = 'write unit = "deg" if that is what it is in' if in_degrees else "change the value"
+    return InputError(
+        f"Parameter '{name}' = {value:g} {unit} lies outside its bounds [{lower:g}, {upper:g}] {unit};"
+        f" {advice}."
+    )
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

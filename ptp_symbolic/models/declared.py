@@ -1,5 +1,6 @@
 """What a platform declares of a model: free parameters, known values, signals."""
 
+from collections.abc import Collection
 from dataclasses import replace
 
 from ptp_symbolic.errors import InputError, unknown
@@ -47,6 +48,16 @@ def known_values(platform: Platform, model: Model) -> dict[str, tuple[float, flo
     }
 
 
+def _refuse_other_role(role: str, name: str, model: Model, outputs: Collection[str]) -> None:
+    """Raise InputError for an input that is declared as an output, or the other way round."""
+    other = "output" if role == "input" else "input"
+    if name in (outputs if role == "input" else model.input_names):
+        raise InputError(
+            f"Signal '{name}' is an {other} of this platform, but declared as an {role}; write"
+            f' role = "{other}".'
+        )
+
+
 def refuse_unknown_signals(platform: Platform, model: Model) -> None:
     """Raise InputError for a signal of `platform` that `model` does not have, or in another unit.
 
@@ -67,6 +78,7 @@ def refuse_unknown_signals(platform: Platform, model: Model) -> None:
         ):
             for name in given:
                 if name not in known:
+                    _refuse_other_role(role, name, model, choices)
                     raise unknown(f"{role} signal", name, known)
         for signal in platform.signals:
             unit = model.units.get(signal.signal, signal.unit)

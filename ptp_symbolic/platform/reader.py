@@ -24,6 +24,7 @@ from ptp_symbolic.platform.text_file import read_text_bytes
 _MAX_BYTES = 1_000_000
 # tomllib needs a time that grows with the square of the parts of a dotted key.
 _MAX_LINE = 500
+_DECIMAL_COMMA = re.compile(r"[=\[,]\s*([+-]?\d+,\d+)(?=\s*(?:[,}#]|$))")
 _PRESETS = Path(__file__).parent / "presets"
 
 
@@ -80,6 +81,11 @@ def platform_file(source: str | Path, names: tuple[str, ...] = ()) -> Path:
         missing = not path.exists()
     except (OSError, ValueError):
         missing = True
+    if missing and path.suffix == ".toml":
+        raise InputError(
+            f"{path}: there is no such file; give the path of a platform TOML, or one of"
+            f" {', '.join((*names, *preset_names()))}."
+        )
     if missing:
         end = "; or give the path of a platform TOML"
         raise unknown("platform", str(source), (*names, *preset_names()), end)
@@ -109,7 +115,16 @@ def _syntax_message(path: Path, content: str, message: str) -> str:
     else:
         lines = content.split("\n")
         line, column = str(len(lines)), str(len(lines[-1]) + 1)
-    return f"{path}:{line}:{column}: is not TOML: {message}."
+    where = f"{path}:{line}:{column}"
+    written = content.split("\n")[int(line) - 1]
+    comma = _DECIMAL_COMMA.search(written)
+    if comma:
+        point = comma[1].replace(",", ".")
+        return f"{where}: {comma[1]} has a decimal comma; write {point}, with a point."
+    if message.startswith("Cannot overwrite"):
+        key = written.partition("=")[0].strip() or written.strip()
+        return f"{where}: is not TOML: {fields.shown(key)} is there twice; remove one."
+    return f"{where}: is not TOML: {message}."
 
 
 def _axes(head: dict[str, Any], where: str) -> tuple[str, ...]:

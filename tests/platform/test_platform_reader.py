@@ -199,7 +199,11 @@ REFUSALS = [
     ("= 7200", "= true", r"theta_pan.counts_per_revolution: True is not a whole number"),
     ("[signals.u_pan]", "[signals.u-pan]", r"signals: 'u-pan' is not a name"),
     ("value = 1.5", "value = 1.5 deg", rf"bench.toml:{GAP}:13: is not TOML: Expected newl"),
-    ("value = 1.5", "value = 1.5\nvalue = 2", rf"toml:{GAP + 1}:10: is not TOML: Cannot overwrite"),
+    (
+        "value = 1.5",
+        "value = 1.5\nvalue = 2",
+        rf"toml:{GAP + 1}:10: is not TOML: .value. is there twice",
+    ),
     ("= 7200", '= "7200', rf"bench.toml:{COUNTS}:30: is not TOML: Illegal character"),
     ("value = 1.5", f"value = {'9' * 450}", r"is not a finite number"),
     ("value = 1.5", f"value = {'9' * 5000}", rf"bench.toml:{GAP}: line has more than 500 char"),
@@ -216,18 +220,6 @@ def test_a_mistake_is_refused_in_one_line(tmp_path: Path, old: str, new: str, me
     assert "\n" not in str(refusal.value)
     assert str(refusal.value).startswith(str(path))
     assert len(str(refusal.value)) < len(str(path)) + 300
-
-
-def test_the_length_of_windows_arrives_in_seconds(tmp_path: Path) -> None:
-    assert read_platform(write(tmp_path, GOOD)).window is None
-    for text, seconds in (("500 ms", 0.5), ("0.25 s", 0.25), ("1.5 min", 90.0)):
-        assert read_platform(write(tmp_path, f'{GOOD}[fit]\nwindow = "{text}"\n')).window == seconds
-
-
-@pytest.mark.parametrize("given", ["0.5", '"0.5"', '"0 s"', '"-1 s"', '"nan s"', '"1 m"', '"s"'])
-def test_a_window_that_is_no_time_is_refused(tmp_path: Path, given: str) -> None:
-    with pytest.raises(InputError, match=r'fit.window: .* is not a time above zero; write "0.5 s"'):
-        read_platform(write(tmp_path, f"{GOOD}[fit]\nwindow = {given}\n"))
 
 
 @pytest.mark.parametrize(
@@ -287,7 +279,9 @@ def test_a_file_that_is_no_platform_text_is_refused(
 def test_missing_files_and_folders_are_refused_with_the_presets(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"Unknown platform 'thesis-idael': did you mean 'thesis-"):
         read_platform("thesis-idael")
-    with pytest.raises(InputError, match=r"Unknown platform '.*bench.toml'.*; or give the path of"):
+    with pytest.raises(
+        InputError, match=r"bench.toml: there is no such file; give the path of a pl"
+    ):
         read_platform(tmp_path / "bench.toml")
     with pytest.raises(InputError, match="is a folder; give a platform TOML"):
         read_platform(tmp_path)

@@ -49,10 +49,15 @@ def read_log(path: Path | str, platform: Platform) -> Log:
     inputs = [signal for signal in platform.signals if signal.role == "input"]
     outputs = [signal for signal in platform.signals if signal.role == "output"]
     if not outputs:
+        measured = next((s.signal for s in inputs if s.is_position), None)
+        advice = (
+            "add one, such as [signals.theta_pan]"
+            if measured is None
+            else f"'{measured}' is measured: write role = \"output\" there"
+        )
         with naming_file(platform):
             raise InputError(
-                f"Platform '{platform.name}' has no output signal to compare with {path}; add one, "
-                "such as [signals.theta_pan]."
+                f"Platform '{platform.name}' has no output signal to compare with {path}; {advice}."
             )
     clock, numbers = _read_signals(path, [*inputs, *outputs], platform.clock)
     whole = [unwrapped(c, s) for c, s in zip(numbers.T, [*inputs, *outputs], strict=True)]

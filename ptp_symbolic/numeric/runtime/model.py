@@ -9,7 +9,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.errors import InputError, out_of_bounds, unknown
 from ptp_symbolic.numeric.runtime.element_layout import contact_count
 
 FloatArray = NDArray[np.float64]
@@ -265,10 +265,7 @@ class Model:
 def _refuse_out_of_bounds(p: ModelParameter, value: float) -> None:
     below, above = BOUND_SLACK * abs(p.lower), BOUND_SLACK * abs(p.upper)
     if not p.lower - below <= value <= p.upper + above or not math.isfinite(value):
-        raise InputError(
-            f"Parameter '{p.name}' = {value:g} {p.unit} lies outside its bounds"
-            f" [{p.lower:g}, {p.upper:g}] {p.unit}; change the value."
-        )
+        raise out_of_bounds(p.name, value, p.unit, p.lower, p.upper)
 
 
 def _vector(what: str, given: ArrayLike, names: Sequence[str], hint: str) -> FloatArray:

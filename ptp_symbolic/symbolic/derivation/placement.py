@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ptp_symbolic.errors import InputError, did_you_mean, unknown
+from ptp_symbolic.errors import InputError, did_you_mean, out_of_bounds, unknown
 from ptp_symbolic.platform import (
     STANDARD_GRAVITY,
     ParameterDeclaration,
@@ -222,11 +222,8 @@ def _check_parameters(platform: Platform, placed: list[tuple[Effect, Place]]) ->
             )
         value = declaration.value
         if not parameter.lower <= value <= parameter.upper:
-            raise InputError(
-                f"Parameter '{declaration.name}' = {value:g} {parameter.unit} lies outside its"
-                f" bounds [{parameter.lower:g}, {parameter.upper:g}] {parameter.unit};"
-                " change the value."
-            )
+            bounds = (parameter.lower, parameter.upper)
+            raise out_of_bounds(declaration.name, value, parameter.unit, *bounds)
         ends = (declaration.lower, declaration.upper)
         for end in (each for each in ends if each is not None):
             if not parameter.lower <= end <= parameter.upper:
