@@ -29,12 +29,12 @@ def unknown(what: str, name: str, known: Iterable[str], more: str = "") -> Input
 
 
 def out_of_bounds(name: str, value: float, unit: str, lower: float, upper: float) -> InputError:
-    """Return the refusal of a parameter's `value` outside its bounds; an angle may be in degrees."""
+    """Return the refusal of a parameter's `value` in `unit`, which may be meant in degrees."""
     in_degrees = unit == "rad" and lower <= math.radians(value) <= upper
     advice = 'write unit = "deg" if that is what it is in' if in_degrees else "change the value"
     return InputError(
-        f"Parameter '{name}' = {value:g} {unit} lies outside its bounds [{lower:g}, {upper:g}] {unit};"
-        f" {advice}."
+        f"Parameter '{name}' = {value:g} {unit} lies outside its bounds [{lower:g}, {upper:g}]"
+        f" {unit}; {advice}."
     )
 
 
