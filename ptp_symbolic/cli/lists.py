@@ -101,7 +101,8 @@ def _described(kind: Any) -> dict[str, Any]:
         "needs": [
             {
                 "quantity": need.format(axis="<axis>"),
-                "from": effects_that_define(need.format(axis=AXES[0]), AXES),
+                "from": effects_that_define(need.format(axis=AXES[0]), AXES)
+                or [f"[signals.{need.removeprefix('reading_').format(axis='<axis>')}]"],
             }
             for need in kind.needs
         ],

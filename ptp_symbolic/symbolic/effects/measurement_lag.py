@@ -31,7 +31,8 @@ def _contribute(place: Place) -> Contribution:
 def _kind(kind: str, signal: str, unit: str) -> Effect:
     """The filter of a `signal` that begins each run at what it shows; its state is the reading."""
     given = replace(PARAMETERS[0], name=f"t_lag_{signal}_{{axis}}")
-    given = replace(given, meaning=f"time constant of the filter of the {{axis}} {kind}")
+    word = kind.replace("_", " ")
+    given = replace(given, meaning=f"time constant of the filter of the {{axis}} {word}")
 
     def contribute(place: Place) -> Contribution:
         (time,) = place.symbols((given,))
@@ -40,17 +41,19 @@ def _kind(kind: str, signal: str, unit: str) -> Effect:
         rate = (place.quantity(f"measured_{name}") - shown) / time
         return Contribution(
             changes={f"reading_{name}": Change(through=lambda _: shown)},
-            states=(State(shown.name, unit, f"{place.axis} {kind} as it is shown", rate),),
+            states=(State(shown.name, unit, f"{place.axis} {word} as it is shown", rate),),
         )
 
     return replace(
         MEASUREMENT_LAG,
         kind=kind,
-        title=f"{kind} behind a filter",
+        title=f"{word} behind a filter",
         parameters=(given,),
         contribute=contribute,
         needs=(f"reading_{signal}_{{axis}}",),
         kinds=(),
+        separating_experiment="Log a step of the input beside the encoder: the reading follows the"
+        " motion with one time constant, a delay shifts it whole.",
     )
 
 
