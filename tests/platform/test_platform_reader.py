@@ -1,7 +1,6 @@
 """A platform TOML is read into SI data, and every mistake in it is refused in one line."""
 
 import math
-import time
 from pathlib import Path
 
 import pytest
@@ -288,10 +287,3 @@ def test_missing_files_and_folders_are_refused_with_the_presets(tmp_path: Path) 
     for strange in ("a\0b", "x" * 5000, ""):
         with pytest.raises(InputError):
             read_platform(strange)
-
-
-def test_a_long_dotted_key_does_not_hang(tmp_path: Path) -> None:
-    start = time.perf_counter()
-    with pytest.raises(InputError, match="line has more than 500 characters"):
-        read_platform(write(tmp_path, "a" + ".a" * 400_000 + " = 1\n"))
-    assert time.perf_counter() - start < 2
