@@ -8,7 +8,7 @@ import pytest
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission, variants
-from ptp_symbolic.platform import EffectDeclaration, Platform
+from ptp_symbolic.platform import EffectDeclaration, Platform, SignalDeclaration
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.kane import kane
@@ -107,6 +107,14 @@ def test_texts_speak_of_forces_and_positions() -> None:
     texts += [s.meaning for s in (*equations.extra_states, *equations.inputs)]
     words = r"\b(torque|angle|inertia|rate)s?\b"
     assert not [text for text in texts if re.search(words, text)]
+
+
+def test_sensors_of_joint_and_shaft_are_linear_and_that_of_the_motor_turns() -> None:
+    wanted = {"omega_pan": "m/s", "tau_shaft_pan": "N", "omega_motor_pan": "rad/s"}
+    signals = tuple(SignalDeclaration(n, n, unit, "output") for n, unit in wanted.items())
+    equations = assemble(replace(carriage(*GEARED), signals=signals))
+    units = {name: unit for name, unit, _ in equations.outputs}
+    assert units == {"theta_pan": "m", "i_pan": "A", **wanted}
 
 
 def test_a_wave_number_is_two_pi_over_the_length_of_a_cycle() -> None:
