@@ -117,6 +117,22 @@ def test_sensors_of_joint_and_shaft_are_linear_and_that_of_the_motor_turns() -> 
     assert units == {"theta_pan": "m", "i_pan": "A", **wanted}
 
 
+def test_what_filtered_sensors_show_has_the_units_of_what_they_measure() -> None:
+    kinds = {"rate": "omega", "motor_rate": "omega_motor", "torque": "tau_shaft"}
+    wanted = {
+        "shown_omega_pan": "m/s",
+        "shown_omega_motor_pan": "rad/s",
+        "shown_tau_shaft_pan": "N",
+    }
+    base = carriage(*GEARED)
+    lags = tuple(EffectDeclaration("measurement_lag", "pan", None, kind) for kind in kinds)
+    names = [f"{signal}_pan" for signal in kinds.values()]
+    signals = tuple(SignalDeclaration(n, n, wanted[f"shown_{n}"], "output") for n in names)
+    equations = assemble(replace(base, effects=(*base.effects, *lags), signals=signals))
+    units = {state.name: state.unit for state in equations.extra_states}
+    assert {name: units[name] for name in wanted} == wanted
+
+
 def test_a_wave_number_is_two_pi_over_the_length_of_a_cycle() -> None:
     """An encoder on a screw of 8 mm lead errs alike one lead further on, and not half a lead."""
     model = emission.emit(carriage(*BARE, "encoder_eccentricity"))

@@ -278,9 +278,7 @@ def test_a_file_that_is_no_platform_text_is_refused(
 def test_missing_files_and_folders_are_refused_with_the_presets(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"Unknown platform 'thesis-idael': did you mean 'thesis-"):
         read_platform("thesis-idael")
-    with pytest.raises(
-        InputError, match=r"bench.toml: there is no such file; give the path of"
-    ):
+    with pytest.raises(InputError, match=r"bench.toml: there is no such file; give the path of"):
         read_platform(tmp_path / "bench.toml")
     with pytest.raises(InputError, match="is a folder; give a platform TOML"):
         read_platform(tmp_path)

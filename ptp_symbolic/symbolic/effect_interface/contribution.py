@@ -31,6 +31,7 @@ class State:
     """A state of an effect: name, unit, meaning, time derivative, value at the start.
 
     `zero_at_rest_of` names the axis whose friction sets the state to zero when it comes to rest.
+    What `turns` is of a motor, which does so before a linear joint too.
     """
 
     name: str
@@ -39,6 +40,7 @@ class State:
     derivative: sp.Expr
     initial: float = 0.0
     zero_at_rest_of: str | None = None
+    turns: bool = False
 
     @property
     def symbol(self) -> sp.Symbol:

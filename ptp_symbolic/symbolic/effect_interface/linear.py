@@ -65,6 +65,8 @@ def linear_sensor(sensor: Sensor) -> Sensor:
 
 
 def _state(state: State) -> State:
+    if state.turns:
+        return state
     return replace(state, unit=linear_unit(state.unit), meaning=linear_words(state.meaning))
 
 

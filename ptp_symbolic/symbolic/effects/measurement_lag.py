@@ -39,9 +39,10 @@ def _kind(kind: str, signal: str, unit: str) -> Effect:
         name = f"{signal}_{place.axis}"
         shown = real(f"shown_{name}")
         rate = (place.quantity(f"measured_{name}") - shown) / time
+        meaning = f"{place.axis} {word} as it is shown"
+        state = State(shown.name, unit, meaning, rate, turns=kind == "motor_rate")
         return Contribution(
-            changes={f"reading_{name}": Change(through=lambda _: shown)},
-            states=(State(shown.name, unit, f"{place.axis} {word} as it is shown", rate),),
+            changes={f"reading_{name}": Change(through=lambda _: shown)}, states=(state,)
         )
 
     return replace(
