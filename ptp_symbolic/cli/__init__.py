@@ -6,6 +6,7 @@ import click
 
 from ptp_symbolic.cli.check import check
 from ptp_symbolic.cli.diagnose import diagnose, fit
+from ptp_symbolic.cli.experiment import experiment
 from ptp_symbolic.cli.lists import effects, models, platforms
 from ptp_symbolic.cli.regenerate import regenerate
 from ptp_symbolic.cli.report import report
@@ -26,6 +27,7 @@ for command in (
     check,
     fit,
     diagnose,
+    experiment,
     report,
     effects,
     models,

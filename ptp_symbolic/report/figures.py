@@ -122,7 +122,7 @@ def _set_margins(figure: Figure, rows: int, columns: int) -> None:
 def _draw_motion(
     axes: Axes, name: str, signal: Mapping[str, Any], time: FloatArray, points: int
 ) -> None:
-    scale, unit = _plot_unit(str(signal.get("unit") or ""))
+    scale, unit = plot_unit(str(signal.get("unit") or ""))
     styles = (("measured", MEASURED, 3.2), ("before", BEFORE, 1.1), ("after", AFTER, 1.1))
     for stage, colour, width in styles:
         if signal.get(stage) is not None:
@@ -219,7 +219,7 @@ def torque_map_figure(maps: Sequence[Mapping[str, Any]], unit: str) -> str:
         grid = figure.subplots(1, len(maps), sharey="row", squeeze=False)[0]
         _set_margins(figure, 1, len(maps))
         for axes, found in zip(grid, maps, strict=True):
-            scale, shown = _plot_unit(str(found["unit"]))
+            scale, shown = plot_unit(str(found["unit"]))
             axes.axhline(0.0, color="#c9cfd6", linewidth=0.8)
             bars = 2.0 * np.asarray(found["error"])
             x = scale * np.asarray(found["at"])
@@ -253,7 +253,7 @@ def _draw_cloud(axes: Axes, x: FloatArray, y: FloatArray, stage: str, bins: int)
     axes.autoscale(axis="x")
 
 
-def _plot_unit(unit: str) -> tuple[float, str]:
+def plot_unit(unit: str) -> tuple[float, str]:
     """Angles and rates are drawn in degrees, everything else as it is."""
     if unit in ("rad", "rad/s"):
         return 180.0 / np.pi, unit.replace("rad", "deg")

@@ -22,6 +22,7 @@ COMMANDS = (
     "sensitivity",
     "fit",
     "diagnose",
+    "experiment",
     "report derivation",
 )
 
