@@ -135,6 +135,21 @@ def test_a_rival_that_is_the_machine_is_not_separated(tmp_path: Path) -> None:
     assert found.more < 0.1
 
 
+def test_what_noise_of_the_inputs_leaves_tells_nothing(tmp_path: Path) -> None:
+    """Where the log of the input is off, the machine's own model leaves as much as a rival."""
+    platform, model = table(tmp_path)
+    noisy = tuple(replace(s, noise=0.002) if s.role == "input" else s for s in platform.signals)
+    spring, again = (contender(model, name, ("k1_cable_pan",)) for name in ("one", "other"))
+    run = conditions(replace(platform, signals=noisy), 4.0)
+    played = play(spring, run, np.sign(tone(run.t, 0.4)))
+    assert played is not None
+    own = as_it_is(spring, logged(spring, run, played), 0.0)
+    assert own is not None and own.residual @ own.residual > 100.0
+    found = compared(spring, again, run, np.sign(tone(run.t, 0.4)), Scenario(0.0, 0), 6)
+    assert found is not None
+    assert found.more == 0.0
+
+
 def test_a_run_is_scaled_back_until_it_keeps_its_limits(tmp_path: Path) -> None:
     platform, model = table(tmp_path)
     spring = contender(model, "spring", ("k1_cable_pan",))
