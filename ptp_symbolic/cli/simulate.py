@@ -91,7 +91,7 @@ def simulate(
         model,
         output_times(end, every),
         signals,
-        initial=_initial(model, initial),
+        initial=initial_states(model, initial),
         method=method,
         step=1e-4 if step is None else step,
     )
@@ -140,7 +140,7 @@ def sensitivity(
         model,
         output_times(end, every),
         signals,
-        initial=_initial(model, initial),
+        initial=initial_states(model, initial),
         by_parameters=by or None,
         by_initial=by_initial,
     )
@@ -151,7 +151,8 @@ def sensitivity(
     click.echo(f"{len(head)} derivatives at {len(found.t)} times: {out / 'sensitivity.csv'}")
 
 
-def _initial(model: Any, given: Sequence[str]) -> dict[str, float]:
+def initial_states(model: Any, given: Sequence[str]) -> dict[str, float]:
+    """States in SI by name, of texts NAME=VALUE. Raises InputError for unknown names and values."""
     values = {}
     for text in given:
         name, _, value = text.partition("=")

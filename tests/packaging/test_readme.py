@@ -23,6 +23,7 @@ COMMANDS = (
     "sensitivity",
     "fit",
     "diagnose",
+    "experiment",
     "report derivation",
 )
 

@@ -113,7 +113,7 @@ def start_state(
     for index, (unknown, value) in enumerate(zip(run.unknowns, z, strict=True)):
         scale = 1.0
         if unknown.contact is not None:
-            scale, by_p = _half_gap(model, unknown.contact, x, u, p)
+            scale, by_p = put_into_gap(model, unknown.contact, x, s, u, p, columns)
             s[:, : len(columns)] += np.outer(unknown.tangent * value, by_p[columns])
         x += unknown.tangent * value * scale
         s[:, len(columns) + index] = unknown.tangent * scale
@@ -146,17 +146,32 @@ def _put_behind_sensors(
             s[angle_states, : len(columns)] -= slope
 
 
-def _half_gap(
-    model: Model, contact: int, x: FloatArray, u: FloatArray, p: FloatArray
+def put_into_gap(
+    model: Model,
+    contact: int,
+    x: FloatArray,
+    s: FloatArray,
+    u: FloatArray,
+    p: FloatArray,
+    columns: NDArray[np.int64],
 ) -> tuple[float, FloatArray]:
+    """Move the gear in the state x [n], and its tangents s by the parameters `columns`, to the
+    middle of a gap, which a gear out of true shifts; half the gap in rad, and its derivative [np].
+    """
     frictions = len(model.friction_rates)
     count = contact_guards(frictions, len(model.contacts))
     m, g = np.zeros(len(model.mode_names)), np.zeros(count)
     gx, gp = np.zeros((count, len(x))), np.zeros((count, len(p)))
-    model.module.guards(0.0, x, u, p, m, g)
+    at, gear = contact_guards(frictions, contact), model.module.CONTACT_ANGLES[contact][0]
+    for _ in range(SENSOR_ITERATIONS):
+        model.module.guards(0.0, x, u, p, m, g)
+        if g[at] == 0.0:
+            break
+        x[gear] -= g[at]
     model.module.guard_jacobian(0.0, x, u, p, m, gx, gp)
-    at = contact_guards(frictions, contact) + 1
-    return float(g[at]), gp[at]
+    known = slice(0, len(columns))
+    s[gear, known] -= (gx[at] @ s[:, known] + gp[at, columns]) / gx[at, gear]
+    return float(g[at + 1]), gp[at + 1]
 
 
 def evaluate(

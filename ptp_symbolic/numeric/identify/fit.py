@@ -99,8 +99,8 @@ def fit_parameters(
     effort = effort or Effort()
     if not free:
         return _fit_starts(model, runs, fixed, z, effort, executor)
-    simulations = _simulations(model, runs, free, fixed, effort, executor)
-    problem = _problem(simulations, effort)
+    simulations = simulations_of(model, runs, free, fixed, effort, executor)
+    problem = problem_of(simulations, effort)
     if problem.refine is not None and misleading is not None:
         problem.refine.chosen = list(misleading)
     phi = to_search(free, {f.name: f.start for f in free})
@@ -134,8 +134,8 @@ def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
     if not fit.free or fit.failed:
         return fit
     effort = Effort(tolerance=fit.tolerance, secants=STEP)
-    problem = _problem(
-        _simulations(fit.model, fit.runs, fit.free, fit.values, effort, executor), effort
+    problem = problem_of(
+        simulations_of(fit.model, fit.runs, fit.free, fit.values, effort, executor), effort
     )
     assert problem.refine is not None
     phi = to_search(fit.free, fit.values)
@@ -161,7 +161,7 @@ def all_values_at_start(free: Sequence[FreeParameter]) -> dict[str, float]:
 
 
 @dataclass(frozen=True, eq=False)
-class _Simulations:
+class Simulations:
     """All runs as functions of the search coordinates phi [nf] and the start unknowns z.
 
     `owner` is the coordinate of every parameter in `columns`: tied ones share theirs.
@@ -206,18 +206,21 @@ class _Simulations:
         return list(self.executor.map(one, pairs)) if self.executor else [one(a) for a in pairs]
 
 
-def _simulations(
+def simulations_of(
     model: Model,
     runs: Sequence[Run],
     free: Sequence[FreeParameter],
     fixed: Mapping[str, float],
     effort: Effort,
     executor: Executor | None,
-) -> _Simulations:
+) -> Simulations:
+    """`runs` as functions of `free`, all other parameters at `fixed`. Raises InputError for values
+    out of bounds.
+    """
     names = list(model.parameter_names)
     owned = [(i, names.index(name)) for i, f in enumerate(free) for name in f.names]
     owner, columns = np.array(owned, dtype=np.int64).reshape(-1, 2).T
-    return _Simulations(
+    return Simulations(
         model,
         runs,
         free,
@@ -229,7 +232,8 @@ def _simulations(
     )
 
 
-def _problem(simulations: _Simulations, effort: Effort) -> Problem:
+def problem_of(simulations: Simulations, effort: Effort) -> Problem:
+    """Least squares over the runs of `simulations`, within the bounds of its parameters."""
     free, runs = simulations.free, simulations.runs
     lower, upper = limits(free)
     return Problem(
@@ -265,7 +269,7 @@ def _fit_starts(
     simulated = partial(residual_of, model, model.parameter_vector(fixed), effort.tolerance)
 
     def one(run: Run, known: Sequence[FloatArray]) -> Optimum:
-        problem = _problem(_simulations(model, [run], (), fixed, effort, None), effort)
+        problem = problem_of(simulations_of(model, [run], (), fixed, effort, None), effort)
         starts = [with_gap_places(run, s, partial(simulated, run)) for s in run.guesses]
         starts += known
         costs = [cost_of(problem, problem.evaluate(nothing, [s], False), [s]) for s in starts]

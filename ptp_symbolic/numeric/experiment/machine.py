@@ -1,0 +1,192 @@
+"""The experiment as it would be played: inputs, what the machine does, what its sensors show."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.experiment.contender import Contender
+from ptp_symbolic.numeric.experiment.limits import Limit, excess, rest_of
+from ptp_symbolic.numeric.identify.constants import SEED
+from ptp_symbolic.numeric.identify.evaluate import put_into_gap
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.run import SimulationError, simulate, start_of
+from ptp_symbolic.numeric.simulation.signals.inputs import table
+from ptp_symbolic.platform import Platform
+
+FloatArray = NDArray[np.float64]
+
+RELATIVE, ABSOLUTE = 1e-6, 1e-8  # tolerances (1, rad) of what is taken for the machine
+NO_COLUMNS = np.zeros(0, dtype=np.int64)
+DIGITS = 4  # of an input, below its limit
+TRIES = 8  # to bring an input within the limits
+UNSURE = 1e-3  # of the range of an input whose noise is not declared; rms
+INSIDE = 0.98  # of the limit at which such an input is aimed
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """How the experiment is run: sample times `t` [k] in s, limits, and the states at the start.
+
+    `platform` names the signals, with the noise of each.
+    """
+
+    platform: Platform
+    t: FloatArray
+    limits: Mapping[str, Limit]
+    initial: Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Scenario:
+    """What nobody knows before the run: the `place` in every gap at the start, in half gaps, the
+    noise of the inputs, and how far the parameters are from their values.
+    """
+
+    place: float
+    seed: int
+
+    def machine(self, contender: Contender) -> Contender:
+        """The machine, if it is of the kind of `contender`."""
+        rng = np.random.default_rng([SEED, self.seed])
+        return contender.drawn(rng.normal(size=len(contender.free)))
+
+
+SCENARIOS = tuple(Scenario(place, k) for k, place in enumerate((-0.5, 0.5, 0.0, -0.25)))
+
+
+@dataclass(frozen=True, eq=False)
+class Played:
+    """A run that keeps to the limits: the state at its `start` [n], inputs [k, nu], outputs [k, ny]
+    of the model, and the lowest and highest value of every signal that is limited, by name.
+    """
+
+    start: FloatArray
+    inputs: FloatArray
+    outputs: FloatArray
+    reached: Mapping[str, tuple[float, float]]
+
+
+def play(
+    machine: Contender, conditions: Conditions, wave: FloatArray, place: float = 0.0
+) -> Played | None:
+    """Play `wave` [k, nu], of which -1 and 1 are the limits of the inputs, scaled back until
+    everything stays within its limits; None where no try does. The run begins at `place` in every
+    gap.
+    """
+    begin, scale = _start(machine, conditions, place), 1.0
+    for _ in range(TRIES):
+        inputs = inputs_of(machine.model, conditions, scale * wave)
+        signals = _signals(machine, conditions, inputs, begin)
+        if signals is None:
+            scale *= 0.5
+            continue
+        worst, _ = excess(conditions.limits, signals)
+        if worst <= 1.0:
+            outputs = [signals[name] for name in machine.model.output_names]
+            limited = {name: signals[name] for name in conditions.limits}
+            reached = {n: (float(v.min()), float(v.max())) for n, v in limited.items()}
+            start = np.array(list(begin.values()))
+            return Played(start, inputs, np.column_stack(outputs), reached)
+        scale *= INSIDE / worst
+    return None
+
+
+def refuse_start_outside(machine: Contender, conditions: Conditions) -> None:
+    """Raise InputError where the machine begins outside its limits, or does not simulate."""
+    rest = np.zeros((len(conditions.t), len(machine.model.input_names)))
+    inputs = inputs_of(machine.model, conditions, rest)
+    signals = _signals(machine, conditions, inputs, _start(machine, conditions, 0.0))
+    if signals is None:
+        raise InputError(
+            f"The model {machine.name} does not simulate from where the experiment begins; change"
+            " --initial."
+        )
+    worst, name = excess(conditions.limits, signals)
+    if np.isinf(worst):
+        limit, unit = conditions.limits[name], machine.model.units[name]
+        raise InputError(
+            f"The experiment begins with {name} = {signals[name][0]:.4g} {unit}, outside its limits"
+            f" {limit.lower:.4g} to {limit.upper:.4g} {unit}; change --initial or --limit."
+        )
+
+
+def inputs_of(model: Model, conditions: Conditions, wave: FloatArray) -> FloatArray:
+    """Inputs [k, nu] in their units of `wave` [k, nu]; zero is rest, -1 and 1 are the limits."""
+    columns = []
+    for name, part in zip(model.input_names, wave.T, strict=True):
+        limit = conditions.limits[name]
+        rest = rest_of(limit)
+        value = rest + np.where(part > 0.0, limit.upper - rest, rest - limit.lower) * part
+        decimals = DIGITS - int(np.ceil(np.log10(max(abs(limit.lower), abs(limit.upper)))))
+        columns.append(np.clip(np.round(value, decimals), limit.lower, limit.upper) + 0.0)
+    return np.column_stack(columns)
+
+
+def _start(machine: Contender, conditions: Conditions, place: float) -> dict[str, float]:
+    """The states at the start by name: those that are given, and every gear at `place` in its
+    gap.
+    """
+    model, p = machine.model, machine.model.parameter_vector(dict(machine.values))
+    x, rest = start_of(model, conditions.initial), np.zeros(len(model.input_names))
+    for contact in range(len(model.module.CONTACT_ANGLES)):
+        half, _ = put_into_gap(model, contact, x, np.zeros((len(x), 0)), rest, p, NO_COLUMNS)
+        x[model.module.CONTACT_ANGLES[contact][0]] += place * half
+    return dict(zip(model.state_names, x.tolist(), strict=True))
+
+
+def _signals(
+    machine: Contender, conditions: Conditions, u: FloatArray, begin: Mapping[str, float]
+) -> dict[str, FloatArray] | None:
+    """Inputs, states and outputs by name, each [k], from the states `begin`; None where it cannot
+    be simulated.
+    """
+    model, t = machine.model, conditions.t
+    held = {n: table(t, c, "hold") for n, c in zip(model.input_names, u.T, strict=True)}
+    try:
+        found = simulate(
+            model,
+            t,
+            held,
+            machine.values,
+            begin,
+            rtol=RELATIVE,
+            atol=ABSOLUTE,
+            ledger=False,
+        )
+    except SimulationError:
+        return None
+    p, y = model.parameter_vector(dict(machine.values)), np.zeros((len(t), len(model.output_names)))
+    for row, time, x, given in zip(y, t, found.x, u, strict=True):
+        model.module.outputs(time, x, given, p, row)
+    states = dict(zip(model.state_names, found.x.T, strict=True))
+    measured = dict(zip(model.output_names, y.T, strict=True))
+    return {**dict(zip(model.input_names, u.T, strict=True)), **states, **measured}
+
+
+def logged(machine: Contender, conditions: Conditions, played: Played, seed: int = 0) -> Run:
+    """The run as it would be logged: its inputs with their noise, its outputs without theirs, and
+    its true start as the guess of it.
+
+    Where bounces and breakaways amplify the noise of the inputs, no model can follow the machine.
+    """
+    platform, model = conditions.platform, machine.model
+    rng = np.random.default_rng([SEED, seed])
+    given = [s.signal for s in platform.signals if s.role == "input"]
+    noises = {s.signal: s.noise for s in platform.signals}
+    shown = [s.signal for s in platform.signals if s.role == "output"]
+    inputs = np.zeros((len(conditions.t), len(given)))
+    for k, name in enumerate(model.input_names):
+        limit, noise = conditions.limits[name], noises[name]
+        size = UNSURE * (limit.upper - limit.lower) if noise is None else noise
+        column = played.inputs[:, k] + size * rng.normal(size=len(inputs))
+        inputs[:, given.index(name)] = column
+    outputs = played.outputs[:, [model.output_names.index(name) for name in shown]]
+    log = Log("experiment", conditions.t, inputs, np.ascontiguousarray(outputs))
+    (run,) = prepare_runs(model, platform, (log,))
+    return replace(run, start=played.start)
