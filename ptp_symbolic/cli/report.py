@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from ptp_symbolic.cli.declared import note_defaults
+from ptp_symbolic.cli.report_machines import machines
 from ptp_symbolic.cli.report_thesis import thesis
 
 
@@ -37,4 +38,5 @@ def derivation(source: str, out: Path) -> None:
         click.echo(out / name)
 
 
+report.add_command(machines)
 report.add_command(thesis)

@@ -5,17 +5,15 @@ import hashlib
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-import jinja2
 import numpy as np
 from markupsafe import Markup
 
 from ptp_symbolic.report import figures, map_figures, quantities, tables
+from ptp_symbolic.report.pages import TEMPLATES, environment
 from ptp_symbolic.report.tables import usable
 
-TEMPLATES = Path(__file__).parent / "templates"
 Curves = Mapping[str, Mapping[str, Any]]
 
 SHOWN_RUNS = 2
@@ -90,7 +88,7 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
         diagnosis, curves = _declared_alone(diagnosis, curves)
     key, unit = tables.error_measure(tables.declared_totals(diagnosis))
     shown, folded = _motion(diagnosis, curves, key)
-    page = _environment().get_template("diagnosis.html.j2")
+    page = environment().get_template("diagnosis.html.j2")
     script = (TEMPLATES / "diagnosis.js").read_text(encoding="utf-8")
     return page.render(
         diagnosis=diagnosis,
@@ -157,26 +155,6 @@ def _words(curves: Curves) -> quantities.JointWords:
     """The words of the joints: a linear one is alone on its platform."""
     axes = [(curve, axis) for curve in curves.values() for axis in curve.get("angle") or {}]
     return quantities.joint_words(*axes[0]) if axes else quantities.ROTARY
-
-
-def _environment() -> jinja2.Environment:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(TEMPLATES, encoding="utf-8"),
-        autoescape=True,
-        undefined=jinja2.ChainableUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters.update(
-        number=quantities.number,
-        unit=quantities.unit,
-        estimate=quantities.estimate,
-        interval=quantities.interval,
-        in_degrees=quantities.in_degrees,
-        travel=quantities.travel,
-        gain=quantities.gain,
-    )
-    return environment
 
 
 def _motion(

@@ -1,0 +1,1 @@
+"""Public data of real machines taken through the tool: a study made with the package."""

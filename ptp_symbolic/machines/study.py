@@ -1,0 +1,137 @@
+"""Every machine diagnosed anew from its raw files, as data for a page."""
+
+import csv
+import tempfile
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.machines.force_error import force_error
+from ptp_symbolic.numeric.data import read_log
+from ptp_symbolic.numeric.friction_map.points import Columns, read_points
+from ptp_symbolic.numeric.friction_map.summary import friction_map
+from ptp_symbolic.platform import Platform, read_platform
+from ptp_symbolic.workflows.diagnosis import diagnose_platform
+from ptp_symbolic.workflows.result import Output, Progress
+
+PLATFORMS = Path(__file__).parent
+EMPS_FILES = ("DATA_EMPS.mat", "DATA_EMPS_PULSES.mat")
+SWITCHED_OFF = "lift_and_drop"  # runs of the pendulum in which the servo lets go
+NOMINAL = "9.84 mN m"  # torque that the percents of the screw drives are of
+DRIVES = ("1", "2", "3")
+EMPS = (
+    "A. Janot, M. Gautier and M. Brunot, Data Set and Reference Models of EMPS, Nonlinear Benchmark"
+    " Workshop, 2019. A carriage on a ball screw in closed loop: force in, position out. Published:"
+    " mass 95.1 kg; relative force error 4.08 % on the training and 5.98 % on the validation file"
+    " with symmetric friction and an offset."
+)
+PENDULUM = (
+    "M. Duclusaud, G. Passault, V. Padois and O. Ly, Extended Friction Models for the Physics"
+    " Simulation of Servo Actuators, ICRA 2025. A pendulum on a geared servo: voltage in, angle out."
+)
+SCREWS = (
+    "S. Mablekos-Alexiou et al., IEEE Transactions on Robotics 37(4), 2021. Three screw drives at"
+    " steady speeds. Published: Stribeck friction at 6.4 rad/s in drive 1, none in drive 2, at"
+    " 0.69 rad/s in drive 3."
+)
+
+
+def machines(data: Path, progress: Progress = lambda text: None) -> dict[str, Any]:
+    """Results of all machines whose files are in the folders of `data`.
+
+    Raises InputError where none is there.
+    """
+    found = [
+        study(data / folder, progress)
+        for folder, study in (
+            ("emps", emps),
+            ("servo_pendulum", servo_pendulum),
+            ("screw_drives", screw_drives),
+        )
+        if (data / folder).is_dir()
+    ]
+    if not found:
+        raise InputError(
+            f"{data}: has none of the folders emps, servo_pendulum and screw_drives; the README"
+            " names the sources of their files."
+        )
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    return {"version": version("ptp-symbolic"), "date": now, "machines": found}
+
+
+def emps_logs(folder: Path) -> tuple[list[Path], list[Path]]:
+    """Training and validation file of EMPS."""
+    train, validate = (folder / name for name in EMPS_FILES)
+    return [train], [validate]
+
+
+def pendulum_logs(folder: Path) -> tuple[list[Path], list[Path]]:
+    """Training and validation runs of the servo pendulum in which the servo is on."""
+    train, validate = (
+        [p for p in sorted((folder / part).glob("*.csv")) if not p.name.startswith(SWITCHED_OFF)]
+        for part in ("train", "validate")
+    )
+    return train, validate
+
+
+def emps(folder: Path, progress: Progress) -> dict[str, Any]:
+    """The positioning system: its diagnosis, and its error in force before and after."""
+    platform = read_platform(PLATFORMS / "emps.toml")
+    logs = emps_logs(folder)
+    progress("positioning system")
+    found = diagnose_platform(platform, *logs, progress)
+    after = _written(found)
+    rows = []
+    for stage, machine in (("before", platform), ("after", after)):
+        fitted = found.summary["fit"][stage]["parameters"]
+        values = {name: row["value"] for name, row in fitted.items()}
+        errors = [_force_error(machine, values, log) for (log,) in logs]
+        rows.append({"stage": stage, "train": errors[0], "validate": errors[1]})
+    return {**_diagnosis("Positioning system (EMPS)", EMPS, found), "force_error": rows}
+
+
+def servo_pendulum(folder: Path, progress: Progress) -> dict[str, Any]:
+    """The pendulum on a servo: its diagnosis."""
+    platform = read_platform(PLATFORMS / "servo_pendulum.toml")
+    progress("servo pendulum")
+    found = diagnose_platform(platform, *pendulum_logs(folder), progress)
+    return _diagnosis("Pendulum on a geared servo", PENDULUM, found)
+
+
+def screw_drives(folder: Path, progress: Progress) -> dict[str, Any]:
+    """The friction maps of the screw drives."""
+    progress("screw drives")
+    with (folder / "derived_steady_state_points.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    maps = []
+    with tempfile.TemporaryDirectory() as scratch:
+        for drive in DRIVES:
+            own = [row for row in rows if row["drive"] == drive]
+            points = [(r["v_mean_rpm_raw_sign"], r["torque_mean_pct_raw_sign"]) for r in own]
+            path = Path(scratch) / f"drive_{drive}.csv"
+            lines = [f"rate [rpm],torque [% of {NOMINAL}]", *map(",".join, points)]
+            path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+            maps.append({"drive": drive, **friction_map(read_points(path, Columns()), "pan", 0.95)})
+    return {"title": "Screw drives", "source": SCREWS, "maps": maps}
+
+
+def _diagnosis(title: str, source: str, found: Output) -> dict[str, Any]:
+    kept = ("verdict", "summary", "added", "error", "refused", "hints", "fit", "provenance")
+    return {"title": title, "source": source, **{key: found.summary[key] for key in kept}}
+
+
+def _written(found: Output) -> Platform:
+    """The extended platform of a diagnosis."""
+    text = found.files["platform.toml"]
+    with tempfile.TemporaryDirectory() as scratch:
+        path = Path(scratch) / "platform.toml"
+        path.write_text(str(text), encoding="utf-8")
+        return read_platform(path)
+
+
+def _force_error(platform: Platform, values: Mapping[str, float], path: Path) -> float:
+    log = read_log(path, platform)
+    return force_error(platform, values, log.time, log.inputs[:, 0], log.outputs[:, 0])
