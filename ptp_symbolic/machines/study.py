@@ -30,7 +30,8 @@ EMPS = (
 )
 PENDULUM = (
     "M. Duclusaud, G. Passault, V. Padois and O. Ly, Extended Friction Models for the Physics"
-    " Simulation of Servo Actuators, ICRA 2025. A pendulum on a geared servo: voltage in, angle out."
+    " Simulation of Servo Actuators, ICRA 2025. A pendulum on a geared servo: voltage in, angle"
+    " out."
 )
 SCREWS = (
     "S. Mablekos-Alexiou et al., IEEE Transactions on Robotics 37(4), 2021. Three screw drives at"

@@ -16,14 +16,16 @@ PLATFORM = read_platform(PLATFORMS / "emps.toml")
 
 
 def test_the_error_is_the_share_of_the_force_that_a_wrong_mass_makes() -> None:
-    """A sine of 2 Hz without friction: the force goes with the mass, far below the filter."""
+    """A sine of 2 Hz without friction: the force goes with the mass, far below the filter, whose
+    ends leave 0.12 %.
+    """
     time = np.arange(0.0, 5.0, 1e-3)
     position = 0.1 * np.sin(4.0 * np.pi * time)
     force = -(100.0 * (4.0 * np.pi) ** 2) * position
     free = {"F_c_pan": 0.0, "F_s_pan": 0.0, "F_v_pan": 0.0}
     for mass, percent in ((100.0, 0.0), (97.0, 3.0), (110.0, 10.0)):
         found = force_error(PLATFORM, {"m_pan": mass, **free}, time, force, position)
-        assert found == pytest.approx(percent, abs=0.02)
+        assert found == pytest.approx(percent, abs=0.15)
 
 
 def test_the_published_model_of_emps_has_the_published_error(shared: Path) -> None:
