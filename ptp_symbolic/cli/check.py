@@ -27,7 +27,7 @@ EVEN = 1e-4  # of a period, rms: less is rounding of the time column
 @click.command()
 @click.option("--platform", "source", required=True, help="Platform TOML or packaged name.")
 @click.argument("logs", nargs=-1, required=True)
-@click.option("--out", type=Path, help="Folder for check.json.")
+@click.option("--out", type=Path, help="Folder for check.html and check.json.")
 @click.option("--json", "as_json", is_flag=True, help="Print check.json instead of tables.")
 def check(source: str, logs: tuple[str, ...], out: Path | None, as_json: bool) -> None:
     """Say what logs hold, and how small a parameter or an effect they can show.
@@ -49,6 +49,8 @@ def check(source: str, logs: tuple[str, ...], out: Path | None, as_json: bool) -
         return
     _print_logs(found.summary)
     _print_visible(found.summary)
+    if out is not None:
+        click.echo(f"Page: {out / 'check.html'}")
 
 
 def _print_logs(summary: Mapping[str, Any]) -> None:

@@ -117,7 +117,7 @@ def _draw_input(
     axes: Axes, name: str, given: Mapping[str, Any], time: FloatArray, points: int
 ) -> None:
     values = np.asarray(given["values"], float)
-    axes.plot(*_thinned(time, values, points), color=INPUT, linewidth=0.9, drawstyle="steps-post")
+    axes.plot(*thinned(time, values, points), color=INPUT, linewidth=0.9, drawstyle="steps-post")
     axes.set_title(f"{name} [{given['unit']}]")
 
 
@@ -144,7 +144,7 @@ def _draw_motion(
     for stage, colour, width in styles:
         if signal.get(stage) is not None:
             values = np.asarray(signal[stage], float) * scale
-            axes.plot(*_thinned(time, values, points), color=colour, linewidth=width)
+            axes.plot(*thinned(time, values, points), color=colour, linewidth=width)
     axes.set_title(f"{name} [{unit}]")
 
 
@@ -162,7 +162,7 @@ def _draw_residual(
         values = residual(signal, stage)
         if values is None or (zoomed and stage == "before"):
             continue
-        axes.plot(*_thinned(time, values, points), color=colour, linewidth=0.9)
+        axes.plot(*thinned(time, values, points), color=colour, linewidth=0.9)
         drawn.append(values)
     set_limit(axes, np.concatenate(drawn), floor)
     what = "measured − simulated" + (" with the added effect, enlarged" if zoomed else "")
@@ -201,7 +201,7 @@ def plot_unit(unit: str) -> tuple[float, str]:
     return 1.0, unit
 
 
-def _thinned(time: FloatArray, values: FloatArray, points: int) -> tuple[FloatArray, FloatArray]:
+def thinned(time: FloatArray, values: FloatArray, points: int) -> tuple[FloatArray, FloatArray]:
     """Keep the smallest and the largest value of each of points/2 stretches; NaN stays a gap."""
     length = -(-2 * len(values) // max(points, 2))
     if length <= 2:

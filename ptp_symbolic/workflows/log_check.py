@@ -1,7 +1,7 @@
 """Look at logs before anything is fitted: what they hold, and what they can show."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -12,9 +12,12 @@ from ptp_symbolic.numeric.diagnose.summary import repeatability_table
 from ptp_symbolic.numeric.diagnose.trial import fitted
 from ptp_symbolic.numeric.diagnose.visibility import Visible, visible_amounts
 from ptp_symbolic.numeric.identify.fit import all_values_at_start
-from ptp_symbolic.numeric.identify.log_facts import facts_of
+from ptp_symbolic.numeric.identify.log_facts import LogFacts, facts_of
+from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
+from ptp_symbolic.report.log_check import render_log_check
+from ptp_symbolic.report.log_figures import Shown
 from ptp_symbolic.workflows.preparation import effect_keys, look_at, task_for, workers
 from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, Progress, json_text
 
@@ -38,20 +41,34 @@ def check_logs(
         failed = start.fit.failed is not None
         visible = [] if failed else visible_amounts(task, start)
     units = {n: model.units[n] for n in (*model.input_names, *task.whole[0].signals)}
+    found = [facts_of(run, units) for run in task.whole]
     summary = {
         "schema_version": SCHEMA_VERSION,
         "platform": {"name": platform.name, "title": platform.title},
         "remarks": list(noted),
-        "logs": [facts_of(run, units).as_dict() for run in task.whole],
+        "logs": [facts.as_dict() for facts in found],
         "units": units,
         "repeatability": repeatability_table(task.whole, model.units),
         "simulates": not failed,
-        "visible": [_row(v, model) for v in visible],
+        "visible": [_row(v, model, start.values) for v in visible],
     }
-    return Output(summary, {"check.json": json_text(summary)})
+    pairs = zip(task.whole, found, strict=True)
+    curves = {run.name: (run.time, _shown(run, facts, units)) for run, facts in pairs}
+    page = render_log_check(summary, curves)
+    return Output(summary, {"check.html": page, "check.json": json_text(summary)})
 
 
-def _row(visible: Visible, model: Model) -> dict[str, Any]:
+def _row(visible: Visible, model: Model, start: Mapping[str, float]) -> dict[str, Any]:
     unit = next(p.unit for p in model.parameters if p.name == visible.parameter)
     smallest = visible.smallest if math.isfinite(visible.smallest) else None
-    return {**asdict(visible), "smallest": smallest, "unit": unit}
+    value = start[visible.parameter]
+    return {**asdict(visible), "smallest": smallest, "unit": unit, "start": value}
+
+
+def _shown(run: Run, facts: LogFacts, units: Mapping[str, str]) -> list[Shown]:
+    """The inputs of a run, then what is measured, with the noise found in them."""
+    columns = (*run.held_inputs.T, *run.measured.T)
+    return [
+        Shown(s.name, units[s.name], s.role, column, s.noise)
+        for s, column in zip(facts.signals, columns, strict=True)
+    ]

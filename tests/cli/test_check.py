@@ -34,6 +34,11 @@ def test_what_logs_hold_and_can_show(call, table: tuple[Path, Path], tmp_path: P
     assert "No two runs have the same inputs" in done.out
     summary = json.loads((out / "check.json").read_text(encoding="utf-8"))
     assert [entry["name"] for entry in summary["logs"]] == ["run_1", "run_2"]
+    page = (out / "check.html").read_text(encoding="utf-8")
+    assert page.count("<svg") == 2
+    assert page.count("<h2>run_") == 2
+    for row in summary["visible"]:
+        assert f"<code>{row['parameter']}</code>" in page
     assert summary["units"] == {"tau_pan": "N m", "theta_pan": "rad"}
     (spring,) = (v for v in summary["visible"] if v["effect"] == "cable_spring@pan")
     assert spring["smallest"] < 0.01 * STIFFNESS
