@@ -1,6 +1,7 @@
 """Title of the derivation report: platform, date, version, and the module that it belongs to."""
 
 import os
+import re
 from datetime import UTC, datetime
 from hashlib import sha256
 
@@ -10,15 +11,16 @@ from ptp_symbolic.report.latex_text import escaped
 from ptp_symbolic.symbolic.codegen.module import module_text
 from ptp_symbolic.symbolic.derivation.equations import Equations
 
-HALF_HASH = 32  # of 64 digits, on a line
-
 
 def title_block(platform: Platform, equations: Equations) -> str:
-    """Title, date, version, and the SHA-256 of the text of the module emitted for `platform`.
+    """Title, date, version, hash of the mathematics and SHA-256 of the module of `platform`.
 
     The date is today's, or that of SOURCE_DATE_EPOCH, in UTC.
     """
-    digest = sha256(module_text(equations).encode()).hexdigest()
+    text = module_text(equations)
+    digest = sha256(text.encode()).hexdigest()
+    header = re.search(r'^MODEL_HASH = "(\w+)"', text, re.MULTILINE)
+    mathematics = header[1] if header else ""
     given = os.environ.get("SOURCE_DATE_EPOCH", "")
     now = datetime.fromtimestamp(int(given), UTC) if given.isdigit() else datetime.now(UTC)
     return "\n".join(
@@ -27,7 +29,8 @@ def title_block(platform: Platform, equations: Equations) -> str:
             r"\large Derivation of the equations of motion}",
             rf"\author{{\small ptp-symbolic {__version__}}}\date{{\small {now:%Y-%m-%d}}}",
             r"\begin{document}\maketitle",
-            r"\noindent The emitted module that computes these equations has the SHA-256\\",
-            rf"\texttt{{{digest[:HALF_HASH]}}}\\\texttt{{{digest[HALF_HASH:]}}}.",
+            r"\noindent This document belongs to the module whose \texttt{MODEL\_HASH} is",
+            rf"\texttt{{{mathematics}}}; the SHA-256 of its text, as emitted, is\\",
+            rf"\texttt{{{digest}}}.",
         ]
     )
