@@ -57,10 +57,16 @@ def table(columns: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> s
     return "\n".join([begin + columns, title, *lines, rf"\bottomrule{end}"])
 
 
-def formulas(rows: Sequence[tuple[str, sp.Expr]], relation: str = "=", together: int = 0) -> str:
+def formulas(
+    rows: Sequence[tuple[str, sp.Expr]],
+    relation: str = "=",
+    together: int = 0,
+    with_numbers: bool = False,
+) -> str:
     """Displayed formulas one below another; a long sum breaks before its terms.
 
     The last lines, as many as are to stay `together`, are not torn apart by the end of a page.
+    `with_numbers`, every formula has a number behind its last line.
     """
     if not rows:
         return ""
@@ -68,11 +74,18 @@ def formulas(rows: Sequence[tuple[str, sp.Expr]], relation: str = "=", together:
     lines = []
     for left, right in rows:
         first, *more = latex_lines(right, LINE_WIDTH - max(0, widest - SHORT_NAME))
-        lines += [f"{left} {relation}{{}}& {first}", *(f"& {line}" for line in more)]
+        own = [f"{left} {relation}{{}}& {first}", *(f"& {line}" for line in more)]
+        lines += [*(rf"{line} \notag" for line in own[:-1]), own[-1]] if with_numbers else own
     free = max(len(lines) - together, 0)
     ends = [r" \\" if k < free else r" \\*" for k in range(len(lines) - 1)]
     text = "\n".join(f"{line}{end}" for line, end in zip(lines, [*ends, ""], strict=True))
-    return f"\\begin{{align*}}\n{text}\n\\end{{align*}}\n"
+    name = "align" if with_numbers else "align*"
+    return f"\\begin{{{name}}}\n{text}\n\\end{{{name}}}\n"
+
+
+def numbered(rows: Sequence[tuple[str, sp.Expr]], relation: str = "=", together: int = 0) -> str:
+    """Displayed `formulas`, each with a number."""
+    return formulas(rows, relation, together, with_numbers=True)
 
 
 def displayed(text: str) -> str:

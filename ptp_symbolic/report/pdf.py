@@ -7,6 +7,8 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
+PASSES = 3  # of pdflatex: contents, then links, then widths of long tables
+
 
 def compile_pdf(files: Mapping[str, str | bytes], name: str) -> bytes | None:
     """The PDF of ``<name>.tex`` among `files`; None where pdflatex is missing or fails."""
@@ -19,7 +21,7 @@ def compile_pdf(files: Mapping[str, str | bytes], name: str) -> bytes | None:
         command = ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape", f"{name}.tex"]
         # no time in the file: the same numbers give the same bytes
         environment = os.environ | {"SOURCE_DATE_EPOCH": "0", "FORCE_SOURCE_DATE": "1"}
-        for _ in range(2):
+        for _ in range(PASSES):
             done = subprocess.run(
                 command, cwd=folder, capture_output=True, check=False, env=environment
             )

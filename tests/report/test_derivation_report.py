@@ -1,5 +1,6 @@
 """The derivation report: printed from the expressions, and LaTeX without a warning."""
 
+import hashlib
 import re
 import shutil
 import subprocess
@@ -8,11 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from ptp_symbolic.models.emission import module_of
 from ptp_symbolic.platform import EffectDeclaration, preset_names, read_platform
 from ptp_symbolic.report.derivation import has_warning, render_derivation
-from ptp_symbolic.report.derivation_symbols import CATALOGUE
+from ptp_symbolic.report.derivation.symbols import CATALOGUE
 from ptp_symbolic.report.latex_text import escaped
-from ptp_symbolic.report.pdf import compile_pdf
+from ptp_symbolic.report.pdf import PASSES, compile_pdf
 from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 
@@ -27,7 +29,7 @@ def test_compiles_without_a_warning(name: str, tmp_path: Path) -> None:
     if shutil.which("pdflatex") is None:
         pytest.skip("pdflatex is not installed")
     (tmp_path / "derivation.tex").write_text(text, encoding="utf-8")
-    for _ in range(2):
+    for _ in range(PASSES):
         subprocess.run(
             ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape", "derivation.tex"],
             cwd=tmp_path,
@@ -108,3 +110,15 @@ def test_axes_that_do_not_cross_are_not_said_to() -> None:
     assert "The axes cross" not in text
     assert r"a_{\mathrm{tilt}} & 0 & 0" in text
     assert "Kane -- Lagrange & $0$" in text
+
+
+def test_the_title_has_the_checksum_of_the_module_and_the_date(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    platform = read_platform("thesis-payload")
+    committed = Path("generated/payload.py").read_text(encoding="utf-8")
+    text = str(render_derivation(platform)["derivation.tex"])
+    assert re.search(r'MODEL_HASH = "(\w+)"', committed)[1] in text
+    assert hashlib.sha256(module_of(platform).encode()).hexdigest() in text
+    assert "1970-01-02" in text

@@ -1,5 +1,7 @@
 """Equations of motion by Kane's method, left to `sympy.physics.mechanics`."""
 
+from dataclasses import dataclass
+
 import sympy as sp
 from sympy.physics.mechanics import (
     KanesMethod,
@@ -8,15 +10,42 @@ from sympy.physics.mechanics import (
     RigidBody,
     dynamicsymbols,
     inertia,
+    partial_velocity,
 )
 
+from ptp_symbolic.symbolic.derivation.newton_euler import acceleration
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration, RigidEquations
 from ptp_symbolic.symbolic.symbols import ZERO
 
 
+@dataclass(frozen=True)
+class PartialVelocities:
+    """Of one body, in its own frame and for every rate: `linear` [3] of the centre of mass, in m,
+    and `angular` [3].
+    """
+
+    body: str
+    linear: tuple[sp.Matrix, ...]
+    angular: tuple[sp.Matrix, ...]
+
+
+@dataclass(frozen=True)
+class KaneSteps:
+    """Partial velocities of the bodies, generalized `active` and `inertia` forces [n] in N m."""
+
+    partial_velocities: tuple[PartialVelocities, ...]
+    active: sp.Matrix
+    inertia: sp.Matrix
+
+
 def kane(configuration: RigidConfiguration) -> RigidEquations:
-    """Return M q'' = f + tau of `configuration` by Kane's equations, not simplified.
+    """Return M q'' = f + tau of `configuration` by Kane's equations, not simplified."""
+    return kane_with_steps(configuration)[0]
+
+
+def kane_with_steps(configuration: RigidConfiguration) -> tuple[RigidEquations, KaneSteps]:
+    """Kane's equations M q'' = f + tau of `configuration`, not simplified, and the way to them.
 
     Frames, bodies and inertia dyadics are SymPy's; only the joint directions are ours. Source: Kane
     and Levinson, Dynamics: Theory and Applications, 1985, section 6.1.
@@ -32,13 +61,19 @@ def kane(configuration: RigidConfiguration) -> RigidEquations:
     loads = [(body.masscenter, body.mass * down) for body in bodies]
     kinematic = [q.diff() - u for q, u in zip(angles, speeds, strict=True)]
     method = KanesMethod(base, q_ind=angles, u_ind=speeds, kd_eqs=kinematic)
-    method.kanes_equations(bodies, loads)
+    active, inertial = method.kanes_equations(bodies, loads)
     coordinates = tuple(kinematics.angle(axis) for axis in axes)
     rates = tuple(kinematics.rate(axis) for axis in axes)
     plain = dict(zip((*angles, *speeds), (*coordinates, *rates), strict=True))
     potential = -sum((b.mass * down.dot(b.masscenter.pos_from(origin)) for b in bodies), ZERO)
     kinetic = sum((body.kinetic_energy(base) for body in bodies), ZERO)
-    return RigidEquations(
+    moving = plain | {u.diff(): acceleration(axis) for u, axis in zip(speeds, axes, strict=True)}
+    steps = KaneSteps(
+        tuple(_partial_velocities(body, base, speeds, plain) for body in bodies),
+        active.xreplace(moving),
+        inertial.xreplace(moving),
+    )
+    found = RigidEquations(
         axes,
         coordinates,
         rates,
@@ -47,6 +82,24 @@ def kane(configuration: RigidConfiguration) -> RigidEquations:
         kinetic.xreplace(plain),
         potential.xreplace(plain),
     )
+    return found, steps
+
+
+def _partial_velocities(
+    body: RigidBody,
+    base: ReferenceFrame,
+    speeds: list[sp.Expr],
+    plain: dict[sp.Expr, sp.Symbol],
+) -> PartialVelocities:
+    linear, angular = partial_velocity(
+        [body.masscenter.vel(base), body.frame.ang_vel_in(base)], speeds, base
+    )
+
+    def written(vectors: list[sp.Expr]) -> tuple[sp.Matrix, ...]:
+        own = (v.to_matrix(body.frame) if v != 0 else sp.zeros(3, 1) for v in vectors)
+        return tuple(v.xreplace(plain) for v in own)
+
+    return PartialVelocities(body.name, written(linear), written(angular))
 
 
 def _frames(

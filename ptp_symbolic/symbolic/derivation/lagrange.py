@@ -4,11 +4,45 @@ The energies are written from the rotation matrices and their derivatives alone;
 and no constraint force is ever formed.
 """
 
+from dataclasses import dataclass
+
 import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration, RigidEquations
+
+
+@dataclass(frozen=True)
+class LagrangeRow:
+    """The terms of Lagrange's equation of one coordinate.
+
+    `momentum` is dT/dq'; `transport` its rate of change at constant rates; `kinetic_slope` is
+    dT/dq, `potential_slope` dV/dq.
+    """
+
+    coordinate: sp.Symbol
+    rate: sp.Symbol
+    momentum: sp.Expr
+    transport: sp.Expr
+    kinetic_slope: sp.Expr
+    potential_slope: sp.Expr
+
+
+def lagrange_rows(
+    coordinates: tuple[sp.Symbol, ...],
+    rates: tuple[sp.Symbol, ...],
+    kinetic: sp.Expr,
+    potential: sp.Expr,
+) -> list[LagrangeRow]:
+    """Lagrange's equations of `kinetic` and `potential` in J, term by term."""
+    rows = []
+    for coordinate, rate in zip(coordinates, rates, strict=True):
+        momentum = sp.diff(kinetic, rate)
+        transport = (sp.diff(momentum, q) * w for q, w in zip(coordinates, rates, strict=True))
+        slopes = (sp.diff(energy, coordinate) for energy in (kinetic, potential))
+        rows.append(LagrangeRow(coordinate, rate, momentum, sp.Add(*transport), *slopes))
+    return rows
 
 
 def lagrange(configuration: RigidConfiguration) -> RigidEquations:
@@ -23,12 +57,8 @@ def lagrange(configuration: RigidConfiguration) -> RigidEquations:
     kinetic = sp.Add(*(kinetic for kinetic, _ in energies))
     potential = sp.Add(*(potential for _, potential in energies))
     mass_matrix = sp.hessian(kinetic, rates)
-    forcing = []
-    for coordinate, rate in zip(coordinates, rates, strict=True):
-        momentum = sp.diff(kinetic, rate)
-        transport = (sp.diff(momentum, q) * w for q, w in zip(coordinates, rates, strict=True))
-        force = sp.diff(kinetic, coordinate) - sp.diff(potential, coordinate) - sp.Add(*transport)
-        forcing.append(sp.expand(force))
+    rows = lagrange_rows(coordinates, rates, kinetic, potential)
+    forcing = [sp.expand(row.kinetic_slope - row.potential_slope - row.transport) for row in rows]
     return RigidEquations(
         configuration.axes,
         coordinates,

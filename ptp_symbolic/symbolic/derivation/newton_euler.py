@@ -15,7 +15,7 @@ from ptp_symbolic.symbolic.symbols import ZERO, real
 
 
 @dataclass(frozen=True)
-class _Motion:
+class Motion:
     """Motion of a frame in its own coordinates: `spin` in rad/s, `spin_rate` in rad/s^2, gravity,
     and `place`, `velocity` and `acceleration` of its origin in m, m/s and m/s^2.
     """
@@ -28,6 +28,38 @@ class _Motion:
     acceleration: sp.Matrix
 
 
+@dataclass(frozen=True)
+class JointLoad:
+    """What a joint carries: of every body behind it, up to the next joint, the `forces` [3] in N on
+    the centre of mass and the `moments` [3] in N m about it that its motion takes; their sum, with
+    what is further out, as `force` and as `moment` about the origin of the frame behind the joint,
+    in that frame; and the part `joint_torque` about, or along, the axis.
+    """
+
+    axis: str
+    forces: tuple[tuple[str, sp.Matrix], ...]
+    moments: tuple[tuple[str, sp.Matrix], ...]
+    force: sp.Matrix
+    moment: sp.Matrix
+    joint_torque: sp.Expr
+
+
+def acceleration(axis: str) -> sp.Symbol:
+    """Joint acceleration acceleration_<axis> in rad/s^2."""
+    return real(f"acceleration_{axis}")
+
+
+def newton_euler_steps(
+    configuration: RigidConfiguration,
+) -> tuple[list[Motion], list[JointLoad]]:
+    """Motion of the base and of the frame behind each joint, and what each joint carries; base
+    first.
+    """
+    accelerations = [acceleration(axis) for axis in configuration.axes]
+    motions = _outward(configuration, accelerations)
+    return motions, _inward(configuration, motions)
+
+
 def newton_euler(configuration: RigidConfiguration) -> RigidEquations:
     """Return M q'' = f + tau of `configuration` by Newton's and Euler's equations of each body.
 
@@ -38,9 +70,9 @@ def newton_euler(configuration: RigidConfiguration) -> RigidEquations:
     axes = configuration.axes
     coordinates = tuple(kinematics.angle(axis) for axis in axes)
     rates = tuple(kinematics.rate(axis) for axis in axes)
-    accelerations = [real(f"acceleration_{axis}") for axis in axes]
-    motions = _outward(configuration, accelerations)
-    moments = _inward(configuration, motions)
+    accelerations = [acceleration(axis) for axis in axes]
+    motions, loads = newton_euler_steps(configuration)
+    moments = [load.joint_torque for load in loads]
     mass_matrix = sp.Matrix(moments).jacobian(accelerations)
     at_rest = dict.fromkeys(accelerations, 0)
     kinetic = potential = ZERO
@@ -61,10 +93,10 @@ def newton_euler(configuration: RigidConfiguration) -> RigidEquations:
     )
 
 
-def _outward(configuration: RigidConfiguration, accelerations: list[sp.Symbol]) -> list[_Motion]:
+def _outward(configuration: RigidConfiguration, accelerations: list[sp.Symbol]) -> list[Motion]:
     """Motion of the base and of the frame behind each joint, base first."""
     still = sp.zeros(3, 1)
-    motions = [_Motion(still, still, sp.Matrix(configuration.gravity), still, still, still)]
+    motions = [Motion(still, still, sp.Matrix(configuration.gravity), still, still, still)]
     for axis, acceleration in zip(configuration.axes, accelerations, strict=True):
         before = motions[-1]
         inwards = configuration.rotation(axis).T
@@ -78,7 +110,7 @@ def _outward(configuration: RigidConfiguration, accelerations: list[sp.Symbol]) 
         drawn = before.spin_rate.cross(arm) + before.spin.cross(turning + sliding)
         drawn += slides * acceleration
         motions.append(
-            _Motion(
+            Motion(
                 carried + relative,
                 spin_rate,
                 inwards * before.gravity,
@@ -99,36 +131,38 @@ def _directions(configuration: RigidConfiguration, axis: str) -> tuple[sp.Matrix
     return sp.Matrix(kinematics.joint_direction(axis)), sp.zeros(3, 1)
 
 
-def _inward(configuration: RigidConfiguration, motions: list[_Motion]) -> list[sp.Expr]:
-    """Moment in N m, or force in N, that each joint must give about or along its axis, base
-    first.
-    """
+def _inward(configuration: RigidConfiguration, motions: list[Motion]) -> list[JointLoad]:
+    """What each joint carries, base first."""
     axes = configuration.axes
-    moments: list[sp.Expr] = []
+    loads: list[JointLoad] = []
     moment, force = sp.zeros(3, 1), sp.zeros(3, 1)
     for place in range(len(axes), 0, -1):
+        forces, moments = [], []
         for body in configuration.bodies:
             if len(kinematics.joints_up_to(axes, body.frame)) == place:
-                pull = _force(body, motions[place])
-                moment += _moment(body, motions[place]) + sp.Matrix(body.com).cross(pull)
-                force += pull
+                pull, turn = _force(body, motions[place]), _moment(body, motions[place])
+                forces.append((body.name, pull))
+                moments.append((body.name, turn))
+                moment = moment + turn + sp.Matrix(body.com).cross(pull)
+                force = force + pull
         axis = axes[place - 1]
         turns, slides = _directions(configuration, axis)
-        moments.append(turns.dot(moment) + slides.dot(force))
+        joint_torque = turns.dot(moment) + slides.dot(force)
+        loads.append(JointLoad(axis, tuple(forces), tuple(moments), force, moment, joint_torque))
         outwards = configuration.rotation(axis)
         force = outwards * force
         moment = outwards * moment + sp.Matrix(configuration.offset(axis)).cross(force)
-    return moments[::-1]
+    return loads[::-1]
 
 
-def _force(body: Body, motion: _Motion) -> sp.Matrix:
+def _force(body: Body, motion: Motion) -> sp.Matrix:
     """Force [3] in N that makes the centre of mass of `body` follow `motion`."""
     spin, arm = motion.spin, sp.Matrix(body.com)
     turning = motion.spin_rate.cross(arm) + spin.cross(spin.cross(arm))
     return body.mass * (motion.acceleration + turning - motion.gravity)
 
 
-def _moment(body: Body, motion: _Motion) -> sp.Matrix:
+def _moment(body: Body, motion: Motion) -> sp.Matrix:
     """Moment [3] in N m about its centre of mass that makes `body` turn with `motion`."""
     spin = motion.spin
     return body.inertia * motion.spin_rate + spin.cross(_angular_momentum(body, spin))
