@@ -52,6 +52,7 @@ def log_figure(time: FloatArray, shown: Sequence[Shown]) -> str:
             len(shown), 2, squeeze=False, gridspec_kw={"width_ratios": (2.2, 1.0)}
         )
         set_margins(figure, len(shown), 2)
+        figure.subplots_adjust(wspace=0.2)  # room for powers of ten
         for (over_time, over_frequency), s in zip(grid, shown, strict=True):
             scale, unit = plot_unit(s.unit)
             steps = "steps-post" if s.role == "input" else "default"
@@ -74,6 +75,8 @@ def log_figure(time: FloatArray, shown: Sequence[Shown]) -> str:
             if white > 0.0:
                 over_frequency.axhline(white, color=BEFORE, linewidth=1.0, linestyle="--")
             over_frequency.set_title(f"{unit} per root Hz")
+        for axes in grid[:-1].flat:
+            axes.tick_params(labelbottom=False)
         grid[-1, 0].set_xlabel("time [s]")
         grid[-1, 1].set_xlabel("frequency [Hz]")
         return svg_of(figure)
