@@ -59,6 +59,16 @@ def test_a_saturated_signal_is_noted_and_a_switched_one_is_not() -> None:
     assert remarks([log(MOVING, np.sign(VOLTAGE))], PLATFORM) == ()
 
 
+def test_an_encoder_that_is_set_anew_is_noted_with_time_and_size() -> None:
+    """A jump of 900 counts within one sample; an impact that only turns the motion is none."""
+    jumped = MOVING + np.where(TIME >= 0.5, 900.0 * COUNT, 0.0)
+    (text,) = remarks([log(jumped)], PLATFORM)
+    assert "'pan_angle' jumps by 90" in text and "at 0.5 s" in text and "set anew" in text
+    bouncing = np.round(np.abs(np.sin(2.0 * TIME)) / COUNT) * COUNT
+    starting = np.where(TIME < 1.0, 0.0, np.round((TIME - 1.0) / COUNT) * COUNT)
+    assert remarks([log(bouncing), log(starting)], PLATFORM) == ()
+
+
 def test_pauses_and_jitter_are_noted() -> None:
     paused = TIME + np.where(TIME > 1.0, 0.4, 0.0)
     (text,) = remarks([log(MOVING, time=paused)], PLATFORM)

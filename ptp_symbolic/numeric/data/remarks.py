@@ -16,6 +16,7 @@ HALF_TURN = np.pi  # rad: no platform turns further from one sample to the next
 FEW_COUNTS = 3.0  # of an encoder: an angle that stays within them did not move
 SATURATED = 0.5  # share of the samples at the largest or smallest value of a signal that changes
 FEW_LEVELS = 5  # of a signal that is switched
+LONE = 20.0  # times the steps before and after it: what no machine does within a sample
 JITTER = 0.2  # of the sampling period, rms
 
 
@@ -74,6 +75,7 @@ def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
     for log in logs:
         found += [_wrap_remark(log.name, wraps) for wraps in log.wraps]
         found += _clock_remarks(log)
+        found += [t for k, s in enumerate(outputs) for t in _jump_remarks(log, k, s)]
     return tuple(found)
 
 
@@ -95,6 +97,23 @@ def _at_ends(values: FloatArray) -> float:
     if len(levels) <= FEW_LEVELS:
         return 0.0
     return float(np.mean((values == levels[0]) | (values == levels[-1])))
+
+
+def _jump_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]:
+    """Lone steps of an encoder that stay: it was set anew, at an index mark, or lost counts."""
+    if signal.count is None:
+        return []
+    step = np.abs(np.diff(log.outputs[:, column]))
+    around = np.maximum(np.maximum(step[:-2], step[2:]), signal.count)
+    lone = np.flatnonzero(step[1:-1] > LONE * around) + 2
+    if not len(lone):
+        return []
+    size, time = step[lone[0] - 1] / signal.count, log.time[lone[0]]
+    more = f" and {len(lone) - 1} more" if len(lone) > 1 else ""
+    return [
+        f"{log.name}: '{signal.column}' jumps by {size:.6g} counts at {time:.6g} s{more},"
+        " between samples that hardly move: was the encoder set anew, at an index?"
+    ]
 
 
 def _wrap_remark(name: str, wraps: Wraps) -> str:
