@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data.continuity import LONG_PAUSE, Wraps
@@ -16,7 +17,8 @@ HALF_TURN = np.pi  # rad: no platform turns further from one sample to the next
 FEW_COUNTS = 3.0  # of an encoder: an angle that stays within them did not move
 SATURATED = 0.5  # share of the samples at the largest or smallest value of a signal that changes
 FEW_LEVELS = 5  # of a signal that is switched
-LONE = 20.0  # times the steps before and after it: what no machine does within a sample
+BESIDE = 5  # samples before and after a step
+LONE = 20.0  # times the rates beside it: what no machine does within a sample
 JITTER = 0.2  # of the sampling period, rms
 
 
@@ -103,9 +105,11 @@ def _jump_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]
     """Lone steps of an encoder that stay: it was set anew, at an index mark, or lost counts."""
     if signal.count is None:
         return []
-    step = np.abs(np.diff(log.outputs[:, column]))
-    around = np.maximum(np.maximum(step[:-2], step[2:]), signal.count)
-    lone = np.flatnonzero(step[1:-1] > LONE * around) + 2
+    step, period = np.abs(np.diff(log.outputs[:, column])), np.diff(log.time)
+    rate = np.maximum(step, signal.count) / period
+    beside = np.r_[np.ones(BESIDE), 0.0, np.ones(BESIDE)] > 0.0
+    around = maximum_filter(rate, footprint=beside, mode="nearest")
+    lone = np.flatnonzero(rate > LONE * around) + 1
     if not len(lone):
         return []
     size, time = step[lone[0] - 1] / signal.count, log.time[lone[0]]
