@@ -93,7 +93,8 @@ def fit(source: str, logs: tuple[str, ...], out: Path, as_json: bool) -> None:
 
     platform = declared_platform(source)
     check_writable(out)
-    found = fit_platform(platform, logs, progress_line())
+    words = ["fit", "--platform", source, *logs, "--out", str(out)]
+    found = fit_platform(platform, logs, progress_line(), shlex.join(["ptp-symbolic", *words]))
     write_files_atomically(out, found.files)
     note_defaults(platform)
     if as_json:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ptp_symbolic.models import emission, variants
-from ptp_symbolic.numeric.data import read_logs
+from ptp_symbolic.numeric.data import log_files, read_logs
 from ptp_symbolic.numeric.diagnose.errors import error_of
 from ptp_symbolic.numeric.diagnose.floor import carried_noise, floor_of
 from ptp_symbolic.numeric.diagnose.proposals import propose
@@ -21,6 +21,7 @@ from ptp_symbolic.numeric.identify.fit import (
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.platform import Platform, platform_text
 from ptp_symbolic.workflows.preparation import look_at, task_for, workers
+from ptp_symbolic.workflows.provenance import provenance
 from ptp_symbolic.workflows.result import (
     SCHEMA_VERSION,
     Output,
@@ -35,15 +36,20 @@ START_SHARE = 1e-2  # error of those simulations, as a share of the noise
 
 
 def fit_platform(
-    platform: Platform, paths: Iterable[Path | str], progress: Progress = lambda text: None
+    platform: Platform,
+    paths: Iterable[Path | str],
+    progress: Progress = lambda text: None,
+    command: str | None = None,
 ) -> Output:
     """Fit the free parameters of `platform` to all logs in `paths`.
 
     The error before is that at the declared start values (None where they do not simulate), as
-    after with the state at the start of every run fitted. Raises InputError for logs and platforms
-    that do not fit each other.
+    after with the state at the start of every run fitted. `command` is the command line that asks
+    for it. Raises InputError for logs and platforms that do not fit each other.
     """
-    logs = read_logs(paths, platform)
+    places = log_files(paths)
+    logs = read_logs(places, platform)
+    sources = provenance(platform, {"fit": (places, logs)}, command)
     noted = look_at(platform, logs, logs, progress)
     model = emission.emit(platform)
     with workers() as executor:
@@ -71,6 +77,7 @@ def fit_platform(
         "far_from_floor": trial.fit.failed is not None or left > FAR_FROM_FLOOR * least,
         "windows": windows_table(task),
         "remarks": list(noted),
+        "provenance": sources,
     }
     files = {"platform.toml": platform_text(fitted), "fit.json": json_text(summary)}
     return Output(summary, files)

@@ -43,6 +43,8 @@ def test_a_fit_far_from_the_floor_says_so(call, tmp_path: Path) -> None:
     assert f"{after:.4g} counts rms over all runs ({before:.4g} at the start values)" in done.out
     assert summary["windows"] == {"count": 8, "seconds": pytest.approx(1.0, abs=0.01)}
     assert summary["far_from_floor"] is True
+    assert summary["provenance"]["command"].startswith("ptp-symbolic fit --platform ")
+    assert [log["part"] for log in summary["provenance"]["logs"]] == ["fit"]
 
     fitted = read_platform(out / "platform.toml")
     values = {p.name: p.value for p in fitted.parameters if p.free}
