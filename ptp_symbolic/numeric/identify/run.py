@@ -114,8 +114,9 @@ def with_start(
     A local parabola over a tenth of a second gives the rate, in the middle of it where the run is a
     window and `around` it is the rest of a log. A joint with dry friction whose rate is within its
     noise is taken to be at rest; one that is near it may be. A moving joint is driven: its gear
-    touches the face ahead and has wound up the shaft, nobody knows by how much. Where the machine
-    is `underway`, as in a window, the gear has a rate of its own, for it may cross its gap.
+    touches the face ahead and has wound up the shaft, nobody knows by how much; or it crosses its
+    gap, at anything between standstill and twice the rate of the joint. Of one that is `underway`,
+    as in a window, the shaft may be wound up at rest too.
     """
     underway = underway or around is not None
     states = list(model.state_names)
@@ -156,12 +157,10 @@ def with_start(
         tangent[gear] = 1.0
         rate = start[states.index(states[joint].replace("theta_", "omega_", 1))]
         seen = run.signals.index(states[joint]) if states[joint] in run.signals else None
-        moving = underway or rate != 0.0
-        reach = ANYWHERE if moving else 1.0
-        if moving and seen is not None:
-            turning, fastest = states[gear].replace("theta_", "omega_", 1), _fastest(run, seen)
-            crossing = (fastest, -fastest)
-            unknowns.append(_unknown(states, turning, [turning], ANYWHERE, fastest, crossing))
+        reach = ANYWHERE if underway or rate != 0.0 else 1.0
+        if rate != 0.0:
+            turning = states[gear].replace("theta_", "omega_", 1)
+            unknowns.append(_unknown(states, turning, [turning], ANYWHERE, abs(float(rate))))
         unknowns.append(
             StartUnknown(
                 f"gap_place_{contact}",
@@ -175,13 +174,6 @@ def with_start(
             )
         )
     return replace(run, start=start, unknowns=tuple(unknowns))
-
-
-def _fastest(run: Run, column: int) -> float:
-    """Largest rate of a signal over the span of a start: what its motor reaches."""
-    count = min(_start_samples(run), len(run.time) - 1)
-    moved = np.abs(run.measured[count:, column] - run.measured[:-count, column])
-    return float(np.max(moved / (run.time[count:] - run.time[:-count])))
 
 
 def _start_samples(run: Run) -> int:
