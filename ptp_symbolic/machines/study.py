@@ -10,6 +10,7 @@ from typing import Any
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.machines.force_error import force_error
+from ptp_symbolic.machines.friction_ladder import ladder
 from ptp_symbolic.numeric.data import read_log
 from ptp_symbolic.numeric.friction_map.points import Columns, read_points
 from ptp_symbolic.numeric.friction_map.summary import friction_map
@@ -95,11 +96,13 @@ def emps(folder: Path, progress: Progress) -> dict[str, Any]:
 
 
 def servo_pendulum(folder: Path, progress: Progress) -> dict[str, Any]:
-    """The pendulum on a servo: its diagnosis."""
+    """The pendulum on a servo: its diagnosis, and laws of friction each with one part more."""
     platform = read_platform(PLATFORMS / "servo_pendulum.toml")
     progress("servo pendulum")
-    found = diagnose_platform(platform, *pendulum_logs(folder), progress)
-    return _diagnosis("Pendulum on a geared servo", PENDULUM, found)
+    logs = pendulum_logs(folder)
+    found = diagnose_platform(platform, *logs, progress)
+    rungs = ladder(platform, *logs, progress)
+    return {**_diagnosis("Pendulum on a geared servo", PENDULUM, found), "ladder": rungs}
 
 
 def screw_drives(folder: Path, progress: Progress) -> dict[str, Any]:
