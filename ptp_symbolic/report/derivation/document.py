@@ -1,6 +1,7 @@
 """The derivation of a platform's equations as a LaTeX document, printed from the expressions."""
 
 from ptp_symbolic.platform import Platform
+from ptp_symbolic.report.derivation.drawing import PACKAGES, drawing
 from ptp_symbolic.report.derivation.effects import effects
 from ptp_symbolic.report.derivation.emitted import emitted
 from ptp_symbolic.report.derivation.energy import energy
@@ -26,9 +27,11 @@ def render_derivation(platform: Platform) -> dict[str, str | bytes]:
     found = simplified(equations)
     parts = [
         PREAMBLE,
+        PACKAGES,
         LINKS,
         title_block(platform, equations),
         r"\tableofcontents",
+        drawing(platform, equations),
         frames(equations),
         symbols(equations, platform),
         three_routes(equations),

@@ -35,15 +35,19 @@ ARGUMENT_WIDTH = 40  # of a maximum, beside what it is multiplied with
 _SIGN = '<mo form="infix">{}</mo>'
 
 
+def letter_and_place(name: str) -> tuple[str, list[str]]:
+    """The letter of a symbol, and the words and numbers of its index."""
+    letter, *place = LETTERS.get(name, name).split("_")
+    trailing = re.fullmatch(r"([A-Za-z]+)(\d+)", letter)
+    return (trailing[1], [trailing[2], *place]) if trailing else (letter, place)
+
+
 def symbol_latex(name: str) -> str:
     """LaTeX of a symbol name: ``theta_gear_pan`` becomes a theta with an upright subscript.
 
     Letters are set in italics, words upright.
     """
-    letter, *place = LETTERS.get(name, name).split("_")
-    trailing = re.fullmatch(r"([A-Za-z]+)(\d+)", letter)
-    if trailing:
-        letter, place = trailing[1], [trailing[2], *place]
+    letter, place = letter_and_place(name)
     word = letter if len(letter) <= 1 else rf"\mathrm{{{letter}}}"
     head = DERIVATIVES.get(letter, rf"\{letter}" if letter in GREEK else word)
     return rf"{head}_{{\mathrm{{{','.join(place)}}}}}" if place else head
