@@ -1,10 +1,14 @@
 """The derivation of a platform's equations as a LaTeX document, printed from the expressions."""
 
+from collections.abc import Sequence
+
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.derivation.drawing import PACKAGES, drawing
 from ptp_symbolic.report.derivation.effects import effects
 from ptp_symbolic.report.derivation.emitted import emitted
 from ptp_symbolic.report.derivation.energy import energy
+from ptp_symbolic.report.derivation.linear import linearised
+from ptp_symbolic.report.derivation.operating_points import read_points, usual_points
 from ptp_symbolic.report.derivation.results import equations_of_motion
 from ptp_symbolic.report.derivation.routes import three_routes
 from ptp_symbolic.report.derivation.simplification import simplification, simplified
@@ -17,14 +21,18 @@ from ptp_symbolic.symbolic.derivation.assembly import assemble
 LINKS = r"\usepackage[hidelinks,bookmarksnumbered]{hyperref}"
 
 
-def render_derivation(platform: Platform) -> dict[str, str | bytes]:
-    """Return the document as ``derivation.tex``; it needs no other file.
+def render_derivation(platform: Platform, points: Sequence[str] = ()) -> dict[str, str | bytes]:
+    """Return the document as ``derivation.tex``, and the figures that it includes.
 
-    Raises InputError for a platform that cannot be derived or a machine that cannot exist.
+    `points` are operating points for the linearisation, see `read_points`; without any it chooses.
+    Raises InputError for a platform that cannot be derived, a machine that cannot exist, and an
+    operating point that it does not have.
     """
     equations = assemble(platform)
     refuse_impossible(equations)
+    chosen = read_points(equations, points) or usual_points(equations)
     found = simplified(equations)
+    linear, figures = linearised(equations, chosen)
     parts = [
         PREAMBLE,
         PACKAGES,
@@ -39,7 +47,8 @@ def render_derivation(platform: Platform) -> dict[str, str | bytes]:
         simplification(found),
         effects(equations),
         energy(equations),
+        linear,
         emitted(equations, found.base_form),
         r"\end{document}",
     ]
-    return {"derivation.tex": "\n\n".join(parts) + "\n"}
+    return {"derivation.tex": "\n\n".join(parts) + "\n", **figures}

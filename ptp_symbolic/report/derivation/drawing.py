@@ -9,7 +9,7 @@ from ptp_symbolic.report.latex_text import escaped, table
 from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation.equations import Equations
 
-PACKAGES = "\\usepackage{tikz}\n\\usetikzlibrary{arrows.meta}"
+PACKAGES = "\\usepackage{graphicx}\n\\usepackage{tikz}\n\\usetikzlibrary{arrows.meta}"
 HOW = (
     r" Arrows point the positive way. Directions are those of the declared numbers; lengths are not"
     r" to scale, but what is longer is drawn longer, and an offset of zero is not drawn."
