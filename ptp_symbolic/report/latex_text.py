@@ -93,6 +93,12 @@ def displayed(text: str) -> str:
     return f"\\[\n{text}\n\\]\n"
 
 
+def number_latex(value: float) -> str:
+    """A number with four digits, powers of ten as in print."""
+    mantissa, _, power = f"{value:.4g}".partition("e")
+    return rf"{mantissa}\cdot10^{{{int(power)}}}" if power else mantissa
+
+
 def unit_latex(unit: str) -> str:
     """A unit set upright, with thin spaces and raised powers; empty for a pure number."""
     if unit in ("", "1"):

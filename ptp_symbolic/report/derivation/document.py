@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from ptp_symbolic.platform import Platform
+from ptp_symbolic.report.derivation.coupling import coupled_axes
 from ptp_symbolic.report.derivation.drawing import PACKAGES, drawing
 from ptp_symbolic.report.derivation.effects import effects
 from ptp_symbolic.report.derivation.emitted import emitted
@@ -43,6 +44,7 @@ def render_derivation(platform: Platform, points: Sequence[str] = ()) -> dict[st
         frames(equations),
         symbols(equations, platform),
         three_routes(equations),
+        coupled_axes(equations),
         equations_of_motion(equations),
         simplification(found),
         effects(equations),

@@ -12,7 +12,7 @@ from ptp_symbolic.report.derivation.bode import (
     frequencies,
     frequency_response,
 )
-from ptp_symbolic.report.latex_text import table, unit_latex
+from ptp_symbolic.report.latex_text import number_latex, table, unit_latex
 from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.linearisation import (
@@ -133,25 +133,19 @@ def _pole_rows(name: str, found: Sequence[Pole], equations: Equations) -> list[l
             cells = ["$0$", "", "", f"integrates{times}"]
         elif s.imag:
             sign = r"\pm"
-            written = rf"${_plain(s.real)} {sign} {_plain(s.imag)}\,\mathrm{{i}}$"
+            written = rf"${number_latex(s.real)} {sign} {number_latex(s.imag)}\,\mathrm{{i}}$"
             kind = "oscillates" if s.real < 0 else "grows, oscillating"
             cells = [written, _hertz(size), f"{-s.real / size:.3f}", kind]
         else:
             kind = "decays" if s.real < 0 else "grows"
-            time = rf"{kind} in ${_plain(1.0 / size)}$\,s"
-            cells = [f"${_plain(s.real)}$", "", "", time]
+            time = rf"{kind} in ${number_latex(1.0 / size)}$\,s"
+            cells = [f"${number_latex(s.real)}$", "", "", time]
         rows.append(["" if rows else rf"\addlinespace {name}", *cells])
     return rows
 
 
-def _plain(value: float) -> str:
-    """A number with four digits, powers of ten as in print."""
-    mantissa, _, power = f"{value:.4g}".partition("e")
-    return rf"{mantissa}\cdot10^{{{int(power)}}}" if power else mantissa
-
-
 def _hertz(size: float) -> str:
-    return rf"${_plain(size / (2.0 * math.pi))}$\,Hz"
+    return rf"${number_latex(size / (2.0 * math.pi))}$\,Hz"
 
 
 def _held(models: Sequence[LinearModel], names: Sequence[str]) -> str:
