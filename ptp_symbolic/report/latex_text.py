@@ -37,6 +37,7 @@ SPECIAL = {
     "^": r"\textasciicircum{}",
 }
 SHORT_NAME = 12
+NUMBER = 3  # width of the number of an equation, beyond the margin that it has
 SHORT_TABLE = 12
 
 
@@ -71,9 +72,10 @@ def formulas(
     if not rows:
         return ""
     widest = max(len(re.sub(r"\\[a-z]+|[{}_\\]", "", left)) for left, _ in rows)
+    room = LINE_WIDTH - max(0, widest - SHORT_NAME) - (NUMBER if with_numbers else 0)
     lines = []
     for left, right in rows:
-        first, *more = latex_lines(right, LINE_WIDTH - max(0, widest - SHORT_NAME))
+        first, *more = latex_lines(right, room)
         own = [f"{left} {relation}{{}}& {first}", *(f"& {line}" for line in more)]
         lines += [*(rf"{line} \notag" for line in own[:-1]), own[-1]] if with_numbers else own
     free = max(len(lines) - together, 0)

@@ -9,6 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from ptp_symbolic.platform import Platform, preset_names, read_platform
+from ptp_symbolic.report.diagnosis import render_diagnosis
 from ptp_symbolic.report.drawing import PlatformDrawing, drawn, svg_text, tikz_text
 from ptp_symbolic.report.drawing.scene import Label, Scene
 from ptp_symbolic.report.drawing.space import POSE, Space, projected, space_of
@@ -19,6 +20,7 @@ from tests.drawing.platforms import (
     platform_of_every_kind,
     with_effects,
 )
+from tests.report.synthetic_diagnosis import synthetic_diagnosis
 
 
 def drawing_of(platform: Platform, *marked: str) -> PlatformDrawing:
@@ -170,3 +172,18 @@ def test_the_same_platform_is_drawn_the_same() -> None:
     first, second = (drawing_of(offset_platform()) for _ in range(2))
     assert svg_text(first.frames) == svg_text(second.frames)
     assert tikz_text(first.frames) == tikz_text(second.frames)
+
+
+def test_the_diagnosis_page_marks_what_was_added_at_its_place() -> None:
+    found = drawing_of(offset_platform(), "k1_cable_pan")
+    html = render_diagnosis(synthetic_diagnosis("explained"), {}, found)
+    section = html[html.index('<section id="machine">') :]
+    section = section[: section.index("</section>")]
+    assert "Where it sits" in section
+    assert "cable wrap that pulls back (pan axis), at the pan joint." in section
+    assert section.count("<svg") == 3
+    assert section.count('<tr class="accepted">') == 1
+    assert 'href="#machine"' in html
+    declared = render_diagnosis(synthetic_diagnosis("nothing_missing"), {}, drawing_of(carriage()))
+    assert "The declared machine" in declared
+    assert 'id="machine"' not in render_diagnosis(synthetic_diagnosis("explained"), {})

@@ -18,7 +18,7 @@ from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.linearisation import (
     LinearModel,
     OperatingPoint,
-    linear_model,
+    linear_models,
 )
 from ptp_symbolic.symbolic.mechanics import kinematics
 
@@ -39,7 +39,7 @@ def linearised(
     equations: Equations, points: Sequence[OperatingPoint]
 ) -> tuple[str, dict[str, bytes]]:
     """Section with poles and Bode plots about `points`, and the files of its figures."""
-    models = [linear_model(equations, point) for point in points]
+    models = linear_models(equations, points)
     names = [_name(equations, point) for point in points]
     rows = [
         row

@@ -72,7 +72,7 @@ def symbols(equations: Equations, platform: Platform) -> str:
     ]
     return (
         r"\section{Symbols} Parameters:"
-        + table("lL{62mm}lrl", ["symbol", "meaning", "unit", "value", ""], rows)
+        + table("lL{60mm}lrl", ["symbol", "meaning", "unit", "value", ""], rows)
         + r"\par\noindent Variables:\nopagebreak"
         + table("lL{78mm}ll", ["symbol", "meaning", "unit", ""], others)
     )

@@ -57,7 +57,7 @@ def drive_train(equations: Equations, axis: str, effects: Iterable[Sited]) -> Dr
         x += width
 
     if COMMAND in parts:
-        add(COMMAND, 1.6, _box("command", 1.6))
+        add(COMMAND, 1.9, _box("command", 1.9))
     if drives:
         add(MOTOR, 1.7, _motor())
         fixed = drives[0].inertia.free_symbols <= {p.symbol for p in equations.parameters}
@@ -83,7 +83,7 @@ def _input(equations: Equations, axis: str, effects: Iterable[Sited]) -> Iterato
     names = [i.name for i in equations.inputs if i.name.endswith(f"_{axis}")]
     yield arrow((0.1, 0.0), (1.3, 0.0))
     for k, name in enumerate(n for n in names if n not in beside):
-        yield Label((0.6, 0.0 + 0.45 * k), real(name), (0.0, 1.0))
+        yield Label((1.15, 0.28 + 0.45 * k), real(name), (-1.0, 0.0))
 
 
 def _positive(x: float, name: str, linear: bool) -> Iterator[Item]:

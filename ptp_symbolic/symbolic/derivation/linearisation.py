@@ -70,9 +70,19 @@ def linear_model(equations: Equations, point: OperatingPoint) -> LinearModel:
     Inputs, currents and the angles of gear outputs are those that hold the rates, by Newton's
     method. States on which no acceleration depends are left out; what samplers set is an input.
     """
-    own = _in_mode(equations, point)
-    states, inputs = _states(own), _inputs(own)
-    field = _VectorField(own, states, inputs)
+    return linear_models(equations, [point])[0]
+
+
+def linear_models(equations: Equations, points: Sequence[OperatingPoint]) -> list[LinearModel]:
+    """The linear model about each of `points`; see `linear_model`."""
+    modes = {point.sliding for point in points}
+    fields = {sliding: _VectorField(_in_mode(equations, sliding)) for sliding in modes}
+    return [_about(point, fields[point.sliding]) for point in points]
+
+
+def _about(point: OperatingPoint, field: "_VectorField") -> LinearModel:
+    """The linear model of `field` about `point`."""
+    own, states, inputs = field.equations, field.states, field.inputs
     values = _start(own, point, states, inputs)
     joints = {kinematics.angle(a) for a in own.axes} | {*own.rates}
     unknown = [k for k, s in enumerate((*states, *inputs)) if s not in joints]
@@ -115,13 +125,13 @@ def _start(
     return values
 
 
-def _in_mode(equations: Equations, point: OperatingPoint) -> Equations:
-    """`equations` in the mode of `point`: friction a torque, bodies in rigid contact one body."""
+def _in_mode(equations: Equations, sliding: bool) -> Equations:
+    """`equations` in one mode: friction a torque or none, bodies in rigid contact one body."""
     modes: dict[sp.Basic, sp.Expr] = dict.fromkeys(equations.mode_symbols, sp.Integer(0))
     for contact in equations.contacts:
         modes |= {contact.side: sp.Integer(1), contact.active: sp.Integer(1)}
     forcing, terms = list(equations.forcing), dict(equations.terms)
-    for friction in equations.frictions if point.sliding else ():
+    for friction in equations.frictions if sliding else ():
         modes[slide(friction.axis)] = sp.Integer(1)
         forcing[equations.rates.index(friction.rate)] -= friction.level
         terms |= friction.terms
@@ -206,13 +216,12 @@ def _symbols(equations: Equations, expressions: Sequence[sp.Expr]) -> set[sp.Sym
 
 
 class _VectorField:
-    """dx/dt of `states` and its derivatives by states and inputs, at given values."""
+    """dx/dt of the states and its derivatives by states and inputs, at given values."""
 
-    def __init__(
-        self, equations: Equations, states: Sequence[sp.Symbol], inputs: Sequence[sp.Symbol]
-    ) -> None:
+    def __init__(self, equations: Equations) -> None:
+        self.equations = equations
+        self.states, self.inputs = states, inputs = _states(equations), _inputs(equations)
         self._variables = (*states, *inputs)
-        self._equations, self._states = equations, states
         n = len(equations.rates)
         self._mass = [[real(f"mass_{i}_{j}") for j in range(n)] for i in range(n)]
         self._force = [real(f"force_{i}") for i in range(n)]
@@ -253,15 +262,15 @@ class _VectorField:
         for i, row in enumerate(self._mass):
             right[i] -= sum(a * slopes[m] for a, m in zip(accelerations, row, strict=True))
         turned = np.linalg.solve(mass, right)
-        rates = dict(zip(self._equations.coordinates, self._equations.rates, strict=True))
+        rates = dict(zip(self.equations.coordinates, self.equations.rates, strict=True))
         found = {q: (known[w], slopes[w]) for q, w in rates.items()}
         found |= dict(
-            zip(self._equations.rates, zip(accelerations, turned, strict=True), strict=True)
+            zip(self.equations.rates, zip(accelerations, turned, strict=True), strict=True)
         )
         found |= {s: (known[r], slopes[r]) for s, r in self._others.items()}
         return (
-            np.array([found[s][0] for s in self._states]),
-            np.array([found[s][1] for s in self._states]),
+            np.array([found[s][0] for s in self.states]),
+            np.array([found[s][1] for s in self.states]),
         )
 
 
