@@ -13,7 +13,7 @@ from ptp_symbolic.symbolic.symbols import real
 
 ARROW = {"base": 3.4, "pan": 4.0, "tilt": 4.6}  # lengths of the axes of a frame in cm
 ARC = {"pan": 2.2, "tilt": 3.2}  # radii of the arcs of the joint angles in cm
-LEG, HALF_FORK = 2.6, 1.45  # of the machine's outline, in cm
+LEG, HALF_FORK, TABLE = 2.6, 1.45, 0.6  # of the machine's outline, in cm
 BODY, CARRIAGE = (0.95, 0.95, 0.5), (0.6, 0.4, 0.4)  # half the size of a box in cm
 SHADE = 0.06
 ALONG_STEP = 0.72  # where beside a coordinate of a centre of mass its name is
@@ -197,7 +197,7 @@ def _ring(centre: Vector, frame: Frame, radius: float, shade: float) -> Iterator
 def _fork(foot: Vector, carrier: Frame, last: Frame) -> Iterator[Item]:
     """Two arms that hold the tilt axis, and the body between them; without a tilt axis a table."""
     if last.name != "tilt":
-        yield from _ring(foot, carrier, 1.1, 0.06)
+        yield from _ring(foot + carrier.axes[:, 2] * TABLE, carrier, 1.1, SHADE)
         return
     across, centre = carrier.axes[:, 1] * HALF_FORK, last.origin
     level = foot + carrier.axes[:, 0] * float((centre - foot) @ carrier.axes[:, 0])

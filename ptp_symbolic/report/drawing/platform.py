@@ -1,5 +1,6 @@
 """The drawing of a platform: its frames, the drive of every axis, and a key of its effects."""
 
+import math
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -32,6 +33,8 @@ WORDS = {
     SENSOR: "{axis} encoder",
 }
 IN_A_ROW, STEP = 3, 0.48  # balloons under a glyph, and from one to the next in cm
+BESIDE = 0.5  # cm from a centre of mass to the number of its body
+ON_COLUMN, ON_TABLE = 0.9, 1.55  # heights above the foot of what turns about pan, in cm
 ROW_OF_NAMES = 0.5  # cm from the name of one marked effect to that of the next
 
 
@@ -80,7 +83,7 @@ def drawn(
     space = space_of(equations)
     items = drawn_frames(equations, space)
     bare = Scene(tuple(items), "")
-    items += _beside(bare, space, effects, key)
+    items += _beside(bare, space, equations.rigid.sliding, effects, key)
     return PlatformDrawing(
         Scene(tuple(items), f"Frames, axes and centres of mass of {platform.title}"),
         tuple(
@@ -128,18 +131,22 @@ def _numbered(
 
 
 def _beside(
-    scene: Scene, space: Space, effects: Sequence[Sited], key: Sequence[KeyEntry]
+    scene: Scene,
+    space: Space,
+    sliding: Collection[str],
+    effects: Sequence[Sited],
+    key: Sequence[KeyEntry],
 ) -> Iterator[Item]:
     """The numbers of what sits on the base and on bodies: at centres of mass, else at the left."""
     left = scene.bounds()[0]
-    found: dict[tuple[Point, bool], list[KeyEntry]] = {}
+    found: dict[tuple[Point, Point | None], list[KeyEntry]] = {}
     for effect, entry in zip(effects, key, strict=True):
         for site in effect.sites:
             if site.part in (BASE, BODY):
-                found.setdefault(_place(site, space), []).append(entry)
-    for (at, is_centre), entries in found.items():
-        if is_centre:
-            first = (at[0] + 0.45, at[1] + 0.4)
+                found.setdefault(_place(site, space, sliding), []).append(entry)
+    for (at, beside), entries in found.items():
+        if beside is not None:
+            first = beside
         else:
             first = (left - 0.3 - STEP * (len(entries) - 1), at[1])
             yield line((left - 0.3 + 0.21, at[1]), at, weight="thin")
@@ -152,14 +159,18 @@ def _beside(
             yield Label((first[0] - 0.2, y), entry.title, (1.0, 0.0), marked=True)
 
 
-def _place(site: Site, space: Space) -> tuple[Point, bool]:
-    """Where on paper the base or a body is, and whether that is a centre of mass."""
+def _place(site: Site, space: Space, sliding: Collection[str]) -> tuple[Point, Point | None]:
+    """Where on paper the base or a body is; of a centre of mass, also where a number fits."""
     base, outer = space.frames[0], space.frames[-1]
     for centre in space.centres:
         if centre.body.name == site.name:
-            return projected(centre.at), True
+            (x0, y0), (x, y) = projected(centre.frame.origin), projected(centre.at)
+            length = math.hypot(x - x0, y - y0) or 1.0
+            across = (y0 - y) / length, (x - x0) / length
+            return (x, y), (x + BESIDE * across[0], y + BESIDE * across[1])
     if site.part == BASE:
-        return projected(base.origin - base.axes[:, 2] * LEG), False
-    if site.axis == outer.name:
-        return projected(outer.origin - 0.8 * outer.axes[:, 0]), False
-    return projected(base.origin - base.axes[:, 2] * (LEG - 0.9)), False
+        return projected(base.origin - base.axes[:, 2] * LEG), None
+    if outer.name == "tilt" == site.axis or outer.name in sliding:
+        return projected(outer.origin - 0.5 * outer.axes[:, 0]), None
+    height = ON_TABLE if site.axis == outer.name else ON_COLUMN
+    return projected(base.origin - base.axes[:, 2] * (LEG - height)), None
