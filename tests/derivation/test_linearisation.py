@@ -14,6 +14,7 @@ from ptp_symbolic.symbolic.derivation.linearisation import (
     LinearModel,
     OperatingPoint,
     linear_model,
+    vector_field,
 )
 from tests.drawing.platforms import carriage, with_effects
 
@@ -146,6 +147,23 @@ def test_the_linear_model_is_the_slope_of_the_emitted_module(
     size = np.abs(A).max()
     assert np.allclose(linear.A, A, rtol=1e-4, atol=1e-6 * size)
     assert np.allclose(linear.B, B, rtol=1e-5, atol=1e-6)
+
+
+def test_derivatives_hold_where_the_machine_accelerates() -> None:
+    """The mass matrix varies with the tilt angle: its slope counts with the acceleration."""
+    equations = assemble(read_platform("thesis-payload"))
+    module, field = ptp_symbolic.load("payload"), vector_field(equations)
+    p = module.parameter_vector()
+    assert list(map(str, field.states)) == list(module.state_names)
+    rng = np.random.default_rng(5)
+    x, u = rng.uniform(-1.0, 1.0, 4), rng.uniform(-3.0, 3.0, 2)
+    values = {q.symbol: q.default for q in equations.parameters}
+    values |= dict(zip((*field.states, *field.inputs), (*x, *u), strict=True))
+    rates, slopes = field.at(values)
+    assert np.allclose(rates, module.rhs(0.0, x, u, p), rtol=1e-10)
+    assert np.abs(rates[2:]).min() > 0.1
+    A = approx_fprime(x, lambda q: module.rhs(0.0, q, u, p), 1e-7)
+    assert np.allclose(slopes[:, :4], A, rtol=1e-5, atol=1e-5)
 
 
 def rows(linear: LinearModel, names: tuple[str, ...], letter: str) -> list[int]:

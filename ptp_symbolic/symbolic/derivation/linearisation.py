@@ -76,11 +76,16 @@ def linear_model(equations: Equations, point: OperatingPoint) -> LinearModel:
 def linear_models(equations: Equations, points: Sequence[OperatingPoint]) -> list[LinearModel]:
     """The linear model about each of `points`; see `linear_model`."""
     modes = {point.sliding for point in points}
-    fields = {sliding: _VectorField(_in_mode(equations, sliding)) for sliding in modes}
+    fields = {sliding: vector_field(equations, sliding) for sliding in modes}
     return [_about(point, fields[point.sliding]) for point in points]
 
 
-def _about(point: OperatingPoint, field: "_VectorField") -> LinearModel:
+def vector_field(equations: Equations, sliding: bool = False) -> "VectorField":
+    """The rates of change of all states that move the machine, dry friction left out or sliding."""
+    return VectorField(_in_mode(equations, sliding))
+
+
+def _about(point: OperatingPoint, field: "VectorField") -> LinearModel:
     """The linear model of `field` about `point`."""
     own, states, inputs = field.equations, field.states, field.inputs
     values = _start(own, point, states, inputs)
@@ -215,8 +220,8 @@ def _symbols(equations: Equations, expressions: Sequence[sp.Expr]) -> set[sp.Sym
     return found
 
 
-class _VectorField:
-    """dx/dt of the states and its derivatives by states and inputs, at given values."""
+class VectorField:
+    """dx/dt of `states` and its derivatives by `states` and `inputs`, at given values."""
 
     def __init__(self, equations: Equations) -> None:
         self.equations = equations
