@@ -29,13 +29,17 @@ def derivation(source: str, out: Path, points: tuple[str, ...]) -> None:
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.platform import naming_file
-    from ptp_symbolic.report.derivation import render_derivation
+    from ptp_symbolic.report.derivation import read_points, render_derivation
     from ptp_symbolic.report.pdf import compile_pdf
+    from ptp_symbolic.symbolic.derivation.assembly import assemble
 
     platform = declared_platform(source)
     check_writable(out)
     with naming_file(platform):
-        files = dict(render_derivation(platform, points))
+        equations = assemble(platform)
+    chosen = read_points(equations, points)
+    with naming_file(platform):
+        files = dict(render_derivation(platform, chosen))
     pdf = compile_pdf(files, "derivation")
     if pdf is not None:
         files["derivation.pdf"] = pdf

@@ -13,7 +13,7 @@ import pytest
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.emission import module_of
 from ptp_symbolic.platform import EffectDeclaration, preset_names, read_platform
-from ptp_symbolic.report.derivation import has_warning, render_derivation
+from ptp_symbolic.report.derivation import has_warning, read_points, render_derivation
 from ptp_symbolic.report.derivation.symbols import CATALOGUE
 from ptp_symbolic.report.latex_text import escaped
 from ptp_symbolic.report.pdf import PASSES, compile_pdf
@@ -165,7 +165,8 @@ def test_the_machine_is_drawn_and_its_linear_models_plotted() -> None:
 
 def test_operating_points_can_be_chosen() -> None:
     payload = read_platform("thesis-payload")
-    files = render_derivation(payload, ["theta_tilt=-30deg,omega_pan=0.5", "theta_tilt=1rad"])
+    points = ["theta_tilt=-30deg,omega_pan=0.5", "theta_tilt=1rad"]
+    files = render_derivation(payload, read_points(assemble(payload), points))
     text = str(files["derivation.tex"])
     linear = text[text.index(r"\section{Linearisation}") : text.index(r"\section{Final")]
     assert r"=-30^\circ" in linear
@@ -184,10 +185,16 @@ def test_operating_points_can_be_chosen() -> None:
 )
 def test_an_operating_point_that_makes_no_sense_is_refused(point: str, message: str) -> None:
     with pytest.raises(InputError, match=re.escape(message)):
-        render_derivation(read_platform("thesis-payload"), [point])
+        read_points(assemble(read_platform("thesis-payload")), [point])
 
 
 def test_friction_is_linearised_sliding_forwards_everywhere_or_nowhere() -> None:
     drive = read_platform("thesis-pan-drive")
     with pytest.raises(InputError, match="give each a rate above 0, or none a rate"):
-        render_derivation(drive, ["omega_pan=-0.1"])
+        read_points(assemble(drive), ["omega_pan=-0.1"])
+
+
+def test_an_operating_point_out_of_reach_is_refused() -> None:
+    drive = assemble(read_platform("thesis-tilt-drive"))
+    with pytest.raises(InputError, match=r"beyond the .* give one within \["):
+        read_points(drive, ["theta_tilt=120deg"])

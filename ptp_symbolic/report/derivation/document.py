@@ -9,7 +9,7 @@ from ptp_symbolic.report.derivation.effects import effects
 from ptp_symbolic.report.derivation.emitted import emitted
 from ptp_symbolic.report.derivation.energy import energy
 from ptp_symbolic.report.derivation.linear import linearised
-from ptp_symbolic.report.derivation.operating_points import read_points, usual_points
+from ptp_symbolic.report.derivation.operating_points import usual_points
 from ptp_symbolic.report.derivation.results import equations_of_motion
 from ptp_symbolic.report.derivation.routes import three_routes
 from ptp_symbolic.report.derivation.simplification import simplification, simplified
@@ -18,22 +18,23 @@ from ptp_symbolic.report.derivation.title import title_block
 from ptp_symbolic.report.latex_text import PREAMBLE
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.linearisation import OperatingPoint
 
 LINKS = r"\usepackage[hidelinks,bookmarksnumbered]{hyperref}"
 
 
-def render_derivation(platform: Platform, points: Sequence[str] = ()) -> dict[str, str | bytes]:
+def render_derivation(
+    platform: Platform, points: Sequence[OperatingPoint] = ()
+) -> dict[str, str | bytes]:
     """Return the document as ``derivation.tex``, and the figures that it includes.
 
-    `points` are operating points for the linearisation, see `read_points`; without any it chooses.
-    Raises InputError for a platform that cannot be derived, a machine that cannot exist, and an
-    operating point that it does not have.
+    It linearises about `points`, without any about those of `usual_points`. Raises InputError for
+    a platform that cannot be derived or a machine that cannot exist.
     """
     equations = assemble(platform)
     refuse_impossible(equations)
-    chosen = read_points(equations, points) or usual_points(equations)
     found = simplified(equations)
-    linear, figures = linearised(equations, chosen)
+    linear, figures = linearised(equations, points or usual_points(equations))
     parts = [
         PREAMBLE,
         PACKAGES,

@@ -37,20 +37,25 @@ def _depends(equations: Equations) -> bool:
 
 def _within(equations: Equations, tilt: float) -> bool:
     """Whether linkages allow the tilt angle."""
+    return all(lower < tilt < upper for lower, upper, _ in _bounds(equations, "tilt"))
+
+
+def _bounds(equations: Equations, axis: str) -> list[tuple[float, float, str]]:
+    """Between which angles of `axis` the equations hold, and what ends there."""
     values = {p.symbol: p.default for p in equations.parameters}
-    bounds = [
-        [float(end.xreplace(values)) for end in (limit.lower, limit.upper)]
+    return [
+        (float(limit.lower.xreplace(values)), float(limit.upper.xreplace(values)), limit.meaning)
         for limit in equations.limits
-        if limit.state in (kinematics.angle("tilt"), kinematics.gear_angle("tilt"))
+        if limit.state in (kinematics.angle(axis), kinematics.gear_angle(axis))
     ]
-    return all(lower < tilt < upper for lower, upper in bounds)
 
 
 def read_points(equations: Equations, texts: Sequence[str]) -> tuple[OperatingPoint, ...]:
     """Operating points of texts such as ``theta_tilt=30deg,omega_pan=0.2``; SI without a unit.
 
     Dry friction slides where every axis that has it turns forwards, and is left out at rest.
-    Raises InputError for what is no joint angle or rate, no number, or another unit.
+    Raises InputError for what is no joint angle or rate, no number, of another unit, or out of
+    reach.
     """
     return tuple(_read(equations, text) for text in texts)
 
@@ -76,6 +81,13 @@ def _read(equations: Equations, text: str) -> OperatingPoint:
             " linearised sliding forwards; give each a rate above 0, or none a rate."
         )
     given = {axis: found[name] for name, axis in angles.items() if name in found}
+    for axis, angle in given.items():
+        for lower, upper, end in _bounds(equations, axis):
+            if not lower < angle < upper:
+                raise InputError(
+                    f"Operating point '{text}': an angle of {angle:.4g} rad is beyond the {end};"
+                    f" give one within [{lower:.4g}, {upper:.4g}] rad."
+                )
     return OperatingPoint(given, point_rates, bool(rubbing & turning))
 
 
