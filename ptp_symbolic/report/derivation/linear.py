@@ -12,7 +12,7 @@ from ptp_symbolic.report.derivation.bode import (
     frequencies,
     frequency_response,
 )
-from ptp_symbolic.report.latex_text import number_latex, table, unit_latex
+from ptp_symbolic.report.latex_text import displayed, number_latex, table, unit_latex
 from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.linearisation import (
@@ -24,6 +24,7 @@ from ptp_symbolic.symbolic.mechanics import kinematics
 
 LOWEST, HIGHEST = 0.01, 1000.0  # Hz that a Bode plot shows at most
 ROUNDING = 1e-10  # size of a pole that is zero, relative to A
+MOST_COLUMNS = 6  # of a matrix that is printed
 BALANCED = 1e-6  # rate of change at an operating point that counts as none
 
 
@@ -52,6 +53,7 @@ def linearised(
         r"\section{Linearisation}" + _mode_words(equations, points),
         table("L{36mm}rrrl", head, rows),
         _held(models, names),
+        _matrices(models[0], names[0]),
         *plots,
     ]
     return "\n".join(filter(None, text)), files
@@ -154,6 +156,25 @@ def _held(models: Sequence[LinearModel], names: Sequence[str]) -> str:
     if not loose:
         return ""
     return rf"\par No input holds the machine at {'; '.join(loose)}: there it accelerates."
+
+
+def _matrices(model: LinearModel, name: str) -> str:
+    """A and B in numbers, at the first operating point; empty of a machine with many states."""
+    if len(model.states) > MOST_COLUMNS:
+        return ""
+    states, inputs = (
+        ",\\; ".join(symbol_latex(str(s)) for s in own) for own in (model.states, model.inputs)
+    )
+    order = rf"$x=({states})$" + (rf" and $u=({inputs})$" if model.inputs else "")
+    both = [("A", model.A), ("B", model.B)][: 1 + bool(model.inputs)]
+    written = r",\qquad ".join(rf"{letter} = {_matrix(values)}" for letter, values in both)
+    return rf"\par At {name}, with {order}:{{\small{displayed(written)}}}"
+
+
+def _matrix(values: np.ndarray) -> str:
+    rows = (" & ".join(number_latex(value) for value in row) for row in values + 0.0)
+    inside = r" \\ ".join(rows)
+    return rf"\begin{{bmatrix}}{inside}\end{{bmatrix}}"
 
 
 def _plots(
