@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from ptp_symbolic.report import figures, map_figures, quantities, tables
+from ptp_symbolic.report import figures, map_figures, quantities, rivals, tables
 from ptp_symbolic.report.pages import TEMPLATES, environment
 from ptp_symbolic.report.tables import usable
 
@@ -104,6 +104,8 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
         folded=folded,
         residual_maps=_residual_maps(diagnosis, curves),
         torque_maps=_torque_maps(diagnosis.get("remainder")),
+        rivals=rivals.rival_parts(diagnosis.get("black_box")),
+        rival_names=rivals.MODELS,
         equations=_equations(diagnosis),
         window=_window(curves),
         script=Markup(script),
