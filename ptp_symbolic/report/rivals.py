@@ -53,7 +53,7 @@ def rival_figure(part: Mapping[str, Any]) -> str:
             colour, marker = LOOKS[key]
             values = [model["by_run"].get(run, np.nan) for run in runs]
             axes.plot(values, range(len(runs)), marker, color=colour, alpha=0.85, label=MODELS[key])
-        axes.set_xscale("log")
+        axes.set_xlim(left=0.0)
         axes.set_yticks(range(len(runs)), runs)
         axes.set_ylim(len(runs) - 0.5, -0.5)
         axes.set_xlabel(

@@ -16,8 +16,8 @@ FITTED = (
     " rivals were fitted to the torque (force of a linear joint) that the fitted declared model"
     " lacks along the measured motion of the same runs, as a function of angles, rates, their signs"
     " and inputs; how strongly they are regularised was chosen by leaving out blocks of these runs"
-    " in turn. No model was fitted to the validation runs. Both are judged by that torque, averaged"
-    " over windows in which all joints slide: the measure that the rivals were fitted to."
+    " in turn. No model was fitted to the validation runs. All are judged by that torque, averaged"
+    " over windows in which the joint slides: the measure that the rivals were fitted to."
 )
 NO_ROWS = "The equations of this machine have no residual torque along its measured motion."
 
