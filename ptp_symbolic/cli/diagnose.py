@@ -168,12 +168,15 @@ def _print_diagnosis(summary: Mapping[str, Any]) -> None:
     for key, why in summary["refused"].items():
         click.echo(f"  {key}: {why}")
     _print_errors(summary)
-    _print_rivals(summary["black_box"])
+    _print_rivals(summary)
 
 
-def _print_rivals(found: Mapping[str, Any] | None) -> None:
-    """The residual torque of every model on the validation runs, a line per axis."""
-    from ptp_symbolic.report.rivals import MODELS, said
+def _print_rivals(summary: Mapping[str, Any]) -> None:
+    """The residual torque and the free simulation of every model on the validation runs."""
+    from ptp_symbolic.report.rivals import MODELS, free_errors, said
+    from ptp_symbolic.report.tables import declared_totals, error_measure, usable
+
+    found = summary["black_box"]
 
     for axis, part in ({} if found is None else found["axes"]).items():
         models = [f"{MODELS[key]} {said(m)}" for key, m in part["models"].items()]
@@ -181,6 +184,16 @@ def _print_rivals(found: Mapping[str, Any] | None) -> None:
             f"Torque left on {axis} along the validation runs, rms in {part['unit']}:"
             f" {', '.join(models)}."
         )
+    if found is not None and found["free"]:
+        key, unit = error_measure(declared_totals(summary))
+        errors = [
+            f"{MODELS[name]} {error[key]:.3g}"
+            if usable(error.get(key))
+            else f"{MODELS[name]} fails"
+            for name, error in free_errors(summary).items()
+            if name != "named" or summary["added"]
+        ]
+        click.echo(f"Simulated freely on the validation runs, {unit} rms: {', '.join(errors)}.")
 
 
 def _print_errors(summary: Mapping[str, Any]) -> None:

@@ -106,6 +106,7 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
         torque_maps=_torque_maps(diagnosis.get("remainder")),
         rivals=rivals.rival_parts(diagnosis.get("black_box")),
         rival_names=rivals.MODELS,
+        free_errors=rivals.free_errors(diagnosis),
         equations=_equations(diagnosis),
         window=_window(curves),
         script=Markup(script),

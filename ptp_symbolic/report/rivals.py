@@ -8,6 +8,7 @@ import numpy as np
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
+from ptp_symbolic.report import tables
 from ptp_symbolic.report.figures import AFTER, BEFORE, INPUT, STYLE, svg_of
 
 MODELS = {
@@ -32,6 +33,14 @@ def rival_parts(found: Mapping[str, Any] | None) -> list[dict[str, Any]]:
     return [
         {"axis": axis, **part, "svg": Markup(rival_figure(part))} for axis, part in axes.items()
     ]
+
+
+def free_errors(diagnosis: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """Errors of every model in free simulation of the validation runs, by model."""
+    beside = (diagnosis.get("black_box") or {}).get("free") or {}
+    known = {"declared": "before", "named": "after"}
+    own = {model: tables.error_of(diagnosis, "validate", stage) for model, stage in known.items()}
+    return own | {model: error or {} for model, error in beside.items()}
 
 
 def said(model: Mapping[str, Any]) -> str:

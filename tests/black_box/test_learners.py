@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.black_box.comparison import compared
+from ptp_symbolic.numeric.black_box.comparison import compared, learn
 from ptp_symbolic.numeric.black_box.learners import folds_of
 from ptp_symbolic.numeric.black_box.rows import AxisRows
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
@@ -16,6 +16,7 @@ from ptp_symbolic.workflows.diagnosis import diagnose_platform
 pytest.importorskip("sklearn")
 
 NAMES = ("theta_pan", "omega_pan", "u_pan")
+RUNS = [f"run {k}" for k in range(5)]
 Law = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
@@ -38,7 +39,7 @@ def test_a_law_of_motion_is_learned_and_a_sparse_formula_shows_it() -> None:
         return 0.8 * theta * np.sign(omega) + 0.5 * omega**2
 
     train, validate = rows(law, 0.02, 1), rows(law, 0.02, 2)
-    found = compared(train, validate, [f"run {k}" for k in range(5)], "2 parameters")
+    found = compared(train, validate, RUNS, "2 parameters", learn(train))
     models = found["models"]
     assert models["declared"]["validate"]["share"] == 0.0
     assert models["sparse"]["validate"]["rms"] < 0.03
@@ -56,7 +57,7 @@ def test_a_law_of_motion_is_learned_and_a_sparse_formula_shows_it() -> None:
 
 def test_noise_teaches_nothing() -> None:
     train, validate = (rows(lambda *_: np.zeros(300), 0.1, seed) for seed in (3, 4))
-    models = compared(train, validate, [f"run {k}" for k in range(5)], None)["models"]
+    models = compared(train, validate, RUNS, None, learn(train))["models"]
     assert "named" not in models
     for rival in ("sparse", "network"):
         assert abs(models[rival]["validate"]["share"]) < 0.05

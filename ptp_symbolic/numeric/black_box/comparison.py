@@ -1,19 +1,21 @@
 """Named effects beside rivals without physics, on runs that none of them was fitted to."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from ptp_symbolic.numeric.black_box.learners import neural_network, sparse_regression
+from ptp_symbolic.numeric.black_box.free_motion import FreeRuns, free_error
+from ptp_symbolic.numeric.black_box.learners import Learned, neural_network, sparse_regression
 from ptp_symbolic.numeric.black_box.rows import AxisRows, Values, axis_rows, space_along
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.run import Run
 
 FloatArray = NDArray[np.float64]
 
+RIVALS = {"sparse": sparse_regression, "network": neural_network}
 FEWEST = 50  # rows of an axis, in the training and in the validation runs
 
 
@@ -24,9 +26,11 @@ def black_box(
     declared: Values,
     named: Values | None,
     size: str,
+    free: FreeRuns,
 ) -> dict[str, Any]:
     """The torque that the declared model lacks along the measured motion, axis by axis: how much of
-    it the named effects and the rivals explain, as plain data.
+    it the named effects and the rivals explain, and how far off the rivals are in `free` simulation
+    with their torque on the joints; as plain data.
 
     `declared` and `named` are the values of all parameters before and after (None: nothing was
     named), `size` says how many parameters the named effects have. The rivals learn from the rows
@@ -34,34 +38,47 @@ def black_box(
     """
     after = declared if named is None else named
     spaces = [space_along(space, runs, declared, after) for runs in (train, validate)]
-    found = {}
+    found, learned = {}, {}
     for axis, name in enumerate(space.model.module.AXES):
         fitted, judging = (axis_rows(part, axis, declared, after) for part in spaces)
         if min(len(fitted.run), len(judging.run)) < FEWEST:
             continue
         names = [run.name for run in validate]
+        learned[name] = learn(fitted)
         found[name] = {
             "unit": "N" if space.model.is_linear(name) else "N m",
             "seen": _seen(fitted),
             "rows": {"train": len(fitted.run), "validate": len(judging.run)},
-            **compared(fitted, judging, names, None if named is None else size),
+            **compared(fitted, judging, names, None if named is None else size, learned[name]),
         }
-    return {"half_width": space.half_width, "axes": found}
+    freely = {
+        rival: free_error(free, {axis: own[rival].torque for axis, own in learned.items()})
+        for rival in RIVALS
+        if learned
+    }
+    return {"half_width": space.half_width, "axes": found, "free": freely}
+
+
+def learn(train: AxisRows) -> dict[str, Learned]:
+    """The rivals of one axis, by name."""
+    with threadpool_limits(limits=1):  # matrices are small: more threads would wait for each other
+        return {name: rival(train) for name, rival in RIVALS.items()}
 
 
 def compared(
-    train: AxisRows, validate: AxisRows, runs: Sequence[str], size: str | None
+    train: AxisRows,
+    validate: AxisRows,
+    runs: Sequence[str],
+    size: str | None,
+    learned: Mapping[str, Learned],
 ) -> dict[str, Any]:
     """The residual torque of every model on the rows of one axis; `runs` are the names of the
     validation runs, `size` is that of the named effects (None: there are none).
     """
-    with threadpool_limits(limits=1):  # matrices are small: more threads would wait for each other
-        sparse, network = sparse_regression(train, validate), neural_network(train, validate)
     models = {
         "declared": (None, train.declared, validate.declared),
         "named": (size, train.named, validate.named),
-        "sparse": (sparse.size, *_left(train, validate, sparse.train, sparse.validate)),
-        "network": (network.size, *_left(train, validate, network.train, network.validate)),
+        **{name: (own.size, *_left(train, validate, own)) for name, own in learned.items()},
     }
     if size is None:
         del models["named"]
@@ -77,7 +94,7 @@ def compared(
             }
             for key, (size, left, judged) in models.items()
         },
-        "terms": sparse.terms,
+        "terms": learned["sparse"].terms,
     }
 
 
@@ -90,10 +107,9 @@ def _seen(rows: AxisRows) -> dict[str, dict[str, float]]:
     }
 
 
-def _left(
-    train: AxisRows, validate: AxisRows, fitted: FloatArray, predicted: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    return train.declared - fitted, validate.declared - predicted
+def _left(train: AxisRows, validate: AxisRows, learned: Learned) -> tuple[FloatArray, FloatArray]:
+    left = [r.declared - learned.torque(r.seen) for r in (train, validate)]
+    return left[0], left[1]
 
 
 def _figures(left: FloatArray, declared: FloatArray) -> dict[str, float]:

@@ -6,7 +6,7 @@ other.
 """
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from typing import Any
@@ -33,13 +33,12 @@ ITERATIONS = 300
 
 @dataclass(frozen=True, eq=False)
 class Learned:
-    """A rival after learning: its torque [n] in N m (N) on training and on validation rows, the
-    `size` of it in words, and the coefficients in N m (N) of its terms, where it is a formula.
+    """A rival after learning: its `size` in words, its `torque` [n] in N m (N) of what is seen
+    [n, s], and the coefficients in N m (N) of its terms, where it is a formula.
     """
 
     size: str
-    train: FloatArray
-    validate: FloatArray
+    torque: Callable[[FloatArray], FloatArray]
     terms: Mapping[str, float] | None
 
 
@@ -70,7 +69,7 @@ def folds_of(run: IntArray) -> Folds:
     return list(GroupKFold(count).split(block, groups=block))
 
 
-def sparse_regression(train: AxisRows, validate: AxisRows) -> Learned:
+def sparse_regression(train: AxisRows) -> Learned:
     """Lasso (Tibshirani, 1996) on all products of up to three factors: what is seen, centred and
     scaled to variance one on the training rows, and the signs of the joint rates.
     """
@@ -89,27 +88,29 @@ def sparse_regression(train: AxisRows, validate: AxisRows) -> Learned:
         if all(chosen.count(sign) < 2 for sign in squares)
     ]
     scaled = StandardScaler().fit(train.seen)
-    factor = [np.hstack([scaled.transform(r.seen), _signs(r)]) for r in (train, validate)]
-    library = [np.column_stack([np.prod(f[:, p], axis=1) for p in products]) for f in factor]
-    units = StandardScaler().fit(library[0])
-    columns = [units.transform(part) for part in library]
+
+    def library(seen: FloatArray) -> FloatArray:
+        factor = np.hstack([scaled.transform(seen), _signs(seen, train.rates)])
+        return np.column_stack([np.prod(factor[:, p], axis=1) for p in products])
+
+    units = StandardScaler().fit(library(train.seen))
     lasso = LassoCV(cv=folds_of(train.run), eps=WEAKEST, max_iter=20_000)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of weak penalties, which the blocks left out reject
-        lasso.fit(columns[0], train.declared)
+        lasso.fit(units.transform(library(train.seen)), train.declared)
     weights = lasso.coef_ / units.scale_
     terms = {
         _product([factors[k] for k in p]): float(w)
         for p, w in zip(products, weights, strict=True)
         if w != 0.0
     }
-    terms["1"] = float(lasso.intercept_ - weights @ units.mean_)
+    constant = terms["1"] = float(lasso.intercept_ - weights @ units.mean_)
     size = f"{len(terms) - 1} of {len(products)} terms"
-    return Learned(size, lasso.predict(columns[0]), lasso.predict(columns[1]), terms)
+    return Learned(size, lambda seen: library(seen) @ weights + constant, terms)
 
 
-def _signs(rows: AxisRows) -> FloatArray:
-    return np.asarray(np.sign(rows.seen[:, list(rows.rates)]))
+def _signs(seen: FloatArray, rates: Sequence[int]) -> FloatArray:
+    return np.asarray(np.sign(seen[:, list(rates)]))
 
 
 def _product(factors: Sequence[str]) -> str:
@@ -118,7 +119,7 @@ def _product(factors: Sequence[str]) -> str:
     return " ".join(name if n == 1 else f"{name}^{n}" for name, n in found)
 
 
-def neural_network(train: AxisRows, validate: AxisRows) -> Learned:
+def neural_network(train: AxisRows) -> Learned:
     """The mean of five networks of two hidden layers with 32 neurons each."""
     from sklearn.model_selection import GridSearchCV
     from sklearn.neural_network import MLPRegressor
@@ -132,7 +133,13 @@ def neural_network(train: AxisRows, validate: AxisRows) -> Learned:
         )
         return make_pipeline(StandardScaler(), layers)
 
-    seen = [np.hstack([r.seen, _signs(r)]) for r in (train, validate)]
+    def features(seen: FloatArray) -> FloatArray:
+        return np.hstack([seen, _signs(seen, train.rates)])
+
+    def torque(seen: FloatArray) -> FloatArray:
+        return np.asarray(size * np.mean([n.predict(features(seen)) for n in every], axis=0))
+
+    given = features(train.seen)
     size = float(np.std(train.declared)) or 1.0
     search = GridSearchCV(
         network(0, 1.0),
@@ -143,8 +150,7 @@ def neural_network(train: AxisRows, validate: AxisRows) -> Learned:
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # stopped early is part of the regularisation
-        penalty = search.fit(seen[0], train.declared / size).best_params_["mlpregressor__alpha"]
-        every = [network(k, penalty).fit(seen[0], train.declared / size) for k in range(NETWORKS)]
-    torques = [size * np.mean([n.predict(s) for n in every], axis=0) for s in seen]
+        penalty = search.fit(given, train.declared / size).best_params_["mlpregressor__alpha"]
+        every = [network(k, penalty).fit(given, train.declared / size) for k in range(NETWORKS)]
     weights = sum(w.size for w in (*every[0][-1].coefs_, *every[0][-1].intercepts_))
-    return Learned(f"{NETWORKS} x {weights} weights", torques[0], torques[1], None)
+    return Learned(f"{NETWORKS} x {weights} weights", torque, None)
