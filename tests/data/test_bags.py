@@ -13,6 +13,7 @@ from ptp_symbolic.platform import Platform, read_platform
 
 pytest.importorskip("rosbags")
 
+from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
@@ -89,6 +90,25 @@ def test_a_bag_is_read_on_the_stamps_of_the_encoder(
     np.testing.assert_allclose(log.inputs[:-1, 0], mean[:-1], atol=1e-6)
     np.testing.assert_allclose(log.steps[0][0], 0.002 + 0.005 * np.arange(60), atol=1e-9)
     np.testing.assert_allclose(log.steps[0][1], VOLTAGES)
+
+
+def test_a_bag_of_ros_1(tmp_path: Path) -> None:
+    """Two topics without headers, each recorded at once: the times are those of the recording."""
+    types = get_typestore(Stores.ROS1_NOETIC)
+    name = "std_msgs/msg/Float64"
+    with Writer1(tmp_path / "run.bag") as bag:
+        places = [
+            bag.add_connection(t, name, typestore=types) for t in ("/angle", "/drive/voltage")
+        ]
+        for k, pair in enumerate(zip(ANGLES, VOLTAGES, strict=True)):
+            for place, number in zip(places, pair, strict=True):
+                raw = types.serialize_ros1(types.types[name](number), name)
+                bag.write(place, START + k * PERIOD, raw)
+    log = read_log(tmp_path / "run.bag", platform_with(tmp_path, "/angle/data"))
+    np.testing.assert_allclose(log.time, 0.005 * np.arange(60), atol=1e-9)
+    np.testing.assert_allclose(log.outputs[:, 0], ANGLES, atol=1e-12)
+    np.testing.assert_allclose(log.inputs[:, 0], VOLTAGES, atol=1e-12)
+    assert log.steps == ()
 
 
 def test_a_bag_is_a_file_or_a_folder(tmp_path: Path, platform: Platform) -> None:
