@@ -132,7 +132,7 @@ def test_two_encoders_that_are_logged_apart_are_refused(tmp_path: Path) -> None:
 def test_the_run_ends_where_the_last_input_no_longer_holds(
     tmp_path: Path, platform: Platform
 ) -> None:
-    """Inputs every 10 ms, the last at 92 ms: it holds to 102 ms, the period from 95 ms on is whole."""
+    """Inputs every 10 ms, the last at 92 ms: it holds to 102 ms, over the period from 95 ms on."""
     own = 0.002 + 0.01 * np.arange(10)
     given = write(tmp_path / "inputs.csv", **{"time [s]": own, "volt": np.ones(10)})
     seen = write(tmp_path / "encoder.csv", **{"time [s]": TIME, "angle": DEGREES})
