@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from ptp_symbolic.report import figures, map_figures, quantities, tables
+from ptp_symbolic.report import figures, map_figures, quantities, rivals, tables
 from ptp_symbolic.report.drawing import PlatformDrawing, svg_text
 from ptp_symbolic.report.pages import TEMPLATES, environment
 from ptp_symbolic.report.tables import usable
@@ -108,6 +108,9 @@ def render_diagnosis(
         folded=folded,
         residual_maps=_residual_maps(diagnosis, curves),
         torque_maps=_torque_maps(diagnosis.get("remainder")),
+        rivals=rivals.rival_parts(diagnosis.get("black_box")),
+        rival_names=rivals.MODELS,
+        free_errors=rivals.free_errors(diagnosis),
         equations=_equations(diagnosis),
         machine=machine,
         pictures=[Markup(svg_text(s)) for s in (machine.frames, *machine.drives)]

@@ -39,8 +39,11 @@ def written_up(
     verdict: Verdict,
     noted: Sequence[str],
     sources: Mapping[str, Any],
+    beside: Mapping[str, Any] | None = None,
 ) -> Output:
-    """What was found, as data and as files; `sources` say what it rests on (see `provenance`)."""
+    """What was found, as data and as files; `sources` say what it rests on (see `provenance`), and
+    `beside` how rivals do that know no physics.
+    """
     after = replace(verdict.final, fit=with_finite_differences(verdict.final.fit, task.executor))
     intervals = {e.name: e for e in estimates(after.fit)}
     parts = {
@@ -70,6 +73,7 @@ def written_up(
         "refused": dict(verdict.refused),
         "remainder": left,
         "hints": hints(left),
+        "black_box": None if beside is None else dict(beside),
         "windows": windows_table(task),
         "remarks": list(noted),
         "equations": equations,
