@@ -90,8 +90,9 @@ def emps(folder: Path, progress: Progress) -> dict[str, Any]:
     for stage, machine in (("before", platform), ("after", after)):
         fitted = found.summary["fit"][stage]["parameters"]
         values = {name: row["value"] for name, row in fitted.items()}
-        errors = [_force_error(machine, values, log) for (log,) in logs]
-        rows.append({"stage": stage, "train": errors[0], "validate": errors[1]})
+        for held in (False, True):
+            errors = [_force_error(machine, values, log, held) for (log,) in logs]
+            rows.append({"stage": stage, "held": held, "train": errors[0], "validate": errors[1]})
     return {**_diagnosis("Positioning system (EMPS)", EMPS, found), "force_error": rows}
 
 
@@ -136,6 +137,6 @@ def _written(found: Output) -> Platform:
         return read_platform(path)
 
 
-def _force_error(platform: Platform, values: Mapping[str, float], path: Path) -> float:
+def _force_error(platform: Platform, values: Mapping[str, float], path: Path, held: bool) -> float:
     log = read_log(path, platform)
-    return force_error(platform, values, log.time, log.inputs[:, 0], log.outputs[:, 0])
+    return force_error(platform, values, log.time, log.inputs[:, 0], log.outputs[:, 0], held)
