@@ -158,7 +158,7 @@ def _everywhere(axes: tuple[str, ...], linear: bool) -> Iterator[tuple[Effect, P
                 yield effect, Place(axes, axis, None, frozenset(), linear)
 
 
-def _readings(platform: Platform, placed: list[tuple[Effect, Place]]) -> set[str]:
+def readings(platform: Platform, placed: list[tuple[Effect, Place]]) -> set[str]:
     """Quantities of what the declared outputs beside the angles show."""
     added = [effect.contribution_at(place) for effect, place in placed]
     known = {s.name for s in sensors_on(platform.axes, added, platform.linear_axes)}
@@ -167,7 +167,7 @@ def _readings(platform: Platform, placed: list[tuple[Effect, Place]]) -> set[str
 
 
 def _check_needs(platform: Platform, placed: list[tuple[Effect, Place]]) -> None:
-    available = available_quantities(placed) | _readings(platform, placed)
+    available = available_quantities(placed) | readings(platform, placed)
     for effect, place in placed:
         for need in effect.needs:
             name = need.format(axis=place.axis)
