@@ -4,7 +4,9 @@ import hashlib
 import re
 import shutil
 import subprocess
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -14,36 +16,51 @@ from ptp_symbolic.platform import EffectDeclaration, preset_names, read_platform
 from ptp_symbolic.report.derivation import has_warning, render_derivation
 from ptp_symbolic.report.derivation.symbols import CATALOGUE
 from ptp_symbolic.report.latex_text import escaped
-from ptp_symbolic.report.pdf import PASSES, compile_pdf
+from ptp_symbolic.report.pdf import PASSES
 from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 
+@cache
+def report_of(name: str) -> str:
+    return str(render_derivation(read_platform(name))["derivation.tex"])
+
+
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """The folder with the compiled report of a platform."""
+
+    @cache
+    def folder_of(name: str) -> Path:
+        if shutil.which("pdflatex") is None:
+            pytest.skip("pdflatex is not installed")
+        folder = tmp_path_factory.mktemp(name)
+        (folder / "derivation.tex").write_text(report_of(name), encoding="utf-8")
+        for _ in range(PASSES):
+            subprocess.run(
+                ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape", "derivation.tex"],
+                cwd=folder,
+                capture_output=True,
+                check=True,
+            )
+        return folder
+
+    return folder_of
+
+
 @pytest.mark.parametrize("name", preset_names())
-def test_compiles_without_a_warning(name: str, tmp_path: Path) -> None:
-    files = render_derivation(read_platform(name))
-    text = files["derivation.tex"]
-    assert isinstance(text, str)
+def test_compiles_without_a_warning(name: str, compiled: Callable[[str], Path]) -> None:
+    text = report_of(name)
     assert "Kane -- Lagrange & $0$" in text
     assert "not symmetric" not in text
-    if shutil.which("pdflatex") is None:
-        pytest.skip("pdflatex is not installed")
-    (tmp_path / "derivation.tex").write_text(text, encoding="utf-8")
-    for _ in range(PASSES):
-        subprocess.run(
-            ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape", "derivation.tex"],
-            cwd=tmp_path,
-            capture_output=True,
-            check=True,
-        )
-    assert not has_warning((tmp_path / "derivation.log").read_text(encoding="latin-1"))
+    assert not has_warning((compiled(name) / "derivation.log").read_text(encoding="latin-1"))
 
 
 @pytest.mark.parametrize("name", preset_names())
 def test_every_symbol_of_the_equations_has_a_row_with_its_meaning(name: str) -> None:
     platform = read_platform(name)
     equations = assemble(platform)
-    text = str(render_derivation(platform)["derivation.tex"])
+    text = report_of(name)
     table = text[text.index("Variables:") : text.index(r"\section{Three routes")]
     modes = [str(symbol) for symbol in equations.mode_symbols]
     for symbol in [*map(str, equations.state_symbols), *modes, *(i.name for i in equations.inputs)]:
@@ -58,11 +75,11 @@ def test_every_symbol_of_the_equations_has_a_row_with_its_meaning(name: str) -> 
 
 
 def test_a_tilt_only_platform_describes_only_its_own_frames() -> None:
-    text = str(render_derivation(read_platform("thesis-tilt-drive"))["derivation.tex"])
+    text = report_of("thesis-tilt-drive")
     frames = text[text.index("Frames and signs") : text.index(r"\section{Symbols}")]
     assert "pan" not in frames
     assert "tilt frame" in frames
-    pan = str(render_derivation(read_platform("thesis-pan-drive"))["derivation.tex"])
+    pan = report_of("thesis-pan-drive")
     frames = pan[pan.index("Frames and signs") : pan.index(r"\section{Symbols}")]
     assert "tilt" not in frames
 
@@ -79,20 +96,19 @@ def test_values_that_the_platform_does_not_declare_are_marked() -> None:
 
 def test_the_final_equations_give_the_rate_of_change_of_every_state() -> None:
     platform = read_platform("thesis-full")
-    text = str(render_derivation(platform)["derivation.tex"])
+    text = report_of("thesis-full")
     final = text[text.index(r"\section{Final equations}") :]
     assert final.count(r"\dot{") == len(assemble(platform).state_symbols)
 
 
 @pytest.mark.parametrize("name", preset_names())
-def test_no_page_is_nearly_empty(name: str, tmp_path: Path) -> None:
-    if shutil.which("pdflatex") is None or shutil.which("pdftotext") is None:
-        pytest.skip("pdflatex or pdftotext is not installed")
-    pdf = compile_pdf(render_derivation(read_platform(name)), "derivation")
-    assert pdf is not None
-    (tmp_path / "derivation.pdf").write_bytes(pdf)
+def test_no_page_is_nearly_empty(name: str, compiled: Callable[[str], Path]) -> None:
+    if shutil.which("pdftotext") is None:
+        pytest.skip("pdftotext is not installed")
     command = ["pdftotext", "-bbox", "derivation.pdf", "-"]
-    boxes = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    boxes = subprocess.run(
+        command, cwd=compiled(name), capture_output=True, text=True, check=True
+    ).stdout
     for page in boxes.split("<page ")[1:]:
         height = float(re.search(r'height="([\d.]+)"', page)[1])
         words = re.findall(r'yMax="([\d.]+)">(.*?)</word>', page)

@@ -1,6 +1,7 @@
 """The derivation of a platform's equations as a LaTeX document, printed from the expressions."""
 
 from ptp_symbolic.platform import Platform
+from ptp_symbolic.report.derivation.curves import PACKAGES
 from ptp_symbolic.report.derivation.effects import effects
 from ptp_symbolic.report.derivation.emitted import emitted
 from ptp_symbolic.report.derivation.energy import energy
@@ -26,6 +27,7 @@ def render_derivation(platform: Platform) -> dict[str, str | bytes]:
     found = simplified(equations)
     parts = [
         PREAMBLE,
+        PACKAGES,
         LINKS,
         title_block(platform, equations),
         r"\tableofcontents",
@@ -34,7 +36,7 @@ def render_derivation(platform: Platform) -> dict[str, str | bytes]:
         three_routes(equations),
         equations_of_motion(equations),
         simplification(found),
-        effects(equations),
+        effects(platform, equations),
         energy(equations),
         emitted(equations, found.base_form),
         r"\end{document}",

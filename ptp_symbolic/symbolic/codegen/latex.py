@@ -6,6 +6,7 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 from sympy.printing.mathml import mathml
 
+from ptp_symbolic.symbolic.codegen.letters import lettered
 from ptp_symbolic.symbolic.symbols import real
 
 GREEK = {
@@ -26,6 +27,12 @@ GREEK = {
     "rho",
     "sigma",
     "zeta",
+    "chi",
+    "iota",
+    "nu",
+    "varsigma",
+    "vartheta",
+    "xi",
 }
 LETTERS = {"gravity": "g"}
 DERIVATIVES = {"dc": r"\Delta c", "dF": r"\Delta F"}
@@ -38,9 +45,9 @@ _SIGN = '<mo form="infix">{}</mo>'
 def symbol_latex(name: str) -> str:
     """LaTeX of a symbol name: ``theta_gear_pan`` becomes a theta with an upright subscript.
 
-    Letters are set in italics, words upright.
+    Letters are set in italics, words upright; words in front become letters (see `lettered`).
     """
-    letter, *place = LETTERS.get(name, name).split("_")
+    letter, *place = LETTERS.get(name, lettered(name)).split("_")
     trailing = re.fullmatch(r"([A-Za-z]+)(\d+)", letter)
     if trailing:
         letter, place = trailing[1], [trailing[2], *place]

@@ -1,6 +1,6 @@
 """Place the declared effects of a platform and check its parameters against them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from ptp_symbolic.errors import InputError, did_you_mean, out_of_bounds, unknown
@@ -131,14 +131,22 @@ def available_quantities(placed: list[tuple[Effect, Place]]) -> set[str]:
     return {name for effect, place in placed for name in effect.contribute(place).quantities}
 
 
-def acts_on(effect: Effect, place: Place, placed: list[tuple[Effect, Place]]) -> tuple[str, ...]:
-    """Keys of the placed effects that define a quantity which `effect` at `place` needs."""
+def definitions(placed: list[tuple[Effect, Place]]) -> dict[str, set[str]]:
+    """The quantities that every placed effect defines, by its key."""
+    return {
+        effect.id if place.axis is None else f"{effect.id}@{place.axis}": set(
+            effect.contribute(place).quantities
+        )
+        for effect, place in placed
+    }
+
+
+def acts_on(effect: Effect, place: Place, defined: Mapping[str, set[str]]) -> tuple[str, ...]:
+    """Keys of the placed effects that define a quantity which `effect` at `place` needs; `defined`
+    are their `definitions`.
+    """
     needs = {need.format(axis=place.axis) for need in effect.needs}
-    return tuple(
-        other.id if there.axis is None else f"{other.id}@{there.axis}"
-        for other, there in placed
-        if needs & set(other.contribute(there).quantities)
-    )
+    return tuple(key for key, names in defined.items() if needs & names)
 
 
 def effects_that_define(quantity: str, axes: tuple[str, ...], linear: bool = False) -> list[str]:
