@@ -24,8 +24,10 @@ from ptp_symbolic.numeric.diagnose.verdict import Verdict
 from ptp_symbolic.numeric.identify.fit import with_finite_differences
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, platform_text
+from ptp_symbolic.report.changes import render_changes
 from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
 from ptp_symbolic.report.latex_text import PREAMBLE, escaped
+from ptp_symbolic.report.pdf import with_pdf
 from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
 from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, json_text, windows_table
 
@@ -76,6 +78,7 @@ def written_up(
     curves = curves_of(parts)
     files: dict[str, str | bytes] = {"platform.toml": platform_text(extended)}
     files["equations.tex"] = equations_tex(equations)
+    files |= with_pdf(render_changes(platform, extended, summary), "changes")
     files[f"{extended.name}.py"] = emission.module_of(extended)
     files["report.html"] = render_diagnosis(summary, curves)
     files.update({f"curves/{name}": text for name, text in write_curves_csv(curves).items()})

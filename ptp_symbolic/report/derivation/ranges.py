@@ -33,6 +33,8 @@ UNITS = {  # of symbols that are no state, input or parameter, by the start of t
     "transmitted_torque": "N m",
     "shaft_torque": "N m",
     "t": "s",
+    "u": "V",
+    "i": "A",
 }
 
 
