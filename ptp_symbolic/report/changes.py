@@ -9,13 +9,13 @@ from ptp_symbolic import __version__
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.derivation.curves import PACKAGES
-from ptp_symbolic.report.derivation.effects import described
+from ptp_symbolic.report.derivation.effects import described, ledger_difference
 from ptp_symbolic.report.latex_equations import displayed_changes
 from ptp_symbolic.report.latex_text import PREAMBLE, escaped, table, unit_latex
 from ptp_symbolic.report.quantities import number
 from ptp_symbolic.report.source import THESIS
 from ptp_symbolic.report.tables import declared_totals, error_groups, error_measure
-from ptp_symbolic.symbolic.codegen.comparison import comparison
+from ptp_symbolic.symbolic.codegen.comparison import Change, comparison
 from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.codegen.laws import laws
 from ptp_symbolic.symbolic.codegen.statements import statements
@@ -65,7 +65,7 @@ def render_changes(
         r"\begin{document}\maketitle",
         _compared(before, after),
         _errors(diagnosis) if diagnosis is not None else "",
-        _effects(after, old, new),
+        _effects(after, old, new, changes),
         _quantities(old, new, diagnosis or {}),
         r"\section{Equations, term by term}",
         displayed_changes(changes) or "No equation differs.",
@@ -110,13 +110,16 @@ def _figure(value: Any) -> str:
     return escaped(number(value))
 
 
-def _effects(after: Platform, old: Equations, new: Equations) -> str:
+def _effects(after: Platform, old: Equations, new: Equations, changes: Sequence[Change]) -> str:
     """The effects that were added, each with its law, and those that are gone."""
     had, has = ({(e.effect.id, e.axis, e.effect.kind) for e in m.effects} for m in (old, new))
     added = [law for law in laws(after) if (law.effect.id, law.axis, law.effect.kind) in has - had]
     parts = [r"\section{Effects}"]
     parts += [rf"\emph{{The thesis}} is {THESIS}"] if added else ["No effect was added."]
-    parts += [described(law, new) for law in added]
+    if len(added) == 1:  # all that changed is due to it
+        parts.append(described(added[0], new, changes, ledger_difference(new.ledger, old.ledger)))
+    else:
+        parts += [described(law, new) for law in added]
     if gone := sorted(had - has, key=str):
         names = ", ".join(rf"\texttt{{{escaped(name)}}}" for name, _, _ in gone)
         parts.append(rf"\par Gone: {names}.")

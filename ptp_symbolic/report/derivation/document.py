@@ -5,6 +5,8 @@ from ptp_symbolic.report.derivation.curves import PACKAGES
 from ptp_symbolic.report.derivation.effects import effects
 from ptp_symbolic.report.derivation.emitted import emitted
 from ptp_symbolic.report.derivation.energy import energy
+from ptp_symbolic.report.derivation.modes import PACKAGES as AUTOMATA
+from ptp_symbolic.report.derivation.modes import modes
 from ptp_symbolic.report.derivation.results import equations_of_motion
 from ptp_symbolic.report.derivation.routes import three_routes
 from ptp_symbolic.report.derivation.simplification import simplification, simplified
@@ -28,6 +30,7 @@ def render_derivation(platform: Platform) -> dict[str, str | bytes]:
     parts = [
         PREAMBLE,
         PACKAGES,
+        AUTOMATA,
         LINKS,
         title_block(platform, equations),
         r"\tableofcontents",
@@ -35,10 +38,11 @@ def render_derivation(platform: Platform) -> dict[str, str | bytes]:
         symbols(equations, platform),
         three_routes(equations),
         equations_of_motion(equations),
+        modes(equations),
         simplification(found),
         effects(platform, equations),
         energy(equations),
         emitted(equations, found.base_form),
         r"\end{document}",
     ]
-    return {"derivation.tex": "\n\n".join(parts) + "\n"}
+    return {"derivation.tex": "\n\n".join(part for part in parts if part) + "\n"}

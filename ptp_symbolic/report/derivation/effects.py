@@ -37,7 +37,7 @@ def effect_section(law: Law, platform: Platform, equations: Equations) -> str:
         said = escaped(str(error).removeprefix(f"{platform.source}: "))
         return "\n".join([described(law, equations), rf"\par Not compared without it: {said}"])
     changes = comparison(statements(before), statements(equations))
-    parts = [described(law, equations, changes, _difference(equations.ledger, before.ledger))]
+    parts = [described(law, equations, changes, ledger_difference(equations.ledger, before.ledger))]
     if gone:
         names = ", ".join(rf"\texttt{{{escaped(e.id)}}}" for e in gone)
         parts.append(rf"\par Compared without it, and without what needs it: {names}.")
@@ -73,7 +73,8 @@ def _is_news(change: Change, shown: set[tuple[object, object]]) -> bool:
     return statement.key[0] != "switch" and (statement.left, statement.right) not in shown
 
 
-def _difference(with_it: Ledger, without: Ledger) -> Ledger:
+def ledger_difference(with_it: Ledger, without: Ledger) -> Ledger:
+    """What a machine stores and takes beside another."""
     return Ledger(
         with_it.stored - without.stored,
         with_it.power_in - without.power_in,

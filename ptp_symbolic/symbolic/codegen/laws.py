@@ -199,8 +199,10 @@ def _rows(
         return Statement(("law", str(left)), name, left, written, relation)
 
     for name, (before, after) in changes.items():
-        left, relation = (before, "->") if before.is_Symbol else (real(name), "=")
-        yield row("it changes", left, after, relation)
+        if before.is_Symbol:
+            yield row("it changes", before, after, "->")
+        else:
+            yield row(f"it changes the {name.replace('_', ' ')}", real(name), after)
     for symbol, term in added.terms.items():
         yield row("named functions", symbol, term)
     for rate, torque in added.torques.items():
