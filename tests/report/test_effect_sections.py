@@ -4,14 +4,13 @@ import re
 import shutil
 import subprocess
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 import sympy as sp
 
-from ptp_symbolic.platform import Platform, read_platform
+from ptp_symbolic.platform import read_platform
 from ptp_symbolic.report.derivation import effects as effects_module
 from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.derivation.curves import PACKAGES
@@ -19,27 +18,16 @@ from ptp_symbolic.report.derivation.effects import effect_section
 from ptp_symbolic.report.derivation.power import judged
 from ptp_symbolic.report.latex_text import PREAMBLE
 from ptp_symbolic.symbolic.codegen.latex import symbol_latex
-from ptp_symbolic.symbolic.codegen.laws import Law, laws
+from ptp_symbolic.symbolic.codegen.laws import laws
 from ptp_symbolic.symbolic.codegen.statements import statements
 from ptp_symbolic.symbolic.derivation.assembly import assemble
-from ptp_symbolic.symbolic.derivation.equations import Equations, Ledger
+from ptp_symbolic.symbolic.derivation.equations import Ledger
 from ptp_symbolic.symbolic.effects import EFFECTS, Effect
-from tests.effects.bases import IDS, with_effect
+from tests.effects.bases import IDS
+from tests.report.sections import law_of, section
 
 ZERO = sp.Integer(0)
 PAN = "thesis-pan-drive"
-
-
-@cache
-def law_of(effect: str) -> tuple[Law, Platform, Equations]:
-    platform = with_effect(next(e for e in EFFECTS if e.id == effect))
-    law = next(law for law in laws(platform) if law.effect.id == effect)
-    return law, platform, assemble(platform)
-
-
-@cache
-def section(effect: str) -> str:
-    return effect_section(*law_of(effect))
 
 
 def curves(text: str) -> list[tuple[str, np.ndarray]]:
