@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from ptp_symbolic.thesis import contact, printed, ramp_test, responses, rigid
+from ptp_symbolic.thesis import contact, printed, ramp_test, responses, rigid, tilt_drive
 from ptp_symbolic.thesis.errata_drives import hysteresis
 from ptp_symbolic.thesis.figures import BLUE, Line, ThesisFigure, panel
 from ptp_symbolic.thesis.friction import (
@@ -16,7 +16,6 @@ from ptp_symbolic.thesis.friction import (
     mean_friction,
     steady_friction,
 )
-from ptp_symbolic.thesis.tilt_drive import simulate_tilt_drive
 
 FloatArray = NDArray[np.float64]
 
@@ -199,10 +198,10 @@ def tilt_figures() -> list[ThesisFigure]:
         return lambda: [
             Line(
                 f"initial stroke {name} mm",
-                (run := simulate_tilt_drive(stroke)).t,
+                (run := tilt_drive.trapezoid_run(name)).t,
                 factor * getattr(run, quantity),
             )
-            for name, stroke in printed.STROKES.items()
+            for name in tilt_drive.PRESETS
         ]
 
     return [

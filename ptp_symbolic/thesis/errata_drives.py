@@ -14,21 +14,21 @@ FloatArray = NDArray[np.float64]
 
 def creep_speed(shorted: bool) -> float:
     """Stroke speed in m/s at which the screw overhauls under the load of Table 5.6."""
-    d = printed.TILT_DRIVE
-    force = d.mass * tilt_drive.GRAVITY * d.com_offset / d.moment_arm
-    torque = -tilt_drive.screw_factors()[1] * force / d.N
-    resistance = d.b_motor + (d.K_t**2 / d.R if shorted else 0.0)
-    return torque / resistance / d.N * d.lead / (2.0 * math.pi)
+    d, offset = tilt_drive.model("48.5").defaults, tilt_drive.com_offset("48.5")
+    force = d["m_payload"] * d["gravity"] * offset / d["r_arm_tilt"]
+    torque = -tilt_drive.actuator("48.5").lowering * force / d["N_tilt"]
+    resistance = d["b_motor_tilt"] + (d["K_t_tilt"] ** 2 / d["R_tilt"] if shorted else 0.0)
+    return torque / resistance / d["N_tilt"] * d["lead_tilt"] / (2.0 * math.pi)
 
 
 def self_locking() -> Item:
     """Erratum 10: the screw of Table 5.5 overhauls."""
-    d = printed.TILT_DRIVE
-    lead_angle = math.degrees(math.atan(d.lead / (math.pi * d.pitch_diameter)))
-    friction_angle = math.degrees(math.atan(d.screw_friction))
-    lowering = tilt_drive.screw_factors()[1]
+    d = tilt_drive.model("48.5").defaults
+    lead_angle = math.degrees(math.atan(d["lead_tilt"] / (math.pi * d["d_screw_tilt"])))
+    friction_angle = math.degrees(math.atan(d["f_screw_tilt"]))
+    lowering = tilt_drive.actuator("48.5").lowering
     simulated = tilt_drive.simulate_tilt_drive(
-        printed.STROKES["48.5"], "ahead", _no_voltage, 1.0
+        "48.5", np.array([0.0, 1.0]), "ahead", tilt_drive.NO_VOLTAGE
     ).stroke_speed[-1]
     expected = creep_speed(shorted=True)
     return erratum(
@@ -44,15 +44,9 @@ def self_locking() -> Item:
     )
 
 
-def _no_voltage(_: float) -> float:
-    return 0.0
-
-
 def initial_stroke() -> Item:
     """Erratum 19: the initial stroke is given twice."""
-    angles = {
-        name: float(np.degrees(tilt_drive.deviation(s))) for name, s in printed.STROKES.items()
-    }
+    angles = {name: float(np.degrees(tilt_drive.deviation(name))) for name in tilt_drive.PRESETS}
     return erratum(
         19,
         "Table 5.6, initial stroke",
@@ -60,7 +54,8 @@ def initial_stroke() -> Item:
         f"{angles['40.5']:.2f} deg and {angles['48.5']:.2f} deg from the perpendicular",
         "",
         abs(abs(angles["40.5"]) - 7.0) < 0.05 and abs(abs(angles["48.5"]) - 0.4) < 0.05,
-        "law of cosines, Table 5.6; the two strokes are different starts, both are computed",
+        "lever of the derived linkage, Table 5.6; the two strokes are different starts, both are"
+        " computed",
     )
 
 
@@ -88,9 +83,9 @@ def com_direction() -> Item:
     """Erratum 24: for which direction of the offset the claims of section 5.3 hold."""
     found = {}
     for direction in tilt_drive.COM_DIRECTIONS:
-        run = tilt_drive.simulate_tilt_drive(printed.STROKES["40.5"], direction)
+        run = tilt_drive.trapezoid_run("40.5", direction)
         holds = abs(run.force[-1]) > 1.0 and run.tilt_angle[-1] < 0.0
-        found[direction] = tilt_drive.reverses(run)[0] and holds
+        found[direction] = tilt_drive.reversal("40.5", direction) is not None and holds
     which = ", ".join(d for d, holds in found.items() if holds)
     return erratum(
         24,

@@ -163,7 +163,7 @@ def actuator_force() -> Item:
         sp.simplify(force * speed - torque * rate)
         for force in (-torque / (r * sp.cos(theta)), -torque * sp.cos(theta) / r)
     ]
-    missing = [float(np.sin(deviation(stroke)) ** 2) for stroke in (printed.STROKES["40.5"], 0.0)]
+    missing = [float(np.sin(deviation("40.5", stroke)) ** 2) for stroke in (None, 0.0)]
     return erratum(
         9,
         "section 3.2.3.2, actuator force",
