@@ -3,14 +3,20 @@
 from collections.abc import Callable, Mapping
 from functools import cache
 
-from ptp_symbolic.thesis import errata_drives, errata_equations, errata_friction, errata_listings
+from ptp_symbolic.thesis import (
+    errata_drives,
+    errata_equations,
+    errata_friction,
+    errata_listings,
+    errata_shaft,
+)
 from ptp_symbolic.thesis.items import Item
 
 ERRATA: Mapping[int, Callable[[], Item]] = {
     1: errata_friction.signum,
     2: errata_friction.branches,
     3: errata_friction.csvs_sign,
-    4: errata_equations.shaft_damping,
+    4: errata_shaft.shaft_damping,
     5: errata_equations.euler_sign,
     6: errata_equations.damping_names,
     7: errata_equations.euler_rate_names,
