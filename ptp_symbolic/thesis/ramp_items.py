@@ -3,7 +3,7 @@
 import numpy as np
 
 from ptp_symbolic.thesis import printed
-from ptp_symbolic.thesis.items import Item, compared, unprinted
+from ptp_symbolic.thesis.items import Item, Kind, compared, unprinted
 from ptp_symbolic.thesis.printed import DIRECTIONS
 from ptp_symbolic.thesis.ramp_test import (
     COLUMNS,
@@ -44,6 +44,7 @@ def estimation_items() -> list[Item]:
                         check + note,
                         FRICTION_TOLERANCE * value if name != "J" else INERTIA_TOLERANCE,
                         16 if name == "J" else None,
+                        Kind.ROUND_TRIP,
                     )
                 )
     return items
