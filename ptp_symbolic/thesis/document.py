@@ -1,12 +1,10 @@
 """The report of the thesis: thesis.json, the figures, and thesis.tex with its PDF."""
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from string import ascii_lowercase
 
 from ptp_symbolic.report.latex_text import PREAMBLE, escaped, formulas, table, unit_latex
 from ptp_symbolic.report.source import THESIS
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.thesis import (
     backlash,
     configurations,
@@ -21,16 +19,13 @@ from ptp_symbolic.thesis import (
 )
 from ptp_symbolic.thesis.chapter_figures import all_figures
 from ptp_symbolic.thesis.figures import ThesisFigure, rendered
-from ptp_symbolic.thesis.items import Item, Kind, Value
+from ptp_symbolic.thesis.items import Item, Kind
+from ptp_symbolic.thesis.precision_tables import precision_section
 from ptp_symbolic.thesis.record import json_text, summary
+from ptp_symbolic.thesis.wording import text_latex, value_latex
 
 # below a row of several lines, so that it does not lean on the next one
 STRUT = r"\rule[-5pt]{0pt}{0pt}"
-GREEK = "alpha|beta|omega|theta|phi|psi|tau"
-SYMBOL = re.compile(
-    rf"\b(?P<name>[A-Za-z]{{1,2}}(?:_[A-Za-z0-9]+)+|(?:{GREEK})(?:_[A-Za-z0-9]+)*\b)"
-    r"(?:\^(?P<power>-?\d+))?|\^(?P<alone>-?\d+)"
-)
 INTRODUCTION = (
     rf"\emph{{The thesis}} is {THESIS}\par "
     r"""Every result that it computes is computed here again. Printed values are taken over exactly,
@@ -64,7 +59,7 @@ def _silent(_: str) -> None:
 def thesis_files(progress: Callable[[str], None] = _silent) -> dict[str, str | bytes]:
     """``thesis.json``, ``thesis.tex`` and every figure as PDF and PNG, by file name.
 
-    `progress` is told what is being computed; all of it takes about twenty seconds.
+    `progress` is told what is being computed; all of it takes about half a minute.
     """
     items: dict[str, list[Item]] = {}
     for part, makers in PARTS.items():
@@ -126,6 +121,7 @@ def latex_text(
             _errata(group) if part == "Errata" else _results(part, group)
             for part, group in items.items()
         ),
+        precision_section(),
         *(_figures(part, group) for part, group in figures.items()),
         r"\end{document}",
     ]
@@ -139,9 +135,9 @@ def _results(part: str, items: Sequence[Item]) -> str:
     notes = {check: ascii_lowercase[k] for k, check in enumerate(checks)}
     rows = [
         [
-            _text(i.title) + STRUT,
-            _value(i.printed),
-            _value(i.computed),
+            text_latex(i.title) + STRUT,
+            value_latex(i.printed),
+            value_latex(i.computed),
             unit_latex(i.unit),
             _verdict(i),
             notes[i.check],
@@ -150,7 +146,7 @@ def _results(part: str, items: Sequence[Item]) -> str:
     ]
     head = ["result", "printed", "computed", "unit", "verdict", "note"]
     text = rf"\section{{{escaped(part)}}}" + table("L{59mm}L{22mm}L{23mm}lll", head, rows)
-    lines = "".join(rf"\item[{note}] {_text(check)}" + "\n" for check, note in notes.items())
+    lines = "".join(rf"\item[{note}] {text_latex(check)}" + "\n" for check, note in notes.items())
     text += r"Notes on how the rows with that letter were computed:"
     text += rf"\begin{{itemize}}\setlength{{\itemsep}}{{0pt}}{lines}\end{{itemize}}"
     return text + (_equation_3_8(items) if len(listed) < len(items) else "")
@@ -177,10 +173,12 @@ def _errata(items: Sequence[Item]) -> str:
     rows = [
         [
             str(i.erratum),
-            _text(i.title.partition(": ")[2]),
-            _value(i.printed),
-            " ".join([_value(i.computed)] + [unit_latex(i.unit)] * isinstance(i.computed, float)),
-            _text(i.check) + STRUT,
+            text_latex(i.title.partition(": ")[2]),
+            value_latex(i.printed),
+            " ".join(
+                [value_latex(i.computed)] + [unit_latex(i.unit)] * isinstance(i.computed, float)
+            ),
+            text_latex(i.check) + STRUT,
             "settled" if i.settled else "open",
         ]
         for i in items
@@ -193,7 +191,7 @@ def _errata(items: Sequence[Item]) -> str:
 def _figures(part: str, figures: Sequence[ThesisFigure]) -> str:
     blocks = [
         rf"\begin{{minipage}}{{\textwidth}}\includegraphics[width=150mm]{{{f.name}.pdf}}\par"
-        rf" {{\small {_round_trip(f)}{_text(f.caption)}}}\end{{minipage}}\par\bigskip"
+        rf" {{\small {_round_trip(f)}{text_latex(f.caption)}}}\end{{minipage}}\par\bigskip"
         for f in figures
     ]
     return rf"\section{{Figures: {escaped(part)}}}" + "\n" + "\n\n".join(blocks)
@@ -203,49 +201,9 @@ def _round_trip(figure: ThesisFigure) -> str:
     return r"\emph{Round trip.} " if figure.kind is Kind.ROUND_TRIP else ""
 
 
-def _value(value: Value) -> str:
-    if value is None:
-        return "--"
-    return _text(value) if isinstance(value, str) else _number(float(value))
-
-
-def _number(value: float) -> str:
-    text = f"{value:.6g}"
-    mantissa, _, exponent = text.partition("e")
-    return rf"${mantissa}\cdot 10^{{{int(exponent)}}}$" if exponent else f"${text}$"
-
-
 def _verdict(item: Item) -> str:
     if item.agrees is None:
         return "--"
     if item.agrees:
         return "recovered" if item.kind is Kind.ROUND_TRIP else "agrees"
     return "differs" if item.erratum is None else f"erratum {item.erratum}"
-
-
-def _text(text: str) -> str:
-    """Escaped text; names such as F_s or omega_pan and powers become formulas."""
-    parts, end = [], 0
-    for found in SYMBOL.finditer(text):
-        parts.append(_words(text[end : found.start()]))
-        power = found["power"] or found["alone"]
-        raised = f"^{{{power}}}" if power else ""
-        name = found["name"] or ""
-        symbol = rf"\{name}" if name in GREEK.split("|") else symbol_latex(name)
-        parts.append(f"${symbol}{raised}$")
-        end = found.end()
-    return "".join([*parts, _words(text[end:])])
-
-
-def _words(text: str) -> str:
-    """Escaped text that may break after a slash or a bracket, and not before a percent sign."""
-    for plain, written in ((" %", r"\,\%"), ("<", "$<$"), (">", "$>$")):
-        text = text.replace(plain, f"\0{written}\0")
-    pieces = text.split("\0")
-    kept = [
-        piece
-        if number % 2
-        else "".join(escaped(c) + (r"\allowbreak{}" if c in "/()[]" else "") for c in piece)
-        for number, piece in enumerate(pieces)
-    ]
-    return "".join(kept)

@@ -36,6 +36,7 @@ class Transition:
 
 DIRECTIONS = ("positive", "negative")
 FRICTION_UNITS = {"F_c": "N m", "F_s": "N m", "v_s": "rad/s", "F_v": "N m s/rad"}
+UNITS = {"J": "kg m^2", **FRICTION_UNITS}
 
 # Table 4.1, PWM drive: initial and estimated values.
 TABLE_4_1_START = {

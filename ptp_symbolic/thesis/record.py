@@ -4,9 +4,13 @@ import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from typing import Any
 
 from ptp_symbolic.thesis.figures import ThesisFigure
 from ptp_symbolic.thesis.items import Item, Kind
+from ptp_symbolic.thesis.precision import NOISE, Precision, all_precisions, spread_of_tests
+from ptp_symbolic.thesis.printed import DIRECTIONS, UNITS
+from ptp_symbolic.thesis.ramp_test import FITTED
 
 SCHEMA_VERSION = 2
 OUTCOMES = ("agree", "differ_by_an_erratum", "differ_unexplained")
@@ -40,9 +44,10 @@ def _outcome(item: Item) -> str:
 def json_text(
     items: Mapping[str, Sequence[Item]], figures: Mapping[str, Sequence[ThesisFigure]]
 ) -> str:
-    """The report as JSON: schema_version, summary, one object per item and per figure.
+    """The report as JSON: schema_version, summary, one object per item, figure and estimation.
 
-    A figure names the items that are read from it.
+    A figure names the items that are read from it. Estimations are those of Tables 4.1 and 4.2 with
+    their standard deviations and correlations.
     """
     rows = [{"part": part, **asdict(item)} for part, group in items.items() for item in group]
     pictures = [
@@ -61,5 +66,34 @@ def json_text(
         "summary": summary(items),
         "items": rows,
         "figures": pictures,
+        "estimates": [_estimate(precision) for precision in all_precisions()],
+        "spread_of_tests": {
+            direction: dict(zip(FITTED, spread_of_tests(direction).tolist(), strict=True))
+            for direction in DIRECTIONS
+        },
     }
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _estimate(precision: Precision) -> dict[str, Any]:
+    columns = {
+        "printed": precision.printed,
+        "estimated": precision.estimated,
+        "lower_bound": precision.lower,
+        "upper_bound": precision.upper,
+        "on_bound": precision.on_bound,
+        "fisher_standard_deviation": precision.fisher,
+        "spread_of_fits": precision.spread,
+    }
+    return {
+        "table": precision.table,
+        "direction": precision.direction,
+        "test": precision.test,
+        "noise": NOISE[precision.table],
+        "parameters": [
+            {"name": name, "unit": UNITS[name]}
+            | {column: values[k].item() for column, values in columns.items()}
+            for k, name in enumerate(precision.parameters)
+        ],
+        "correlation": precision.correlation.tolist(),
+    }

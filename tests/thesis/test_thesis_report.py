@@ -20,6 +20,7 @@ from ptp_symbolic.thesis.chapter_figures import all_figures, friction_of
 from ptp_symbolic.thesis.errata import ERRATA
 from ptp_symbolic.thesis.figures import STYLE, drawn
 from ptp_symbolic.thesis.responses import response
+from ptp_symbolic.thesis.wording import text_latex
 
 FIGURES = (
     *(f"fig_2_{n}" for n in (*range(7, 17), 18, 19)),
@@ -219,7 +220,7 @@ def test_compiles_without_a_warning(files: dict[str, str | bytes], tmp_path: Pat
     ],
 )
 def test_names_become_formulas(text: str, latex: str) -> None:
-    assert document._text(text) == latex
+    assert text_latex(text) == latex
 
 
 def test_the_command_writes_everything_and_says_when_there_is_no_pdf(
