@@ -54,9 +54,17 @@ def progress_line() -> Callable[[str], None]:
 @click.option("--train", multiple=True, required=True, help="Logs or folders to fit.")
 @click.option("--validate", multiple=True, required=True, help="Logs never fitted, to judge.")
 @click.option("--out", type=Path, required=True, help="Folder for the results.")
+@click.option(
+    "--black-box", "rivals", is_flag=True, help="Compare with models that know no physics."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print diagnosis.json instead of tables.")
 def diagnose(
-    source: str, train: tuple[str, ...], validate: tuple[str, ...], out: Path, as_json: bool
+    source: str,
+    train: tuple[str, ...],
+    validate: tuple[str, ...],
+    out: Path,
+    rivals: bool,
+    as_json: bool,
 ) -> None:
     """Find the effect that a declared platform lacks, from its logs."""
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
@@ -66,8 +74,9 @@ def diagnose(
     platform = declared_platform(source)
     check_writable(out)
     words = ["diagnose", "--platform", source, "--train", *train, "--validate", *validate]
+    words += ["--black-box"] * rivals
     command = shlex.join(["ptp-symbolic", *words, "--out", str(out)])
-    found = diagnose_platform(platform, train, validate, progress_line(), command)
+    found = diagnose_platform(platform, train, validate, progress_line(), command, rivals)
     write_files_atomically(out, found.files)
     note_defaults(platform)
     if as_json:
@@ -159,6 +168,32 @@ def _print_diagnosis(summary: Mapping[str, Any]) -> None:
     for key, why in summary["refused"].items():
         click.echo(f"  {key}: {why}")
     _print_errors(summary)
+    _print_rivals(summary)
+
+
+def _print_rivals(summary: Mapping[str, Any]) -> None:
+    """The residual torque and the free simulation of every model on the validation runs."""
+    from ptp_symbolic.report.rivals import MODELS, free_errors, said
+    from ptp_symbolic.report.tables import declared_totals, error_measure, usable
+
+    found = summary["black_box"]
+
+    for axis, part in ({} if found is None else found["axes"]).items():
+        models = [f"{MODELS[key]} {said(m)}" for key, m in part["models"].items()]
+        click.echo(
+            f"Torque left on {axis} along the validation runs, rms in {part['unit']}:"
+            f" {', '.join(models)}."
+        )
+    if found is not None and found["free"]:
+        key, unit = error_measure(declared_totals(summary))
+        errors = [
+            f"{MODELS[name]} {error[key]:.3g}"
+            if usable(error.get(key))
+            else f"{MODELS[name]} fails"
+            for name, error in free_errors(summary).items()
+            if name != "named" or summary["added"]
+        ]
+        click.echo(f"Simulated freely on the validation runs, {unit} rms: {', '.join(errors)}.")
 
 
 def _print_errors(summary: Mapping[str, Any]) -> None:

@@ -17,18 +17,29 @@ def report() -> None:
 @report.command()
 @click.option("--platform", "source", required=True, help="Platform TOML or packaged name.")
 @click.option("--out", type=Path, required=True, help="Folder for the document.")
-def derivation(source: str, out: Path) -> None:
+@click.option(
+    "--at",
+    "points",
+    multiple=True,
+    metavar="POINT",
+    help="Operating point to linearise about: theta_tilt=30deg,omega_pan=0.2rad/s. Repeatable.",
+)
+def derivation(source: str, out: Path, points: tuple[str, ...]) -> None:
     """Write the derivation of a platform's equations in LaTeX, and as PDF where pdflatex is."""
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.platform import naming_file
-    from ptp_symbolic.report.derivation import render_derivation
+    from ptp_symbolic.report.derivation import read_points, render_derivation
     from ptp_symbolic.report.pdf import compile_pdf
+    from ptp_symbolic.symbolic.derivation.assembly import assemble
 
     platform = declared_platform(source)
     check_writable(out)
     with naming_file(platform):
-        files = dict(render_derivation(platform))
+        equations = assemble(platform)
+    chosen = read_points(equations, points)
+    with naming_file(platform):
+        files = dict(render_derivation(platform, chosen))
     pdf = compile_pdf(files, "derivation")
     if pdf is not None:
         files["derivation.pdf"] = pdf

@@ -3,7 +3,8 @@
 Janot, Gautier and Brunot (Nonlinear Benchmark Workshop 2019): the position goes through a
 zero-phase Butterworth filter of order 4 at 100 Hz and is differentiated twice; what the model makes
 of it and the measured force are filtered alike and decimated by 10; the error is
-100 |y - yhat| / |y|. In a closed loop the error of the position says nothing.
+100 |y - yhat| / |y|. In a closed loop the error of the position says nothing. They compare the two
+forces at the samples; but a force that is held until the next sample acts half a period later.
 """
 
 from collections.abc import Mapping
@@ -28,10 +29,12 @@ def force_error(
     time: FloatArray,
     force: FloatArray,
     position: FloatArray,
+    held: bool = False,
 ) -> float:
     """Relative error in percent of the force that `platform` with `parameters` needs for a motion.
 
-    `time` [k] in s, evenly sampled; `force` [k] in N; `position` [k] in m.
+    `time` [k] in s, evenly sampled; `force` [k] in N; `position` [k] in m. A force that is `held`
+    from each sample to the next is compared with the mean of what is needed in between.
     """
     period = float(np.median(np.diff(time)))
     smooth = signal.filtfilt(*signal.butter(ORDER, 2.0 * CORNER * period), position)
@@ -39,6 +42,8 @@ def force_error(
     acceleration = np.gradient(speed, period)
     motion = Motion(smooth[:, None], speed[:, None], acceleration[:, None], time)
     needed = inverse_dynamics(platform, motion, parameters)[:, 0]
+    if held:
+        needed = np.append(0.5 * (needed[1:] + needed[:-1]), needed[-1])
     measured, predicted = (
         signal.decimate(column, DECIMATION, zero_phase=True)[EDGE:-EDGE]
         for column in (force, needed)

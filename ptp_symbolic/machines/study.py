@@ -10,6 +10,7 @@ from typing import Any
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.machines.force_error import force_error
+from ptp_symbolic.machines.friction_ladder import ladder
 from ptp_symbolic.numeric.data import read_log
 from ptp_symbolic.numeric.friction_map.points import Columns, read_points
 from ptp_symbolic.numeric.friction_map.summary import friction_map
@@ -89,17 +90,20 @@ def emps(folder: Path, progress: Progress) -> dict[str, Any]:
     for stage, machine in (("before", platform), ("after", after)):
         fitted = found.summary["fit"][stage]["parameters"]
         values = {name: row["value"] for name, row in fitted.items()}
-        errors = [_force_error(machine, values, log) for (log,) in logs]
-        rows.append({"stage": stage, "train": errors[0], "validate": errors[1]})
+        for held in (False, True):
+            errors = [_force_error(machine, values, log, held) for (log,) in logs]
+            rows.append({"stage": stage, "held": held, "train": errors[0], "validate": errors[1]})
     return {**_diagnosis("Positioning system (EMPS)", EMPS, found), "force_error": rows}
 
 
 def servo_pendulum(folder: Path, progress: Progress) -> dict[str, Any]:
-    """The pendulum on a servo: its diagnosis."""
+    """The pendulum on a servo: its diagnosis, and laws of friction each with one part more."""
     platform = read_platform(PLATFORMS / "servo_pendulum.toml")
     progress("servo pendulum")
-    found = diagnose_platform(platform, *pendulum_logs(folder), progress)
-    return _diagnosis("Pendulum on a geared servo", PENDULUM, found)
+    logs = pendulum_logs(folder)
+    found = diagnose_platform(platform, *logs, progress)
+    rungs = ladder(platform, *logs, progress)
+    return {**_diagnosis("Pendulum on a geared servo", PENDULUM, found), "ladder": rungs}
 
 
 def screw_drives(folder: Path, progress: Progress) -> dict[str, Any]:
@@ -133,6 +137,6 @@ def _written(found: Output) -> Platform:
         return read_platform(path)
 
 
-def _force_error(platform: Platform, values: Mapping[str, float], path: Path) -> float:
+def _force_error(platform: Platform, values: Mapping[str, float], path: Path, held: bool) -> float:
     log = read_log(path, platform)
-    return force_error(platform, values, log.time, log.inputs[:, 0], log.outputs[:, 0])
+    return force_error(platform, values, log.time, log.inputs[:, 0], log.outputs[:, 0], held)

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from ptp_symbolic.report import figures, map_figures, quantities, tables
+from ptp_symbolic.report import figures, map_figures, quantities, rivals, tables
+from ptp_symbolic.report.drawing import PlatformDrawing, svg_text
 from ptp_symbolic.report.pages import TEMPLATES, environment
 from ptp_symbolic.report.tables import usable
 
@@ -73,7 +74,9 @@ _MATHML_TAG = re.compile(
 )
 
 
-def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
+def render_diagnosis(
+    diagnosis: Mapping[str, Any], curves: Curves, machine: PlatformDrawing | None = None
+) -> str:
     """The page for one diagnosis (the content of diagnosis.json) and its curves.
 
     curves: {run: {"set": "train" or "validate", "time": [n] s, "signals": {signal: {"unit",
@@ -81,7 +84,8 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
     "inputs": {name: {"unit", "values": [n]}} (optional),
     "angle": {axis: [n] rad}, "rate": {axis: [n] rad/s}, "angle_unit": {axis: "m" where the joint is
     linear} (optional), "borders": [k] s, the starts of windows after the first (optional), "run":
-    the name of the run where the key is not (optional)}}. Loads nothing from elsewhere.
+    the name of the run where the key is not (optional)}}. `machine` is drawn, with what was added
+    marked at its place. Loads nothing from elsewhere.
     """
     verdict = VERDICTS[diagnosis["verdict"]]
     if not diagnosis.get("added"):
@@ -104,7 +108,14 @@ def render_diagnosis(diagnosis: Mapping[str, Any], curves: Curves) -> str:
         folded=folded,
         residual_maps=_residual_maps(diagnosis, curves),
         torque_maps=_torque_maps(diagnosis.get("remainder")),
+        rivals=rivals.rival_parts(diagnosis.get("black_box")),
+        rival_names=rivals.MODELS,
+        free_errors=rivals.free_errors(diagnosis),
         equations=_equations(diagnosis),
+        machine=machine,
+        pictures=[Markup(svg_text(s)) for s in (machine.frames, *machine.drives)]
+        if machine
+        else [],
         window=_window(curves),
         script=Markup(script),
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),

@@ -37,6 +37,7 @@ SPECIAL = {
     "^": r"\textasciicircum{}",
 }
 SHORT_NAME = 12
+NUMBER = 3  # width of the number of an equation, beyond the margin that it has
 SHORT_TABLE = 12
 
 
@@ -71,9 +72,10 @@ def formulas(
     if not rows:
         return ""
     widest = max(len(re.sub(r"\\[a-z]+|[{}_\\]", "", left)) for left, _ in rows)
+    room = LINE_WIDTH - max(0, widest - SHORT_NAME) - (NUMBER if with_numbers else 0)
     lines = []
     for left, right in rows:
-        first, *more = latex_lines(right, LINE_WIDTH - max(0, widest - SHORT_NAME))
+        first, *more = latex_lines(right, room)
         own = [f"{left} {relation}{{}}& {first}", *(f"& {line}" for line in more)]
         lines += [*(rf"{line} \notag" for line in own[:-1]), own[-1]] if with_numbers else own
     free = max(len(lines) - together, 0)
@@ -91,6 +93,12 @@ def numbered(rows: Sequence[tuple[str, sp.Expr]], relation: str = "=", together:
 def displayed(text: str) -> str:
     """LaTeX mathematics as a display of its own."""
     return f"\\[\n{text}\n\\]\n"
+
+
+def number_latex(value: float) -> str:
+    """A number with four digits, powers of ten as in print."""
+    mantissa, _, power = f"{value:.4g}".partition("e")
+    return rf"{mantissa}\cdot10^{{{int(power)}}}" if power else mantissa
 
 
 def unit_latex(unit: str) -> str:

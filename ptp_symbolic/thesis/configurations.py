@@ -4,6 +4,27 @@ import sympy as sp
 
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.coupling import (
+    ALWAYS,
+    ASYMMETRIC,
+    AT_SPEED,
+    BALANCED,
+    C_X,
+    MASS,
+    OFFSET,
+    PARTIALLY,
+    SYMMETRIC,
+    UNCOUPLED,
+    axes_with,
+    coupling,
+    linearity,
+)
+from ptp_symbolic.symbolic.derivation.coupling import (
+    J_XY as J_XY,
+)
+from ptp_symbolic.symbolic.derivation.coupling import (
+    J_YZ as J_YZ,
+)
 from ptp_symbolic.symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
 from ptp_symbolic.symbolic.mechanics import kinematics
@@ -11,18 +32,6 @@ from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration, Rig
 from ptp_symbolic.thesis.items import Item, Kind, plain, same_text, unprinted
 
 GRAVITY = sp.Symbol("g", positive=True)
-MASS = sp.Symbol("m", positive=True)
-J_X, J_Y, J_Z = sp.symbols("J_x J_y J_z", positive=True)
-J_XY, J_XZ, J_YZ = sp.symbols("J_xy J_xz J_yz", real=True)
-C_X, C_Y, C_Z = sp.symbols("c_x c_y c_z", real=True)
-UNCOUPLED, AT_SPEED, ALWAYS = "un-coupled", "coupled at higher speeds", "coupled"
-
-SYMMETRIC = sp.diag(J_X, J_Y, J_X)
-PARTIALLY = sp.diag(J_X, J_Y, J_Z)
-# J_xy, J_xz, J_yz are entries of the tensor: the negative integrals of x y, x z, y z over the mass.
-ASYMMETRIC = sp.Matrix([[J_X, J_XY, J_XZ], [J_XY, J_Y, J_YZ], [J_XZ, J_YZ, J_Z]])
-BALANCED, OFFSET = sp.zeros(3, 1), sp.Matrix([C_X, C_Y, C_Z])
-
 # Row of the table: name, inertia of the tilt body, its centre of mass, what is printed, erratum.
 ROWS = (
     ("completely_symmetric_balanced", SYMMETRIC, BALANCED, f"non-linear; {UNCOUPLED}", 11),
@@ -50,38 +59,9 @@ def configuration(inertia: sp.Matrix, com: sp.Matrix) -> RigidEquations:
     return lagrange(RigidConfiguration(kinematics.AXES, bodies, gravity))
 
 
-def linearity(equations: RigidEquations) -> str:
-    """`linear` where the mass matrix is constant and the forcing linear in angles and rates."""
-    state = (*equations.coordinates, *equations.rates)
-    constant = all(normal_form(m.diff(s)) == 0 for m in equations.mass_matrix for s in state)
-    curved = (f.diff(a).diff(b) for f in equations.forcing for a in state for b in state)
-    return "linear" if constant and all(normal_form(c) == 0 for c in curved) else "non-linear"
-
-
-def coupling(equations: RigidEquations) -> str:
-    """How the axes act on each other.
-
-    `coupled` where the acceleration of one axis needs a torque on the other, which it does at any
-    speed; `coupled at higher speeds` where all that passes is a product of two rates.
-    """
-    if normal_form(equations.mass_matrix[0, 1]) != 0:
-        return ALWAYS
-    passing = [
-        normal_form(equations.forcing[own].diff(symbol))
-        for own, other in ((0, 1), (1, 0))
-        for symbol in (equations.coordinates[other], equations.rates[other])
-    ]
-    return AT_SPEED if any(term != 0 for term in passing) else UNCOUPLED
-
-
 def gravity_axes(equations: RigidEquations) -> str:
     """The axes whose equation holds gravity."""
-    found = [
-        axis
-        for axis, force in zip(equations.axes, equations.forcing, strict=True)
-        if normal_form(force.diff(GRAVITY)) != 0
-    ]
-    return ", ".join(found) or "none"
+    return ", ".join(axes_with(GRAVITY, equations)) or "none"
 
 
 def table_2_2() -> list[Item]:

@@ -4,10 +4,12 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from ptp_symbolic.models import emission, variants
+from ptp_symbolic.numeric.black_box.learners import require_library
 from ptp_symbolic.numeric.data import log_files, read_split_logs
 from ptp_symbolic.numeric.diagnose.search import search
 from ptp_symbolic.numeric.diagnose.verdict import decide
 from ptp_symbolic.platform import Platform
+from ptp_symbolic.workflows.against_black_box import against_black_box
 from ptp_symbolic.workflows.preparation import effect_keys, look_at, task_for, workers
 from ptp_symbolic.workflows.provenance import provenance
 from ptp_symbolic.workflows.result import Output, Progress
@@ -20,12 +22,16 @@ def diagnose_platform(
     validate: Iterable[Path | str],
     progress: Progress = lambda text: None,
     command: str | None = None,
+    rivals: bool = False,
 ) -> Output:
     """Fit `platform` to the `train` logs, find what it lacks, judge on the `validate` logs.
 
-    `command` is the command line that asks for it, for the report. Raises InputError for logs and
-    platforms that do not fit each other, and for a run in both.
+    `command` is the command line that asks for it, for the report; with `rivals` what is found is
+    compared with models that know no physics. Raises InputError for logs and platforms that do not
+    fit each other, for a run in both, and for rivals without the library that they need.
     """
+    if rivals:
+        require_library()
     fitted, judging = log_files(train), log_files(validate)
     train_logs, validate_logs = read_split_logs(fitted, judging, platform)
     read = {"train": (fitted, train_logs), "validate": (judging, validate_logs)}
@@ -39,4 +45,7 @@ def diagnose_platform(
         )
         found = search(task)
         verdict = decide(found)
-        return written_up(platform, task, found, verdict, noted, sources)
+        beside = None
+        if rivals:
+            beside = against_black_box(platform, task, found, verdict, validate_logs)
+        return written_up(platform, task, found, verdict, noted, sources, beside)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.data import Log, stored_at
 from ptp_symbolic.platform import Platform
 
 
@@ -30,9 +30,10 @@ def provenance(
         "command": command,
         "platform": None if source is None else _file(source),
         "logs": [
-            {"part": part, **_file(path), **_clock(log)}
+            {"part": part, **_file(file), **_clock(log)}
             for part, (paths, logs) in parts.items()
             for path, log in zip(paths, logs, strict=True)
+            for file in stored_at(path)
         ],
     }
 

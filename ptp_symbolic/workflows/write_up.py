@@ -25,8 +25,10 @@ from ptp_symbolic.numeric.identify.fit import with_finite_differences
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, platform_text
 from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
+from ptp_symbolic.report.drawing import drawn
 from ptp_symbolic.report.latex_text import PREAMBLE, escaped
 from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, json_text, windows_table
 
 
@@ -37,8 +39,11 @@ def written_up(
     verdict: Verdict,
     noted: Sequence[str],
     sources: Mapping[str, Any],
+    beside: Mapping[str, Any] | None = None,
 ) -> Output:
-    """What was found, as data and as files; `sources` say what it rests on (see `provenance`)."""
+    """What was found, as data and as files; `sources` say what it rests on (see `provenance`), and
+    `beside` how rivals do that know no physics.
+    """
     after = replace(verdict.final, fit=with_finite_differences(verdict.final.fit, task.executor))
     intervals = {e.name: e for e in estimates(after.fit)}
     parts = {
@@ -68,6 +73,7 @@ def written_up(
         "refused": dict(verdict.refused),
         "remainder": left,
         "hints": hints(left),
+        "black_box": None if beside is None else dict(beside),
         "windows": windows_table(task),
         "remarks": list(noted),
         "equations": equations,
@@ -77,7 +83,9 @@ def written_up(
     files: dict[str, str | bytes] = {"platform.toml": platform_text(extended)}
     files["equations.tex"] = equations_tex(equations)
     files[f"{extended.name}.py"] = emission.module_of(extended)
-    files["report.html"] = render_diagnosis(summary, curves)
+    marked = {name for candidate in after.candidates for name in candidate.parameters}
+    machine = drawn(extended, assemble(extended), marked)
+    files["report.html"] = render_diagnosis(summary, curves, machine)
     files.update({f"curves/{name}": text for name, text in write_curves_csv(curves).items()})
     files["diagnosis.json"] = json_text(summary)
     return Output(summary, files)

@@ -66,8 +66,8 @@ def _on_axis(
     cycles = {f"n_cog_{k}{axis}": float(n) for k, n in zip(("", "2_", "3_"), counts, strict=True)}
     cogging = _waves(rng, axis, ("T_sin", "T_cos"), 3)
     yield Shape(cogging, cycles, guess=0.03 * coulomb, limit=0.5 * coulomb)
-    friction = _waves(rng, axis, ("F_sin", "F_cos"), 3)
-    yield Shape(friction, guess=0.02 * coulomb, limit=0.3 * coulomb)
+    friction = _waves(rng, axis, ("f_sin", "f_cos"), 3)
+    yield Shape(friction, guess=0.02, limit=0.3)
     yield Shape({f"mu_load_{axis}": 1.0}, guess=0.005, limit=0.01)
     yield Shape({f"t_delay_{axis}": 1.0}, guess=1e-4, limit=3e-4)
     yield Shape({f"gust_torque_{axis}": 1.0}, guess=0.01 * coulomb, limit=0.3 * coulomb)

@@ -156,9 +156,8 @@ def _two_harmonics(scene: Scene, sine: str, cosine: str, share: float) -> Shape:
 
 def position_dependent_friction(scene: Scene) -> Shape:
     """Dry friction that goes with the angle, in a third of the cases with its double too."""
-    shape = _two_harmonics(scene, "F_sin", "F_cos", 0.35)
-    coulomb = scene.coulomb()
-    return Shape(shape.slope, guess=0.07 * coulomb, limit=0.9 * coulomb, untold=shape.untold)
+    shape = _two_harmonics(scene, "f_sin", "f_cos", 0.35)
+    return Shape(shape.slope, guess=0.07, limit=0.9, untold=shape.untold)
 
 
 def load_dependent_friction(scene: Scene) -> Shape:

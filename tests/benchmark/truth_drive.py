@@ -1,7 +1,7 @@
 """From parameters in the project's names to the record of a drive, and the torque that they make.
 
 Beside the project's parameters there are names of the truth alone, such as wrap_torque_pan; a
-number before the axis counts further harmonics (T_sin_2_pan, F_sin_3_pan).
+number before the axis counts further harmonics (T_sin_2_pan, f_sin_3_pan).
 """
 
 from collections.abc import Mapping
@@ -13,7 +13,6 @@ import numpy as np
 from tests.independent.drive import NO_LIMIT, Drive, Floats, Rows, rows
 from tests.independent.drive_laws import (
     cogging_torque,
-    dry_change,
     joint_torque,
     sliding_friction,
 )
@@ -113,7 +112,7 @@ def drive_of(values: Values, axis: str) -> Drive:
         **fields,
         voltage_limit=float(values.get(f"u_max_{axis}", NO_LIMIT)),
         cogging=_cogging(values, axis),
-        friction_by_angle=_harmonics(values, "F_sin", "F_cos", axis, 3),
+        friction_by_angle=_harmonics(values, "f_sin", "f_cos", axis, 3),
         transmission=_harmonics(values, "g_sin", "g_cos", axis, 2),
         encoder=_harmonics(values, "e_sin", "e_cos", axis, 2),
     )
@@ -142,6 +141,5 @@ def torque_along(drive: Any, time: Floats, motion: Floats) -> Floats:
         torque[k] += cogging_torque(drive, gear_angle)
         if gear_rate != 0.0:
             slip = 1 if gear_rate > 0.0 else -1
-            change = dry_change(drive, gear_angle, load)
-            torque[k] -= sliding_friction(drive, time[k], gear_rate, slip, change)
+            torque[k] -= sliding_friction(drive, time[k], gear_rate, slip, gear_angle, load)
     return torque

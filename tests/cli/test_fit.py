@@ -88,6 +88,7 @@ def diagnosis(counts: float | None, angle: float) -> dict[str, Any]:
         "added": [],
         "refused": {},
         "remarks": [],
+        "black_box": None,
         "fit": {"after": {"parameters": {}}},
         "error": {"definition": "root mean square", "train": part, "validate": part},
     }

@@ -52,7 +52,7 @@ def test_guards_hold_the_size_of_a_load_and_the_logarithm_of_a_rest(checkout: Pa
         e for e in variants.candidate_effects(platform) if e.effect in (*BREAKAWAY, "csvs_friction")
     ]
     model = emission.emit(replace(platform, effects=(*platform.effects, *added)))
-    assert {"a_rest_tilt", "F_cos3_tilt", "mu_load_tilt"} <= {p.name for p in model.parameters}
+    assert {"a_rest_tilt", "f_cos3_tilt", "mu_load_tilt"} <= {p.name for p in model.parameters}
 
 
 @pytest.mark.long
@@ -62,4 +62,4 @@ def test_every_machine_is_emitted_with_all_candidates(preset: str, checkout: Pat
     platform = read_platform(checkout / f"ptp_symbolic/platform/presets/thesis-{preset}.toml")
     names = {p.name for p in emission.emit(variants.with_candidates(platform)).parameters}
     axis = "tilt" if "tilt" in preset else "pan"
-    assert {f"a_rest_{axis}", f"F_cos3_{axis}", f"mu_load_{axis}"} <= names
+    assert {f"a_rest_{axis}", f"f_cos3_{axis}", f"mu_load_{axis}"} <= names

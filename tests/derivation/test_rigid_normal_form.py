@@ -34,3 +34,13 @@ def test_what_is_not_zero_stays() -> None:
 def test_what_is_no_trigonometric_polynomial_is_refused(strange: sp.Expr) -> None:
     with pytest.raises(ValueError, match=r"polynomial|float|angles"):
         normal_form(strange)
+
+
+def test_a_product_such_as_pi_f_t_is_an_angle_of_its_own() -> None:
+    """Of a base that shakes; twice it is written with it."""
+    f, t, a = sp.symbols("f t a", real=True)
+    assert normal_form(sp.sin(sp.pi * f * t) ** 2 + sp.cos(sp.pi * f * t) ** 2) == 1
+    double = sp.sin(2 * sp.pi * f * t + a) - sp.sin(a + 2 * sp.pi * f * t)
+    assert normal_form(double) == 0
+    twice = sp.sin(2 * sp.pi * f * t)
+    assert normal_form(twice - 2 * sp.sin(sp.pi * f * t) * sp.cos(sp.pi * f * t)) == 0

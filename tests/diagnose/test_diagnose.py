@@ -17,7 +17,8 @@ PLATFORMS = Path(__file__).parents[1] / "platforms"
 @pytest.fixture(scope="module")
 def sample():
     platform = read_platform(SAMPLE / "platform.toml")
-    return diagnose_platform(platform, [SAMPLE / "train"], [SAMPLE / "validate"])
+    pytest.importorskip("sklearn")
+    return diagnose_platform(platform, [SAMPLE / "train"], [SAMPLE / "validate"], rivals=True)
 
 
 def test_sample_made_by_mujoco_is_explained_by_base_tilt(sample) -> None:
@@ -30,6 +31,18 @@ def test_sample_made_by_mujoco_is_explained_by_base_tilt(sample) -> None:
     assert found["error"]["validate"]["before"]["total"]["rmse_counts"] > 10.0
     for run in found["error"]["validate"]["after"]["by_run"].values():
         assert run["rmse_counts"] < 0.35
+
+
+def test_rivals_explain_the_torque_of_a_leaning_base_and_predict_worse_in_free_motion(
+    sample,
+) -> None:
+    found = sample.summary["black_box"]
+    for part in found["axes"].values():
+        assert {"declared", "named", "sparse", "network"} == set(part["models"])
+    named = sample.summary["error"]["validate"]["after"]["total"]["rmse_counts"]
+    declared = sample.summary["error"]["validate"]["before"]["total"]["rmse_counts"]
+    for rival in found["free"].values():
+        assert 3.0 * named < rival["rmse_counts"] < declared
 
 
 def test_the_headline_says_how_much_and_the_sources_are_named(sample) -> None:

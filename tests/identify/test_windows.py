@@ -242,7 +242,7 @@ def test_noise_moves_no_axis_that_dry_friction_holds() -> None:
         SignalDeclaration("theta_pan", "angle", "rad", "output", 7200, 3.0 * COUNT),
     )
     noise = 3.0 * COUNT * rng.standard_normal(100)
-    for rate, names in ((0.0, []), (0.5, ["omega_pan"])):
+    for rate, names in ((0.0, []), (0.5, ["omega_pan", "omega_gear_pan"])):
         log = Log("run", t, np.zeros((100, 1)), (rate * t + noise)[:, None])
         (run,) = prepare_runs(drive, replace(PLATFORM, signals=signals), [log])
         unknown = [u.name for u in run.unknowns if u.contact is None]

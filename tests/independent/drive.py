@@ -21,8 +21,8 @@ class Drive(NamedTuple):
     """SI units, torques and rates at the gear output; the laws stand in `drive_laws`.
 
     `forward` is motion towards positive angles. Payload torque: gravity_torque = m g c sin(beta),
-    towards the angle alpha_base. Coulomb ripple: friction_ripple (1 - cos(n theta - phase)) / 2 on
-    top of Coulomb and breakaway torque. Breakaway grows by the factor
+    towards the angle alpha_base. Dry friction goes with the angle by the factor
+    1 + friction_ripple (1 - cos(n theta - phase)) / 2 + friction_by_angle. Breakaway grows by
     1 + dwell_gain ln(1 + rest / dwell_time); resistance by heat, with
     heating_time d(heat)/dt = heating_gain R i^2 - heat.
     Rows of `cogging` are (amplitude, cycles per turn, phase); rows of `friction_by_angle`,

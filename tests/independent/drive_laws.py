@@ -48,13 +48,15 @@ def cogging_torque(drive: Any, gear_angle: float) -> float:
 
 
 @numba.njit(cache=True)
-def dry_change(drive: Any, gear_angle: float, load: float) -> float:
-    """What gear angle and transmitted torque `load` add to Coulomb and to static friction."""
-    change = harmonics(drive.friction_by_angle, gear_angle) + drive.friction_by_load * abs(load)
+def dry_friction(drive: Any, level: float, gear_angle: float, load: float) -> float:
+    """Dry friction that is at `level` on an even gear without load: its share by the angle, and
+    what the transmitted torque `load` adds.
+    """
+    share = 1.0 + harmonics(drive.friction_by_angle, gear_angle)
     if drive.friction_ripple != 0.0:
         turned = drive.ripple_count * gear_angle - drive.ripple_phase
-        change += 0.5 * drive.friction_ripple * (1.0 - math.cos(turned))
-    return change
+        share += 0.5 * drive.friction_ripple * (1.0 - math.cos(turned))
+    return level * max(0.0, share) + drive.friction_by_load * abs(load)
 
 
 @numba.njit(cache=True)
@@ -73,7 +75,9 @@ def viscous(drive: Any, coefficient: float, rate: float) -> float:
 
 
 @numba.njit(cache=True)
-def sliding_friction(drive: Any, t: float, rate: float, slip: int, change: float) -> float:
+def sliding_friction(
+    drive: Any, t: float, rate: float, slip: int, gear_angle: float, load: float
+) -> float:
     """CSVS friction while sliding towards `slip`; smooth in the rate, also past zero."""
     coulomb, static = drive.F_c_forward, drive.F_s_forward
     stribeck, coefficient = drive.v_s_forward, drive.F_v_forward
@@ -85,16 +89,18 @@ def sliding_friction(drive: Any, t: float, rate: float, slip: int, change: float
         drop = math.exp(-ratio * ratio)
     else:
         drop = math.exp(-(ratio**drive.stribeck_exponent))
-    level = max(0.0, coulomb + (static - coulomb) * drop + change)
+    level = dry_friction(drive, coulomb + (static - coulomb) * drop, gear_angle, load)
     return slip * level * _decay(drive, t) + viscous(drive, coefficient, rate)
 
 
 @numba.njit(cache=True)
-def breakaway(drive: Any, t: float, side: int, rest: float, change: float) -> float:
+def breakaway(
+    drive: Any, t: float, side: int, rest: float, gear_angle: float, load: float
+) -> float:
     """Torque that starts motion towards `side` after `rest` seconds at rest."""
     static = drive.F_s_forward if side > 0 else drive.F_s_backward
     growth = 1.0 + drive.dwell_gain * math.log(1.0 + rest / drive.dwell_time)
-    return max(0.0, static * growth + change) * _decay(drive, t)
+    return dry_friction(drive, static * growth, gear_angle, load) * _decay(drive, t)
 
 
 @numba.njit(cache=True)

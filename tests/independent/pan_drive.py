@@ -16,7 +16,6 @@ from tests.independent.drive import Drive, as_records
 from tests.independent.drive_laws import (
     breakaway,
     cogging_torque,
-    dry_change,
     harmonics,
     harmonics_slope,
     joint_torque,
@@ -109,8 +108,7 @@ def _slope(
     out[LOAD_RATE] = load / drive.J_load
     out[GEAR_RATE] = 0.0
     if slip != 0:
-        change = dry_change(drive, y[GEAR_ANGLE], shaft)
-        friction = sliding_friction(drive, t, y[GEAR_RATE], slip, change)
+        friction = sliding_friction(drive, t, y[GEAR_RATE], slip, y[GEAR_ANGLE], shaft)
         torque = _gear_torque(y, shaft, drive) - friction
         out[GEAR_RATE] = torque / (drive.J_motor * drive.N**2)
     out[CURRENT], out[HEAT] = winding(drive, u, y[GEAR_RATE], y[CURRENT], y[HEAT])
@@ -151,8 +149,7 @@ def _holds(t: float, y: Floats, contact: int, rest_since: float, drive: Any) -> 
     shaft = _contact_torque(y, contact, drive)
     torque = _gear_torque(y, shaft, drive)
     side = 1 if torque > 0.0 else -1
-    change = dry_change(drive, y[GEAR_ANGLE], shaft)
-    limit = breakaway(drive, t, side, t - rest_since, change)
+    limit = breakaway(drive, t, side, t - rest_since, y[GEAR_ANGLE], shaft)
     return 0 if abs(torque) <= limit else side
 
 

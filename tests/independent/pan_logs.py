@@ -38,7 +38,7 @@ EFFECTS: dict[str, tuple[dict[str, float], dict[str, float]]] = {
     "voltage_offset": ({"u0_pan": 0.15}, {}),
     "wrong_gap": ({"gap_excess": math.radians(0.31)}, {}),
     "position_dependent_friction": (
-        {"friction_ripple": 0.6},
+        {"friction_ripple": 1.0},
         {"ripple_count": 5.0, "ripple_phase": 0.7},
     ),
     "rate_dependent_breakaway": ({"dwell_gain": 0.15}, {"dwell_time": 0.3}),

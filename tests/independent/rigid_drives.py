@@ -24,7 +24,6 @@ from tests.independent.drive import Drive, Floats, as_records
 from tests.independent.drive_laws import (
     breakaway,
     cogging_torque,
-    dry_change,
     joint_torque,
     sliding_friction,
     winding,
@@ -131,8 +130,9 @@ def _motion(t: float, y: Floats, slip: Any, drives: Any, frame: Any) -> None:
             driving = motor_torque(k, y, drives, frame)
             torque[k] = driving + _torque_but_friction(t, y, k, drives, frame) - bias[k]
             if slip[k] != 0:
-                change = dry_change(drives[k], y[k, ANGLE], driving)
-                torque[k] -= sliding_friction(drives[k], t, y[k, RATE], slip[k], change)
+                torque[k] -= sliding_friction(
+                    drives[k], t, y[k, RATE], slip[k], y[k, ANGLE], driving
+                )
     if frame.voltage_driven == 1:
         pan += drives[0].J_motor * drives[0].N ** 2
         tilt += drives[1].J_motor * drives[1].N ** 2
@@ -188,8 +188,8 @@ def _breaks_away(t: float, y: Floats, k: int, rest: Floats, drives: Any, frame: 
     """Whether the friction left in the frame is more than stuck joint `k` can carry."""
     friction, angle = frame.friction[k], y[k, ANGLE]
     side = 1 if friction > 0.0 else -1
-    change = dry_change(drives[k], angle, motor_torque(k, y, drives, frame))
-    return abs(friction) > breakaway(drives[k], t, side, t - rest[k], change)
+    load = motor_torque(k, y, drives, frame)
+    return abs(friction) > breakaway(drives[k], t, side, t - rest[k], angle, load)
 
 
 @numba.njit(cache=True)

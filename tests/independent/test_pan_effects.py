@@ -86,7 +86,8 @@ def forward_slope(t: float, y: np.ndarray, u: float, d: PanDrive) -> list[float]
     level = d.F_c_forward + (d.F_s_forward - d.F_c_forward) * math.exp(
         -(abs(gear_rate / d.v_s_forward) ** d.stribeck_exponent)
     )
-    level += wave(d.friction_by_angle, gear)[0] + d.friction_by_load * abs(shaft)
+    level *= 1 + wave(d.friction_by_angle, gear)[0]
+    level += d.friction_by_load * abs(shaft)
     level *= 1 + d.friction_decay * math.exp(-t / d.decay_time)
     friction = level + d.F_v_forward * gear_rate * abs(gear_rate) ** (d.viscous_exponent - 1)
     cogging = sum(a * math.sin(n * gear + phase) for a, n, phase in d.cogging)
@@ -152,7 +153,7 @@ def test_breakaway_goes_with_angle_load_and_cogging() -> None:
     start = TOUCHING + np.array([angle, 0.0, angle, 0.0, 0.0, 0.0])
     by_angle = PanDrive(friction_by_angle=rows(3, (0.2, 0.1, 1.0)))
     gear = start[GEAR_ANGLE]
-    expected = (0.65 + 0.2 * math.sin(gear) + 0.1 * math.cos(gear)) * per_torque
+    expected = 0.65 * (1 + 0.2 * math.sin(gear) + 0.1 * math.cos(gear)) * per_torque
     assert breakaway_voltage(by_angle, start) == pytest.approx(expected, abs=2e-3)
     pole = PanDrive(cogging=rows(3, (0.15, 4.0, 0.3)))
     expected = (0.65 - 0.15 * math.sin(4.0 * gear + 0.3)) * per_torque
@@ -243,7 +244,7 @@ def test_a_push_on_the_load_is_linear_between_samples() -> None:
 
 
 def test_friction_never_pushes() -> None:
-    # Contributions larger than the Coulomb torque: the level is zero there, not negative.
+    # A share below minus one: the level is zero there, not negative.
     drive = PanDrive(friction_by_angle=rows(3, (0.0, -2.0, 1.0)), F_v_forward=0.0)
     states, _ = simulate(drive, np.zeros(200), TOUCHING + np.array([0, 0, 0, 0.2, 0.0, 0]))
     assert np.all(np.diff(states[:40, GEAR_RATE]) <= 1e-12)

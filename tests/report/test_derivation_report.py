@@ -5,30 +5,58 @@ import re
 import shutil
 import subprocess
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.emission import module_of
 from ptp_symbolic.platform import EffectDeclaration, preset_names, read_platform
-from ptp_symbolic.report.derivation import has_warning, render_derivation
+from ptp_symbolic.report.derivation import has_warning, read_points, render_derivation
 from ptp_symbolic.report.derivation.symbols import CATALOGUE
 from ptp_symbolic.report.latex_text import escaped
 from ptp_symbolic.report.pdf import PASSES, compile_pdf
 from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from tests.drawing.platforms import carriage, offset_platform, platform_of_every_kind
+
+PLATFORMS = {name: read_platform(name) for name in preset_names()} | {
+    "axes apart, payload off both, leaning base": offset_platform(),
+    "carriage": carriage(),
+    "carriage on a screw": carriage(
+        ("dc_motor", "pan"),
+        ("shaft_compliance", "pan"),
+        ("backlash", "pan"),
+        ("csvs_friction", "pan"),
+    ),
+}
 
 
-@pytest.mark.parametrize("name", preset_names())
+@cache
+def rendered(name: str) -> dict[str, str | bytes]:
+    return render_derivation(PLATFORMS[name])
+
+
+@pytest.mark.parametrize("name", PLATFORMS)
 def test_compiles_without_a_warning(name: str, tmp_path: Path) -> None:
-    files = render_derivation(read_platform(name))
-    text = files["derivation.tex"]
-    assert isinstance(text, str)
+    compiled_without_a_warning(rendered(name), tmp_path)
+
+
+@pytest.mark.long
+def test_a_platform_with_every_kind_of_effect_compiles(tmp_path: Path) -> None:
+    compiled_without_a_warning(render_derivation(platform_of_every_kind()), tmp_path)
+
+
+def compiled_without_a_warning(files: dict[str, str | bytes], tmp_path: Path) -> None:
+    text = str(files["derivation.tex"])
     assert "Kane -- Lagrange & $0$" in text
     assert "not symmetric" not in text
     if shutil.which("pdflatex") is None:
         pytest.skip("pdflatex is not installed")
-    (tmp_path / "derivation.tex").write_text(text, encoding="utf-8")
+    for name, content in files.items():
+        data = content.encode() if isinstance(content, str) else content
+        (tmp_path / name).write_bytes(data)
     for _ in range(PASSES):
         subprocess.run(
             ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape", "derivation.tex"],
@@ -43,7 +71,7 @@ def test_compiles_without_a_warning(name: str, tmp_path: Path) -> None:
 def test_every_symbol_of_the_equations_has_a_row_with_its_meaning(name: str) -> None:
     platform = read_platform(name)
     equations = assemble(platform)
-    text = str(render_derivation(platform)["derivation.tex"])
+    text = str(rendered(name)["derivation.tex"])
     table = text[text.index("Variables:") : text.index(r"\section{Three routes")]
     modes = [str(symbol) for symbol in equations.mode_symbols]
     for symbol in [*map(str, equations.state_symbols), *modes, *(i.name for i in equations.inputs)]:
@@ -58,11 +86,11 @@ def test_every_symbol_of_the_equations_has_a_row_with_its_meaning(name: str) -> 
 
 
 def test_a_tilt_only_platform_describes_only_its_own_frames() -> None:
-    text = str(render_derivation(read_platform("thesis-tilt-drive"))["derivation.tex"])
+    text = str(rendered("thesis-tilt-drive")["derivation.tex"])
     frames = text[text.index("Frames and signs") : text.index(r"\section{Symbols}")]
     assert "pan" not in frames
     assert "tilt frame" in frames
-    pan = str(render_derivation(read_platform("thesis-pan-drive"))["derivation.tex"])
+    pan = str(rendered("thesis-pan-drive")["derivation.tex"])
     frames = pan[pan.index("Frames and signs") : pan.index(r"\section{Symbols}")]
     assert "tilt" not in frames
 
@@ -78,8 +106,8 @@ def test_values_that_the_platform_does_not_declare_are_marked() -> None:
 
 
 def test_the_final_equations_give_the_rate_of_change_of_every_state() -> None:
-    platform = read_platform("thesis-full")
-    text = str(render_derivation(platform)["derivation.tex"])
+    platform = PLATFORMS["thesis-full"]
+    text = str(rendered("thesis-full")["derivation.tex"])
     final = text[text.index(r"\section{Final equations}") :]
     assert final.count(r"\dot{") == len(assemble(platform).state_symbols)
 
@@ -88,7 +116,7 @@ def test_the_final_equations_give_the_rate_of_change_of_every_state() -> None:
 def test_no_page_is_nearly_empty(name: str, tmp_path: Path) -> None:
     if shutil.which("pdflatex") is None or shutil.which("pdftotext") is None:
         pytest.skip("pdflatex or pdftotext is not installed")
-    pdf = compile_pdf(render_derivation(read_platform(name)), "derivation")
+    pdf = compile_pdf(rendered(name), "derivation")
     assert pdf is not None
     (tmp_path / "derivation.pdf").write_bytes(pdf)
     command = ["pdftotext", "-bbox", "derivation.pdf", "-"]
@@ -102,7 +130,7 @@ def test_no_page_is_nearly_empty(name: str, tmp_path: Path) -> None:
 
 def test_axes_that_do_not_cross_are_not_said_to() -> None:
     platform = read_platform("thesis-payload")
-    crossing = str(render_derivation(platform)["derivation.tex"])
+    crossing = str(rendered("thesis-payload")["derivation.tex"])
     added = EffectDeclaration("axis_offset", None, None)
     apart = replace(platform, effects=(*platform.effects, added))
     text = str(render_derivation(apart)["derivation.tex"])
@@ -122,3 +150,51 @@ def test_the_title_has_the_checksum_of_the_module_and_the_date(
     assert re.search(r'MODEL_HASH = "(\w+)"', committed)[1] in text
     assert hashlib.sha256(module_of(platform).encode()).hexdigest() in text
     assert "1970-01-02" in text
+
+
+def test_the_machine_is_drawn_and_its_linear_models_plotted() -> None:
+    files = rendered("thesis-pan-drive")
+    text = str(files["derivation.tex"])
+    assert text.count(r"\begin{tikzpicture}") == 2  # frames, and the drive of the one axis
+    assert r"\includegraphics{bode-u-pan.pdf}" in text
+    assert bytes(files["bode-u-pan.pdf"]).startswith(b"%PDF")
+    assert "Dry friction has no derivative at rest" in text
+    again = render_derivation(read_platform("thesis-pan-drive"))
+    assert again["bode-u-pan.pdf"] == files["bode-u-pan.pdf"]
+
+
+def test_operating_points_can_be_chosen() -> None:
+    payload = read_platform("thesis-payload")
+    points = ["theta_tilt=-30deg,omega_pan=0.5", "theta_tilt=1rad"]
+    files = render_derivation(payload, read_points(assemble(payload), points))
+    text = str(files["derivation.tex"])
+    linear = text[text.index(r"\section{Linearisation}") : text.index(r"\section{Final")]
+    assert r"=-30^\circ" in linear
+    assert r"=57.3^\circ" in linear
+    assert "=45" not in linear
+
+
+@pytest.mark.parametrize(
+    ("point", "message"),
+    [
+        ("theta_roll=0.1", "Unknown joint angle or rate 'theta_roll'"),
+        ("theta_tilt=up", "give NAME=VALUE, a number in rad"),
+        ("theta_tilt=3kg", "unit 'kg'; give it in rad"),
+        ("theta_tilt", "give NAME=VALUE, a number in rad"),
+    ],
+)
+def test_an_operating_point_that_makes_no_sense_is_refused(point: str, message: str) -> None:
+    with pytest.raises(InputError, match=re.escape(message)):
+        read_points(assemble(read_platform("thesis-payload")), [point])
+
+
+def test_friction_is_linearised_sliding_forwards_everywhere_or_nowhere() -> None:
+    drive = read_platform("thesis-pan-drive")
+    with pytest.raises(InputError, match="give each a rate above 0, or none a rate"):
+        read_points(assemble(drive), ["omega_pan=-0.1"])
+
+
+def test_an_operating_point_out_of_reach_is_refused() -> None:
+    drive = assemble(read_platform("thesis-tilt-drive"))
+    with pytest.raises(InputError, match=r"beyond the .* give one within \["):
+        read_points(drive, ["theta_tilt=120deg"])

@@ -16,56 +16,70 @@ from ptp_symbolic.platform import SignalDeclaration
 
 FloatArray = NDArray[np.float64]
 Steps = tuple[FloatArray, FloatArray]  # times in s, and the values that hold from them on
+Series = tuple[FloatArray, FloatArray]  # times [n] in s, and what was logged at them [n]
 
 SAME_TIME = 1e-6  # of a sampling period: what rounding may leave between equal times
 
 
 def on_one_clock(
     path: Path,
-    time: FloatArray,
-    values: FloatArray,
+    series: Sequence[Series],
     inputs: Sequence[SignalDeclaration],
     outputs: Sequence[SignalDeclaration],
 ) -> tuple[FloatArray, FloatArray, tuple[Steps, ...]]:
     """Return the times [k] in s at which the outputs were measured, all signals [k, nu + ny] at
-    them, and the steps of the inputs, from the `values` [n, nu + ny] that are logged at `time` [n].
+    them, and the steps of the inputs, from the `series` of every signal. Of several clocks that of
+    the first encoder leads; an input acts from the time at which it was logged to the next.
 
     Samples for which a signal is not there yet, or no more, are left out. Raises InputError for an
     encoder that would be interpolated.
     """
     signals = (*inputs, *outputs)
-    if not any(s.delay for s in signals):
-        return time, values, ()
-    leader = next((s for s in outputs if s.count is not None), outputs[0])
+    given, measured = series[: len(inputs)], series[len(inputs) :]
+    at, leader = next(
+        ((k, s) for k, s in enumerate(outputs) if s.count is not None), (0, outputs[0])
+    )
+    time = measured[at][0]
+    if not any(s.delay for s in signals) and all(own is time for own, _ in series):
+        return time, np.column_stack([column for _, column in series]), ()
     late = [s.delay for s in inputs] + [-s.delay for s in outputs]
-    rounding = SAME_TIME * float(np.median(np.diff(time)))
+    period = float(np.median(np.diff(time)))
+    begin = max(own[0] + d for (own, _), d in zip(series, late, strict=True))
+    end = min(own[-1] + d for (own, _), d in zip(measured, late[len(inputs) :], strict=True))
+    for (own, _), d in zip(given, late, strict=False):
+        held = max(float(np.median(np.diff(own))) - period, 0.0)  # the last value holds as long
+        end = min(end, own[-1] + d + held)
     clock = time - leader.delay
-    there = clock >= time[0] + max(late) - rounding
-    there &= clock <= time[-1] + min(late) + rounding
+    there = (clock >= begin - SAME_TIME * period) & (clock <= end + SAME_TIME * period)
     clock = np.ascontiguousarray(clock[there])
     if len(clock) < 2:
-        raise InputError(f"{path}: is shorter than the delays of its signals; give a longer log.")
-    moved = delayed_inputs(time, values[:, : len(inputs)], inputs, clock)
+        raise InputError(
+            f"{path}: is shorter than the delays of its signals; give a longer log."
+            if all(own is time for own, _ in series)
+            else f"{path}: there is no time at which all signals are logged; give parts of one run"
+            " with one clock."
+        )
+    moved = delayed_inputs(given, inputs, clock)
     seen = [
-        _output(path, time - s.delay, column, s, leader, clock)
-        for s, column in zip(outputs, values[:, len(inputs) :].T, strict=True)
+        _output(path, (own - s.delay, column), s, leader, clock, own is time)
+        for s, (own, column) in zip(outputs, measured, strict=True)
     ]
     steps = [
-        (time + s.delay, column) if _samples_at(time + s.delay, clock) is None else (clock, acting)
-        for s, column, acting in zip(inputs, values.T, moved.T, strict=False)
+        (own + s.delay, column) if _samples_at(own + s.delay, clock) is None else (clock, acting)
+        for s, (own, column), acting in zip(inputs, given, moved.T, strict=True)
     ]
     return clock, np.column_stack([moved, *seen]), tuple(steps)
 
 
 def delayed_inputs(
-    time: FloatArray, values: FloatArray, inputs: Sequence[SignalDeclaration], clock: FloatArray
+    series: Sequence[Series], inputs: Sequence[SignalDeclaration], clock: FloatArray
 ) -> FloatArray:
     """Return what acts on the machine from every time of `clock` [k] to the next, [k, nu], of the
-    input `values` [n, nu] that are logged at `time` [n] in s and held. The first acts from ever.
+    `series` of every input, which are held from sample to sample. The first acts from ever.
     """
     edges = np.append(clock, 2.0 * clock[-1] - clock[-2])
     moved = []
-    for signal, column in zip(inputs, values.T, strict=True):
+    for signal, (time, column) in zip(inputs, series, strict=True):
         acts = time + signal.delay
         at = _samples_at(acts, clock)
         if at is None:
@@ -80,16 +94,25 @@ def delayed_inputs(
 
 def _output(
     path: Path,
-    measured: FloatArray,
-    column: FloatArray,
+    series: Series,
     signal: SignalDeclaration,
     leader: SignalDeclaration,
     clock: FloatArray,
+    is_shared: bool,
 ) -> FloatArray:
-    """An output at the times of `clock` [k], from its values at the times `measured` [n]."""
+    """An output at the times of `clock` [k], from the `series` of when it was measured; `is_shared`
+    tells whether it is logged at the times of the leader.
+    """
+    measured, column = series
     at = _samples_at(measured, clock)
     if at is not None:
         return column[at]
+    if signal.count is not None and not is_shared:
+        raise InputError(
+            f"{path}: the encoders '{leader.column}' and '{signal.column}' are logged at different"
+            " times, and interpolation would blur their counts; log both together, or give the"
+            " second a noise in place of its counts."
+        )
     if signal.count is not None:
         raise InputError(
             f"{path}: the delays of the encoders '{leader.column}' and '{signal.column}' differ by"

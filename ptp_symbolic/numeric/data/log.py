@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data.calibration import calibrated, factor_of, unit_factor
 from ptp_symbolic.numeric.data.continuity import Wraps, unwrapped
-from ptp_symbolic.numeric.data.formats import files_at, read_table
-from ptp_symbolic.numeric.data.latency import Steps, delayed_inputs, on_one_clock
+from ptp_symbolic.numeric.data.formats import files_at, name_of, parts_of, read_tables
+from ptp_symbolic.numeric.data.latency import Series, Steps, delayed_inputs, on_one_clock
+from ptp_symbolic.numeric.data.several_tables import groups_of, one_after_the_other
 from ptp_symbolic.numeric.data.table import Table
 from ptp_symbolic.platform import Clock, Platform, SignalDeclaration, naming_file
 
@@ -59,14 +60,14 @@ def read_log(path: Path | str, platform: Platform) -> Log:
             raise InputError(
                 f"Platform '{platform.name}' has no output signal to compare with {path}; {advice}."
             )
-    clock, numbers = _read_signals(path, [*inputs, *outputs], platform.clock)
-    whole = [unwrapped(c, s) for c, s in zip(numbers.T, [*inputs, *outputs], strict=True)]
-    numbers = np.column_stack([column for column, _ in whole])
-    time, values, steps = on_one_clock(path, clock, numbers, inputs, outputs)
+    read = _read_signals(path, [*inputs, *outputs], platform.clock)
+    whole = [unwrapped(c, s) for (_, c), s in zip(read, [*inputs, *outputs], strict=True)]
+    series = [(clock, column) for (clock, _), (column, _) in zip(read, whole, strict=True)]
+    time, values, steps = on_one_clock(path, series, inputs, outputs)
     _refuse_short(path, time)
     split = len(inputs)
     return Log(
-        path.stem,
+        name_of(path),
         time,
         np.ascontiguousarray(values[:, :split]),
         np.ascontiguousarray(values[:, split:]),
@@ -89,8 +90,9 @@ def read_inputs(
                 f"Platform '{platform.name}' has no input signal to read from {path}; add one, "
                 "such as [signals.u_pan]."
             )
-    time, values = _read_signals(Path(path), inputs, platform.clock)
-    return time, delayed_inputs(time, values, inputs, time)
+    series = _read_signals(Path(path), inputs, platform.clock)
+    time = series[0][0]
+    return time, delayed_inputs(series, inputs, time)
 
 
 def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...]:
@@ -104,13 +106,12 @@ def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...
     for file, place in zip(files, places, strict=True):
         if places.count(place) > 1:
             raise InputError(f"{file}: is given twice; name each log once.")
-    stems = [file.stem for file in files]
+    names = [name_of(file) for file in files]
     logs = []
-    for file, place in zip(files, places, strict=True):
+    for file, name in zip(files, names, strict=True):
         log = read_log(file, platform)
-        if stems.count(file.stem) > 1:
-            name = f"{place.parent.name}/{place.stem}"
-            log = replace(log, name=name)
+        if names.count(name) > 1:
+            log = replace(log, name=f"{parts_of(file)[0].resolve().parent.name}/{name}")
         logs.append(log)
     return tuple(logs)
 
@@ -125,9 +126,28 @@ def log_files(paths: Iterable[Path | str]) -> list[Path]:
 
 def _read_signals(
     path: Path, signals: Sequence[SignalDeclaration], declared: Clock
+) -> list[Series]:
+    """Return times [n] in s and values [n] in SI of every signal; those of one table share their
+    times.
+    """
+    tables = read_tables(path)
+    if len(tables) == 1:
+        time, values = _read_table(tables[0], signals, declared)
+        return [(time, column) for column in values.T]
+    found: dict[str, Series] = {}
+    by_column = {signal.column: signal for signal in signals}
+    for columns, parts in groups_of(path, tables, list(by_column)).items():
+        own = [by_column[column] for column in columns]
+        time, values = one_after_the_other([(t, *_read_table(t, own, declared)) for t in parts])
+        same = [known for known, _ in found.values() if np.array_equal(known, time)]
+        found |= {c: (same[0] if same else time, v) for c, v in zip(columns, values.T, strict=True)}
+    return [found[signal.column] for signal in signals]
+
+
+def _read_table(
+    table: Table, signals: Sequence[SignalDeclaration], declared: Clock
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return time [n] and the signals [n, len(signals)] in SI."""
-    table = read_table(path)
     clock = table.clock(declared)
     if clock is None:
         raise InputError(
@@ -146,7 +166,7 @@ def _read_signals(
         for s, (_, unit) in zip(signals, found, strict=True)
     ]
     numbers = table.numbers([clock[0], *(index for index, _ in found)])
-    _refuse_short(path, numbers)
+    _refuse_short(table.path, numbers)
     time = np.ascontiguousarray(numbers[:, 0])
     _check_time(table, time, clock[1])
     second = unit_factor(f"{table.head}: column 'time'", "time", "time", "s", clock[1])

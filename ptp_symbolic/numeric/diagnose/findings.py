@@ -49,5 +49,9 @@ def step_of(trial: Trial, candidate: Candidate, without: Trial) -> Step:
 
 
 def is_earned(earned: Gain, p: float, tests: int) -> bool:
-    """Whether a gain is material, and clear over so many `tests` (Bonferroni)."""
-    return earned.share >= MATERIAL and earned.lower > 0.0 and p < FALSE_ALARM / max(tests, 1)
+    """Whether a gain is material, and clear over so many `tests` by the values of its parameters
+    (see `p_value`) or by the blocks it predicts better (Bonferroni): parameters that trade for each
+    other may each be anything while their effect is beyond doubt.
+    """
+    chance = 2.0 * min(p, earned.chance)
+    return earned.share >= MATERIAL and earned.lower > 0.0 and chance < FALSE_ALARM / max(tests, 1)

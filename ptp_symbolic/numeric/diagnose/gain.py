@@ -21,11 +21,13 @@ from ptp_symbolic.numeric.identify.blocks import (
     leave_blocks_out,
     without_outliers,
 )
-from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, NOTHING, TUNING
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, NOTHING, SINGULAR, TUNING
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.innovations import innovations, prediction_error_filter
 from ptp_symbolic.numeric.identify.intervals import project_out
 from ptp_symbolic.numeric.identify.least_squares import weighted_median
+from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import by_source
 
 FloatArray = NDArray[np.float64]
@@ -44,16 +46,51 @@ class Gain:
     statistic: float
     degrees: int
 
+    @property
+    def chance(self) -> float:
+        """Probability of this gain, or a larger one, where there is none (one-sided)."""
+        return float(stats.t.sf(self.statistic, max(self.degrees, 1)))
+
     def is_clear(self, tests: int) -> bool:
-        """Whether the gain is above zero at 5 % over so many `tests` (Bonferroni, one-sided)."""
-        threshold = stats.t.ppf(1.0 - FALSE_ALARM / max(tests, 1), max(self.degrees, 1))
-        return self.statistic > float(threshold)
+        """Whether the gain is above zero at 5 % over so many `tests` (Bonferroni)."""
+        return self.chance < FALSE_ALARM / max(tests, 1)
 
 
 def gain(larger: Trial, smaller: Trial) -> Gain:
     """The predictive gain of `larger` over `smaller`, both fitted to the same runs."""
+    return _gain(larger.fit.runs, [_projected(t.fit) for t in (larger, smaller)])
+
+
+def gain_in_innovations(larger: Trial, smaller: Trial) -> Gain:
+    """The same where what `larger` leaves is coloured: in its innovations, each model one step of
+    generalized least squares from its fit.
+    """
     runs = larger.fit.runs
-    residuals = [_projected(t.fit) for t in (larger, smaller)]
+    signals = runs[0].measured.shape[1]
+    parts = [_projected(t.fit) for t in (larger, smaller)]
+    filters = [
+        prediction_error_filter([r.reshape(-1, signals)[:, k] for r in parts[0][0]])
+        for k in range(signals)
+    ]
+    return _gain(runs, [_in_innovations(*part, filters) for part in parts])
+
+
+def _in_innovations(
+    residuals: Sequence[FloatArray], jacobians: Sequence[FloatArray], filters: list[FloatArray]
+) -> tuple[list[FloatArray], list[FloatArray]]:
+    """Innovations of residuals and Jacobians, per run, at the optimum of their squares."""
+    white = [innovations(r[:, None], filters)[:, 0] for r in residuals]
+    slopes = [innovations(j, filters) for j in jacobians]
+    columns = np.vstack(slopes)
+    size = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    step = -np.linalg.lstsq(columns / size, np.concatenate(white), rcond=SINGULAR)[0] / size
+    return [r + j @ step for r, j in zip(white, slopes, strict=True)], slopes
+
+
+def _gain(
+    runs: Sequence[Run], residuals: Sequence[tuple[list[FloatArray], list[FloatArray]]]
+) -> Gain:
+    """The gain of the first of two models, given by residuals and Jacobians of the same runs."""
     signals = runs[0].measured.shape[1]
     difference = [
         (b**2 - a**2).reshape(-1, signals).sum(axis=1)

@@ -175,18 +175,20 @@ class Seeker:
         return self.best_earning(begun, trial)
 
     def best_earning(self, begun: Sequence[Trial], trial: Trial) -> Trial | None:
-        """The best of trials that are `begun`, polished, if what it has more than `trial` gains
-        clearly and materially.
+        """The best of trials that are `begun`, polished, of those in which what they have more than
+        `trial` gains clearly and materially; None if there is none. An effect may fit best in a
+        form whose parameters trade for each other, and be clear in a simpler one.
         """
         left = halving(self.task, begun, FIRST_RUNG, self.others)
-        if not left:
-            return None
-        best = ranked([self.polished(t) for t in left if is_near(t, left)])[0]
-        if gain(best, trial).share < MOST:
-            best = self.restarted(best)
+        found = ranked([self.polished(t) for t in left if is_near(t, left)])
+        if found and gain(found[0], trial).share < MOST:
+            found[0] = self.restarted(found[0])
         have = {f.name for c in trial.candidates for f in c.free}
-        added = {n: v for c in best.candidates for n, v in c.vanishing.items() if n not in have}
-        return best if self.is_earned(gain(best, trial), p_value(best, added)) else None
+        for best in found:
+            added = {n: v for c in best.candidates for n, v in c.vanishing.items() if n not in have}
+            if self.is_earned(gain(best, trial), p_value(best, added)):
+                return best
+        return None
 
     def exchanged(self, trial: Trial) -> Trial | None:
         """A set that fits better than that of the trial, with another candidate in the place of one

@@ -8,7 +8,7 @@ import numpy as np
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, at_bound, why_unconfirmed
 from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import Floor, carried_noise, floor_of, leaves_noise_alone
-from ptp_symbolic.numeric.diagnose.gain import Gain, compared, gain
+from ptp_symbolic.numeric.diagnose.gain import Gain, compared, gain, gain_in_innovations
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
 from ptp_symbolic.numeric.diagnose.refits import forms
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
@@ -216,14 +216,24 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
         reason = why_unconfirmed(fit, step.candidate, quiet)
         if reason is not None:
             return step, reason
-        if step.gain.share < MOST and not quiet:
-            share = f"{100.0 * step.gain.share:.0f} %"
-            return (
-                step,
-                f"takes away {share} of the error, too little where more than noise is left",
-            )
+        if not quiet:
+            doubt = _doubt_beside_a_remainder(trial, step)
+            if doubt is not None:
+                return step, doubt
     if not answers_to_inputs(seeker.task, trial):
         return by_gain[0], "with it the model no longer answers to its inputs"
+    return None
+
+
+def _doubt_beside_a_remainder(trial: Trial, step: Step) -> str | None:
+    """Why a step cannot be named where more than noise is left, which a wrong effect may imitate:
+    it takes away less than is left, or nothing but slow drift.
+    """
+    if step.gain.share < MOST:
+        share = f"{100.0 * step.gain.share:.0f} %"
+        return f"takes away {share} of the error, too little where more than noise is left"
+    if gain_in_innovations(trial, step.without).share < MATERIAL:
+        return "takes away slow drift alone, which other effects left out may have caused as well"
     return None
 
 

@@ -106,14 +106,19 @@ class Around:
     first: int
 
 
-def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
+def with_start(
+    model: Model, run: Run, around: Around | None = None, *, underway: bool = False
+) -> Run:
     """`run` with a guess of the state at its first sample, and what is unknown of it.
 
     A local parabola over a tenth of a second gives the rate, in the middle of it where the run is a
     window and `around` it is the rest of a log. A joint with dry friction whose rate is within its
     noise is taken to be at rest; one that is near it may be. A moving joint is driven: its gear
-    touches the face ahead and has wound up the shaft, nobody knows by how much.
+    touches the face ahead and has wound up the shaft, nobody knows by how much; or it crosses its
+    gap, at anything between standstill and twice the rate of the joint. Of one that is `underway`,
+    as in a window, the shaft may be wound up at rest too.
     """
+    underway = underway or around is not None
     states = list(model.state_names)
     start = np.array(model.module.STATE_INITIAL, dtype=np.float64)
     friction_rates = {states[i] for i in model.friction_rates}
@@ -151,7 +156,11 @@ def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
         tangent = np.zeros(len(states))
         tangent[gear] = 1.0
         rate = start[states.index(states[joint].replace("theta_", "omega_", 1))]
-        reach = ANYWHERE if around is not None or rate != 0.0 else 1.0
+        seen = run.signals.index(states[joint]) if states[joint] in run.signals else None
+        reach = ANYWHERE if underway or rate != 0.0 else 1.0
+        if rate != 0.0:
+            turning = states[gear].replace("theta_", "omega_", 1)
+            unknowns.append(_unknown(states, turning, [turning], ANYWHERE, abs(float(rate))))
         unknowns.append(
             StartUnknown(
                 f"gap_place_{contact}",
@@ -160,17 +169,23 @@ def with_start(model: Model, run: Run, around: Around | None = None) -> Run:
                 reach,
                 reach,
                 contact,
-                run.signals.index(states[joint]) if states[joint] in run.signals else None,
+                seen,
                 guess=float(np.sign(rate)),
             )
         )
     return replace(run, start=start, unknowns=tuple(unknowns))
 
 
+def _start_samples(run: Run) -> int:
+    """How many samples at the beginning of a run its start is guessed from."""
+    return max(LEAST_START, int(np.searchsorted(run.time, run.time[0] + START_SPAN)))
+
+
 def _stays(run: Run, column: int) -> bool:
     """Whether a signal stays within its noise at the start of a run."""
-    count = max(LEAST_START, int(np.searchsorted(run.time, run.time[0] + START_SPAN)))
-    return float(np.ptp(run.measured[:count, column])) <= 2.0 * FAR / run.weight[column]
+    return (
+        float(np.ptp(run.measured[: _start_samples(run), column])) <= 2.0 * FAR / run.weight[column]
+    )
 
 
 def _first_rate(run: Run, column: int, around: Around | None) -> tuple[float, float]:

@@ -48,8 +48,11 @@ def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple
             for k, (s, q) in enumerate(zip(outputs, counts, strict=True))
         ]
     )
-    pieces = [piece for log in logs for piece in _pieces(log)]
-    return tuple(_prepare(model, outputs, log, order, counts, sigma) for log in pieces)
+    return tuple(
+        _prepare(model, outputs, piece, order, counts, sigma, underway=number > 0)
+        for log in logs
+        for number, piece in enumerate(_pieces(log))
+    )
 
 
 def _pieces(log: Log) -> list[Log]:
@@ -76,6 +79,8 @@ def _prepare(
     order: list[int],
     counts: FloatArray,
     sigma: FloatArray,
+    *,
+    underway: bool,
 ) -> Run:
     steps = log.steps or [(log.time, column) for column in log.inputs.T]
     run = Run(
@@ -91,7 +96,7 @@ def _prepare(
         start=np.empty(0),
         unknowns=(),
     )
-    return with_start(model, run)
+    return with_start(model, run, underway=underway)
 
 
 def _sigma(signal: SignalDeclaration, count: float, measured: Sequence[FloatArray]) -> float:

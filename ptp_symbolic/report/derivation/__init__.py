@@ -2,5 +2,6 @@
 
 from ptp_symbolic.report.derivation.document import render_derivation
 from ptp_symbolic.report.derivation.log import has_warning
+from ptp_symbolic.report.derivation.operating_points import read_points
 
-__all__ = ["has_warning", "render_derivation"]
+__all__ = ["has_warning", "read_points", "render_derivation"]

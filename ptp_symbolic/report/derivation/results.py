@@ -8,7 +8,6 @@ from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.codegen.statements import (
     RELATIONS,
     Statement,
-    friction_statements,
     statements,
 )
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
@@ -27,7 +26,9 @@ def equations_of_motion(equations: Equations) -> str:
             rf" at rest, ${direction}=0$, it takes up the {equations.worded('torque')} that acts,"
             " up to breakaway:"
         )
-        parts.append(_displayed(friction_statements(friction)))
+        parts.append(
+            _displayed([s for s in found if s.key[:2] == ("friction", str(friction.rate))])
+        )
     for contact in equations.contacts:
         own = [s for s in found if s.key[:2] == ("contact", contact.axis)]
         parts += [_contact(contact), _displayed(own)]

@@ -18,6 +18,7 @@ from ptp_symbolic.symbolic.derivation.proof import compare_numerically, prove_eq
 from ptp_symbolic.symbolic.derivation.properties import energy_remainder, is_passive, is_symmetric
 from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
+from ptp_symbolic.symbolic.mechanics.kinematics import TIME
 from ptp_symbolic.symbolic.symbols import real
 
 ROUTES = (("Newton--Euler", newton_euler), ("Kane", kane), ("Lagrange", lagrange))
@@ -28,6 +29,7 @@ def three_routes(equations: Equations) -> str:
     derived = {name: route(equations.rigid) for name, route in ROUTES}
     reference = derived["Lagrange"]
     numbers = {real(p.name): float(p.default) or 0.01 for p in equations.parameters}
+    numbers[TIME] = 1.0  # any instant of a base that shakes
     rows = []
     for name in ("Newton--Euler", "Kane"):
         proof = prove_equal(derived[name], reference)

@@ -9,7 +9,7 @@ from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 
-PAN = r"The pan frame turns about the vertical $z$ axis of the base by $\theta_{\mathrm{pan}}$"
+PAN = r"The pan frame turns about the $z$ axis of the base by $\theta_{\mathrm{pan}}$"
 TILT = r"the tilt frame turns about the $y$ axis of the {base} by $\theta_{{\mathrm{{tilt}}}}$"
 BORESIGHT = (
     r" The boresight is the $x$ axis of the tilt frame, and a positive tilt angle lowers it."
@@ -72,7 +72,7 @@ def symbols(equations: Equations, platform: Platform) -> str:
     ]
     return (
         r"\section{Symbols} Parameters:"
-        + table("lL{62mm}lrl", ["symbol", "meaning", "unit", "value", ""], rows)
+        + table("lL{60mm}lrl", ["symbol", "meaning", "unit", "value", ""], rows)
         + r"\par\noindent Variables:\nopagebreak"
         + table("lL{78mm}ll", ["symbol", "meaning", "unit", ""], others)
     )

@@ -35,15 +35,19 @@ ARGUMENT_WIDTH = 40  # of a maximum, beside what it is multiplied with
 _SIGN = '<mo form="infix">{}</mo>'
 
 
+def letter_and_place(name: str) -> tuple[str, list[str]]:
+    """The letter of a symbol, and the words and numbers of its index."""
+    letter, *place = LETTERS.get(name, name).split("_")
+    trailing = re.fullmatch(r"([A-Za-z]+)(\d+)", letter)
+    return (trailing[1], [trailing[2], *place]) if trailing else (letter, place)
+
+
 def symbol_latex(name: str) -> str:
     """LaTeX of a symbol name: ``theta_gear_pan`` becomes a theta with an upright subscript.
 
     Letters are set in italics, words upright.
     """
-    letter, *place = LETTERS.get(name, name).split("_")
-    trailing = re.fullmatch(r"([A-Za-z]+)(\d+)", letter)
-    if trailing:
-        letter, place = trailing[1], [trailing[2], *place]
+    letter, place = letter_and_place(name)
     word = letter if len(letter) <= 1 else rf"\mathrm{{{letter}}}"
     head = DERIVATIVES.get(letter, rf"\{letter}" if letter in GREEK else word)
     return rf"{head}_{{\mathrm{{{','.join(place)}}}}}" if place else head
@@ -63,20 +67,42 @@ def latex_of(expression: sp.Expr) -> str:
 
 
 class _Printer(LatexPrinter):
-    """Prints long arguments of a maximum on several lines, so that they stay on the page."""
+    """Prints long arguments of an extreme or a size on several lines, so that they stay on the
+    page, and exponents in their shorter form.
+    """
 
-    def _print_Max(self, expression: sp.Max, exp: str | None = None) -> str:
-        lines = [latex_lines(a, ARGUMENT_WIDTH) for a in sorted(expression.args, key=str)]
-        if all(len(own) == 1 for own in lines):
+    def _print_Max(self, expression: sp.Expr, exp: str | None = None) -> str:
+        arguments = sorted(expression.args, key=str)
+        written = [_stacked(argument) for argument in arguments]
+        if not any(written):
             return str(self._hprint_variadic_function(expression, exp))
-        written = [
-            own[0]
-            if len(own) == 1
-            else "\\begin{aligned}& " + " \\\\ & ".join(own) + "\\end{aligned}"
-            for own in lines
-        ]
+        own = [w or latex_of(a) for w, a in zip(written, arguments, strict=True)]
         power = "" if exp is None else f"^{{{exp}}}"
-        return f"\\max{power}\\left({', '.join(written)}\\right)"
+        name = type(expression).__name__.lower()
+        return f"\\{name}{power}\\left({', '.join(own)}\\right)"
+
+    _print_Min = _print_Max
+
+    def _print_Abs(self, expression: sp.Abs, exp: str | None = None) -> str:
+        written = _stacked(expression.args[0])
+        if not written:
+            return str(super()._print_Abs(expression, exp))
+        power = "" if exp is None else f"^{{{exp}}}"
+        return f"\\left|{written}\\right|{power}"
+
+    def _print_ExpBase(self, expression: sp.exp, exp: str | None = None) -> str:
+        given = expression.args[0]
+        factored = sp.factor(given)
+        shorter = factored if factored.count_ops() < given.count_ops() else given
+        return str(super()._print_ExpBase(sp.exp(shorter, evaluate=False), exp))
+
+
+def _stacked(argument: sp.Expr) -> str:
+    """LaTeX of an argument on several lines; empty where one is enough."""
+    lines = latex_lines(argument, ARGUMENT_WIDTH)
+    if len(lines) == 1:
+        return ""
+    return "\\begin{aligned}& " + " \\\\ & ".join(lines) + "\\end{aligned}"
 
 
 def latex_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:

@@ -92,6 +92,8 @@ def by_name(expression: sp.Expr, equations: Equations, defined: sp.Expr = ZERO) 
     torques = {sliding(f): sp.expand(f.level) for f in equations.frictions}
     torques |= {shaft_torque(c): sp.expand(c.torque) for c in equations.contacts if not c.rigid}
     torques.pop(defined, None)
+    pushing = {c.active * shaft_torque(c): c.active * c.torque for c in equations.contacts}
+    torques |= {name: sp.expand(e) for name, e in pushing.items() if e != 0}
     names: dict[sp.Expr, sp.Expr] = {}
     for part in expression.atoms(sp.Add) if torques else ():
         written = sp.expand(part)

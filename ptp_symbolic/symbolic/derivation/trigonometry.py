@@ -76,9 +76,15 @@ def _of_single_angles(expression: sp.Expr) -> sp.Expr:
         return expression
     expression = expression.xreplace({f: sp.expand_trig(f) for f in compound})
     for function in expression.atoms(sp.sin, sp.cos):
-        if not function.args[0].is_Symbol:
+        if not _is_angle(function.args[0]):
             raise ValueError(f"{function} is not the function of a sum or multiple of angles.")
     return expression
+
+
+def _is_angle(argument: sp.Expr) -> bool:
+    """Whether `argument` is a symbol or a product of symbols and pi, such as pi f t."""
+    factors = sp.Mul.make_args(argument)
+    return all(factor.is_Symbol or factor is sp.pi for factor in factors)
 
 
 def without_squares(terms: Terms, square_at: int, other_at: int) -> Terms:

@@ -64,7 +64,7 @@ class Parameter:
 def harmonics(sine: Parameter, cosine: Parameter) -> tuple[tuple[Parameter, Parameter], ...]:
     """The amplitudes `sine` and `cosine` of a wave and those of its harmonics up to the third.
 
-    A name ``F_sin_{axis}`` becomes ``F_sin2_{axis}``; harmonics begin at zero in a search.
+    A name ``f_sin_{axis}`` becomes ``f_sin2_{axis}``; harmonics begin at zero in a search.
     """
 
     def of_order(parameter: Parameter, order: int) -> Parameter:

@@ -1,4 +1,8 @@
-"""Friction that depends on the angle: a bent shaft, a bearing under uneven load."""
+"""Friction that depends on the angle: a bent shaft, a bearing under uneven load.
+
+What presses the surfaces together goes with the angle, and with it Coulomb and static friction by
+the same share.
+"""
 
 import sympy as sp
 
@@ -15,22 +19,22 @@ from ptp_symbolic.symbolic.effect_interface.place import Place
 
 AMPLITUDES = harmonics(
     Parameter(
-        "F_sin_{axis}",
-        "N m",
+        "f_sin_{axis}",
+        "1",
         0.0,
-        -1e4,
-        1e4,
-        "part of dry friction that goes with the sine of the angle at the gear output",
+        -10.0,
+        10.0,
+        "share of dry friction that goes with the sine of the angle at the gear output",
         vanishes=0.0,
         starts=(0.0, 0.1),
     ),
     Parameter(
-        "F_cos_{axis}",
-        "N m",
+        "f_cos_{axis}",
+        "1",
         0.0,
-        -1e4,
-        1e4,
-        "part of dry friction that goes with the cosine",
+        -10.0,
+        10.0,
+        "share of dry friction that goes with the cosine",
         vanishes=0.0,
         starts=(0.1,),
     ),
@@ -39,12 +43,9 @@ NUMBER = wave_number("n_F_{axis}")
 
 
 def _contribute(place: Place) -> Contribution:
-    added = Change(
-        addition=wave(place, AMPLITUDES, place.gear_angle, NUMBER),
-        through=lambda torque: sp.Max(torque, 0),
-    )
+    change = Change(sp.Max(1 + wave(place, AMPLITUDES, place.gear_angle, NUMBER), 0))
     return Contribution(
-        changes={f"{word}_torque_{place.axis}": added for word in ("coulomb", "static")}
+        changes={f"{word}_torque_{place.axis}": change for word in ("coulomb", "static")}
     )
 
 

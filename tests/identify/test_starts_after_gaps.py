@@ -1,0 +1,36 @@
+"""A log that begins, or goes on after a gap, while the machine moves: the gear has a rate of its
+own then, in flight or as it rings against a face.
+"""
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.identify.fit import fit_parameters
+from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
+from tests.identify.pan_runs import (
+    FINE_STEPS,
+    FLOOR,
+    KNOWN,
+    MODEL,
+    PLATFORM,
+    TRUTH,
+    make_runs,
+    sine,
+)
+from tests.independent.pan_drive import PanDrive
+
+LONG = 40  # samples that are lost, 0.2 s
+
+
+@pytest.mark.parametrize("first", [60, 198, 205, 212, 401, 408])
+def test_what_follows_a_gap_is_told_to_rounding(first: int) -> None:
+    """The lost parts end all over the cycle of a drive that crosses its gap twice a period."""
+    (whole,) = make_runs(PanDrive(), [sine()], 3).runs
+    kept = np.r_[0:first, first + LONG : len(whole.time)]
+    log = Log("sine", whole.time[kept], whole.held_inputs[kept], whole.measured[kept])
+    parts = prepare_runs(MODEL, PLATFORM, [log])
+    assert [run.name for run in parts] == ["sine#1", "sine#2"]
+    judged = fit_parameters(MODEL, parts, (), {**KNOWN, **TRUTH}, None, FINE_STEPS)
+    after = judged.evaluations[1].residual.reshape(parts[1].measured.shape)[:, 1]
+    assert np.sqrt(np.mean(after**2)) * FLOOR < 1.15 * FLOOR
