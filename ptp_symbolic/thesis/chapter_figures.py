@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from ptp_symbolic.thesis import contact, printed, ramp_test, responses, rigid
-from ptp_symbolic.thesis.errata_drives import hysteresis
+from ptp_symbolic.thesis import contact, printed, ramp_test, responses, rigid, tilt_drive
+from ptp_symbolic.thesis.chapter_2_figures import backlash_figures, friction_figures
 from ptp_symbolic.thesis.figures import BLUE, Line, ThesisFigure, panel
 from ptp_symbolic.thesis.friction import (
     drive_values,
@@ -16,7 +16,7 @@ from ptp_symbolic.thesis.friction import (
     mean_friction,
     steady_friction,
 )
-from ptp_symbolic.thesis.tilt_drive import simulate_tilt_drive
+from ptp_symbolic.thesis.items import Kind
 
 FloatArray = NDArray[np.float64]
 
@@ -69,43 +69,23 @@ def estimation_figures() -> list[ThesisFigure]:
     return [
         ThesisFigure(
             "fig_4_3",
-            "Steady friction against speed (Fig. 4.3) and the PWM duty.",
+            "Steady friction against speed (Fig. 4.3), Table 4.1 as recovered, and the PWM duty.",
             (panel("speed in rad/s", "friction torque in N m", _friction_map),),
+            Kind.ROUND_TRIP,
         ),
         ThesisFigure(
             "fig_4_6",
-            "Ramp test of section 4.3 (Fig. 4.6).",
+            "Ramp test of section 4.3 (Fig. 4.6): data made from the printed row of test 1, and the"
+            " model fitted to them.",
             (panel("time in s", "pan angle in rad", _ramp_fit),),
+            Kind.ROUND_TRIP,
         ),
         ThesisFigure(
             "fig_4_6_profile",
             "Ramp test: residual against the inertia that is fixed,"
             " everything else refitted (erratum 16).",
             (_inertia_profile,),
-        ),
-    ]
-
-
-def backlash_figures() -> list[ThesisFigure]:
-    """The hysteresis models of section 2.3.2.2."""
-
-    def loads() -> list[Line]:
-        times = np.linspace(0.0, 2.0, 40_001)
-        rules = {
-            "Eq. 2.17": "2.17",
-            "Eq. 2.18 as printed": "2.18",
-            "Eq. 2.18 on the acceleration": "2.18 corrected",
-        }
-        drive = Line("drive", times, np.sin(2.0 * np.pi * times))
-        loads = [Line(n, times, hysteresis(r, times, 0.1, 1.0)) for n, r in rules.items()]
-        return [loads[0], loads[1], loads[2], drive]
-
-    return [
-        ThesisFigure(
-            "fig_2_19",
-            "Load behind a gap of 0.2 rad, drive angle sin(2 pi t): Eq. 2.18"
-            " as printed is Eq. 2.17 (erratum 29).",
-            (panel("time in s", "angle in rad", loads),),
+            Kind.ROUND_TRIP,
         ),
     ]
 
@@ -199,10 +179,10 @@ def tilt_figures() -> list[ThesisFigure]:
         return lambda: [
             Line(
                 f"initial stroke {name} mm",
-                (run := simulate_tilt_drive(stroke)).t,
+                (run := tilt_drive.trapezoid_run(name)).t,
                 factor * getattr(run, quantity),
             )
-            for name, stroke in printed.STROKES.items()
+            for name in tilt_drive.PRESETS
         ]
 
     return [
@@ -216,13 +196,20 @@ def tilt_figures() -> list[ThesisFigure]:
 
 
 def friction_of(run: responses.Trajectory) -> FloatArray:
-    """Friction torque [k] in N m at the gear: Eq. 4.1 in motion, the applied torque at rest."""
-    p = drive_values()
-    gap = run["theta_gear_pan"] - run["theta_pan"]
-    beyond = np.sign(gap) * np.maximum(np.abs(gap) - p["gap_pan"] / 2.0, 0.0)
-    applied = p["K_t_pan"] * p["N_pan"] * run["i_pan"] - p["k_shaft_pan"] * beyond
-    rate = run["omega_gear_pan"]
-    return np.where(rate == 0.0, applied, steady_friction(rate, printed.TABLE_4_1["positive"]))
+    """Friction torque [k] in N m at the gear, at rest as well: what the emitted pan drive would
+    accelerate with without friction, less what it does.
+    """
+    model, p = responses.pan_drive(), drive_values()
+    rate = model.state_names.index("omega_gear_pan")
+    # the voltage acts on the current alone
+    still = np.zeros(len(model.input_names))
+    given = responses.as_printed()
+    without = given | {name: 0.0 for name in ("F_c_pan", "F_s_pan", "F_v_pan")}
+    free, held = (
+        np.array([model.rhs(0.0, x, still, vector)[rate] for x in run.x])
+        for vector in map(model.parameter_vector, (without, given))
+    )
+    return p["J_motor_pan"] * p["N_pan"] ** 2 * (free - held)
 
 
 def _angles(name: str) -> Callable[[], list[Line]]:
@@ -292,7 +279,8 @@ def response_figures() -> list[ThesisFigure]:
 def all_figures() -> Mapping[str, list[ThesisFigure]]:
     """Every figure by the chapter or section it belongs to."""
     return {
-        "Backlash (chapter 2)": backlash_figures(),
+        "Friction (2.3.2.1)": friction_figures(),
+        "Backlash (2.3.2.2)": backlash_figures(),
         "Estimation (chapter 4)": estimation_figures(),
         "Rigid platform (5.1, 5.2)": [*ideal_figures(), *payload_figures()],
         "Tilt drive (5.3)": tilt_figures(),

@@ -29,7 +29,7 @@ from ptp_symbolic.symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration, RigidEquations
-from ptp_symbolic.thesis.items import Item, plain, same_text, unprinted
+from ptp_symbolic.thesis.items import Item, Kind, plain, same_text, unprinted
 
 GRAVITY = sp.Symbol("g", positive=True)
 # Row of the table: name, inertia of the tilt body, its centre of mass, what is printed, erratum.
@@ -139,6 +139,7 @@ def equation_3_8() -> list[Item]:
         items.append(
             Item(
                 f"eq_3_8.{name}",
+                Kind.COMPUTED,
                 f"Eq. 3.8, {name.replace('_', ' ')}",
                 plain(printed),
                 plain(derived[name]),

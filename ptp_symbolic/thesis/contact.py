@@ -5,10 +5,10 @@ from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
 import ptp_symbolic
 from ptp_symbolic.numeric.simulation.signals.inputs import step
+from ptp_symbolic.thesis.backlash_laws import restitution
 from ptp_symbolic.thesis.friction import drive_values
 from ptp_symbolic.thesis.items import Item, unprinted
 from ptp_symbolic.thesis.responses import as_printed, pan_drive
@@ -46,26 +46,6 @@ def contact_mode() -> Mode:
     values = np.linalg.eigvals(matrix)
     pair = max(values, key=lambda value: value.imag)
     return Mode(float(abs(pair) / (2.0 * np.pi)), float(-pair.real / abs(pair)))
-
-
-def restitution(joint_friction: float) -> float:
-    """Speed after over speed before the impact of the load on the standing motor, by DOP853.
-
-    The undamped spring behind the gap acts until it is free again; `joint_friction` in N m s/rad.
-    """
-    p = drive_values()
-
-    def derivative(_: float, x: FloatArray) -> list[float]:
-        return [x[1], -(p["k_shaft_pan"] * x[0] + joint_friction * x[1]) / p["J_pan"]]
-
-    def free(_: float, x: FloatArray) -> float:
-        return float(x[0])
-
-    free.terminal, free.direction = True, -1.0  # type: ignore[attr-defined]
-    run = solve_ivp(
-        derivative, (0.0, 1.0), [0.0, 1.0], "DOP853", events=free, rtol=1e-11, atol=1e-14
-    )
-    return float(-run.y_events[0][0][1])
 
 
 def twist_after_step(tolerance: float, **changes: float) -> tuple[FloatArray, FloatArray]:
@@ -139,13 +119,13 @@ def items() -> list[Item]:
             "Restitution of one impact, undamped spring alone",
             restitution(0.0),
             "1",
-            "simulation of one impact (erratum 26)",
+            "simulation of the pan drive, its motor held: one impact across the gap (erratum 26)",
         ),
         unprinted(
             "section_5_4.restitution_damped",
             "Restitution with the joint's friction",
             restitution(drive_values()["b_pan"]),
             "1",
-            "simulation of one impact (erratum 26)",
+            "simulation of the pan drive, its motor held: one impact across the gap (erratum 26)",
         ),
     ]

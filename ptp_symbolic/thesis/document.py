@@ -1,20 +1,17 @@
 """The report of the thesis: thesis.json, the figures, and thesis.tex with its PDF."""
 
-import json
-import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
 from string import ascii_lowercase
 
 from ptp_symbolic.report.latex_text import PREAMBLE, escaped, formulas, table, unit_latex
 from ptp_symbolic.report.source import THESIS
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.thesis import (
     backlash,
     configurations,
     contact,
     errata,
     friction,
+    friction_laws,
     ramp_items,
     responses,
     rigid,
@@ -22,22 +19,21 @@ from ptp_symbolic.thesis import (
 )
 from ptp_symbolic.thesis.chapter_figures import all_figures
 from ptp_symbolic.thesis.figures import ThesisFigure, rendered
-from ptp_symbolic.thesis.items import Item, Value
+from ptp_symbolic.thesis.items import Item, Kind
+from ptp_symbolic.thesis.precision_tables import precision_section
+from ptp_symbolic.thesis.record import json_text, summary
+from ptp_symbolic.thesis.wording import text_latex, value_latex
 
-SCHEMA_VERSION = 1
 # below a row of several lines, so that it does not lean on the next one
 STRUT = r"\rule[-5pt]{0pt}{0pt}"
-GREEK = "alpha|beta|omega|theta|phi|psi|tau"
-SYMBOL = re.compile(
-    rf"\b(?P<name>[A-Za-z]{{1,2}}(?:_[A-Za-z0-9]+)+|(?:{GREEK})(?:_[A-Za-z0-9]+)*\b)"
-    r"(?:\^(?P<power>-?\d+))?|\^(?P<alone>-?\d+)"
-)
 INTRODUCTION = (
     rf"\emph{{The thesis}} is {THESIS}\par "
     r"""Every result that it computes is computed here again. Printed values are taken over exactly,
-wrong ones included; computed values come out of this program or, where an independent one is asked
-for, out of SciPy. \emph{Agrees} means within the tolerance that the check or the last printed digit
-states; a number points to the erratum that explains a difference. A dash stands where there is
+wrong ones included; computed values come out of this program. \emph{Agrees} means within the
+tolerance that the check or the last printed digit states; a number points to the erratum that
+explains a difference. The measurements behind Tables 4.1 and 4.2 are not printed: data are made
+from the printed parameters and fitted again. \emph{Recovered} says that such a round trip came
+back; it tests the fit and its data, and says nothing about the thesis. A dash stands where there is
 nothing to compare: the thesis prints no value, or not the measurements behind it. The curves of the
 thesis are pictures, so the figures show the computed ones alone."""
 )
@@ -45,6 +41,7 @@ thesis are pictures, so the figures show the computed ones alone."""
 
 PARTS: Mapping[str, tuple[Callable[[], list[Item]], ...]] = {
     "Configurations and equations (2.3.1, 3.1)": (configurations.items,),
+    "Friction (2.3.2.1)": (friction_laws.items,),
     "Backlash gap (4.1)": (backlash.items,),
     "Steady friction (4.2)": (friction.items,),
     "Ramp test (4.3)": (ramp_items.items,),
@@ -62,7 +59,7 @@ def _silent(_: str) -> None:
 def thesis_files(progress: Callable[[str], None] = _silent) -> dict[str, str | bytes]:
     """``thesis.json``, ``thesis.tex`` and every figure as PDF and PNG, by file name.
 
-    `progress` is told what is being computed; all of it takes about twenty seconds.
+    `progress` is told what is being computed; all of it takes about half a minute.
     """
     items: dict[str, list[Item]] = {}
     for part, makers in PARTS.items():
@@ -71,7 +68,7 @@ def thesis_files(progress: Callable[[str], None] = _silent) -> dict[str, str | b
     progress("Figures")
     figures = all_figures()
     files: dict[str, str | bytes] = {
-        "thesis.json": json_text(items),
+        "thesis.json": json_text(items, figures),
         "thesis.tex": latex_text(items, figures),
     }
     for group in figures.values():
@@ -80,46 +77,51 @@ def thesis_files(progress: Callable[[str], None] = _silent) -> dict[str, str | b
     return files
 
 
-def summary(items: Mapping[str, Sequence[Item]]) -> dict[str, int]:
-    """How many items there are, and how they compare."""
-    everything = [item for group in items.values() for item in group]
-    results = [item for item in everything if item.settled is None]
-    return {
-        "items": len(everything),
-        "agree": sum(i.agrees is True for i in results),
-        "differ_by_an_erratum": sum(i.agrees is False and i.erratum is not None for i in results),
-        "differ_unexplained": sum(i.agrees is False and i.erratum is None for i in results),
-        "nothing_to_compare": sum(i.agrees is None for i in results),
-        "errata": len(everything) - len(results),
-        "errata_settled": sum(bool(i.settled) for i in everything),
-    }
-
-
-def json_text(items: Mapping[str, Sequence[Item]]) -> str:
-    """The items as JSON: schema_version, summary, and one object per item."""
-    rows = [{"part": part, **asdict(item)} for part, group in items.items() for item in group]
-    document = {"schema_version": SCHEMA_VERSION, "summary": summary(items), "items": rows}
-    return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+def _headline(items: Mapping[str, Sequence[Item]]) -> str:
+    """What was computed, what only came back, and what there is nothing to compare with."""
+    count = summary(items)
+    computed, trips = count[Kind.COMPUTED], count[Kind.ROUND_TRIP]
+    rows = [
+        [
+            "computed from the equations and from other printed numbers",
+            computed["items"],
+            f"{computed['agree']} agree, {computed['differ_by_an_erratum']} differ by an erratum,"
+            f" {computed['differ_unexplained']} unexplained",
+        ],
+        [
+            "round trip: fitted to data made from the printed value",
+            trips["items"],
+            f"{trips['agree']} recovered, {trips['differ_by_an_erratum']} not, by an erratum,"
+            f" {trips['differ_unexplained']} unexplained",
+        ],
+        ["nothing printed", count[Kind.NOTHING_PRINTED]["items"], "nothing to compare with"],
+        [
+            "about measurements that are not printed",
+            count[Kind.MEASUREMENTS_NOT_PRINTED]["items"],
+            "cannot be recomputed",
+        ],
+        ["errata", count[Kind.ERRATUM]["items"], f"{count[Kind.ERRATUM]['settled']} settled"],
+    ]
+    return table(
+        "L{86mm}rL{63mm}", ["results", "number", "outcome"], [[*map(str, r)] for r in rows]
+    )
 
 
 def latex_text(
     items: Mapping[str, Sequence[Item]], figures: Mapping[str, Sequence[ThesisFigure]]
 ) -> str:
     """The report as LaTeX; it needs the figures beside it."""
-    count = summary(items)
     parts = [
         PREAMBLE,
         r"\usepackage{graphicx}",
         r"\title{The pan-tilt thesis, recomputed}\author{}\date{}\begin{document}\maketitle",
         INTRODUCTION,
-        rf"\par {count['items'] - count['errata']} results: {count['agree']} agree,"
-        rf" {count['differ_by_an_erratum']} differ by an erratum,"
-        rf" {count['differ_unexplained']} differ without one, {count['nothing_to_compare']} have"
-        rf" nothing to compare. {count['errata_settled']} of {count['errata']} errata are settled.",
+        _headline(items),
         *(
             _errata(group) if part == "Errata" else _results(part, group)
             for part, group in items.items()
         ),
+        precision_section(),
         *(_figures(part, group) for part, group in figures.items()),
         r"\end{document}",
     ]
@@ -133,9 +135,9 @@ def _results(part: str, items: Sequence[Item]) -> str:
     notes = {check: ascii_lowercase[k] for k, check in enumerate(checks)}
     rows = [
         [
-            _text(i.title) + STRUT,
-            _value(i.printed),
-            _value(i.computed),
+            text_latex(i.title) + STRUT,
+            value_latex(i.printed),
+            value_latex(i.computed),
             unit_latex(i.unit),
             _verdict(i),
             notes[i.check],
@@ -144,7 +146,7 @@ def _results(part: str, items: Sequence[Item]) -> str:
     ]
     head = ["result", "printed", "computed", "unit", "verdict", "note"]
     text = rf"\section{{{escaped(part)}}}" + table("L{59mm}L{22mm}L{23mm}lll", head, rows)
-    lines = "".join(rf"\item[{note}] {_text(check)}" + "\n" for check, note in notes.items())
+    lines = "".join(rf"\item[{note}] {text_latex(check)}" + "\n" for check, note in notes.items())
     text += r"Notes on how the rows with that letter were computed:"
     text += rf"\begin{{itemize}}\setlength{{\itemsep}}{{0pt}}{lines}\end{{itemize}}"
     return text + (_equation_3_8(items) if len(listed) < len(items) else "")
@@ -171,10 +173,12 @@ def _errata(items: Sequence[Item]) -> str:
     rows = [
         [
             str(i.erratum),
-            _text(i.title.partition(": ")[2]),
-            _value(i.printed),
-            " ".join([_value(i.computed)] + [unit_latex(i.unit)] * isinstance(i.computed, float)),
-            _text(i.check) + STRUT,
+            text_latex(i.title.partition(": ")[2]),
+            value_latex(i.printed),
+            " ".join(
+                [value_latex(i.computed)] + [unit_latex(i.unit)] * isinstance(i.computed, float)
+            ),
+            text_latex(i.check) + STRUT,
             "settled" if i.settled else "open",
         ]
         for i in items
@@ -187,55 +191,19 @@ def _errata(items: Sequence[Item]) -> str:
 def _figures(part: str, figures: Sequence[ThesisFigure]) -> str:
     blocks = [
         rf"\begin{{minipage}}{{\textwidth}}\includegraphics[width=150mm]{{{f.name}.pdf}}\par"
-        rf" {{\small {_text(f.caption)}}}\end{{minipage}}\par\bigskip"
+        rf" {{\small {_round_trip(f)}{text_latex(f.caption)}}}\end{{minipage}}\par\bigskip"
         for f in figures
     ]
     return rf"\section{{Figures: {escaped(part)}}}" + "\n" + "\n\n".join(blocks)
 
 
-def _value(value: Value) -> str:
-    if value is None:
-        return "--"
-    return _text(value) if isinstance(value, str) else _number(float(value))
-
-
-def _number(value: float) -> str:
-    text = f"{value:.6g}"
-    mantissa, _, exponent = text.partition("e")
-    return rf"${mantissa}\cdot 10^{{{int(exponent)}}}$" if exponent else f"${text}$"
+def _round_trip(figure: ThesisFigure) -> str:
+    return r"\emph{Round trip.} " if figure.kind is Kind.ROUND_TRIP else ""
 
 
 def _verdict(item: Item) -> str:
     if item.agrees is None:
         return "--"
     if item.agrees:
-        return "agrees"
+        return "recovered" if item.kind is Kind.ROUND_TRIP else "agrees"
     return "differs" if item.erratum is None else f"erratum {item.erratum}"
-
-
-def _text(text: str) -> str:
-    """Escaped text; names such as F_s or omega_pan and powers become formulas."""
-    parts, end = [], 0
-    for found in SYMBOL.finditer(text):
-        parts.append(_words(text[end : found.start()]))
-        power = found["power"] or found["alone"]
-        raised = f"^{{{power}}}" if power else ""
-        name = found["name"] or ""
-        symbol = rf"\{name}" if name in GREEK.split("|") else symbol_latex(name)
-        parts.append(f"${symbol}{raised}$")
-        end = found.end()
-    return "".join([*parts, _words(text[end:])])
-
-
-def _words(text: str) -> str:
-    """Escaped text that may break after a slash or a bracket, and not before a percent sign."""
-    for plain, written in ((" %", r"\,\%"), ("<", "$<$"), (">", "$>$")):
-        text = text.replace(plain, f"\0{written}\0")
-    pieces = text.split("\0")
-    kept = [
-        piece
-        if number % 2
-        else "".join(escaped(c) + (r"\allowbreak{}" if c in "/()[]" else "") for c in piece)
-        for number, piece in enumerate(pieces)
-    ]
-    return "".join(kept)

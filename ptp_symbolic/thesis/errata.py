@@ -3,14 +3,21 @@
 from collections.abc import Callable, Mapping
 from functools import cache
 
-from ptp_symbolic.thesis import errata_drives, errata_equations, errata_friction, errata_listings
+from ptp_symbolic.thesis import (
+    errata_drives,
+    errata_equations,
+    errata_estimation,
+    errata_friction,
+    errata_listings,
+    errata_shaft,
+)
 from ptp_symbolic.thesis.items import Item
 
 ERRATA: Mapping[int, Callable[[], Item]] = {
     1: errata_friction.signum,
     2: errata_friction.branches,
     3: errata_friction.csvs_sign,
-    4: errata_equations.shaft_damping,
+    4: errata_shaft.shaft_damping,
     5: errata_equations.euler_sign,
     6: errata_equations.damping_names,
     7: errata_equations.euler_rate_names,
@@ -18,11 +25,11 @@ ERRATA: Mapping[int, Callable[[], Item]] = {
     9: errata_equations.actuator_force,
     10: errata_drives.self_locking,
     11: errata_equations.symmetric_row,
-    12: errata_friction.averages_forward,
-    13: errata_friction.averages_backward,
-    14: errata_friction.start_outside,
-    15: errata_friction.precedence,
-    16: errata_friction.inertia_bounds,
+    12: errata_estimation.averages_forward,
+    13: errata_estimation.averages_backward,
+    14: errata_estimation.start_outside,
+    15: errata_estimation.precedence,
+    16: errata_estimation.inertia_bounds,
     17: errata_equations.friction_unit,
     18: errata_equations.payload_offset,
     19: errata_drives.initial_stroke,

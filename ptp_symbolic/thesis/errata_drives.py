@@ -3,32 +3,29 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ptp_symbolic.thesis import contact, printed, responses, tilt_drive
+from ptp_symbolic.thesis import backlash_laws, contact, printed, responses, tilt_drive
 from ptp_symbolic.thesis.friction import drive_values
 from ptp_symbolic.thesis.items import Item, erratum
-
-FloatArray = NDArray[np.float64]
 
 
 def creep_speed(shorted: bool) -> float:
     """Stroke speed in m/s at which the screw overhauls under the load of Table 5.6."""
-    d = printed.TILT_DRIVE
-    force = d.mass * tilt_drive.GRAVITY * d.com_offset / d.moment_arm
-    torque = -tilt_drive.screw_factors()[1] * force / d.N
-    resistance = d.b_motor + (d.K_t**2 / d.R if shorted else 0.0)
-    return torque / resistance / d.N * d.lead / (2.0 * math.pi)
+    d, offset = tilt_drive.model("48.5").defaults, tilt_drive.com_offset("48.5")
+    force = d["m_payload"] * d["gravity"] * offset / d["r_arm_tilt"]
+    torque = -tilt_drive.actuator("48.5").lowering * force / d["N_tilt"]
+    resistance = d["b_motor_tilt"] + (d["K_t_tilt"] ** 2 / d["R_tilt"] if shorted else 0.0)
+    return torque / resistance / d["N_tilt"] * d["lead_tilt"] / (2.0 * math.pi)
 
 
 def self_locking() -> Item:
     """Erratum 10: the screw of Table 5.5 overhauls."""
-    d = printed.TILT_DRIVE
-    lead_angle = math.degrees(math.atan(d.lead / (math.pi * d.pitch_diameter)))
-    friction_angle = math.degrees(math.atan(d.screw_friction))
-    lowering = tilt_drive.screw_factors()[1]
+    d = tilt_drive.model("48.5").defaults
+    lead_angle = math.degrees(math.atan(d["lead_tilt"] / (math.pi * d["d_screw_tilt"])))
+    friction_angle = math.degrees(math.atan(d["f_screw_tilt"]))
+    lowering = tilt_drive.actuator("48.5").lowering
     simulated = tilt_drive.simulate_tilt_drive(
-        printed.STROKES["48.5"], "ahead", _no_voltage, 1.0
+        "48.5", np.array([0.0, 1.0]), "ahead", tilt_drive.NO_VOLTAGE
     ).stroke_speed[-1]
     expected = creep_speed(shorted=True)
     return erratum(
@@ -44,15 +41,9 @@ def self_locking() -> Item:
     )
 
 
-def _no_voltage(_: float) -> float:
-    return 0.0
-
-
 def initial_stroke() -> Item:
     """Erratum 19: the initial stroke is given twice."""
-    angles = {
-        name: float(np.degrees(tilt_drive.deviation(s))) for name, s in printed.STROKES.items()
-    }
+    angles = {name: float(np.degrees(tilt_drive.deviation(name))) for name in tilt_drive.PRESETS}
     return erratum(
         19,
         "Table 5.6, initial stroke",
@@ -60,7 +51,8 @@ def initial_stroke() -> Item:
         f"{angles['40.5']:.2f} deg and {angles['48.5']:.2f} deg from the perpendicular",
         "",
         abs(abs(angles["40.5"]) - 7.0) < 0.05 and abs(abs(angles["48.5"]) - 0.4) < 0.05,
-        "law of cosines, Table 5.6; the two strokes are different starts, both are computed",
+        "lever of the derived linkage, Table 5.6; the two strokes are different starts, both are"
+        " computed",
     )
 
 
@@ -88,9 +80,9 @@ def com_direction() -> Item:
     """Erratum 24: for which direction of the offset the claims of section 5.3 hold."""
     found = {}
     for direction in tilt_drive.COM_DIRECTIONS:
-        run = tilt_drive.simulate_tilt_drive(printed.STROKES["40.5"], direction)
+        run = tilt_drive.trapezoid_run("40.5", direction)
         holds = abs(run.force[-1]) > 1.0 and run.tilt_angle[-1] < 0.0
-        found[direction] = tilt_drive.reverses(run)[0] and holds
+        found[direction] = tilt_drive.reversal("40.5", direction) is not None and holds
     which = ", ".join(d for d, holds in found.items() if holds)
     return erratum(
         24,
@@ -124,7 +116,7 @@ def ringing() -> Item:
 
 def plastic_impact() -> Item:
     """Erratum 26: the dead-zone model has no plastic impact."""
-    bare, damped = (contact.restitution(b) for b in (0.0, drive_values()["b_pan"]))
+    bare, damped = (backlash_laws.restitution(b) for b in (0.0, drive_values()["b_pan"]))
     return erratum(
         26,
         "sections 1.6 and 5.4.2, restitution of the dead-zone model",
@@ -132,47 +124,18 @@ def plastic_impact() -> Item:
         bare,
         "1",
         abs(bare - 1.0) < 1e-6 and abs(damped - 0.82) < 0.01,
-        f"simulation of one impact; {damped:.3f} with the joint's viscous friction, 0 would be"
-        " plastic",
+        f"simulation of the pan drive, its motor held; {damped:.3f} with the joint's viscous"
+        " friction, 0 would be plastic",
     )
-
-
-def hysteresis(rule: str, times: FloatArray, half_gap: float, frequency: float) -> FloatArray:
-    """Load angle [k] in rad behind a gap, the drive angle being sin(2 pi frequency t).
-
-    `rule`: "2.17" friction-driven, "2.18" as printed, "2.18 corrected": the inertia-driven load
-    leaves the face when the drive decelerates.
-    """
-    circular = 2.0 * math.pi * frequency
-    drive, rate = np.sin(circular * times), circular * np.cos(circular * times)
-    load = np.empty_like(times)
-    load[0], load_rate, step = -half_gap, 0.0, times[1] - times[0]
-    for k in range(1, len(times)):
-        lower, upper = drive[k] - half_gap, drive[k] + half_gap
-        coasting = load[k - 1] + step * load_rate
-        if rule == "2.18 corrected":
-            load[k] = min(max(coasting, lower), upper)
-            load_rate = load_rate if load[k] == coasting else rate[k]
-            continue
-        pushed = (rate[k] > 0.0 and load[k - 1] <= lower) or (
-            rate[k] < 0.0 and load[k - 1] >= upper
-        )
-        load[k] = (
-            (lower if rate[k] > 0.0 else upper)
-            if pushed
-            else (load[k - 1] if rule == "2.17" else coasting)
-        )
-        # as printed, contact lasts as long as the drive keeps its direction: it ends at rest
-        load_rate = rate[k] if pushed else (0.0 if rule == "2.17" else load_rate)
-    return load
 
 
 def contact_condition() -> Item:
     """Erratum 29: Eq. 2.18 as printed never lets the load coast."""
-    times, half_gap = np.linspace(0.0, 2.0, 40_001), 0.1
-    friction, given, right = (
-        hysteresis(rule, times, half_gap, 1.0) for rule in ("2.17", "2.18", "2.18 corrected")
+    friction, right = (
+        backlash_laws.hysteresis(f"hysteresis_{kind}")["theta_pan"]
+        for kind in ("friction", "inertia")
     )
+    given, half_gap = backlash_laws.printed_inertia_driven(), backlash_laws.HALF_GAP
     same, other = (float(np.max(np.abs(x - friction))) for x in (given, right))
     return erratum(
         29,
@@ -181,6 +144,7 @@ def contact_condition() -> Item:
         "on the acceleration",
         "",
         same < 1e-2 * half_gap and other > 0.5 * half_gap,
-        f"drive angle sin(2 pi t), half gap {half_gap:g} rad: as printed the load differs from Eq."
-        f" 2.17 by at most {same:.1g} rad, with the corrected condition by {other:.2g} rad",
+        f"drive angle sin(2 pi t), half gap {half_gap:g} rad: as printed the load differs from the"
+        f" simulated backlash of Eq. 2.17 by at most {same:.1g} rad, the simulated backlash with"
+        f" the corrected condition by {other:.2g} rad",
     )

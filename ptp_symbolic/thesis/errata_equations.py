@@ -16,25 +16,6 @@ from ptp_symbolic.thesis.motion import along
 from ptp_symbolic.thesis.tilt_drive import deviation
 
 
-def shaft_damping() -> Item:
-    """Erratum 4: the damping of Eq. 2.15 must take energy out of the shaft."""
-    rate_1, rate_2, c = sp.symbols("omega_1 omega_2 c", real=True)
-    twist_rate = rate_1 - rate_2
-    as_printed, right = (sp.expand(c * s * twist_rate * twist_rate) for s in (-1, 1))
-    given = sp.expand(c * (rate_2 - rate_1) * twist_rate)
-    settled = given == as_printed and right == sp.expand(c * twist_rate**2)
-    return erratum(
-        4,
-        "Eq. 2.15, damping term",
-        "c (omega_2 - omega_1)",
-        "c (omega_1 - omega_2)",
-        "N m",
-        settled,
-        "theta_s = theta_1 - theta_2; power taken by the printed term:"
-        f" {plain(sp.factor(given))} < 0, by the corrected one: {plain(sp.factor(right))}",
-    )
-
-
 def euler_sign() -> Item:
     """Erratum 5: the sign before J_zt in Eq. 3.7, from Newton-Euler."""
     equations = newton_euler(assemble(read_platform("thesis-ideal")).rigid)
@@ -163,7 +144,7 @@ def actuator_force() -> Item:
         sp.simplify(force * speed - torque * rate)
         for force in (-torque / (r * sp.cos(theta)), -torque * sp.cos(theta) / r)
     ]
-    missing = [float(np.sin(deviation(stroke)) ** 2) for stroke in (printed.STROKES["40.5"], 0.0)]
+    missing = [float(np.sin(deviation("40.5", stroke)) ** 2) for stroke in (None, 0.0)]
     return erratum(
         9,
         "section 3.2.3.2, actuator force",

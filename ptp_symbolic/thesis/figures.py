@@ -12,11 +12,20 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from ptp_symbolic.thesis.items import Kind
+
 FloatArray = NDArray[np.float64]
 Panel = Callable[[Axes], None]
 
 BLUE, ORANGE, GREEN, GREY = "#0d6a92", "#c65d21", "#4a8f5c", "#8a939c"
-COLOURS = (BLUE, ORANGE, GREEN, GREY)
+# Colour, line and marker of the curves of a panel, which can be told apart without colour too.
+CURVES = ((BLUE, "-", "o"), (ORANGE, "--", "s"), (GREEN, "-.", "^"), (GREY, ":", "D"))
+# Width in points of the first curve beside others, so that one that covers it leaves an edge.
+UNDERNEATH = 2.0
+# Share of the panel's diagonal between two markers of a curve.
+MARKER_SPACING = 0.16
+# Letters that fit into one row of a legend, and how many of them a handle takes.
+LEGEND_ROW, LEGEND_HANDLE = 95, 9
 STYLE: dict[Any, Any] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
@@ -42,11 +51,16 @@ PANEL_HEIGHTS = {1: 47.0, 2: 40.0, 3: 35.0}
 
 @dataclass(frozen=True)
 class ThesisFigure:
-    """A figure: file name without ending, caption, and its panels from top to bottom."""
+    """A figure: file name without ending, caption, and its panels from top to bottom.
+
+    `kind` says whether its curves are COMPUTED or a ROUND_TRIP (see `Kind`); the printed curves are
+    pictures, which nothing is compared with.
+    """
 
     name: str
     caption: str
     panels: tuple[Panel, ...]
+    kind: Kind = Kind.COMPUTED
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,32 +72,60 @@ class Line:
     y: FloatArray
 
 
+def draw_lines(axes: Axes, lines: Sequence[Line]) -> None:
+    """Draw up to four lines, each with a colour, a dash and, beside others, a marker of its own."""
+    for number, line in enumerate(lines):
+        colour, dash, marker = CURVES[number]
+        first = MARKER_SPACING * (0.5 + number) / len(lines)
+        beside_others: dict[str, Any] = {
+            "marker": marker,
+            "markevery": (first, MARKER_SPACING),
+            "markersize": 3.6,
+            "markerfacecolor": "white",
+            "markeredgewidth": 0.8,
+        }
+        if number == 0:
+            beside_others["linewidth"] = UNDERNEATH
+        style = beside_others if len(lines) > 1 else {}
+        axes.plot(line.x, line.y, dash, color=colour, label=line.label, **style)
+    if len(lines) > 1:
+        letters = sum(len(line.label) + LEGEND_HANDLE for line in lines)
+        columns = 4 if letters < LEGEND_ROW else 2
+        axes.legend(
+            ncols=columns,
+            borderpad=0.1,
+            handlelength=3.2,
+            loc="lower left",
+            bbox_to_anchor=(0.0, 1.0),
+        )
+
+
 def panel(x_label: str, y_label: str, make: Callable[[], Sequence[Line]]) -> Panel:
     """A panel that draws the lines of `make`, with a legend where there are several."""
 
     def draw(axes: Axes) -> None:
-        lines = make()
-        for number, line in enumerate(lines):
-            style = "--" if number and number % 2 else "-"
-            axes.plot(line.x, line.y, style, color=COLOURS[number % 4], label=line.label)
+        draw_lines(axes, make())
         axes.set_xlabel(x_label)
         axes.set_ylabel(y_label)
-        if len(lines) > 1:
-            columns = 4 if sum(len(line.label) for line in lines) < 70 else 2
-            axes.legend(ncols=columns, borderpad=0.1, loc="lower left", bbox_to_anchor=(0.0, 1.0))
 
     return draw
+
+
+def drawn(figure: ThesisFigure) -> Figure:
+    """The figure with its panels, as wide as the text of the report."""
+    height = PANEL_HEIGHTS[len(figure.panels)] * len(figure.panels)
+    page = Figure(figsize=(150.0 / INCH, height / INCH), layout="constrained")
+    FigureCanvasAgg(page)
+    for place, draw in enumerate(figure.panels, start=1):
+        draw(page.add_subplot(len(figure.panels), 1, place))
+    return page
 
 
 def rendered(figure: ThesisFigure) -> dict[str, bytes]:
     """The figure as PDF and PNG, by file name."""
     files = {}
     with matplotlib.rc_context(STYLE):
-        height = PANEL_HEIGHTS[len(figure.panels)] * len(figure.panels)
-        page = Figure(figsize=(150.0 / INCH, height / INCH), layout="constrained")
-        FigureCanvasAgg(page)
-        for place, draw in enumerate(figure.panels, start=1):
-            draw(page.add_subplot(len(figure.panels), 1, place))
+        page = drawn(figure)
         for kind, metadata in (("pdf", {"CreationDate": None}), ("png", {})):
             buffer = io.BytesIO()
             page.savefig(buffer, format=kind, dpi=150, metadata=metadata)

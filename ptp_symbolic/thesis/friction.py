@@ -9,7 +9,7 @@ from scipy.optimize import OptimizeResult, least_squares
 
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.thesis import printed
-from ptp_symbolic.thesis.items import Item, compared, unprinted
+from ptp_symbolic.thesis.items import Item, Kind, compared, unprinted
 from ptp_symbolic.thesis.printed import DIRECTIONS, Friction
 
 FloatArray = NDArray[np.float64]
@@ -137,6 +137,7 @@ def estimation_items() -> list[Item]:
             unit,
             check,
             ESTIMATION_TOLERANCE * getattr(printed.TABLE_4_1[direction], name),
+            kind=Kind.ROUND_TRIP,
         )
         for direction, sign in zip(DIRECTIONS, "><", strict=True)
         for name, unit in printed.FRICTION_UNITS.items()

@@ -3,15 +3,31 @@
 import math
 from dataclasses import dataclass
 from decimal import Decimal
+from enum import StrEnum
 
 import sympy as sp
 
 Value = float | str | None
 
 
+class Kind(StrEnum):
+    """What stands behind the computed value of an item, and so what an agreement is worth."""
+
+    COMPUTED = "computed"
+    ROUND_TRIP = "round_trip"
+    NOTHING_PRINTED = "nothing_printed"
+    MEASUREMENTS_NOT_PRINTED = "measurements_not_printed"
+    ERRATUM = "erratum"
+
+
 @dataclass(frozen=True)
 class Item:
     """A printed value, the computed one, and whether they agree.
+
+    `kind` says what is compared: a value COMPUTED from other printed ones, by equations or by
+    arithmetic; a ROUND_TRIP, fitted to data that were made from the printed value itself, which
+    tests the fit alone; NOTHING_PRINTED, where the thesis prints no value; a printed value about
+    MEASUREMENTS_NOT_PRINTED, which nobody can recompute; or an ERRATUM.
 
     `agrees` is None where there is nothing to compare: the thesis prints no value, or the data
     behind it. `erratum` is the number of the erratum that explains a disagreement. `tolerance` is
@@ -20,6 +36,7 @@ class Item:
     """
 
     id: str
+    kind: Kind
     title: str
     printed: Value
     computed: Value
@@ -40,6 +57,7 @@ def compared(
     check: str,
     tolerance: float | None = None,
     erratum: int | None = None,
+    kind: Kind = Kind.COMPUTED,
 ) -> Item:
     """An item of two numbers, which agree within `tolerance` (None: the last digit printed).
 
@@ -49,6 +67,7 @@ def compared(
     agrees = math.isfinite(computed) and abs(computed - printed) <= allowed * (1.0 + 1e-9)
     return Item(
         identity,
+        kind,
         title,
         printed,
         float(computed),
@@ -70,12 +89,13 @@ def same_text(
 ) -> Item:
     """An item of two statements, which agree when they are the same."""
     agrees = printed == computed
-    return Item(identity, title, printed, computed, "", agrees, None if agrees else erratum, check)
+    named = None if agrees else erratum
+    return Item(identity, Kind.COMPUTED, title, printed, computed, "", agrees, named, check)
 
 
 def unprinted(identity: str, title: str, computed: Value, unit: str, check: str) -> Item:
-    """An item for which the thesis prints no value, or none that could be compared."""
-    return Item(identity, title, None, computed, unit, None, None, check)
+    """An item for which the thesis prints no value."""
+    return Item(identity, Kind.NOTHING_PRINTED, title, None, computed, unit, None, None, check)
 
 
 def erratum(
@@ -88,6 +108,7 @@ def erratum(
     found = computed if settled or not isinstance(computed, str) else None
     return Item(
         f"erratum_{number:02d}",
+        Kind.ERRATUM,
         f"Erratum {number}: {where}",
         printed,
         found,

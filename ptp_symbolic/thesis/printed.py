@@ -36,6 +36,7 @@ class Transition:
 
 DIRECTIONS = ("positive", "negative")
 FRICTION_UNITS = {"F_c": "N m", "F_s": "N m", "v_s": "rad/s", "F_v": "N m s/rad"}
+UNITS = {"J": "kg m^2", **FRICTION_UNITS}
 
 # Table 4.1, PWM drive: initial and estimated values.
 TABLE_4_1_START = {
@@ -158,31 +159,3 @@ REPORTED_ERRORS = (
 )
 SUPPLY_VOLTAGE = 24.0
 COUNTS_PER_REVOLUTION = 7200
-
-
-@dataclass(frozen=True)
-class TiltDrive:
-    """Tables 5.5 and 5.6: the linear actuator, its linkage and the tilt body, SI units."""
-
-    L: float = 9.35e-3
-    R: float = 17.0
-    K_t: float = 0.044
-    J_motor: float = 1.62e-6
-    b_motor: float = 1.1696e-4
-    N: float = 93.0
-    lead: float = 4e-3
-    pitch_diameter: float = 8e-3
-    screw_friction: float = 0.15
-    mass: float = 6.3785
-    com_offset: float = 0.0876228
-    b_joint: float = 10.0
-    J_x: float = 3.8e-2
-    J_y: float = 1.36e-2
-    J_z: float = 3.89e-2
-    ground_link: float = 0.19755
-    shortest_length: float = 0.139
-    moment_arm: float = 0.0634133
-
-
-TILT_DRIVE = TiltDrive()
-STROKES = {"40.5": 0.0405022, "48.5": 0.0485}

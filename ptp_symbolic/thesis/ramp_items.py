@@ -3,8 +3,9 @@
 import numpy as np
 
 from ptp_symbolic.thesis import printed
-from ptp_symbolic.thesis.items import Item, compared, unprinted
-from ptp_symbolic.thesis.printed import DIRECTIONS
+from ptp_symbolic.thesis.items import Item, Kind, compared, unprinted
+from ptp_symbolic.thesis.precision import least_inertia_deviation, spread_of_tests
+from ptp_symbolic.thesis.printed import DIRECTIONS, UNITS
 from ptp_symbolic.thesis.ramp_test import (
     COLUMNS,
     angle_change_between_bounds,
@@ -16,7 +17,6 @@ from ptp_symbolic.thesis.ramp_test import (
 )
 
 SIGNS = {"positive": ">", "negative": "<"}
-UNITS = {"J": "kg m^2", **printed.FRICTION_UNITS}
 FRICTION_TOLERANCE = 0.02
 INERTIA_TOLERANCE = 1e-4
 
@@ -44,6 +44,7 @@ def estimation_items() -> list[Item]:
                         check + note,
                         FRICTION_TOLERANCE * value if name != "J" else INERTIA_TOLERANCE,
                         16 if name == "J" else None,
+                        Kind.ROUND_TRIP,
                     )
                 )
     return items
@@ -105,6 +106,21 @@ def bound_items() -> list[Item]:
             angle_change_between_bounds(),
             "counts",
             "sensitivity: largest difference of two simulations, J = 0.049 and 0.051 kg m^2",
+        ),
+        unprinted(
+            "section_4_3.inertia_fisher",
+            "Smallest standard deviation that the data of a test leave to J",
+            least_inertia_deviation(),
+            "kg m^2",
+            "Fisher information, J without its bounds and Jm known, least of the ten tests; the"
+            " bounds of Appendix C are 0.002 kg m^2 apart",
+        ),
+        unprinted(
+            "section_4_3.inertia_spread",
+            "Standard deviation of the five printed J, larger direction",
+            max(float(spread_of_tests(direction)[0]) for direction in DIRECTIONS),
+            "kg m^2",
+            "Table 4.2: the tests agree better than their data allow, because of the bounds",
         ),
         unprinted(
             "section_4_3.profile_rise",

@@ -13,7 +13,7 @@ from scipy.optimize import least_squares
 import ptp_symbolic
 from ptp_symbolic.models.emission import emit
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import ramp
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, ramp
 from ptp_symbolic.platform import EffectDeclaration, Platform
 from ptp_symbolic.thesis import printed
 from ptp_symbolic.thesis.friction import drive_values
@@ -26,6 +26,9 @@ FloatArray = NDArray[np.float64]
 TIMES = np.linspace(0.0, 20.0, 1_001)
 COUNT = 2.0 * np.pi / printed.COUNTS_PER_REVOLUTION
 COLUMNS = ("J", "F_s", "F_c", "v_s", "F_v")
+# In the order of Appendix C, and the parameters of the model that take their values.
+FITTED = ("J", "F_c", "F_s", "v_s", "F_v")
+MODEL_PARAMETERS = ("J_pan", "F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan")
 PROFILE = (0.0, 0.02, 0.04, 0.049, 0.051, 0.06, 0.08, 0.1)
 MOTOR_INERTIA_ERROR = 0.02
 
@@ -39,7 +42,7 @@ class Estimate:
 
     def value(self, name: str) -> float:
         """The parameter `name` of Table 4.2."""
-        return float(self.x[("J", "F_c", "F_s", "v_s", "F_v").index(name)])
+        return float(self.x[FITTED.index(name)])
 
 
 def torque_ramp() -> float:
@@ -58,8 +61,9 @@ def pan_model() -> Model:
     return emit(Platform("ramp_test", "Ramp test of section 4.3", ("pan",), 9.81, effects, (), ()))
 
 
-def measured_angle(test: RampTest) -> FloatArray:
-    """Encoder angle in rad at TIMES of a ramp test, made by scipy from breakaway on."""
+@cache
+def true_angle(test: RampTest) -> FloatArray:
+    """Angle in rad at TIMES of a ramp test, made by scipy from breakaway on."""
     slope, f = torque_ramp(), test.friction
     inertia = printed.APPENDIX_C_MOTOR_INERTIA + test.J
     start = f.F_s / slope
@@ -79,17 +83,46 @@ def measured_angle(test: RampTest) -> FloatArray:
         atol=1e-12,
         max_step=0.02,
     )
-    angle = np.concatenate([np.zeros(len(TIMES) - len(moving)), run.y[0]])
-    return np.floor(angle / COUNT + 0.5) * COUNT
+    return np.concatenate([np.zeros(len(TIMES) - len(moving)), run.y[0]])
+
+
+def measured_angle(test: RampTest, phase: float = 0.0) -> FloatArray:
+    """Encoder angle in rad at TIMES of a ramp test that starts `phase` counts from a count."""
+    return np.floor(true_angle(test) / COUNT + phase + 0.5) * COUNT
+
+
+def applied_torque() -> dict[str, InputSignal]:
+    """The torque ramp of Appendix C as input of `pan_model`."""
+    return {"tau_pan": ramp(0.0, torque_ramp() * TIMES[-1], 0.0, TIMES[-1])}
+
+
+def model_values(x: Sequence[float] | FloatArray, motor_inertia: float) -> dict[str, float]:
+    """Parameters of `pan_model` for x = J, Fc, Fs, vs, Fv."""
+    return dict(zip(MODEL_PARAMETERS, [motor_inertia + x[0], *x[1:]], strict=True))
 
 
 def model_angle(x: Sequence[float] | FloatArray, motor_inertia: float) -> FloatArray:
     """Angle in rad at TIMES of this program's model for x = J, Fc, Fs, vs, Fv."""
-    values = dict(zip(("F_c_pan", "F_s_pan", "v_s_pan", "F_v_pan"), x[1:], strict=True))
-    values["J_pan"] = motor_inertia + x[0]
-    end = TIMES[-1]
-    torque = ramp(0.0, torque_ramp() * end, 0.0, end)
-    return ptp_symbolic.simulate(pan_model(), TIMES, {"tau_pan": torque}, values)["theta_pan"]
+    values = model_values(x, motor_inertia)
+    return ptp_symbolic.simulate(pan_model(), TIMES, applied_torque(), values)["theta_pan"]
+
+
+def row(test: RampTest) -> FloatArray:
+    """A row of Table 4.2 as x = J, Fc, Fs, vs, Fv."""
+    return np.array([column([test], name)[0] for name in FITTED])
+
+
+def sensitivities(test: RampTest, state: str) -> FloatArray:
+    """Derivatives [k, 5] of a state at TIMES by J, Fc, Fs, vs, Fv, through the breakaway."""
+    model = pan_model()
+    found = ptp_symbolic.sensitivity(
+        model,
+        TIMES,
+        applied_torque(),
+        model_values(row(test), printed.APPENDIX_C_MOTOR_INERTIA),
+        by_parameters=list(MODEL_PARAMETERS),
+    )
+    return found.states[:, model.state_names.index(state)]
 
 
 def fit(
@@ -97,26 +130,28 @@ def fit(
     inertia: float | None = None,
     motor_inertia: float = printed.APPENDIX_C_MOTOR_INERTIA,
     bounded: bool = True,
+    start: FloatArray | None = None,
 ) -> Estimate:
     """The fit of Appendix C with its starts and bounds, on the angle, with erratum 15 corrected.
 
-    `inertia` holds J at a value in kg m^2; `bounded` False frees J from its bounds.
+    `inertia` holds J at a value in kg m^2; `bounded` False frees J from its bounds; `start` is
+    another start of J, Fc, Fs, vs, Fv.
     """
     lower, upper = np.array(printed.APPENDIX_C_LOWER), np.array(printed.APPENDIX_C_UPPER)
     s = printed.APPENDIX_C_START
-    start = np.array([printed.INERTIA, s.F_c, s.F_s, s.v_s, s.F_v])
+    begin = np.array([printed.INERTIA, s.F_c, s.F_s, s.v_s, s.F_v] if start is None else start)
     if not bounded:
         lower[0], upper[0] = -1.0, 1.0
     if inertia is not None:
-        lower[0], upper[0], start[0] = inertia - 1e-9, inertia + 1e-9, inertia
-    start = np.clip(start, lower, upper)
-    start[1:] = np.clip(start[1:], lower[1:] + 1e-3, upper[1:] - 1e-3)
+        lower[0], upper[0], begin[0] = inertia - 1e-9, inertia + 1e-9, inertia
+    begin = np.clip(begin, lower, upper)
+    begin[1:] = np.clip(begin[1:], lower[1:] + 1e-3, upper[1:] - 1e-3)
     found = least_squares(
         lambda x: (model_angle(x, motor_inertia) - angle) / COUNT,
-        start,
+        begin,
         bounds=(lower, upper),
         method="trf",
-        x_scale=np.maximum(start, 0.05),
+        x_scale=np.maximum(begin, 0.05),
         xtol=1e-8,
         ftol=1e-10,
         diff_step=1e-5,
@@ -167,20 +202,11 @@ def speed_sensitivity() -> float:
 
     By the forward sensitivities through the breakaway, test 1 of Table 4.2.
     """
-    test, end = printed.TABLE_4_2["positive"][0], TIMES[-1]
-    f = test.friction
-    values = {"F_c_pan": f.F_c, "F_s_pan": f.F_s, "v_s_pan": f.v_s, "F_v_pan": f.F_v}
-    model = pan_model()
-    found = ptp_symbolic.sensitivity(
-        model,
-        TIMES,
-        {"tau_pan": ramp(0.0, torque_ramp() * end, 0.0, end)},
-        values | {"J_pan": printed.APPENDIX_C_MOTOR_INERTIA + test.J},
-        by_parameters=["J_pan"],
-    )
-    rate = model.state_names.index("omega_pan")
-    change = np.max(np.abs(found.states[:, rate, 0])) * test.J
-    return float(change / found.x[-1, rate])
+    test = printed.TABLE_4_2["positive"][0]
+    values = model_values(row(test), printed.APPENDIX_C_MOTOR_INERTIA)
+    final = ptp_symbolic.simulate(pan_model(), TIMES, applied_torque(), values)["omega_pan"][-1]
+    change = np.max(np.abs(sensitivities(test, "omega_pan")[:, 0])) * test.J
+    return float(change / final)
 
 
 def column(tests: Sequence[RampTest], name: str) -> FloatArray:

@@ -17,7 +17,7 @@ from ptp_symbolic.numeric.simulation.run import Trajectory
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, ramp, trapezoid
 from ptp_symbolic.thesis import printed
 from ptp_symbolic.thesis.friction import drive_values, mean_friction
-from ptp_symbolic.thesis.items import Item, unprinted
+from ptp_symbolic.thesis.items import Item, Kind, unprinted
 from ptp_symbolic.thesis.printed import Friction
 
 FloatArray = NDArray[np.float64]
@@ -139,6 +139,7 @@ def reported_items() -> list[Item]:
         items.append(
             Item(
                 f"{where}.measured",
+                Kind.MEASUREMENTS_NOT_PRINTED,
                 f"{title}, relative L2 error",
                 value,
                 None,

@@ -1,26 +1,44 @@
-"""Section 5.3: linkage, lead screw and motor of the tilt drive under 24 V (Figs. 5.9-5.14)."""
+"""Section 5.3: the tilt drive of the packaged presets under 24 V (Figs. 5.9-5.14).
 
-import math
-from collections.abc import Callable
+The motion is the simulation of the emitted model. Stroke, actuator force and screw are read from it
+with the linkage, the screw and the joint's equation of the derivation, so nothing is typed twice.
+"""
+
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
+import sympy as sp
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, minimize_scalar
 
-from ptp_symbolic.errors import InputError
+import ptp_symbolic
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, trapezoid
+from ptp_symbolic.platform import read_platform
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.mechanisms.linkage import Linkage
+from ptp_symbolic.symbolic.mechanisms.screw import Screw
+from ptp_symbolic.symbolic.symbols import real
 from ptp_symbolic.thesis.items import Item, unprinted
-from ptp_symbolic.thesis.printed import STROKES, SUPPLY_VOLTAGE, TILT_DRIVE
+from ptp_symbolic.thesis.printed import SUPPLY_VOLTAGE
 
 FloatArray = NDArray[np.float64]
-GRAVITY = 9.81
+Function = Callable[..., Any]
 
+# The two initial strokes of Table 5.6 in mm (erratum 19), and the presets that hold them.
+PRESETS = {"40.5": "thesis-tilt-drive", "48.5": "thesis-tilt-drive-stroke-48"}
 # The thesis prints the level of the trapezoid alone; its edges here are those of section 5.4.3.
-TRAPEZOID = (0.5, 2.5, 0.5)
+TRAPEZOID = trapezoid(SUPPLY_VOLTAGE, 0.5, 2.5, 0.5)
+NO_VOLTAGE = constant(0.0)
 TIMES = np.linspace(0.0, 5.0, 5_001)
-# Below this stroke speed in m/s the screw passes smoothly from raising to lowering.
-SCREW_SPEED = 1e-9
+RTOL, ATOL = 1e-10, 1e-12
+# Forces in N below this do not count as pushing or pulling, and times in s are located to this.
+LEAST_FORCE = 1e-3
+TIME_TOLERANCE = 1e-10
 # Where the centre of mass lies at tilt angle zero, as unit vector (x, z) of the tilt frame.
 COM_DIRECTIONS = {
     "above": (0.0, 1.0),
@@ -31,13 +49,30 @@ COM_DIRECTIONS = {
 
 
 @dataclass(frozen=True, eq=False)
+class Actuator:
+    """Functions of tilt angle in rad and rate in rad/s, from the derivation at a preset's values.
+
+    `stroke` in m and `lever` in m (stroke speed per tilt rate, negative) of the angle; `others` in
+    N m, the torque on the joint that is not the actuator's; `inertia` in kg m^2 of what turns with
+    the joint. The screw takes `raising` and `lowering` in m, torque per force.
+    """
+
+    stroke: Function
+    lever: Function
+    lever_slope: Function
+    others: Function
+    inertia: float
+    raising: float
+    lowering: float
+
+
+@dataclass(frozen=True, eq=False)
 class TiltRun:
     """Figs. 5.9 to 5.14: t [k] in s, stroke and speed in m and m/s, force in N, current in A,
-    tilt rate and angle in rad/s and rad, voltage in V, each [k].
+    tilt rate and angle in rad/s and rad, each [k].
     """
 
     t: FloatArray
-    voltage: FloatArray
     stroke: FloatArray
     stroke_speed: FloatArray
     force: FloatArray
@@ -46,203 +81,207 @@ class TiltRun:
     tilt_angle: FloatArray
 
 
-def deviation(stroke: float | FloatArray) -> FloatArray:
-    """Angle theta of Fig. 3.13 in rad between link and the perpendicular of the actuator.
-
-    Raises InputError for a stroke in m with which the three bars do not close.
-    """
-    d = TILT_DRIVE
-    length = d.shortest_length + np.asarray(stroke, dtype=np.float64)
-    arm, ground = d.moment_arm, d.ground_link
-    cosine = (arm**2 + length**2 - ground**2) / (2.0 * length * arm)
-    if np.any(np.abs(cosine) > 1.0):
-        wrong = np.ravel(stroke)[np.argmax(np.abs(cosine))]
-        shortest = max(0.0, ground - arm - d.shortest_length)
-        raise InputError(
-            f"Stroke {wrong:g} m: the linkage closes from {shortest:g} to"
-            f" {ground + arm - d.shortest_length:g} m; give a stroke between them."
-        )
-    return np.pi / 2.0 - np.arccos(cosine)
+@cache
+def model(name: str) -> Model:
+    """The emitted model that starts at the stroke `name` of PRESETS."""
+    return ptp_symbolic.load(PRESETS[name])
 
 
-def link_angle(stroke: float | FloatArray) -> FloatArray:
-    """Angle in rad at the tilt axis between link and ground link, by the law of cosines."""
-    d = TILT_DRIVE
-    length = d.shortest_length + np.asarray(stroke, dtype=np.float64)
-    sides = d.moment_arm**2 + d.ground_link**2 - length**2
-    return np.arccos(sides / (2.0 * d.moment_arm * d.ground_link))
+def com_offset(name: str) -> float:
+    """Distance in m of the centre of mass from the tilt axis."""
+    values = model(name).defaults
+    return float(np.hypot(values["c_x_payload"], values["c_z_payload"]))
 
 
-def screw_factors() -> tuple[float, float]:
-    """Screw torque per force in m, raising and lowering. Source: thesis Eq. 3.12."""
-    d = TILT_DRIVE
-    lead, turn, f = d.lead, math.pi * d.pitch_diameter, d.screw_friction
-    half = d.pitch_diameter / 2.0
-    raising = half * (lead + f * turn) / (turn - f * lead)
-    lowering = half * (f * turn - lead) / (turn + f * lead)
-    return raising, lowering
-
-
-def trapezoid_voltage(t: float) -> float:
-    """The input in V at time t in s."""
-    rise, hold, fall = TRAPEZOID
-    return SUPPLY_VOLTAGE * float(np.interp(t, np.cumsum([0.0, rise, hold, fall]), [0, 1, 1, 0]))
+def placed(name: str, direction: str) -> dict[str, float]:
+    """Parameters that put the centre of mass in a direction of COM_DIRECTIONS, as far off."""
+    x, z = COM_DIRECTIONS[direction]
+    return {"c_x_payload": x * com_offset(name), "c_z_payload": z * com_offset(name)}
 
 
 @cache
+def actuator(name: str, direction: str = "above") -> Actuator:
+    """The actuator of a preset of PRESETS, the centre of mass in a direction of COM_DIRECTIONS."""
+    values = model(name).defaults | placed(name, direction)
+    numbers = {real(parameter): value for parameter, value in values.items()}
+    angle, rate = kinematics.angle("tilt"), kinematics.rate("tilt")
+    named = dict(assemble(read_platform(PRESETS[name])).terms)
+    others, inertia = (named[real(f"load_{what}_tilt")] for what in ("torque", "inertia"))
+    linkage = Linkage(
+        *(real(f"{length}_tilt") for length in ("l_ground", "l_min", "r_arm", "s_start"))
+    )
+    screw = Screw(*(real(f"{what}_tilt") for what in ("lead", "d_screw", "f_screw")))
+    lever = linkage.ratio(angle)
+
+    def function(expression: sp.Expr, *arguments: sp.Symbol) -> Function:
+        return sp.lambdify(arguments, expression.subs(numbers), modules="numpy")
+
+    return Actuator(
+        function(linkage.stroke(angle), angle),
+        function(lever, angle),
+        function(lever.diff(angle), angle),
+        function(others, angle, rate),
+        float(inertia.subs(numbers)),
+        float(screw.raising.subs(numbers)),
+        float(screw.lowering.subs(numbers)),
+    )
+
+
+def deviation(name: str, stroke: float | None = None) -> float:
+    """Angle theta of Fig. 3.13 in rad between link and the perpendicular of the actuator.
+
+    At a `stroke` in m, None for the initial one; negative where the arm has yet to reach the
+    perpendicular.
+    """
+    machine, arm = actuator(name), model(name).defaults["r_arm_tilt"]
+    lower, upper = model(name).domain(model(name).parameter_vector())[0]
+    angle = 0.0
+    if stroke is not None:
+        angle = float(brentq(lambda a: machine.stroke(a) - stroke, lower, upper))
+    size = float(np.arccos(min(1.0, abs(machine.lever(angle)) / arm)))
+    # the lever, negative, is longest on the perpendicular, and a growing stroke lowers the angle
+    return float(np.copysign(size, -machine.lever_slope(angle)))
+
+
 def simulate_tilt_drive(
-    stroke: float,
+    name: str,
+    times: FloatArray = TIMES,
     direction: str = "above",
-    voltage: Callable[[float], float] = trapezoid_voltage,
-    duration: float = 5.0,
+    voltage: InputSignal = TRAPEZOID,
 ) -> TiltRun:
-    """The tilt drive from rest at `stroke` in m, tilt angle zero there, by scipy's Radau.
+    """The tilt drive from rest at tilt angle zero, output at `times` [k] in s.
 
-    State: stroke, stroke speed, current. `direction`: where the centre of mass lies. Raises
-    InputError for a stroke outside the linkage.
+    `name` of PRESETS; `direction` of COM_DIRECTIONS tells where the centre of mass lies.
     """
-    deviation(stroke)
-    times = TIMES[duration >= TIMES]
-
-    def derivative(t: float, x: FloatArray) -> list[float]:
-        acceleration = _acceleration(x, stroke, direction)[0]
-        d = TILT_DRIVE
-        motor_rate = _turns(x[1])
-        back = d.R * x[2] + d.K_t * motor_rate
-        return [x[1], acceleration, (voltage(t) - back) / d.L]
-
-    run = solve_ivp(
-        derivative,
-        (0.0, times[-1]),
-        [stroke, 0.0, 0.0],
-        "Radau",
-        times,
-        rtol=1e-8,
-        atol=[1e-12, 1e-12, 1e-10],
-        max_step=0.02,
+    drive, machine, changes = model(name), actuator(name, direction), placed(name, direction)
+    found = ptp_symbolic.simulate(
+        drive, times, {"u_tilt": voltage}, changes, rtol=RTOL, atol=ATOL, ledger=False
     )
-    if run.status != 0:
-        raise InputError(f"The tilt drive stopped at {run.t[-1]:g} s: {run.message}")
-    force = np.array([_acceleration(x, stroke, direction)[1] for x in run.y.T])
-    s, v, i = run.y
+    p, still = drive.parameter_vector(changes), np.zeros(1)
+    # the voltage acts on the current alone, so the acceleration is that of any voltage
+    slopes = [drive.rhs(t, x, still, p) for t, x in zip(found.t, found.x, strict=True)]
+    angle, rate = found["theta_tilt"], found["omega_tilt"]
+    acceleration = np.array(slopes)[:, drive.state_names.index("omega_tilt")]
+    lever = machine.lever(angle)
+    needed = machine.inertia * acceleration - machine.others(angle, rate)
     return TiltRun(
-        times,
-        np.array([voltage(t) for t in times]),
-        s,
-        v,
-        force,
-        i,
-        -v / (TILT_DRIVE.moment_arm * np.cos(deviation(s))),
-        link_angle(stroke) - link_angle(s),
+        found.t,
+        machine.stroke(angle),
+        lever * rate,
+        needed / lever,
+        found["i_tilt"],
+        rate,
+        angle,
     )
 
 
-def _turns(speed: float) -> float:
-    """Motor rate in rad/s at a stroke speed in m/s."""
-    return 2.0 * math.pi * TILT_DRIVE.N * speed / TILT_DRIVE.lead
+@cache
+def trapezoid_run(name: str, direction: str = "above") -> TiltRun:
+    """The run of Figs. 5.9 to 5.14 at TIMES."""
+    return simulate_tilt_drive(name, direction=direction)
 
 
-def _acceleration(x: FloatArray, start: float, direction: str) -> tuple[float, float]:
-    """Stroke acceleration in m/s^2 and actuator force in N.
+def _at(name: str, direction: str, quantity: str) -> Callable[[float], float]:
+    """A quantity of TiltRun as a function of time in s, each time simulated up to there."""
 
-    The force is a stroke acceleration times the reflected tilt inertia plus the rest; the motor
-    feels it through the screw, whose factor depends on whether force and motion agree.
-    """
-    d = TILT_DRIVE
-    stroke, speed, current = x
-    theta = float(deviation(stroke))
-    arm = d.moment_arm * math.cos(theta)
-    tilt_rate, tilt = -speed / arm, float(link_angle(start) - link_angle(stroke))
-    inertia = d.J_y + d.mass * d.com_offset**2
-    # rate of the lever arm: d(theta)/dt from the change of the actuator's angle to the link
-    length = d.shortest_length + stroke
-    arm_rate = -d.moment_arm * math.sin(theta) * _deviation_slope(length, theta) * speed
-    weight = d.mass * GRAVITY * d.com_offset
-    ahead, above = COM_DIRECTIONS[direction]
-    gravity = weight * (ahead * math.cos(tilt) + above * math.sin(tilt))
-    # tilt_acceleration = -acceleration / arm + speed arm_rate / arm^2
-    reflected = inertia / arm**2
-    rest = -(inertia * speed * arm_rate / arm**2 + d.b_joint * tilt_rate - gravity) / arm
-    motor_mass = d.J_motor * _turns(1.0)
-    motor_torque = d.K_t * current - d.b_motor * _turns(speed)
-    positive = reflected * motor_torque + motor_mass * rest > 0.0
-    factor = _screw_factor(positive, speed) / d.N
-    acceleration = (motor_torque - factor * rest) / (motor_mass + factor * reflected)
-    return acceleration, reflected * acceleration + rest
+    def value(t: float) -> float:
+        run = simulate_tilt_drive(name, np.array([0.0, t]), direction)
+        return float(getattr(run, quantity)[-1])
+
+    return value
 
 
-def _deviation_slope(length: float, theta: float) -> float:
-    """d(theta)/d(length) in rad/m, from sin(theta) as the law of cosines gives it."""
-    d = TILT_DRIVE
-    slope = (length**2 - d.moment_arm**2 + d.ground_link**2) / (2.0 * length**2 * d.moment_arm)
-    return slope / math.cos(theta)
+def reversal(name: str, direction: str = "above") -> float | None:
+    """Time in s at which the force, positive at first, changes its sign; None where it does not."""
+    run = trapezoid_run(name, direction)
+    acting = np.abs(run.force) > LEAST_FORCE
+    negative = np.flatnonzero(run.force < -LEAST_FORCE)
+    if not len(negative) or run.force[np.argmax(acting)] <= 0.0:
+        return None
+    after = negative[0]
+    before = np.flatnonzero(run.force[:after] > LEAST_FORCE)[-1]
+    return float(
+        brentq(
+            _at(name, direction, "force"),
+            run.t[before],
+            run.t[after],
+            xtol=TIME_TOLERANCE,
+        )
+    )
 
 
-def _screw_factor(positive: bool, speed: float) -> float:
-    """Screw torque per force in m: raising where force and motion agree, else lowering."""
-    raising, lowering = screw_factors()
-    mean, half = (raising - lowering) / 2.0, (raising + lowering) / 2.0
-    return mean + (half if positive else -half) * math.tanh(speed / SCREW_SPEED)
+def extremum(name: str, quantity: str, sign: float = 1.0) -> tuple[float, float]:
+    """Time in s and value of the largest `sign` times a quantity of TiltRun, in its unit."""
+    run, value = trapezoid_run(name), _at(name, "above", quantity)
+    k = int(np.argmax(sign * getattr(run, quantity)))
+    found = minimize_scalar(
+        lambda t: -sign * value(t),
+        bounds=(run.t[max(k - 1, 1)], run.t[min(k + 1, len(run.t) - 1)]),
+        method="bounded",
+        options={"xatol": TIME_TOLERANCE},
+    )
+    return float(found.x), -sign * float(found.fun)
 
 
-def reverses(run: TiltRun) -> tuple[bool, float | None]:
-    """Whether the force starts positive and becomes negative, and when in s."""
-    moving = run.t > 0.0
-    first = next((f for f in run.force[moving] if abs(f) > 1e-3), 0.0)
-    negative = np.flatnonzero(run.force < -1e-3)
-    if first <= 0.0 or not len(negative):
-        return False, None
-    return True, float(run.t[negative[0]])
-
-
-def run_items(name: str, stroke: float) -> list[Item]:
+def run_items(name: str) -> list[Item]:
     """What Figs. 5.9 to 5.14 show, for one of the two printed strokes."""
-    run = simulate_tilt_drive(stroke)
-    when = reverses(run)[1]
+    run = trapezoid_run(name)
+    peak_time, peak = extremum(name, "current")
     check = (
-        f"scipy Radau, Tables 5.5 and 5.6, Eq. 3.12, stroke {name} mm, c.g. above the axis"
-        " (erratum 24); trapezoid 0.5 s up, 2.5 s at 24 V, 0.5 s down (edges not printed); the"
-        " thesis prints the curve alone"
+        f"simulation of {PRESETS[name]} (Tables 5.5 and 5.6, Eq. 3.12), c.g. above the axis"
+        " (erratum 24); trapezoid 0.5 s up, 2.5 s at 24 V, 0.5 s down (edges not printed);"
+        " reversal and extrema located in time; the thesis prints the curve alone"
     )
-    rows = (
-        ("fig_5_9", "largest_stroke_speed", np.max(run.stroke_speed) * 1e3, "mm/s"),
-        ("fig_5_10", "largest_force", np.max(run.force), "N"),
-        ("fig_5_10", "reversal_time", when, "s"),
-        ("fig_5_10", "final_force", run.force[-1], "N"),
-        ("fig_5_11", "largest_current", np.max(run.current), "A"),
-        ("fig_5_12", "largest_tilt_rate", np.min(np.degrees(run.tilt_rate)), "deg/s"),
-        ("fig_5_14", "final_tilt_angle", np.degrees(run.tilt_angle[-1]), "deg"),
-    )
+    rows: Mapping[str, tuple[str, float | None, str]] = {
+        "largest_stroke_speed": ("fig_5_9", 1e3 * extremum(name, "stroke_speed")[1], "mm/s"),
+        "largest_force": ("fig_5_10", extremum(name, "force")[1], "N"),
+        "reversal_time": ("fig_5_10", reversal(name), "s"),
+        "final_force": ("fig_5_10", float(run.force[-1]), "N"),
+        "largest_current": ("fig_5_11", peak, "A"),
+        "largest_current_time": ("fig_5_11", peak_time, "s"),
+        "largest_tilt_rate": (
+            "fig_5_12",
+            float(np.degrees(extremum(name, "tilt_rate", -1.0)[1])),
+            "deg/s",
+        ),
+        "final_tilt_angle": ("fig_5_14", float(np.degrees(run.tilt_angle[-1])), "deg"),
+    }
     return [
         unprinted(
             f"{figure}.{what}_stroke_{name}_mm",
             f"Fig. {figure[4:].replace('_', '.')}, {what.replace('_', ' ')}, stroke {name} mm",
-            None if value is None else float(value),
+            value,
             unit,
             check,
         )
-        for figure, what, value, unit in rows
+        for what, (figure, value, unit) in rows.items()
     ]
 
 
 def items() -> list[Item]:
     """All items of this file."""
-    raising, lowering = screw_factors()
+    machine = actuator("40.5")
     screw = "Eq. 3.12 with Table 5.5, torque per force"
     return [
-        *(item for name, stroke in STROKES.items() for item in run_items(name, stroke)),
-        unprinted("eq_3_12.raising", "Lead screw, torque per force, raising", raising, "m", screw),
+        *(item for name in PRESETS for item in run_items(name)),
         unprinted(
-            "eq_3_12.lowering", "Lead screw, torque per force, lowering", lowering, "m", screw
+            "eq_3_12.raising", "Lead screw, torque per force, raising", machine.raising, "m", screw
+        ),
+        unprinted(
+            "eq_3_12.lowering",
+            "Lead screw, torque per force, lowering",
+            machine.lowering,
+            "m",
+            screw,
         ),
         *(
             unprinted(
                 f"fig_3_13.deviation_stroke_{name}_mm",
                 f"Fig. 3.13, link from the perpendicular at stroke {name} mm",
-                float(np.degrees(deviation(stroke))),
+                float(np.degrees(deviation(name))),
                 "deg",
-                "law of cosines, Table 5.6",
+                "lever of the derived linkage over the length of the arm, Table 5.6",
             )
-            for name, stroke in STROKES.items()
+            for name in PRESETS
         ),
     ]

@@ -4,8 +4,10 @@ import json
 import re
 import shutil
 import subprocess
+from collections import Counter
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -14,9 +16,14 @@ from ptp_symbolic.cli.report_thesis import thesis
 from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.pdf import compile_pdf
 from ptp_symbolic.thesis import document
+from ptp_symbolic.thesis.chapter_figures import all_figures, friction_of
 from ptp_symbolic.thesis.errata import ERRATA
+from ptp_symbolic.thesis.figures import STYLE, drawn
+from ptp_symbolic.thesis.responses import response
+from ptp_symbolic.thesis.wording import text_latex
 
 FIGURES = (
+    *(f"fig_2_{n}" for n in (*range(7, 17), 18, 19)),
     *(f"fig_5_{n}" for n in (1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 14, 15, 16, 17, 18)),
     "fig_4_3",
     "fig_4_6",
@@ -31,8 +38,61 @@ def files() -> dict[str, str | bytes]:
 @pytest.fixture(scope="module")
 def rows(files: dict[str, str | bytes]) -> list[dict[str, object]]:
     content = json.loads(files["thesis.json"])
-    assert content["schema_version"] == 1
+    assert content["schema_version"] == 2
     return list(content["items"])
+
+
+def test_a_round_trip_is_never_counted_as_computed(
+    files: dict[str, str | bytes], rows: list[dict[str, object]]
+) -> None:
+    kinds = Counter(str(r["kind"]) for r in rows)
+    fitted = [r for r in rows if re.fullmatch(r"table_4_1\..*|table_4_2\..*_\d", str(r["id"]))]
+    assert len(fitted) == kinds["round_trip"] == 2 * 4 + 2 * 5 * 5
+    assert {r["kind"] for r in fitted} == {"round_trip"}
+    content = json.loads(files["thesis.json"])
+    summary = content["summary"]
+    assert {kind: counts["items"] for kind, counts in summary.items()} == kinds
+    for kind in ("computed", "round_trip"):
+        own = [r for r in rows if r["kind"] == kind]
+        assert summary[kind]["agree"] == sum(r["agrees"] is True for r in own)
+        assert sum(summary[kind].values()) == 2 * len(own)
+    for row in rows:
+        nothing = row["kind"] in ("nothing_printed", "measurements_not_printed")
+        assert (row["agrees"] is None) == nothing or row["kind"] == "erratum", row["id"]
+        assert (row["kind"] == "nothing_printed") == (row["printed"] is None), row["id"]
+    # the headline of the document says the same
+    text = str(files["thesis.tex"])
+    assert f"{summary['round_trip']['agree']} recovered" in text
+    assert f"{summary['computed']['agree']} agree" in text
+
+
+def test_every_picture_says_what_its_curves_are(
+    files: dict[str, str | bytes], rows: list[dict[str, object]]
+) -> None:
+    figures = json.loads(files["thesis.json"])["figures"]
+    assert {f"{f['name']}.pdf" for f in figures} == {n for n in files if n.endswith(".pdf")}
+    trips = {f["name"] for f in figures if f["kind"] == "round_trip"}
+    assert trips == {"fig_4_3", "fig_4_6", "fig_4_6_profile"}
+    assert {f["kind"] for f in figures} == {"computed", "round_trip"}
+    assert str(files["thesis.tex"]).count(r"\emph{Round trip.}") == len(trips)
+    known = {r["id"] for r in rows}
+    assert all(set(f["items"]) <= known for f in figures)
+    assert len(next(f for f in figures if f["name"] == "fig_5_10")["items"]) == 6
+
+
+def test_curves_of_a_panel_differ_without_colour_and_legends_fit() -> None:
+    for figure in (f for group in all_figures().values() for f in group):
+        with matplotlib.rc_context(STYLE):
+            page = drawn(figure)
+            page.canvas.draw()
+        for axes in page.axes:
+            named = [line for line in axes.lines if not line.get_label().startswith("_")]
+            looks = {(line.get_linestyle(), line.get_marker()) for line in named}
+            assert len(looks) == len(named), figure.name
+            legend = axes.get_legend()
+            if legend is not None:
+                box = legend.get_window_extent()
+                assert box.x0 >= 0.0 and box.x1 <= page.bbox.x1, figure.name
 
 
 def test_every_erratum_is_there_and_settled(rows: list[dict[str, object]]) -> None:
@@ -104,6 +164,17 @@ def test_every_row_names_the_note_that_says_how_it_was_computed(
         assert len(notes) == len({r["check"] for r in listed})
 
 
+def test_friction_of_the_pan_drive_by_hand() -> None:
+    run = response("trapezoid")
+    friction, rate = friction_of(run), run["omega_gear_pan"]
+    dry = 0.2267 + (0.5578 - 0.2267) * np.exp(-((rate / 0.0159) ** 2))
+    sliding = rate > 0.0
+    assert friction[sliding] == pytest.approx((dry + 13.5844 * rate)[sliding], abs=1e-6)
+    # at rest in the gap it is the motor's torque, up to the breakaway
+    resting = (rate == 0.0) & (run.t < 0.1)
+    assert friction[resting] == pytest.approx(36.2 * run["i_pan"][resting], abs=1e-9)
+
+
 def test_no_page_is_half_empty(files: dict[str, str | bytes], tmp_path: Path) -> None:
     if shutil.which("pdflatex") is None or shutil.which("pdftoppm") is None:
         pytest.skip("pdflatex or pdftoppm is not installed")
@@ -149,7 +220,7 @@ def test_compiles_without_a_warning(files: dict[str, str | bytes], tmp_path: Pat
     ],
 )
 def test_names_become_formulas(text: str, latex: str) -> None:
-    assert document._text(text) == latex
+    assert text_latex(text) == latex
 
 
 def test_the_command_writes_everything_and_says_when_there_is_no_pdf(
