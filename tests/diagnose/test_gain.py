@@ -116,6 +116,27 @@ def test_a_gain_is_that_of_runs_predicted_by_the_others() -> None:
     assert 0.05 < found.lower < found.share < found.upper < 0.25
 
 
+def test_a_run_that_alone_tells_a_parameter_is_not_judged() -> None:
+    """Its breakaway is predicted by nothing: the gain is that of a slope in the 39 other runs."""
+    rng = np.random.default_rng(66)
+    slope, once = rng.standard_normal((2, 40, 60))
+    once *= 1e-3
+    once[7, 30] = 30.0
+    noise = rng.standard_normal((40, 60))
+    measured = 0.4 * slope + 5.0 * once + noise
+    columns = np.stack([slope, once], axis=2)
+    found = np.linalg.lstsq(columns.reshape(-1, 2), measured.ravel())[0]
+    larger = trial(list(measured - columns @ found), list(columns))
+    judged = gain(larger, trial(list(measured)))
+    others = np.arange(40) != 7
+    shares = gain(
+        trial(list((measured - columns @ found)[others]), list(slope[others, :, None])),
+        trial(list(measured[others])),
+    )
+    assert judged.share == pytest.approx(shares.share, rel=0.02)
+    assert 0.08 < judged.lower < judged.share < 0.2
+
+
 def test_a_parameter_that_fits_noise_alone_gains_nothing() -> None:
     """In sample it always does; on blocks left out a column loses as much as it took."""
     rng, clear = np.random.default_rng(65), []

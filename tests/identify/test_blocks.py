@@ -120,6 +120,19 @@ def test_what_one_block_alone_sees_does_not_move_either() -> None:
     assert abs(left.shifts[7, 1]) < 1e-3
 
 
+def test_the_leverage_of_a_block_is_its_share_of_what_is_known() -> None:
+    """Of one parameter the share of the squares; of two that blocks see apart the larger one."""
+    one = DESIGN[:, :1]
+    square = np.bincount(LABEL, weights=one[:, 0] ** 2)
+    left = leave_blocks_out(MEASURED, one, LABEL)
+    assert left.leverage == pytest.approx(square / square.sum(), rel=1e-6)
+    once = np.where(LABEL == 7, DESIGN[:, 3], 0.0)
+    apart = leave_blocks_out(MEASURED, np.column_stack([one[:, 0] * (LABEL != 7), once]), LABEL)
+    assert apart.leverage[7] == pytest.approx(1.0, rel=1e-6)
+    rest = np.delete(square, 7)
+    assert np.delete(apart.leverage, 7) == pytest.approx(rest / rest.sum(), rel=1e-6)
+
+
 def test_the_jackknife_of_a_mean_is_the_textbook_variance_of_a_mean() -> None:
     """Of two correlated means over 15 blocks of 20: the covariance of block means over 15."""
     rng = np.random.default_rng(12)

@@ -21,7 +21,13 @@ from ptp_symbolic.numeric.identify.blocks import (
     leave_blocks_out,
     without_outliers,
 )
-from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, NOTHING, SINGULAR, TUNING
+from ptp_symbolic.numeric.identify.constants import (
+    ELSEWHERE,
+    FALSE_ALARM,
+    NOTHING,
+    SINGULAR,
+    TUNING,
+)
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.innovations import innovations, prediction_error_filter
@@ -31,6 +37,7 @@ from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import by_source
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
 
@@ -99,11 +106,12 @@ def _gain(
     series = [np.concatenate([difference[k] for k in group]) for group in by_source(runs)]
     labels = block_labels([len(s) for s in series], block_length(series))
     label = np.concatenate(labels)
-    squares = [_predicted_squares(parts, label, signals) for parts in residuals]
     size = np.bincount(label)
+    squares, told = zip(*(_predicted_squares(p, label, signals) for p in residuals), strict=True)
     scale = np.maximum(weighted_median(squares[0], size.astype(np.float64)), 1e-300)
+    judged = size * np.logical_and(*told)
     losses = [
-        size * huber_loss(s / scale, np.full(signals, TUNING**2)).sum(axis=1) for s in squares
+        judged * huber_loss(s / scale, np.full(signals, TUNING**2)).sum(axis=1) for s in squares
     ]
     return compared(losses[0], losses[1])
 
@@ -155,9 +163,11 @@ def _projected(fit: Fit) -> tuple[list[FloatArray], list[FloatArray]]:
 
 def _predicted_squares(
     parts: tuple[Sequence[FloatArray], Sequence[FloatArray]], label: IntArray, signals: int
-) -> FloatArray:
-    """Mean square [b, signals] of the residuals of every block, predicted by the other blocks."""
+) -> tuple[FloatArray, BoolArray]:
+    """Mean square [b, signals] of the residuals of every block, predicted by the other blocks, and
+    whether these can [b]: nothing predicts a block that alone holds what is known of a parameter.
+    """
     residual, jacobian = np.concatenate(parts[0]), np.vstack(parts[1])
     prior = float(np.mean(residual**2))  # without the block no parameter moves by more than a unit
     left = leave_blocks_out(residual, jacobian, np.repeat(label, signals), prior)
-    return block_squares(left.predicted, label, signals)
+    return block_squares(left.predicted, label, signals), left.leverage <= 1.0 - ELSEWHERE

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import linalg
 
 from ptp_symbolic.numeric.identify.constants import (
     ELSEWHERE,
@@ -115,12 +116,14 @@ def _inverse_root(jacobian: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class LeftOut:
-    """Leave-one-block-out: residuals [n] of each block predicted by the others, and the shifts
-    [b, nf] of the parameters without it.
+    """Leave-one-block-out: residuals [n] of each block predicted by the others, the shifts [b, nf]
+    of the parameters without it, and its leverage [b]: the largest share of what is known of any
+    combination of parameters that it alone holds.
     """
 
     predicted: FloatArray
     shifts: FloatArray
+    leverage: FloatArray
 
 
 def leave_blocks_out(
@@ -137,22 +140,24 @@ def leave_blocks_out(
     """
     blocks = int(label.max()) + 1 if len(label) else 0
     nf = jacobian.shape[1]
-    predicted, shifts = residual.copy(), np.zeros((blocks, nf))
+    predicted, shifts, leverage = residual.copy(), np.zeros((blocks, nf)), np.zeros(blocks)
     if nf == 0:
-        return LeftOut(predicted, shifts)
+        return LeftOut(predicted, shifts, leverage)
     size = np.linalg.norm(jacobian, axis=0)
     size = np.where(size > 0.0, size, 1.0)
     scaled = jacobian / size
     information = scaled.T @ scaled + np.diag(prior / size**2)
+    known = information + ridge * np.eye(nf)
     for block in range(blocks):
         rows = np.flatnonzero(label == block)
         own = scaled[rows]
         rest = information - own.T @ own
+        leverage[block] = linalg.eigh(own.T @ own, known, eigvals_only=True)[-1]
         score = own.T @ residual[rows]
         shift = np.linalg.lstsq(rest + ridge * np.eye(nf), score, rcond=1e2 * ridge)[0]
         predicted[rows] = residual[rows] + own @ shift
         shifts[block] = shift / size
-    return LeftOut(predicted, shifts)
+    return LeftOut(predicted, shifts, leverage)
 
 
 def block_squares(residual: FloatArray, label: IntArray, signals: int) -> FloatArray:
