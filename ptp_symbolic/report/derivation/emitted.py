@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ptp_symbolic.report.latex_text import numbered
+from ptp_symbolic.report.latex_text import escaped, numbered, table
 from ptp_symbolic.symbolic.codegen.dynamics import solve_accelerations, state_rates
 from ptp_symbolic.symbolic.codegen.latex import rate_latex, symbol_latex
 from ptp_symbolic.symbolic.codegen.statements import by_name
@@ -25,9 +25,16 @@ def emitted(equations: Equations, form: BaseForm) -> str:
     rates = zip(equations.state_symbols, state_rates(equations, solve), strict=True)
     # what samplers set is constant in between
     rows += [(rate_latex(str(s)), e) for s, e in rates if e != 0]
+    used = {str(s) for _, e in lines for s in e.free_symbols} | {name for name, _ in lines}
+    own = {str(s) for s in (*equations.state_symbols, *equations.mode_symbols)}
+    own |= {p.name for p in equations.parameters} | {i.name for i in equations.inputs} | named
+    names = [
+        [f"${symbol_latex(name)}$", rf"\texttt{{{escaped(name)}}}"] for name in sorted(used - own)
+    ]
     return (
         r"\section{Final equations}The rate of change of every state as the emitted module"
-        r" computes it: simplified, in base parameters and under its names. What the lines have in"
+        r" computes it: simplified and in base parameters. What the lines have in"
         r" common the module computes once; the functions named above it uses as they are."
+        + table("ll", ["symbol", "name in the module"], names)
         + numbered(rows, together=LAST_LINES)
     )

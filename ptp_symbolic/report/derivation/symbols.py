@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from ptp_symbolic.platform import ParameterDeclaration, Platform
+from ptp_symbolic.report.derivation.named_functions import meaning_of
 from ptp_symbolic.report.latex_text import displayed, escaped, table, unit_latex
 from ptp_symbolic.symbolic.codegen.latex import latex_of, symbol_latex
 from ptp_symbolic.symbolic.derivation.equations import Equations
@@ -111,7 +112,8 @@ def _variables(equations: Equations) -> Iterator[tuple[str, str, str, str]]:
         yield str(side(switch.name)), beyond, "1", "mode"
         yield str(active(switch.name)), f"1 while {name} is on, else 0", "1", "mode"
     for symbol, _ in equations.terms:
-        yield str(symbol), "a function of those above, given with the equations", "1", "function"
+        meaning, unit = meaning_of(str(symbol))
+        yield str(symbol), meaning, unit, "function"
 
 
 def _joint_state(name: str) -> tuple[str, str]:
