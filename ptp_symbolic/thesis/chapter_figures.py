@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.thesis import contact, printed, ramp_test, responses, rigid, tilt_drive
 from ptp_symbolic.thesis.chapter_2_figures import backlash_figures, friction_figures
-from ptp_symbolic.thesis.figures import BLUE, Line, ThesisFigure, panel
+from ptp_symbolic.thesis.figures import Line, ThesisFigure, panel
 from ptp_symbolic.thesis.friction import (
     drive_values,
     duty_and_torque,
@@ -20,9 +20,9 @@ from ptp_symbolic.thesis.items import Kind
 
 FloatArray = NDArray[np.float64]
 
-# End in s of the curves of the rigid platform, and the part of the step in which the shaft rings.
+# End in s of the curves of the rigid platform, and the parts of responses in which the shaft rings.
 SHOWN = 10.0
-RINGING = (1.75, 2.25)
+RINGING = {"step": (1.75, 2.25), "slow_ramp": (0.6, 1.2), "trapezoid": (0.0, 0.6)}
 
 
 def _friction_map() -> list[Line]:
@@ -31,7 +31,7 @@ def _friction_map() -> list[Line]:
     apparent = np.array([duty_and_torque(s, direct)[1] for s in speeds])
     lines = [
         Line(
-            f"PWM drive, Table 4.1, omega {sign} 0",
+            rf"PWM drive, Table 4.1, $\omega$ {sign} 0",
             speeds,
             steady_friction(speeds, estimated(direction)),
         )
@@ -59,8 +59,9 @@ def _inertia_profile(axes: Axes) -> None:
         color="#f0d9c8",
         label="bounds of Appendix C",
     )
-    axes.plot(inertia, residual, color=BLUE, marker="o", markersize=3, label="residual")
-    axes.set(xlabel="J in kg m$^2$", ylabel="rms residual in counts", ylim=(0.0, 0.25))
+    curve = Line("residual", inertia, residual, samples=True)
+    panel("J in kg m$^2$", "rms residual in counts", lambda: [curve])(axes)
+    axes.set_ylim(0.0, 0.25)
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderpad=0.1)
 
 
@@ -102,7 +103,6 @@ def _payload(axis: str) -> Callable[[], list[Line]]:
             f"payload at {name} m", rigid.TIMES[shown], getattr(rigid.payload(offset), axis)[shown]
         )
         for name, offset in rigid.OFFSETS.items()
-        for torque in (getattr(rigid.payload(offset), axis),)
     ]
 
 
@@ -185,10 +185,17 @@ def tilt_figures() -> list[ThesisFigure]:
             for name in tilt_drive.PRESETS
         ]
 
+    def apart(quantity: str, factor: float) -> float:
+        one, other = (
+            factor * getattr(tilt_drive.trapezoid_run(s), quantity) for s in tilt_drive.PRESETS
+        )
+        return float(np.max(np.abs(one - other)))
+
     return [
         ThesisFigure(
             name,
-            f"{title} of the tilt drive under the 24 V trapezoid, c.g. above the axis.",
+            f"{title} of the tilt drive under the 24 V trapezoid, c.g. above the axis; the strokes"
+            f" differ by at most {apart(quantity, factor):.1g} {label.partition(' in ')[2]}.",
             (panel("time in s", label, lines(quantity, factor)),),
         )
         for name, title, label, quantity, factor in rows
@@ -225,11 +232,12 @@ def _angles(name: str) -> Callable[[], list[Line]]:
 
 
 def _rates(name: str) -> Callable[[], list[Line]]:
-    """Rates of load and motor; of the step, the part where they differ."""
+    """Rates of load and motor where they differ."""
 
     def make() -> list[Line]:
         run = responses.response(name)
-        shown = (run.t >= RINGING[0]) & (run.t <= RINGING[1]) | (name != "step")
+        start, end = RINGING.get(name, (run.t[0], run.t[-1]))
+        shown = (run.t >= start) & (run.t <= end)
         return [
             Line("load", run.t[shown], run["omega_pan"][shown]),
             Line("motor at the gear output", run.t[shown], run["omega_gear_pan"][shown]),
@@ -257,7 +265,10 @@ def response_figures() -> list[ThesisFigure]:
         *(
             ThesisFigure(
                 f"fig_{number.replace('.', '_')}",
-                f"Pan drive, {name.replace('_', ' ')} input (Fig. {number}): angle, rates, friction"
+                f"Pan drive, {name.replace('_', ' ')} input (Fig. {number}): angle with friction"
+                " of Table 4.1, with the mean of Table 4.2 (DC friction, erratum 21) and without"
+                " the friction of the joint (erratum 23); with Table 4.1, rates"
+                f"{' while the load rings on its shaft' if name in RINGING else ''}, and friction"
                 " at the gear output.",
                 (
                     panel(seconds, "pan angle in rad", _angles(name)),

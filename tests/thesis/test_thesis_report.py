@@ -18,7 +18,7 @@ from ptp_symbolic.report.pdf import compile_pdf
 from ptp_symbolic.thesis import document
 from ptp_symbolic.thesis.chapter_figures import all_figures, friction_of
 from ptp_symbolic.thesis.errata import ERRATA
-from ptp_symbolic.thesis.figures import STYLE, drawn
+from ptp_symbolic.thesis.figures import CURVES, STYLE, drawn
 from ptp_symbolic.thesis.responses import response
 from ptp_symbolic.thesis.wording import text_latex
 
@@ -89,6 +89,10 @@ def test_curves_of_a_panel_differ_without_colour_and_legends_fit() -> None:
             named = [line for line in axes.lines if not line.get_label().startswith("_")]
             looks = {(line.get_linestyle(), line.get_marker()) for line in named}
             assert len(looks) == len(named), figure.name
+            # every curve of every figure is drawn from the one cycle, in its order
+            for line, (colour, dash, marker) in zip(named, CURVES, strict=False):
+                assert (line.get_color(), line.get_linestyle()) == (colour, dash), figure.name
+                assert len(named) == 1 or line.get_marker() == marker, figure.name
             legend = axes.get_legend()
             if legend is not None:
                 box = legend.get_window_extent()
@@ -214,6 +218,7 @@ def test_compiles_without_a_warning(files: dict[str, str | bytes], tmp_path: Pat
 @pytest.mark.parametrize(
     ("text", "latex"),
     [
+        ("off by 2e-07 rad", r"off by $2\cdot 10^{-7}$ rad"),
         ("F_s < 5 % of kg m^2", r"$F_{\mathrm{s}}$ $<$ 5\,\% of kg m$^{2}$"),
         ("theta', psi', b_7", r"$\theta$', $\psi$', $b_{\mathrm{7}}$"),
         ("a_long_word & 0.5", r"$a_{\mathrm{long,word}}$ \& 0.5"),
