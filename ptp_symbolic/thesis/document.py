@@ -27,7 +27,7 @@ from ptp_symbolic.thesis.wording import text_latex, value_latex
 # below a row of several lines, so that it does not lean on the next one
 STRUT = r"\rule[-5pt]{0pt}{0pt}"
 # in mm, the width of the first column beside this unit and beside shorter ones
-LONGEST_UNIT, RESULT_WIDTH, WIDE_RESULT = "N m s/rad", 59, 71
+LONGEST_UNIT, RESULT_WIDTH, WIDE_RESULT = "N m s/rad", 61, 73
 INTRODUCTION = (
     rf"\emph{{The thesis}} is {THESIS}\par "
     r"""Every result that it computes is computed here again. Printed values are taken over exactly,
@@ -150,7 +150,7 @@ def _results(part: str, items: Sequence[Item]) -> str:
         for i in listed
     ]
     wide = RESULT_WIDTH if any(i.unit == LONGEST_UNIT for i in listed) else WIDE_RESULT
-    columns = rf"L{{{wide}mm}}L{{22mm}}L{{23mm}}lll"
+    columns = rf"L{{{wide}mm}}L{{20mm}}L{{23mm}}lll"
     head = ["result", "printed", "computed", "unit", "verdict", "note"]
     text = rf"\section{{{escaped(part)}}}" + table(columns, head, rows)
     lines = "".join(rf"\item[{note}] {text_latex(check)}" + "\n" for check, note in notes.items())

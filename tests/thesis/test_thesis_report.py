@@ -106,6 +106,26 @@ def test_every_erratum_is_there_and_settled(rows: list[dict[str, object]]) -> No
     assert all(r["agrees"] is False and r["computed"] is not None for r in errata.values())
 
 
+def test_every_estimation_has_its_standard_deviations_and_correlations(
+    files: dict[str, str | bytes],
+) -> None:
+    content = json.loads(files["thesis.json"])
+    found = {(e["table"], e["direction"], e["test"]): e for e in content["estimates"]}
+    directions = ("positive", "negative")
+    tests = {("table_4_2", d, n) for d in directions for n in range(1, 6)}
+    assert set(found) == tests | {("table_4_1", d, None) for d in directions}
+    for (table, *_), estimate in found.items():
+        names = [p["name"] for p in estimate["parameters"]]
+        assert names == ["J"] * (table == "table_4_2") + ["F_c", "F_s", "v_s", "F_v"]
+        assert np.linalg.eigvalsh(estimate["correlation"]).min() > 0.0
+        for p in estimate["parameters"]:
+            assert p["unit"] and p["fisher_standard_deviation"] > 0.0
+            assert p["lower_bound"] <= p["estimated"] <= p["upper_bound"]
+            assert p["on_bound"] == (p["name"] == "J"), p
+    # by hand: 7.203, 7.511, 8.1, 7.81, 6.6 N m
+    assert content["spread_of_tests"]["positive"]["F_s"] == pytest.approx(0.578618, abs=1e-6)
+
+
 def test_every_item_says_what_it_is(rows: list[dict[str, object]]) -> None:
     names = [r["id"] for r in rows]
     assert len(names) == len(set(names))
