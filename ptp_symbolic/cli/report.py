@@ -30,7 +30,7 @@ def derivation(source: str, out: Path, points: tuple[str, ...]) -> None:
     from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.platform import naming_file
     from ptp_symbolic.report.derivation import read_points, render_derivation
-    from ptp_symbolic.report.pdf import compile_pdf
+    from ptp_symbolic.report.pdf import with_pdf
     from ptp_symbolic.symbolic.derivation.assembly import assemble
 
     platform = declared_platform(source)
@@ -39,12 +39,34 @@ def derivation(source: str, out: Path, points: tuple[str, ...]) -> None:
         equations = assemble(platform)
     chosen = read_points(equations, points)
     with naming_file(platform):
-        files = dict(render_derivation(platform, chosen))
-    pdf = compile_pdf(files, "derivation")
-    if pdf is not None:
-        files["derivation.pdf"] = pdf
+        files = with_pdf(render_derivation(platform, chosen), "derivation")
     write_files_atomically(out, files)
     note_defaults(platform)
+    for name in files:
+        click.echo(out / name)
+
+
+@report.command()
+@click.argument("before")
+@click.argument("after")
+@click.option(
+    "--diagnosis",
+    type=click.Path(path_type=Path),
+    help="diagnosis.json of BEFORE, or the folder that has it: the error before and after.",
+)
+@click.option("--out", type=Path, required=True, help="Folder for the document.")
+def changes(before: str, after: str, diagnosis: Path | None, out: Path) -> None:
+    """Write what platform AFTER has that BEFORE has not, in LaTeX (and PDF where pdflatex is)."""
+    from ptp_symbolic.atomic_files import check_writable, write_files_atomically
+    from ptp_symbolic.models.committed import declared_platform
+    from ptp_symbolic.report.changes import read_diagnosis, render_changes
+    from ptp_symbolic.report.pdf import with_pdf
+
+    one, other = declared_platform(before), declared_platform(after)
+    check_writable(out)
+    found = None if diagnosis is None else read_diagnosis(diagnosis, one)
+    files = with_pdf(render_changes(one, other, found), "changes")
+    write_files_atomically(out, files)
     for name in files:
         click.echo(out / name)
 

@@ -27,3 +27,9 @@ def compile_pdf(files: Mapping[str, str | bytes], name: str) -> bytes | None:
             )
         pdf = Path(folder) / f"{name}.pdf"
         return pdf.read_bytes() if done.returncode == 0 and pdf.is_file() else None
+
+
+def with_pdf(files: Mapping[str, str | bytes], name: str) -> dict[str, str | bytes]:
+    """`files`, and the PDF of ``<name>.tex`` among them where it can be compiled."""
+    pdf = compile_pdf(files, name)
+    return dict(files) if pdf is None else {**files, f"{name}.pdf": pdf}

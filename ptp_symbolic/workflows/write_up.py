@@ -24,9 +24,11 @@ from ptp_symbolic.numeric.diagnose.verdict import Verdict
 from ptp_symbolic.numeric.identify.fit import with_finite_differences
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, platform_text
+from ptp_symbolic.report.changes import render_changes
 from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
 from ptp_symbolic.report.drawing import drawn
 from ptp_symbolic.report.latex_text import PREAMBLE, escaped
+from ptp_symbolic.report.pdf import with_pdf
 from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, json_text, windows_table
@@ -82,6 +84,7 @@ def written_up(
     curves = curves_of(parts)
     files: dict[str, str | bytes] = {"platform.toml": platform_text(extended)}
     files["equations.tex"] = equations_tex(equations)
+    files |= with_pdf(render_changes(platform, extended, summary), "changes")
     files[f"{extended.name}.py"] = emission.module_of(extended)
     marked = {name for candidate in after.candidates for name in candidate.parameters}
     machine = drawn(extended, assemble(extended), marked)

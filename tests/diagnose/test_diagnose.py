@@ -62,7 +62,8 @@ def test_the_headline_says_how_much_and_the_sources_are_named(sample) -> None:
 
 
 def test_files_are_complete_and_the_extended_platform_reads(sample, tmp_path) -> None:
-    assert {"diagnosis.json", "platform.toml", "equations.tex", "report.html"} <= set(sample.files)
+    written = {"diagnosis.json", "platform.toml", "equations.tex", "changes.tex", "report.html"}
+    assert written <= set(sample.files)
     assert json.loads(sample.files["diagnosis.json"]) == sample.summary
     path = tmp_path / "platform.toml"
     path.write_text(sample.files["platform.toml"], encoding="utf-8")

@@ -4,11 +4,14 @@ from collections.abc import Sequence
 
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.derivation.coupling import coupled_axes
+from ptp_symbolic.report.derivation.curves import PACKAGES as CURVES
 from ptp_symbolic.report.derivation.drawing import PACKAGES, drawing
 from ptp_symbolic.report.derivation.effects import effects
 from ptp_symbolic.report.derivation.emitted import emitted
 from ptp_symbolic.report.derivation.energy import energy
 from ptp_symbolic.report.derivation.linear import linearised
+from ptp_symbolic.report.derivation.modes import PACKAGES as AUTOMATA
+from ptp_symbolic.report.derivation.modes import modes
 from ptp_symbolic.report.derivation.operating_points import usual_points
 from ptp_symbolic.report.derivation.results import equations_of_motion
 from ptp_symbolic.report.derivation.routes import three_routes
@@ -38,6 +41,8 @@ def render_derivation(
     parts = [
         PREAMBLE,
         PACKAGES,
+        CURVES,
+        AUTOMATA,
         LINKS,
         title_block(platform, equations),
         r"\tableofcontents",
@@ -47,11 +52,12 @@ def render_derivation(
         three_routes(equations),
         coupled_axes(equations),
         equations_of_motion(equations),
+        modes(equations),
         simplification(found),
-        effects(equations),
+        effects(platform, equations),
         energy(equations),
         linear,
         emitted(equations, found.base_form),
         r"\end{document}",
     ]
-    return {"derivation.tex": "\n\n".join(parts) + "\n", **figures}
+    return {"derivation.tex": "\n\n".join(part for part in parts if part) + "\n", **figures}

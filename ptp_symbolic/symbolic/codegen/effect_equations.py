@@ -1,16 +1,15 @@
 """What one effect does to the equations of a machine: by comparison with and without it."""
 
-from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import sympy as sp
-from sympy.simplify.fu import TR10i
 
 from ptp_symbolic.platform import Platform
+from ptp_symbolic.symbolic.codegen.comparison import comparison
 from ptp_symbolic.symbolic.codegen.latex import latex_lines, mathml_lines, plain_text_of
 from ptp_symbolic.symbolic.codegen.statements import Statement, statements, with_definitions
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.removal import without_effect
 
 MANY_TERMS = 12
 
@@ -21,17 +20,12 @@ def effect_equations(platform: Platform, effect: str, axis: str | None) -> list[
     Rows of title, effect, latex, text, mathml, and whether it is a detail. A friction law is shown
     with all its branches.
     """
-    rest = tuple(e for e in platform.effects if (e.effect, e.axis) != (effect, axis))
-    with_it = assemble(platform)
-    own = {
-        n for e in with_it.effects if (e.effect.id, e.axis) == (effect, axis) for n in e.parameters
+    rest, _ = without_effect(platform, effect, axis)
+    found = statements(assemble(platform))
+    changes = {
+        c.statement.key: c for c in comparison(statements(assemble(rest)), found) if not c.gone
     }
-    kept = tuple(p for p in platform.parameters if p.name not in own)
-    before = {
-        s.key: s for s in statements(assemble(replace(platform, effects=rest, parameters=kept)))
-    }
-    found = statements(with_it)
-    changed = {s.key for s in found if _differs(s, before)}
+    changed = changes.keys()
     # a friction law is read as one, and with the torque that it acts against
     laws = {key[1] for key in changed if key[0] == "friction"}
     shown = [
@@ -41,43 +35,26 @@ def effect_equations(platform: Platform, effect: str, axis: str | None) -> list[
     ]
     rows = []
     for s in with_definitions(shown, found):
-        added = _change(s, before) if s.key in changed else []
-        rows += [_row(effect, *printed) for printed in added]
+        change = changes.get(s.key)
+        added = None if change is None else change.added
+        if added is not None:
+            rows.append(_addition(effect, s, added))
         title = s.name + (", in whole" if s.sums else "")
         # what a reader may skip: a long sum where what is added to it is shown, what names mean
         long = s.key[0] == "mass" or len(sp.Add.make_args(s.right)) > MANY_TERMS
-        detail = s not in shown or bool(added and long)
+        detail = s not in shown or bool(added is not None and long)
         rows.append(_row(effect, title, s.latex, s.text, s.mathml, detail))
     return rows
 
 
-def _differs(statement: Statement, before: Mapping[tuple[str, ...], Statement]) -> bool:
-    old = before.get(statement.key)
-    if old is None:
-        return bool(statement.right != 0)
-    return bool(old.right != statement.right and sp.expand(statement.right - old.right) != 0)
-
-
-def _change(
-    statement: Statement, before: Mapping[tuple[str, ...], Statement]
-) -> list[tuple[str, str, str, str]]:
-    """What is added to a sum: title, LaTeX, text, MathML; none where all of it is new."""
-    old = before.get(statement.key)
-    if not statement.sums or old is None or old.right == 0:
-        return []
-    new, gone = (set(sp.Add.make_args(e)) for e in (statement.right, old.right))
-    as_written = sp.Add(*(new - gone)) - sp.Add(*(gone - new))
-    difference = sp.expand(statement.right - old.right)
-    # sums and differences of angles as one: sin a cos b + cos a sin b
-    of_sums = sp.factor_terms(TR10i(difference))
-    added = min(as_written, sp.factor_terms(difference), of_sums, key=sp.count_ops)
+def _addition(effect: str, statement: Statement, added: sp.Expr) -> dict[str, Any]:
+    """What is added to a sum, as a row."""
     lines = latex_lines(added)
     latex = " \\\\\n".join(lines)
     if len(lines) > 1:
         latex = f"\\begin{{gathered}}\n{latex}\n\\end{{gathered}}"
-    return [
-        (f"added to {statement.name}", latex, plain_text_of(added), "\n".join(mathml_lines(added)))
-    ]
+    mathml = "\n".join(mathml_lines(added))
+    return _row(effect, f"added to {statement.name}", latex, plain_text_of(added), mathml)
 
 
 def _row(

@@ -6,6 +6,7 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 from sympy.printing.mathml import mathml
 
+from ptp_symbolic.symbolic.codegen.letters import lettered
 from ptp_symbolic.symbolic.symbols import real
 
 GREEK = {
@@ -26,6 +27,12 @@ GREEK = {
     "rho",
     "sigma",
     "zeta",
+    "chi",
+    "iota",
+    "nu",
+    "varsigma",
+    "vartheta",
+    "xi",
 }
 LETTERS = {"gravity": "g"}
 DERIVATIVES = {"dc": r"\Delta c", "dF": r"\Delta F"}
@@ -37,7 +44,7 @@ _SIGN = '<mo form="infix">{}</mo>'
 
 def letter_and_place(name: str) -> tuple[str, list[str]]:
     """The letter of a symbol, and the words and numbers of its index."""
-    letter, *place = LETTERS.get(name, name).split("_")
+    letter, *place = LETTERS.get(name, lettered(name)).split("_")
     trailing = re.fullmatch(r"([A-Za-z]+)(\d+)", letter)
     return (trailing[1], [trailing[2], *place]) if trailing else (letter, place)
 
@@ -45,7 +52,7 @@ def letter_and_place(name: str) -> tuple[str, list[str]]:
 def symbol_latex(name: str) -> str:
     """LaTeX of a symbol name: ``theta_gear_pan`` becomes a theta with an upright subscript.
 
-    Letters are set in italics, words upright.
+    Letters are set in italics, words upright; words in front become letters (see `lettered`).
     """
     letter, place = letter_and_place(name)
     word = letter if len(letter) <= 1 else rf"\mathrm{{{letter}}}"

@@ -19,7 +19,11 @@ from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME, place_of
 from ptp_symbolic.symbolic.symbols import ZERO, real
 
-RELATIONS = {"=": ("=", "=", "="), "<=": (r"\le", "<=", "≤")}
+RELATIONS = {
+    "=": ("=", "=", "="),
+    "<=": (r"\le", "<=", "≤"),
+    "->": (r"\;\to\;", "->", "→"),
+}
 
 
 @dataclass(frozen=True)
@@ -78,7 +82,7 @@ def statements(equations: Equations) -> list[Statement]:
         replace(
             s,
             name=equations.worded(s.name),
-            right=_tidy(by_name(s.right, equations, s.left)),
+            right=tidy(by_name(s.right, equations, s.left)),
         )
         for s in _written_out(equations)
     ]
@@ -103,7 +107,7 @@ def by_name(expression: sp.Expr, equations: Equations, defined: sp.Expr = ZERO) 
     return expression.xreplace(names)
 
 
-def _tidy(expression: sp.Expr) -> sp.Expr:
+def tidy(expression: sp.Expr) -> sp.Expr:
     """A sum with the numbers of every term in front."""
     return sp.Add(*map(sp.factor_terms, sp.Add.make_args(expression)))
 

@@ -20,6 +20,7 @@ from ptp_symbolic.symbolic.derivation.ledger import energy_ledger
 from ptp_symbolic.symbolic.derivation.placement import (
     GRAVITY,
     acts_on,
+    definitions,
     place_effects,
     resolved_parameters,
 )
@@ -46,6 +47,7 @@ def assemble(platform: Platform) -> Equations:
     with others, or whose expressions hold a symbol that nothing defines.
     """
     placed = place_effects(platform)
+    defined = definitions(placed)
     measured = {s.signal for s in platform.signals if s.role == "output"}
     contributions = released(collect(platform.axes, placed, measured))
     transmissions = [transmission(shaft, contributions) for shaft in contributions.shafts]
@@ -89,7 +91,7 @@ def assemble(platform: Platform) -> Equations:
                 effect.worded_at(place),
                 place.axis,
                 tuple(parameter.name for parameter in effect.parameters_at(place)),
-                acts_on(effect, place, placed),
+                acts_on(effect, place, defined),
             )
             for effect, place in placed
         ),

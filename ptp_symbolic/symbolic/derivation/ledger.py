@@ -1,12 +1,12 @@
 """The energy ledger of a machine: what is stored, what comes in, what is lost."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.contributions import Contributions
 from ptp_symbolic.symbolic.derivation.equations import Ledger
-from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Friction
+from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Drive, Friction
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
@@ -29,19 +29,12 @@ def energy_ledger(
         (kinematics.torque(a) * kinematics.rate(a) for a in axes if a not in contributions.driven),
         ZERO,
     )
-    for drive in contributions.drives:
-        stored += drive.stored + drive.inertia * contributions.drive_rate(drive) ** 2 / 2
-        power_in += drive.power_in
-        dissipated += drive.dissipated
     for contribution, is_loss in zip(
         contributions.by_effect, contributions.dissipative, strict=True
     ):
-        stored += contribution.potential + contribution.stored
-        power = sum((torque * rate for rate, torque in contribution.torques.items()), ZERO)
-        power += _charging(contribution)
-        power_in, dissipated = (
-            (power_in, dissipated - power) if is_loss else (power_in + power, dissipated)
-        )
+        own = ledger_of(contribution, contributions.drive_rate, is_loss)
+        stored, power_in = stored + own.stored, power_in + own.power_in
+        dissipated += own.dissipated
     for friction in frictions:
         dissipated += slide(friction.axis) * friction.level * friction.rate
     for shaft in shafts:
@@ -52,6 +45,24 @@ def energy_ledger(
         contributions.resolve(power_in) + sp.diff(stored, kinematics.TIME),
         contributions.resolve(dissipated),
     )
+
+
+def ledger_of(
+    contribution: Contribution, rate_of: Callable[[Drive], sp.Symbol], is_loss: bool = False
+) -> Ledger:
+    """The ledger of one effect, without its frictions and shafts; `rate_of` tells on which rate a
+    drive works. What its torques take out counts as dissipated if it `is_loss`, else as power in.
+    """
+    stored, power_in, dissipated = contribution.potential + contribution.stored, ZERO, ZERO
+    for drive in contribution.drives:
+        stored += drive.stored + drive.inertia * rate_of(drive) ** 2 / 2
+        power_in += drive.power_in
+        dissipated += drive.dissipated
+    power = sum((torque * rate for rate, torque in contribution.torques.items()), ZERO)
+    power += _charging(contribution)
+    if is_loss:
+        return Ledger(stored, power_in, dissipated - power)
+    return Ledger(stored, power_in + power, dissipated)
 
 
 def _charging(contribution: Contribution) -> sp.Expr:

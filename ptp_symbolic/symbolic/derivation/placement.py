@@ -1,6 +1,6 @@
 """Place the declared effects of a platform and check its parameters against them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from ptp_symbolic.errors import InputError, did_you_mean, out_of_bounds, unknown
@@ -131,14 +131,22 @@ def available_quantities(placed: list[tuple[Effect, Place]]) -> set[str]:
     return {name for effect, place in placed for name in effect.contribute(place).quantities}
 
 
-def acts_on(effect: Effect, place: Place, placed: list[tuple[Effect, Place]]) -> tuple[str, ...]:
-    """Keys of the placed effects that define a quantity which `effect` at `place` needs."""
+def definitions(placed: list[tuple[Effect, Place]]) -> dict[str, set[str]]:
+    """The quantities that every placed effect defines, by its key."""
+    return {
+        effect.id if place.axis is None else f"{effect.id}@{place.axis}": set(
+            effect.contribute(place).quantities
+        )
+        for effect, place in placed
+    }
+
+
+def acts_on(effect: Effect, place: Place, defined: Mapping[str, set[str]]) -> tuple[str, ...]:
+    """Keys of the placed effects that define a quantity which `effect` at `place` needs; `defined`
+    are their `definitions`.
+    """
     needs = {need.format(axis=place.axis) for need in effect.needs}
-    return tuple(
-        other.id if there.axis is None else f"{other.id}@{there.axis}"
-        for other, there in placed
-        if needs & set(other.contribute(there).quantities)
-    )
+    return tuple(key for key, names in defined.items() if needs & names)
 
 
 def effects_that_define(quantity: str, axes: tuple[str, ...], linear: bool = False) -> list[str]:
@@ -158,7 +166,7 @@ def _everywhere(axes: tuple[str, ...], linear: bool) -> Iterator[tuple[Effect, P
                 yield effect, Place(axes, axis, None, frozenset(), linear)
 
 
-def _readings(platform: Platform, placed: list[tuple[Effect, Place]]) -> set[str]:
+def readings(platform: Platform, placed: list[tuple[Effect, Place]]) -> set[str]:
     """Quantities of what the declared outputs beside the angles show."""
     added = [effect.contribution_at(place) for effect, place in placed]
     known = {s.name for s in sensors_on(platform.axes, added, platform.linear_axes)}
@@ -167,7 +175,7 @@ def _readings(platform: Platform, placed: list[tuple[Effect, Place]]) -> set[str
 
 
 def _check_needs(platform: Platform, placed: list[tuple[Effect, Place]]) -> None:
-    available = available_quantities(placed) | _readings(platform, placed)
+    available = available_quantities(placed) | readings(platform, placed)
     for effect, place in placed:
         for need in effect.needs:
             name = need.format(axis=place.axis)

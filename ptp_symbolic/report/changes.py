@@ -1,0 +1,192 @@
+"""What one platform has that another has not, on paper; with a diagnosis the errors of both."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ptp_symbolic import __version__
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.platform import Platform
+from ptp_symbolic.report.derivation.curves import PACKAGES
+from ptp_symbolic.report.derivation.effects import described, ledger_difference
+from ptp_symbolic.report.latex_equations import displayed_changes
+from ptp_symbolic.report.latex_text import PREAMBLE, escaped, table, unit_latex
+from ptp_symbolic.report.quantities import number
+from ptp_symbolic.report.source import THESIS
+from ptp_symbolic.report.tables import declared_totals, error_groups, error_measure
+from ptp_symbolic.symbolic.codegen.comparison import Change, comparison
+from ptp_symbolic.symbolic.codegen.latex import symbol_latex
+from ptp_symbolic.symbolic.codegen.laws import laws
+from ptp_symbolic.symbolic.codegen.statements import statements
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.equations import Equations
+
+Record = Mapping[str, Any]
+SETS = {"validate": "never fitted", "train": "fitted"}
+
+
+def read_diagnosis(source: Path, platform: Platform) -> Record:
+    """The diagnosis in a file, or in the folder that `diagnose` has written.
+
+    Raises InputError for what is none, or is of another platform.
+    """
+    path = source / "diagnosis.json" if source.is_dir() else source
+    try:
+        found: Record = json.loads(path.read_text(encoding="utf-8"))
+        name, _, _ = found["platform"]["name"], found["error"]["train"], found["summary"]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise InputError(
+            f"{path}: is no diagnosis; name the diagnosis.json that `diagnose --out` has written."
+        ) from error
+    if name != platform.name:
+        raise InputError(
+            f"{path}: is of platform '{name}', not of '{platform.name}'; give the platform that was"
+            " diagnosed as the first one."
+        )
+    return found
+
+
+def render_changes(
+    before: Platform, after: Platform, diagnosis: Record | None = None
+) -> dict[str, str | bytes]:
+    """Return the document as ``changes.tex``; it needs no other file.
+
+    Raises InputError for a platform that cannot be derived.
+    """
+    old, new = assemble(before), assemble(after)
+    changes = comparison(statements(old), statements(new))
+    parts = [
+        PREAMBLE,
+        PACKAGES,
+        rf"\title{{\vspace{{-15mm}}{escaped(after.title)}\\",
+        r"\large What was added to the equations}",
+        rf"\author{{\small ptp-symbolic {__version__}}}\date{{}}",
+        r"\begin{document}\maketitle",
+        _compared(before, after),
+        _errors(diagnosis) if diagnosis is not None else "",
+        _effects(after, old, new, changes),
+        _quantities(old, new, diagnosis or {}),
+        r"\section{Equations, term by term}",
+        displayed_changes(changes) or "No equation differs.",
+        r"\end{document}",
+    ]
+    return {"changes.tex": "\n\n".join(part for part in parts if part) + "\n"}
+
+
+def _compared(before: Platform, after: Platform) -> str:
+    """What is compared with what; nothing where one platform was extended."""
+    if (before.name, before.title) == (after.name, after.title):
+        return ""
+    rows = [
+        [which, escaped(p.title), rf"\texttt{{{escaped(p.name)}}}"]
+        for which, p in (("before", before), ("after", after))
+    ]
+    return table("lL{90mm}l", ["", "platform", "name"], rows)
+
+
+def _errors(diagnosis: Record) -> str:
+    """The error of every run before and after, beside the floor that noise sets."""
+    key, unit = error_measure(declared_totals(diagnosis))
+    rows = [
+        [
+            f"{SETS[group.set]}: {'all runs' if row.run is None else escaped(row.run)}",
+            *(_figure(record.get(key)) for record in (row.before, row.after, row.noise_floor)),
+        ]
+        for group in error_groups(diagnosis, key)
+        for row in group.rows
+    ]
+    head = ["runs", "before", "after", "noise alone"]
+    verdict = escaped(str(diagnosis.get("verdict", "")).replace("_", " "))
+    return (
+        rf"\section{{Error before and after}}Verdict: {verdict}. {escaped(diagnosis['summary'])}"
+        + table("L{80mm}rrr", head, rows)
+        + rf"\noindent Root mean square, in {escaped(unit)}; the parameters of both machines are"
+        r" fitted to the same runs."
+    )
+
+
+def _figure(value: Any) -> str:
+    return escaped(number(value))
+
+
+def _effects(after: Platform, old: Equations, new: Equations, changes: Sequence[Change]) -> str:
+    """The effects that were added, each with its law, and those that are gone."""
+    had, has = ({(e.effect.id, e.axis, e.effect.kind) for e in m.effects} for m in (old, new))
+    added = [law for law in laws(after) if (law.effect.id, law.axis, law.effect.kind) in has - had]
+    parts = [r"\section{Effects}"]
+    parts += [rf"\emph{{The thesis}} is {THESIS}"] if added else ["No effect was added."]
+    if len(added) == 1:  # all that changed is due to it
+        parts.append(described(added[0], new, changes, ledger_difference(new.ledger, old.ledger)))
+    else:
+        parts += [described(law, new) for law in added]
+    if gone := sorted(had - has, key=str):
+        names = ", ".join(rf"\texttt{{{escaped(name)}}}" for name, _, _ in gone)
+        parts.append(rf"\par Gone: {names}.")
+    return "\n".join(parts)
+
+
+def _quantities(old: Equations, new: Equations, diagnosis: Record) -> str:
+    """Parameters that are new, have another value or are gone; states and inputs likewise."""
+    parts = [r"\section{Parameters and states}"]
+    intervals = {
+        name: value.get("ci95")
+        for effect in diagnosis.get("added", ())
+        for name, value in effect["parameters"].items()
+    }
+    was, now = ({p.name: p for p in m.parameters} for m in (old, new))
+    rows = [
+        [
+            f"${symbol_latex(p.name)}$",
+            escaped(p.meaning),
+            unit_latex(p.unit),
+            f"{p.default:.6g}",
+            _interval(intervals.get(p.name)),
+        ]
+        for name, p in now.items()
+        if name not in was
+    ]
+    if rows:
+        head = ["symbol", "meaning", "unit", "value", r"95\,\% interval" if intervals else ""]
+        parts.append(r"New parameters:\nopagebreak" + table("lL{62mm}lrl", head, rows))
+    rows = [
+        [
+            f"${symbol_latex(p.name)}$",
+            escaped(p.meaning),
+            unit_latex(p.unit),
+            f"{was[name].default:.6g}",
+            f"{p.default:.6g}",
+        ]
+        for name, p in now.items()
+        if name in was and was[name].default != p.default
+    ]
+    if rows:
+        head = ["symbol", "meaning", "unit", "before", "after"]
+        parts.append(r"\par Other values:\nopagebreak" + table("lL{62mm}lrr", head, rows))
+    variables = [dict(_variables(m)) for m in (old, new)]
+    rows = [
+        [f"${symbol_latex(name)}$", escaped(meaning), unit_latex(unit), kind]
+        for name, (meaning, unit, kind) in variables[1].items()
+        if name not in variables[0]
+    ]
+    if rows:
+        head = ["symbol", "meaning", "unit", ""]
+        parts.append(r"\par New states and inputs:\nopagebreak" + table("lL{78mm}ll", head, rows))
+    gone = [name for name in (*was, *variables[0]) if name not in now and name not in variables[1]]
+    if gone:
+        parts.append(r"\par Gone: " + ", ".join(f"${symbol_latex(name)}$" for name in gone) + ".")
+    return "\n".join(parts if len(parts) > 1 else [*parts, "The same, with the same values."])
+
+
+def _interval(ends: Sequence[float | None] | None) -> str:
+    if not ends:
+        return ""
+    return "[" + ", ".join("?" if end is None else f"{end:.5g}" for end in ends) + "]"
+
+
+def _variables(machine: Equations) -> Iterator[tuple[str, tuple[str, str, str]]]:
+    """States of effects and inputs by name, with meaning, unit and kind."""
+    for state in machine.extra_states:
+        yield state.name, (machine.worded(state.meaning), state.unit, "state")
+    for given in machine.inputs:
+        yield given.name, (given.meaning, given.unit, "input")
