@@ -16,9 +16,10 @@ from ptp_symbolic.cli.report_thesis import thesis
 from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.pdf import compile_pdf
 from ptp_symbolic.thesis import document
-from ptp_symbolic.thesis.chapter_figures import all_figures, friction_of
+from ptp_symbolic.thesis.chapter_figures import all_figures
 from ptp_symbolic.thesis.errata import ERRATA
 from ptp_symbolic.thesis.figures import CURVES, STYLE, drawn
+from ptp_symbolic.thesis.response_figures import friction_of
 from ptp_symbolic.thesis.responses import response
 from ptp_symbolic.thesis.wording import text_latex
 
