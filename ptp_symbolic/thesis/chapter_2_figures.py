@@ -43,16 +43,16 @@ def _law(**changes: float) -> Panel:
     return panel(SPEED, TORQUE, partial(_both_ways, **changes))
 
 
-def _breakaway(axes: Axes) -> None:
-    axes.semilogx(friction_laws.TORQUE_RATES, friction_laws.breakaway_by_rate(), color="black")
-    axes.set(xlabel="torque rate in N m/s", ylabel="breakaway torque in N m")
+def _breakaway() -> list[Line]:
+    return [Line("", friction_laws.TORQUE_RATES, friction_laws.breakaway_by_rate(), samples=True)]
 
 
 def _regimes(axes: Axes) -> None:
     """The Stribeck curve on a logarithmic rate, with the ends of its regimes."""
     rates = np.geomspace(1e-3, 1.0, 300)
     values = friction_laws.dry_values()
-    axes.semilogx(rates, friction_laws.sliding_friction(rates, values), color="black")
+    curve = Line("", rates, friction_laws.sliding_friction(rates, values))
+    panel(SPEED, TORQUE, lambda: [curve], logarithmic=True)(axes)
     least, _ = friction_laws.stribeck_minimum()
     ends = [rates[0], 0.5 * values["v_s_pan"], least, rates[-1]]
     names = ("II boundary lubrication", "III partial lubrication", "IV full film")
@@ -62,14 +62,15 @@ def _regimes(axes: Axes) -> None:
         )
     for end in ends[1:-1]:
         axes.axvline(end, color=GREY, linestyle=":")
-    axes.plot(rates[0], friction_laws.breakaway_torque(values), "k<", clip_on=False)
+    axes.scatter(
+        rates[0], friction_laws.breakaway_torque(values), marker="<", color="black", clip_on=False
+    )
     axes.annotate(
         "I stiction, up to here",
         (rates[0], friction_laws.breakaway_torque(values)),
         xytext=(8, 6),
         textcoords="offset points",
     )
-    axes.set(xlabel=SPEED, ylabel=TORQUE)
 
 
 def _presliding() -> list[Line]:
@@ -126,7 +127,11 @@ def friction_figures() -> list[ThesisFigure]:
             "Breakaway torque against the rate of the applied torque (Fig. 2.7): simulated ramps on"
             f" a body whose breakaway torque grows by {friction_laws.REST_GROWTH:g} per e-fold of"
             f" the rest beyond {friction_laws.REST_TIME:g} s ({chosen}).",
-            (_breakaway,),
+            (
+                panel(
+                    "torque rate in N m/s", "breakaway torque in N m", _breakaway, logarithmic=True
+                ),
+            ),
         ),
         (
             "fig_2_8",
@@ -158,7 +163,8 @@ def friction_figures() -> list[ThesisFigure]:
         ),
         (
             "fig_2_12",
-            "Coulomb friction (Fig. 2.12), F_c of Table 4.2: sign(v) is the signum (erratum 1).",
+            "Coulomb friction (Fig. 2.12), F_c of Table 4.2: sign(v) is the signum (erratum 1)."
+            " The vertical line covers the torques that keep the body at rest.",
             (_law(F_s_pan=f["F_c_pan"], F_v_pan=0.0),),
         ),
         (

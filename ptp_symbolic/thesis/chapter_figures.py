@@ -6,23 +6,22 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from ptp_symbolic.thesis import contact, printed, ramp_test, responses, rigid, tilt_drive
+from ptp_symbolic.thesis import printed, ramp_test, rigid, tilt_drive
 from ptp_symbolic.thesis.chapter_2_figures import backlash_figures, friction_figures
-from ptp_symbolic.thesis.figures import BLUE, Line, ThesisFigure, panel
+from ptp_symbolic.thesis.figures import Line, ThesisFigure, panel
 from ptp_symbolic.thesis.friction import (
-    drive_values,
     duty_and_torque,
     estimated,
     mean_friction,
     steady_friction,
 )
 from ptp_symbolic.thesis.items import Kind
+from ptp_symbolic.thesis.response_figures import response_figures
 
 FloatArray = NDArray[np.float64]
 
-# End in s of the curves of the rigid platform, and the part of the step in which the shaft rings.
+# End in s of the curves of the rigid platform.
 SHOWN = 10.0
-RINGING = (1.75, 2.25)
 
 
 def _friction_map() -> list[Line]:
@@ -31,7 +30,7 @@ def _friction_map() -> list[Line]:
     apparent = np.array([duty_and_torque(s, direct)[1] for s in speeds])
     lines = [
         Line(
-            f"PWM drive, Table 4.1, omega {sign} 0",
+            rf"PWM drive, Table 4.1, $\omega$ {sign} 0",
             speeds,
             steady_friction(speeds, estimated(direction)),
         )
@@ -51,6 +50,11 @@ def _ramp_fit() -> list[Line]:
     ]
 
 
+def _ramp_residual() -> list[Line]:
+    data, model = _ramp_fit()
+    return [Line("", data.x, (data.y - model.y) / ramp_test.COUNT)]
+
+
 def _inertia_profile(axes: Axes) -> None:
     inertia, residual = ramp_test.inertia_profile().T
     axes.axvspan(
@@ -59,8 +63,9 @@ def _inertia_profile(axes: Axes) -> None:
         color="#f0d9c8",
         label="bounds of Appendix C",
     )
-    axes.plot(inertia, residual, color=BLUE, marker="o", markersize=3, label="residual")
-    axes.set(xlabel="J in kg m$^2$", ylabel="rms residual in counts", ylim=(0.0, 0.25))
+    curve = Line("residual", inertia, residual, samples=True)
+    panel("J in kg m$^2$", "rms residual in counts", lambda: [curve])(axes)
+    axes.set_ylim(0.0, 0.25)
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderpad=0.1)
 
 
@@ -76,8 +81,11 @@ def estimation_figures() -> list[ThesisFigure]:
         ThesisFigure(
             "fig_4_6",
             "Ramp test of section 4.3 (Fig. 4.6): data made from the printed row of test 1, and the"
-            " model fitted to them.",
-            (panel("time in s", "pan angle in rad", _ramp_fit),),
+            " model fitted to them; below, their difference.",
+            (
+                panel("time in s", "pan angle in rad", _ramp_fit),
+                panel("time in s", "residual in counts", _ramp_residual),
+            ),
             Kind.ROUND_TRIP,
         ),
         ThesisFigure(
@@ -102,7 +110,6 @@ def _payload(axis: str) -> Callable[[], list[Line]]:
             f"payload at {name} m", rigid.TIMES[shown], getattr(rigid.payload(offset), axis)[shown]
         )
         for name, offset in rigid.OFFSETS.items()
-        for torque in (getattr(rigid.payload(offset), axis),)
     ]
 
 
@@ -185,94 +192,20 @@ def tilt_figures() -> list[ThesisFigure]:
             for name in tilt_drive.PRESETS
         ]
 
+    def apart(quantity: str, factor: float) -> float:
+        one, other = (
+            factor * getattr(tilt_drive.trapezoid_run(s), quantity) for s in tilt_drive.PRESETS
+        )
+        return float(np.max(np.abs(one - other)))
+
     return [
         ThesisFigure(
             name,
-            f"{title} of the tilt drive under the 24 V trapezoid, c.g. above the axis.",
+            f"{title} of the tilt drive under the 24 V trapezoid, c.g. above the axis; the strokes"
+            f" differ by at most {apart(quantity, factor):.1g} {label.partition(' in ')[2]}.",
             (panel("time in s", label, lines(quantity, factor)),),
         )
         for name, title, label, quantity, factor in rows
-    ]
-
-
-def friction_of(run: responses.Trajectory) -> FloatArray:
-    """Friction torque [k] in N m at the gear, at rest as well: what the emitted pan drive would
-    accelerate with without friction, less what it does.
-    """
-    model, p = responses.pan_drive(), drive_values()
-    rate = model.state_names.index("omega_gear_pan")
-    # the voltage acts on the current alone
-    still = np.zeros(len(model.input_names))
-    given = responses.as_printed()
-    without = given | {name: 0.0 for name in ("F_c_pan", "F_s_pan", "F_v_pan")}
-    free, held = (
-        np.array([model.rhs(0.0, x, still, vector)[rate] for x in run.x])
-        for vector in map(model.parameter_vector, (without, given))
-    )
-    return p["J_motor_pan"] * p["N_pan"] ** 2 * (free - held)
-
-
-def _angles(name: str) -> Callable[[], list[Line]]:
-    shown = {
-        "Table 4.1": None,
-        "DC friction": "dc_friction",
-        "no joint friction": "without_joint_friction",
-    }
-    return lambda: [
-        Line(label, (run := responses.response(name, variant)).t, run["theta_pan"])
-        for label, variant in shown.items()
-    ]
-
-
-def _rates(name: str) -> Callable[[], list[Line]]:
-    """Rates of load and motor; of the step, the part where they differ."""
-
-    def make() -> list[Line]:
-        run = responses.response(name)
-        shown = (run.t >= RINGING[0]) & (run.t <= RINGING[1]) | (name != "step")
-        return [
-            Line("load", run.t[shown], run["omega_pan"][shown]),
-            Line("motor at the gear output", run.t[shown], run["omega_gear_pan"][shown]),
-        ]
-
-    return make
-
-
-def _friction(name: str) -> Callable[[], list[Line]]:
-    return lambda: [Line("", (run := responses.response(name)).t, friction_of(run))]
-
-
-def _ringing() -> list[Line]:
-    return [
-        Line(f"tolerance {tolerance:g}", times, 1e3 * twist)
-        for tolerance in (1e-9, 1e-4)
-        for times, twist in (contact.twist_after_step(tolerance, gap_pan=0.0),)
-    ]
-
-
-def response_figures() -> list[ThesisFigure]:
-    """Section 5.4."""
-    seconds = "time in s"
-    return [
-        *(
-            ThesisFigure(
-                f"fig_{number.replace('.', '_')}",
-                f"Pan drive, {name.replace('_', ' ')} input (Fig. {number}): angle, rates, friction"
-                " at the gear output.",
-                (
-                    panel(seconds, "pan angle in rad", _angles(name)),
-                    panel(seconds, "rate in rad/s", _rates(name)),
-                    panel(seconds, "friction in N m", _friction(name)),
-                ),
-            )
-            for name, number in responses.FIGURES.items()
-        ),
-        ThesisFigure(
-            "fig_5_15_ringing",
-            "Shaft twist after a step of 24 V without a gap: the oscillation"
-            " does not depend on the tolerance (erratum 25).",
-            (panel(seconds, "shaft twist in mrad", _ringing),),
-        ),
     ]
 
 

@@ -26,6 +26,8 @@ from ptp_symbolic.thesis.wording import text_latex, value_latex
 
 # below a row of several lines, so that it does not lean on the next one
 STRUT = r"\rule[-5pt]{0pt}{0pt}"
+# in mm, the width of the first column beside this unit and beside shorter ones
+LONGEST_UNIT, RESULT_WIDTH, WIDE_RESULT = "N m s/rad", 61, 73
 INTRODUCTION = (
     rf"\emph{{The thesis}} is {THESIS}\par "
     r"""Every result that it computes is computed here again. Printed values are taken over exactly,
@@ -35,7 +37,8 @@ explains a difference. The measurements behind Tables 4.1 and 4.2 are not printe
 from the printed parameters and fitted again. \emph{Recovered} says that such a round trip came
 back; it tests the fit and its data, and says nothing about the thesis. A dash stands where there is
 nothing to compare: the thesis prints no value, or not the measurements behind it. The curves of the
-thesis are pictures, so the figures show the computed ones alone."""
+thesis are pictures, so the figures show the computed ones alone. Its drawings, bond graphs and data
+flows are left out."""
 )
 
 
@@ -91,8 +94,8 @@ def _headline(items: Mapping[str, Sequence[Item]]) -> str:
         [
             "round trip: fitted to data made from the printed value",
             trips["items"],
-            f"{trips['agree']} recovered, {trips['differ_by_an_erratum']} not, by an erratum,"
-            f" {trips['differ_unexplained']} unexplained",
+            f"{trips['agree']} recovered, {trips['differ_by_an_erratum']} differ by an"
+            f" erratum, {trips['differ_unexplained']} unexplained",
         ],
         ["nothing printed", count[Kind.NOTHING_PRINTED]["items"], "nothing to compare with"],
         [
@@ -114,6 +117,8 @@ def latex_text(
     parts = [
         PREAMBLE,
         r"\usepackage{graphicx}",
+        # no page ends between a sentence and the list that it announces
+        r"\makeatletter\@beginparpenalty=10000\makeatother",
         r"\title{The pan-tilt thesis, recomputed}\author{}\date{}\begin{document}\maketitle",
         INTRODUCTION,
         _headline(items),
@@ -144,8 +149,10 @@ def _results(part: str, items: Sequence[Item]) -> str:
         ]
         for i in listed
     ]
+    wide = RESULT_WIDTH if any(i.unit == LONGEST_UNIT for i in listed) else WIDE_RESULT
+    columns = rf"L{{{wide}mm}}L{{20mm}}L{{23mm}}lll"
     head = ["result", "printed", "computed", "unit", "verdict", "note"]
-    text = rf"\section{{{escaped(part)}}}" + table("L{59mm}L{22mm}L{23mm}lll", head, rows)
+    text = rf"\section{{{escaped(part)}}}" + table(columns, head, rows)
     lines = "".join(rf"\item[{note}] {text_latex(check)}" + "\n" for check, note in notes.items())
     text += r"Notes on how the rows with that letter were computed:"
     text += rf"\begin{{itemize}}\setlength{{\itemsep}}{{0pt}}{lines}\end{{itemize}}"
@@ -185,7 +192,7 @@ def _errata(items: Sequence[Item]) -> str:
     ]
     head = ["no.", "where", "as printed", "what holds", "check", ""]
     text = r"\section{Errata} Each with the check that settles it, computed in this run."
-    return text + r"{\footnotesize " + table("rL{24mm}L{26mm}L{30mm}L{50mm}l", head, rows) + "}"
+    return text + r"{\footnotesize " + table("rL{24mm}L{26mm}L{30mm}L{56mm}l", head, rows) + "}"
 
 
 def _figures(part: str, figures: Sequence[ThesisFigure]) -> str:

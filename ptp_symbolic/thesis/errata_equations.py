@@ -85,7 +85,8 @@ def euler_rate_names() -> Item:
         "theta', psi', phi'",
         "",
         left == [0, 0, 0],
-        f"inverted kinematics of the rotations z, y, x minus the three right sides: {left}",
+        f"inverted kinematics of the rotations z, y, x minus the three right sides:"
+        f" {', '.join(map(str, left))}",
     )
 
 

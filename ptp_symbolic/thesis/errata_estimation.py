@@ -34,7 +34,8 @@ def averages_forward() -> Item:
         found,
         "",
         subsets == [(1, 2, 3, 4)],
-        f"means of all five tests; subsets whose means give the printed four: {subsets}",
+        "means of all five tests; the printed four are means of tests"
+        f" {' or '.join(', '.join(map(str, subset)) for subset in subsets)} alone",
     )
 
 

@@ -121,6 +121,7 @@ def pwm_torque() -> Item:
     direct = mean_friction("positive")
     scaled = [duty_and_torque(speed, direct)[1] for speed in DUTY_SPEEDS]
     table = [float(steady_friction(np.array(s), FRICTION)) for s in DUTY_SPEEDS]
+    speeds = ", ".join(f"{speed:g}" for speed in DUTY_SPEEDS)
     gap = max(abs(a / b - 1.0) for a, b in zip(scaled, table, strict=True))
     misses = [
         f"{responses.variant_error(name, 'dc_friction', end):.2f} ({value})"
@@ -134,7 +135,7 @@ def pwm_torque() -> Item:
         ", ".join(f"{t:.2f}" for t in scaled),
         "N m",
         gap < 0.1,
-        f"Table 4.1 beside duty x Table 4.2 at {DUTY_SPEEDS} rad/s, 24 V: within {100 * gap:.0f} %."
+        f"Table 4.1 beside duty x Table 4.2 at {speeds} rad/s, 24 V: within {100 * gap:.0f} %."
         " Strong evidence, not proof: against DC friction the ramp errors are"
         f" {', '.join(misses)}, in brackets what is printed",
     )

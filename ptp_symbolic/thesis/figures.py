@@ -24,6 +24,7 @@ CURVES = ((BLUE, "-", "o"), (ORANGE, "--", "s"), (GREEN, "-.", "^"), (GREY, ":",
 UNDERNEATH = 2.0
 # Share of the panel's diagonal between two markers of a curve.
 MARKER_SPACING = 0.16
+MARKED: dict[str, Any] = {"markersize": 3.6, "markerfacecolor": "white", "markeredgewidth": 0.8}
 # Letters that fit into one row of a legend, and how many of them a handle takes.
 LEGEND_ROW, LEGEND_HANDLE = 95, 9
 STYLE: dict[Any, Any] = {
@@ -65,11 +66,12 @@ class ThesisFigure:
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """One line of a panel: its legend, x [k] and y [k]."""
+    """One line of a panel: its legend, x [k] and y [k]; `samples` marks every one of them."""
 
     label: str
     x: FloatArray
     y: FloatArray
+    samples: bool = False
 
 
 def draw_lines(axes: Axes, lines: Sequence[Line]) -> None:
@@ -77,16 +79,14 @@ def draw_lines(axes: Axes, lines: Sequence[Line]) -> None:
     for number, line in enumerate(lines):
         colour, dash, marker = CURVES[number]
         first = MARKER_SPACING * (0.5 + number) / len(lines)
-        beside_others: dict[str, Any] = {
-            "marker": marker,
-            "markevery": (first, MARKER_SPACING),
-            "markersize": 3.6,
-            "markerfacecolor": "white",
-            "markeredgewidth": 0.8,
-        }
-        if number == 0:
-            beside_others["linewidth"] = UNDERNEATH
-        style = beside_others if len(lines) > 1 else {}
+        style: dict[str, Any] = {}
+        if line.samples or len(lines) > 1:
+            style = MARKED | {
+                "marker": marker,
+                "markevery": 1 if line.samples else (first, MARKER_SPACING),
+            }
+        if number == 0 and len(lines) > 1:
+            style["linewidth"] = UNDERNEATH
         axes.plot(line.x, line.y, dash, color=colour, label=line.label, **style)
     if len(lines) > 1:
         letters = sum(len(line.label) + LEGEND_HANDLE for line in lines)
@@ -100,10 +100,17 @@ def draw_lines(axes: Axes, lines: Sequence[Line]) -> None:
         )
 
 
-def panel(x_label: str, y_label: str, make: Callable[[], Sequence[Line]]) -> Panel:
-    """A panel that draws the lines of `make`, with a legend where there are several."""
+def panel(
+    x_label: str, y_label: str, make: Callable[[], Sequence[Line]], logarithmic: bool = False
+) -> Panel:
+    """A panel that draws the lines of `make`, with a legend where there are several.
+
+    `logarithmic` is the horizontal axis.
+    """
 
     def draw(axes: Axes) -> None:
+        if logarithmic:
+            axes.set_xscale("log")
         draw_lines(axes, make())
         axes.set_xlabel(x_label)
         axes.set_ylabel(y_label)

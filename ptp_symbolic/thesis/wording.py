@@ -9,7 +9,7 @@ from ptp_symbolic.thesis.items import Value
 GREEK = "alpha|beta|omega|theta|phi|psi|tau"
 SYMBOL = re.compile(
     rf"\b(?P<name>[A-Za-z]{{1,2}}(?:_[A-Za-z0-9]+)+|(?:{GREEK})(?:_[A-Za-z0-9]+)*\b)"
-    r"(?:\^(?P<power>-?\d+))?|\^(?P<alone>-?\d+)"
+    r"(?:\^(?P<power>-?\d+))?|\^(?P<alone>-?\d+)|\b(?P<number>\d+(?:\.\d+)?e[+-]?\d+)\b"
 )
 
 
@@ -28,16 +28,19 @@ def number_latex(value: float, digits: int = 6) -> str:
 
 
 def text_latex(text: str) -> str:
-    """Escaped text; names such as F_s or omega_pan and powers become formulas."""
+    """Escaped text; names such as F_s or omega_pan, powers and 2e-07 become formulas."""
     parts, end = [], 0
     for found in SYMBOL.finditer(text):
         parts.append(_words(text[end : found.start()]))
+        end = found.end()
+        if found["number"]:
+            parts.append(number_latex(float(found["number"])))
+            continue
         power = found["power"] or found["alone"]
         raised = f"^{{{power}}}" if power else ""
         name = found["name"] or ""
         symbol = rf"\{name}" if name in GREEK.split("|") else symbol_latex(name)
         parts.append(f"${symbol}{raised}$")
-        end = found.end()
     return "".join([*parts, _words(text[end:])])
 
 
@@ -49,7 +52,7 @@ def _words(text: str) -> str:
     kept = [
         piece
         if number % 2
-        else "".join(escaped(c) + (r"\allowbreak{}" if c in "/()[]" else "") for c in piece)
+        else "".join(escaped(c) + (r"\allowbreak{}" if c in "/)]" else "") for c in piece)
         for number, piece in enumerate(pieces)
     ]
     return "".join(kept)

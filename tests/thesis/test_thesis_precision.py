@@ -62,15 +62,22 @@ def shifted(test: printed.RampTest, name: str, change: float) -> printed.RampTes
     return replace(test, friction=replace(test.friction, **{name: value}))
 
 
-def test_the_slopes_of_the_ramp_test_by_differences_of_scipy_solutions() -> None:
+def test_the_bound_of_table_4_2_by_differences_of_scipy_solutions() -> None:
     test = printed.TABLE_4_2["negative"][2]
     slopes = ramp_test.sensitivities(test, "theta_pan")
+    columns = []
     for k, (name, step) in enumerate(
         {"J": 1e-3, "F_c": 1e-4, "F_s": 1e-4, "v_s": 1e-5, "F_v": 1e-4}.items()
     ):
         ahead, behind = (ramp_test.true_angle(shifted(test, name, s * step)) for s in (1.0, -1.0))
         difference = (ahead - behind) / (2.0 * step)
         assert slopes[:, k] == pytest.approx(difference, abs=2e-3 * np.abs(difference).max()), name
+        columns.append(difference)
+    # errors of rounding are uniform over one of 7200 counts
+    count = 2.0 * math.pi / 7200
+    covariance = np.linalg.inv(np.array(columns) @ np.transpose(columns)) * count**2 / 12.0
+    deviation = np.sqrt(np.diag(covariance))
+    assert precision.ramp_precision("negative", 3).fisher == pytest.approx(deviation, rel=0.02)
 
 
 @pytest.mark.parametrize(("direction", "number"), [("positive", 1), ("negative", 4)])

@@ -16,9 +16,10 @@ from ptp_symbolic.cli.report_thesis import thesis
 from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.pdf import compile_pdf
 from ptp_symbolic.thesis import document
-from ptp_symbolic.thesis.chapter_figures import all_figures, friction_of
+from ptp_symbolic.thesis.chapter_figures import all_figures
 from ptp_symbolic.thesis.errata import ERRATA
-from ptp_symbolic.thesis.figures import STYLE, drawn
+from ptp_symbolic.thesis.figures import CURVES, STYLE, drawn
+from ptp_symbolic.thesis.response_figures import friction_of
 from ptp_symbolic.thesis.responses import response
 from ptp_symbolic.thesis.wording import text_latex
 
@@ -89,6 +90,10 @@ def test_curves_of_a_panel_differ_without_colour_and_legends_fit() -> None:
             named = [line for line in axes.lines if not line.get_label().startswith("_")]
             looks = {(line.get_linestyle(), line.get_marker()) for line in named}
             assert len(looks) == len(named), figure.name
+            # every curve of every figure is drawn from the one cycle, in its order
+            for line, (colour, dash, marker) in zip(named, CURVES, strict=False):
+                assert (line.get_color(), line.get_linestyle()) == (colour, dash), figure.name
+                assert len(named) == 1 or line.get_marker() == marker, figure.name
             legend = axes.get_legend()
             if legend is not None:
                 box = legend.get_window_extent()
@@ -100,6 +105,26 @@ def test_every_erratum_is_there_and_settled(rows: list[dict[str, object]]) -> No
     assert sorted(errata) == sorted(ERRATA) == list(range(1, 33))
     assert [n for n, r in errata.items() if not r["settled"]] == []
     assert all(r["agrees"] is False and r["computed"] is not None for r in errata.values())
+
+
+def test_every_estimation_has_its_standard_deviations_and_correlations(
+    files: dict[str, str | bytes],
+) -> None:
+    content = json.loads(files["thesis.json"])
+    found = {(e["table"], e["direction"], e["test"]): e for e in content["estimates"]}
+    directions = ("positive", "negative")
+    tests = {("table_4_2", d, n) for d in directions for n in range(1, 6)}
+    assert set(found) == tests | {("table_4_1", d, None) for d in directions}
+    for (table, *_), estimate in found.items():
+        names = [p["name"] for p in estimate["parameters"]]
+        assert names == ["J"] * (table == "table_4_2") + ["F_c", "F_s", "v_s", "F_v"]
+        assert np.linalg.eigvalsh(estimate["correlation"]).min() > 0.0
+        for p in estimate["parameters"]:
+            assert p["unit"] and p["fisher_standard_deviation"] > 0.0
+            assert p["lower_bound"] <= p["estimated"] <= p["upper_bound"]
+            assert p["on_bound"] == (p["name"] == "J"), p
+    # by hand: 7.203, 7.511, 8.1, 7.81, 6.6 N m
+    assert content["spread_of_tests"]["positive"]["F_s"] == pytest.approx(0.578618, abs=1e-6)
 
 
 def test_every_item_says_what_it_is(rows: list[dict[str, object]]) -> None:
@@ -214,6 +239,7 @@ def test_compiles_without_a_warning(files: dict[str, str | bytes], tmp_path: Pat
 @pytest.mark.parametrize(
     ("text", "latex"),
     [
+        ("off by 2e-07 rad", r"off by $2\cdot 10^{-7}$ rad"),
         ("F_s < 5 % of kg m^2", r"$F_{\mathrm{s}}$ $<$ 5\,\% of kg m$^{2}$"),
         ("theta', psi', b_7", r"$\theta$', $\psi$', $b_{\mathrm{7}}$"),
         ("a_long_word & 0.5", r"$a_{\mathrm{long,word}}$ \& 0.5"),
