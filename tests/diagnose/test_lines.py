@@ -1,5 +1,6 @@
 """Frequencies are found by a full scan, also in long logs."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -7,7 +8,8 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.signatures import _strongest
+from ptp_symbolic.numeric.diagnose.signatures import Signature, _strongest
+from ptp_symbolic.numeric.diagnose.subsets import lines, regression
 from ptp_symbolic.numeric.identify.constants import CYCLES_APART, LEAST_CYCLES
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
@@ -87,3 +89,30 @@ def test_a_line_is_found_on_what_turns_with_the_machine() -> None:
     assert found == pytest.approx(1.7, abs=CYCLES_APART / 30.0)
     plain, _ = _strongest(space, locked_to("time"), residual, np.ones(6000), flat(6000))
     assert plain == pytest.approx(3.1, abs=CYCLES_APART / 30.0)
+
+
+@pytest.mark.parametrize("hiding", [0.0, 1.0])
+def test_a_line_beside_a_larger_effect_is_found(hiding: float) -> None:
+    """Cogging of 18 cycles per turn under a torque that has a stronger line at 6.8."""
+    time = np.linspace(0.0, 30.0, 6000)
+    angle = 1.4 * np.sin(2.0 * np.pi * time / 30.0)
+    larger = np.sin(6.8 * angle)
+    rows = hiding * larger + 0.2 * np.sin(18.0 * angle + 0.4)
+    rows += 0.1 * np.random.default_rng(5).standard_normal(6000)
+    space, one = space_of(time, angle), np.zeros(6000, dtype=np.int64)
+    smooth = Candidate("spring", "pan", "", "", (free_parameter("k", 1.0, -9.0, 9.0),), {})
+
+    def scan(left: Floats) -> list[Signature]:
+        cycles, _ = _strongest(space, locked_to("angle"), left, np.ones(6000), flat(6000))
+        wave = np.column_stack([np.sin(cycles * angle), np.cos(cycles * angle)])
+        candidate = replace(locked_to("angle"), shapes=({"n": cycles},))
+        return [Signature(candidate, (tuple(wave.T),), frozenset(), np.linalg.qr(wave)[0])]
+
+    column = larger[:, None] / np.linalg.norm(larger)
+    known = Signature(smooth, ((larger,),), frozenset(), column)
+    found = regression(
+        rows, (), np.ones((6000, 1)), [known], one, np.arange(6000) // 100, np.ones(6000)
+    )
+    (line,) = lines(found, scan)
+    spacing = CYCLES_APART / (2.8 / (2.0 * np.pi))
+    assert line.candidate.shapes[0]["n"] == pytest.approx(18.0, abs=spacing)

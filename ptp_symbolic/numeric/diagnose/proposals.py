@@ -11,14 +11,14 @@ from scipy.optimize import lsq_linear
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.signatures import locked_signatures, signatures
+from ptp_symbolic.numeric.diagnose.signatures import Signature, locked_signatures, signatures
 from ptp_symbolic.numeric.diagnose.subsets import (
     Regression,
     Subset,
     is_no_worse,
+    lines,
     ranked_subsets,
     regression,
-    remainder,
     reweighted,
 )
 from ptp_symbolic.numeric.diagnose.trial import Task, restarted
@@ -85,8 +85,11 @@ def propose(task: Task) -> Proposals:
     seen, unseen = signatures(space, task.candidates, values, found.weight, task.executor)
     declared, base = task.free, found.jacobian
     rows = regression(found.rows, declared, base, seen, equation, block, found.weight)
-    locked = locked_signatures(space, task.candidates, values, remainder(rows), rows.weight)
-    every = [*seen, *locked]
+
+    def scan(left: FloatArray) -> list[Signature]:
+        return locked_signatures(space, task.candidates, values, left, rows.weight)
+
+    every = [*seen, *lines(rows, scan)]
     rows = regression(found.rows, declared, base, every, equation, block, found.weight)
     preferred, chosen, rows = _best_sets(rows)
     space.rows(task.model.parameter_vector(values))

@@ -6,7 +6,7 @@ another compete at once (all subsets: Furnival and Wilson, 1974).
 """
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,6 +19,7 @@ from ptp_symbolic.numeric.identify.constants import (
     FAR,
     FOLDS,
     HUBER,
+    LARGEST,
     LITTLE,
     NOTHING,
     REWEIGHTINGS,
@@ -88,9 +89,33 @@ def reweighted(found: Regression, candidates: Sequence[Candidate]) -> Regression
     return replace(found, weight=weight, scale=scale)
 
 
-def remainder(found: Regression) -> FloatArray:
-    """Residual rows [n] of the regression on the declared parameters alone."""
-    return found.rows - found.base @ _amounts(found.base, found.rows, found.weight)
+def remainder(found: Regression, beside: Sequence[Signature] = ()) -> FloatArray:
+    """Residual rows [n] of the regression on the declared parameters and the signatures `beside`
+    them.
+    """
+    columns = np.column_stack([found.base, *(s.columns for s in beside)])
+    return found.rows - columns @ _amounts(columns, found.rows, found.weight)
+
+
+def lines(found: Regression, scan: Callable[[FloatArray], Sequence[Signature]]) -> list[Signature]:
+    """Signatures of the candidates with a frequency, which `scan` gives at the strongest line of a
+    residual [n].
+
+    A larger effect hides a line, or looks like one of another frequency; so what the best set
+    without lines leaves is scanned too. Of two frequencies of a candidate the one counts that takes
+    away more beside that set.
+    """
+    best = ranked_subsets(found, LARGEST)[0].candidates
+    beside = [s for s in found.signatures if s.candidate in best]
+    strongest: dict[tuple[str, int], Signature] = {}
+    least: dict[tuple[str, int], float] = {}
+    for left in (remainder(found), remainder(found, beside)) if beside else (remainder(found),):
+        for line in scan(left):
+            key = line.candidate.key, line.candidate.member
+            square = float(found.weight @ remainder(found, [*beside, line]) ** 2)
+            if square < least.get(key, np.inf):
+                strongest[key], least[key] = line, square
+    return list(strongest.values())
 
 
 def _amounts(columns: FloatArray, rows: FloatArray, weight: FloatArray) -> FloatArray:
