@@ -15,6 +15,7 @@ TOKEN = re.compile(
 FUNCTIONS = {
     r"\sin": math.sin,
     r"\cos": math.cos,
+    r"\exp": math.exp,
     r"\log": math.log,
     r"\operatorname{acos}": math.acos,
     r"\operatorname{sign}": lambda x: math.copysign(1.0, x) if x else 0.0,

@@ -53,7 +53,7 @@ def render_derivation(
         coupled_axes(equations),
         equations_of_motion(equations),
         modes(equations),
-        simplification(found),
+        simplification(found, equations),
         effects(platform, equations),
         energy(equations),
         linear,

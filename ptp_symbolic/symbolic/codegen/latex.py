@@ -75,7 +75,7 @@ def latex_of(expression: sp.Expr) -> str:
 
 class _Printer(LatexPrinter):
     """Prints long arguments of an extreme or a size on several lines, so that they stay on the
-    page, and exponents in their shorter form.
+    page, and exponents in their shorter form, fractions beside ``exp``.
     """
 
     def _print_Max(self, expression: sp.Expr, exp: str | None = None) -> str:
@@ -101,6 +101,8 @@ class _Printer(LatexPrinter):
         given = expression.args[0]
         factored = sp.factor(given)
         shorter = factored if factored.count_ops() < given.count_ops() else given
+        if exp is None and sp.fraction(shorter)[1] != 1:  # too small to be read as an exponent
+            return rf"\exp\left({latex_of(shorter)}\right)"
         return str(super()._print_ExpBase(sp.exp(shorter, evaluate=False), exp))
 
 
