@@ -20,7 +20,7 @@ FUNCTIONS = {
     r"\operatorname{acos}": math.acos,
     r"\operatorname{sign}": lambda x: math.copysign(1.0, x) if x else 0.0,
 }
-SKIPPED = {r"\,", r"\;", r"\ ", r"\!", "&", r"\\", r"\begin{aligned}", r"\end{aligned}"}
+SKIPPED = {r"\,", r"\quad", r"\;", r"\ ", r"\!", "&", r"\\", r"\begin{aligned}", r"\end{aligned}"}
 
 
 def equations_in(text: str) -> dict[str, str]:
@@ -106,7 +106,7 @@ class _Expression:
             and self.next not in ("+", "-", "}", ")", ",", "|")
             and not re.match(r"\\right", self.next)
         ):
-            if self.next == r"\cdot":
+            if self.next in (r"\cdot", r"\times"):
                 self.take()
             result *= self.power()
         return result

@@ -10,12 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+import sympy as sp
+from sympy import symbols as symbols_of
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import AXES, Platform, preset_names, read_platform
 from ptp_symbolic.report.derivation.results import equations_of_motion
 from ptp_symbolic.report.derivation.symbols import symbols
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
+from ptp_symbolic.symbolic.codegen.latex import latex_lines, symbol_latex
 from ptp_symbolic.symbolic.codegen.module import module_text
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
@@ -27,6 +29,18 @@ from tests.report.sections import law_of, section
 
 STATES = 4
 TIME = 0.37
+
+
+def test_a_product_too_long_for_a_line_is_broken_between_its_factors() -> None:
+    x, y, z = (symbols_of(f"{letter}1:8") for letter in "xyz")
+    angles = sp.Add(*(a * sp.cos(n * x[0]) for n, a in enumerate(y)))
+    law = sp.exp(-sum(a**2 for a in z) / x[1]) * sp.Max(0, angles) * (x[2] + z[0] * sp.sin(y[1]))
+    expression = x[3] + law * sp.exp(-angles / z[1])
+    numbers = {s: 0.3 + 0.1 * n for n, s in enumerate((*x, *y, *z))}
+    reader = Reader({symbol(symbol_latex(str(s))): v for s, v in numbers.items()}, {})
+    lines = latex_lines(expression)
+    assert len(lines) > 2
+    assert reader.evaluate(" ".join(lines)) == pytest.approx(float(expression.subs(numbers)))
 
 
 class Machine:

@@ -40,7 +40,9 @@ def effect_section(law: Law, platform: Platform, equations: Equations) -> str:
     parts = [described(law, equations, changes, ledger_difference(equations.ledger, before.ledger))]
     if gone:
         names = ", ".join(rf"\texttt{{{escaped(e.id)}}}" for e in gone)
-        parts.append(rf"\par Compared without it, and without what needs it: {names}.")
+        parts.append(
+            rf"{{\raggedright\par Compared without it, and without what needs it: {names}.\par}}"
+        )
     shown = {(row.left, row.right) for row in law.rows}
     parts.append(displayed_changes([c for c in changes if _is_news(c, shown)]))
     return "\n".join(parts)

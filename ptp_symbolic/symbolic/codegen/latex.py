@@ -123,20 +123,19 @@ def latex_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
     product = _long_product(expression, room)
     if product is not None:
         before, inner = product
-        sums = " \\\\\n& ".join(latex_lines(inner, room - _width(before)))
-        return [f"{latex_of(before)} \\left(\\begin{{aligned}}& {sums}\\end{{aligned}}\\right)"]
+        return [f"{latex_of(before)} {_in_brackets(inner, room - _width(before))}"]
     lines: list[str] = []
     width = 0
     for number, term in enumerate(_terms(expression, room)):
-        text = latex_of(term)
-        signed = text if number == 0 or text.startswith("-") else f"+ {text}"
+        first, *more = _factors_by_line(term, room)
+        signed = first if number == 0 or first.startswith("-") else f"+ {first}"
         size = _width(term)
-        if lines and width + size <= room:
+        if lines and width + size <= room and not more:
             lines[-1] += f" {signed}"
             width += size
         else:
-            lines.append(signed)
-            width = size
+            lines += [signed, *(rf"\quad\times {factors}" for factors in more)]
+            width = room if more else size
     return lines
 
 
@@ -152,19 +151,54 @@ def _long_product(expression: sp.Expr, room: int) -> tuple[sp.Expr, sp.Expr] | N
 
 
 def _terms(expression: sp.Expr, room: int) -> list[sp.Expr]:
-    """The terms of a sum in a fixed order; one wider than `room` is multiplied out if it can be."""
+    """The terms of a sum in a fixed order; one wider than `room` is multiplied out if that fits."""
     terms = []
     for term in expression.as_ordered_terms(order="lex"):
         parts = [term]
         for multiplied_out in (sp.expand_mul(term, deep=False), sp.expand(term)):
             if max(map(_width, parts)) > room:
                 parts = multiplied_out.as_ordered_terms(order="lex")
-        terms += parts
+        terms += parts if max(map(_width, parts)) <= room else [term]
     return terms
 
 
+def _factors_by_line(term: sp.Expr, room: int) -> list[str]:
+    """LaTeX of the factors of a product, on as many lines as they need."""
+    if not isinstance(term, sp.Mul) or _width(term) <= max(room, 2 * ARGUMENT_WIDTH):
+        return [latex_of(term)]
+    groups: list[sp.Expr] = []
+    for factor in sorted(term.args, key=_width):
+        if groups and _width(groups[-1] * factor) <= room:
+            groups[-1] *= factor
+        else:
+            groups.append(factor)
+    return [_in_brackets(g, room) if isinstance(g, sp.Add) else latex_of(g) for g in groups]
+
+
+def _in_brackets(total: sp.Expr, room: int) -> str:
+    first, *more = latex_lines(total, room)
+    if not more:
+        return rf"\left({first}\right)"
+    lines = " \\\\\n& ".join([first, *more])
+    return f"\\left(\\begin{{aligned}}& {lines}\\end{{aligned}}\\right)"
+
+
 def _width(term: sp.Expr) -> int:
-    """Printed width of a term, roughly, in characters: names count without their underscores."""
+    """Printed width of a term, roughly, in characters: names count without their underscores, and
+    an argument that is set on several lines counts as wide as one of them.
+    """
+
+    def is_extreme(part: sp.Expr) -> bool:
+        return isinstance(part, sp.Max | sp.Min | sp.Abs)
+
+    def stacked(extreme: sp.Expr) -> sp.Symbol:
+        width = sum(min(_width(argument), ARGUMENT_WIDTH) + 2 for argument in extreme.args)
+        return sp.Symbol("m" * (5 * width // 4))
+
+    return _written_width(term.replace(is_extreme, stacked))
+
+
+def _written_width(term: sp.Expr) -> int:
     return len(sp.sstr(term).replace("_", "").replace("*", " ")) * 4 // 5 + 3
 
 
