@@ -9,7 +9,7 @@ import pytest
 from ptp_symbolic.numeric.diagnose.floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
-from ptp_symbolic.numeric.diagnose.search import by_effects_alone
+from ptp_symbolic.numeric.diagnose.search import by_effects_alone, extended
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
 from tests.diagnose.spring_table import STIFFNESS, spring_table
@@ -58,3 +58,17 @@ def test_effects_that_leave_noise_alone_are_not_searched_again(seeker: Seeker) -
     assert seeker.is_at_noise(alone)
     found, _ = by_effects_alone(seeker, alone, [])
     assert found is alone
+
+
+def test_a_better_place_that_a_third_candidate_shows_is_kept(seeker: Seeker) -> None:
+    """The spring at half its stiffness, as a fit may end in a valley: another candidate leads out
+    of it, is taken out again, and what it led to stays.
+    """
+    task = seeker.task
+    full = trial(seeker, "cable_spring@pan")
+    valley = full.values | {"k1_cable_pan": 0.5 * STIFFNESS}
+    poor = fitted(task, full.candidates, valley, full.fit.z, 0)
+    assert not seeker.is_at_noise(poor)
+    found, _ = extended(seeker, poor, [])
+    assert found.keys == poor.keys
+    assert found.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)

@@ -44,8 +44,8 @@ def search(task: Task) -> Search:
 
 
 def _from_declared(seeker: Seeker) -> Search:
-    """Propose, refit, complete, prune, grow, simplify; from the beginning where the chosen set
-    leads the declared model to a better place.
+    """Propose, refit, complete, prune, grow, simplify; where the chosen set leads the declared
+    model to a better place, from the beginning, or with new gains if it leaves only noise.
     """
     task, best = seeker.task, seeker.declared
     if seeker.proposals.asked_for or not seeker.is_at_noise(best):
@@ -68,7 +68,9 @@ def _from_declared(seeker: Seeker) -> Search:
         again = declared_from(task, best, seeker.declared, seeker.carried)
         if again is not None:
             seeker.declared, seeker.others = again, []
-            return _from_declared(seeker)
+            if not seeker.is_at_noise(best):
+                return _from_declared(seeker)
+            best, steps = seeker.pruned(best)
     best = seeker.sharpened(seeker.simplified(best))
     without = {s.candidate.key: s.without for s in steps}
     members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
@@ -86,9 +88,10 @@ def extended(seeker: Seeker, best: Trial, steps: list[Step]) -> tuple[Trial, lis
             break
         seeker.others.append(best)
         pruned, fewer = seeker.pruned(seeker.restarted(seeker.completed(grown)))
-        if pruned.keys == best.keys:
+        same = pruned.keys == best.keys
+        if same and ranked([best, pruned])[0] is best:
             break
-        best, steps = pruned, fewer
+        best, steps = pruned, fewer  # the same candidates too: a third may show them a better place
     return best, steps
 
 
