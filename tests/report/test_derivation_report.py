@@ -19,7 +19,9 @@ from ptp_symbolic.report.derivation.symbols import CATALOGUE
 from ptp_symbolic.report.latex_text import escaped
 from ptp_symbolic.report.pdf import PASSES
 from ptp_symbolic.symbolic.codegen.latex import symbol_latex
+from ptp_symbolic.symbolic.derivation import placement
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.effects import EFFECTS
 from tests.drawing.platforms import carriage, offset_platform, platform_of_every_kind
 
 PLATFORMS = {name: read_platform(name) for name in preset_names()} | {
@@ -83,6 +85,35 @@ def test_compiles_without_a_warning(name: str, compiled: Callable[[str], Path]) 
 def test_a_platform_with_every_kind_of_effect_compiles(tmp_path: Path) -> None:
     compile_in(tmp_path, render_derivation(platform_of_every_kind()))
     assert not has_warning((tmp_path / "derivation.log").read_text(encoding="latin-1"))
+
+
+def test_a_title_with_the_signs_of_tex_is_printed_as_it_is(tmp_path: Path) -> None:
+    named = replace(read_platform("thesis-payload"), title=r"50 % of $x_1$ & \alpha #2 {~^}")
+    compile_in(tmp_path, render_derivation(named))
+    assert not has_warning((tmp_path / "derivation.log").read_text(encoding="latin-1"))
+    if shutil.which("pdftotext") is None:
+        pytest.skip("pdftotext is not installed")
+    shown = subprocess.run(
+        ["pdftotext", "-l", "1", "derivation.pdf", "-"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    assert r"50 % of $x_1$ & \alpha #2 {~^}" in shown
+
+
+def test_an_effect_without_a_title_and_a_reference_has_its_section(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    nameless = tuple(
+        replace(e, title="", reference="") if e.id == "viscous_friction" else e for e in EFFECTS
+    )
+    monkeypatch.setattr(placement, "EFFECTS", nameless)
+    text = str(render_derivation(read_platform("thesis-payload"))["derivation.tex"])
+    own = text[text.index(r"\subsection{Viscous\_friction, pan axis}") :]
+    assert r"\texttt{viscous\_friction}; it names no reference." in own
+    assert symbol_latex("b_pan") in own
 
 
 @pytest.mark.parametrize("name", preset_names())

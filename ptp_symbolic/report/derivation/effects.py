@@ -57,10 +57,12 @@ def described(
     """The law of an effect, a drawing of it, its power and states; `changes` and `difference` are
     those of the equations and the ledger where it is added.
     """
-    title = law.effect.title + (f", {law.axis} axis" if law.axis else "")
+    effect = law.effect
+    title = (effect.title or effect.id) + (f", {law.axis} axis" if law.axis else "")
+    source = f"reference: {effect.reference}" if effect.reference else "it names no reference"
     parts = [
         rf"\subsection{{{escaped(title[:1].upper() + title[1:])}}}",
-        rf"\texttt{{{escaped(law.effect.id)}}}; reference: {escaped(law.effect.reference)}.",
+        rf"\texttt{{{escaped(effect.id)}}}; {escaped(source)}.",
         displayed_rows(law.rows, equations),
         curve(law, changes, equations),
         power(law, difference, equations),
