@@ -34,7 +34,8 @@ def friction_map(
     as_json: bool,
 ) -> None:
     """Fit laws of friction to steady POINTS (a CSV: rate [rpm], torque [mN m]); name the smallest
-    that predicts as well as any other.
+    that predicts as well as any other. Rates in mm/s or m/s are those of a linear axis; its forces
+    are the column that --torque names.
 
     A point at rate 0 is a breakaway torque. The torque drives the joint: it has the sign of the
     rate. Intervals are profile likelihoods for normal scatter.
@@ -48,9 +49,9 @@ def friction_map(
 
     if not 0.5 <= confidence < 1.0:
         raise InputError(f"--confidence {confidence:g}: give at least 0.5 and less than 1.")
-    if source is not None:
-        _check_axis(source, axis)
     read = read_points(points, Columns(rate, torque, spread, nominal))
+    if source is not None:
+        _check_axis(source, axis, points, read.units.rate)
     if out is not None:
         check_writable(out)
     summary = fit_map(read, axis, confidence)
@@ -68,13 +69,20 @@ def friction_map(
         _print(summary)
 
 
-def _check_axis(source: str, axis: str) -> None:
+def _check_axis(source: str, axis: str, points: Path, rate: str) -> None:
     from ptp_symbolic.errors import InputError
     from ptp_symbolic.models.committed import declared_platform
 
-    axes = declared_platform(source).axes
-    if axis not in axes:
-        raise InputError(f"--axis {axis}: '{source}' has {', '.join(axes)}; give one of these.")
+    platform = declared_platform(source)
+    if axis not in platform.axes:
+        axes = ", ".join(platform.axes)
+        raise InputError(f"--axis {axis}: '{source}' has {axes}; give one of these.")
+    own = "m/s" if axis in platform.linear_axes else "rad/s"
+    if rate != own:
+        raise InputError(
+            f"{points}: rates in {rate}, but the {axis} axis of '{source}' moves in {own}; give"
+            " points of this axis, or correct the unit in the heading."
+        )
 
 
 def _print(summary: Mapping[str, Any]) -> None:
@@ -84,7 +92,10 @@ def _print(summary: Mapping[str, Any]) -> None:
     rms = summary["rms"]
     click.echo(f"{summary['source']}: {summary['member']}")
     without = f", without its rise {rms['without_rise']:.3g}" if "without_rise" in rms else ""
-    click.echo(f"rms: Coulomb alone {rms['coulomb']:.3g}{without}, this law {rms['law']:.3g} N m")
+    unit = summary["units"]["torque"]
+    click.echo(
+        f"rms: Coulomb alone {rms['coulomb']:.3g}{without}, this law {rms['law']:.3g} {unit}"
+    )
     percent = f"{100.0 * summary['confidence']:g} % interval"
     table = Table("parameter", "value", percent, "unit", box=None)
     for name, of in summary["parameters"].items():

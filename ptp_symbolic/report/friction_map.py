@@ -15,12 +15,13 @@ from ptp_symbolic.report.figures import AFTER, BEFORE, STYLE
 def friction_map_picture(summary: Mapping[str, Any]) -> bytes:
     """A PNG of torque over rate with the law, and below it measured minus fitted torque.
 
-    `summary` is that of `friction_map`; torques are in N m or mN m, rates in rad/s.
+    `summary` is that of `friction_map`; small torques are in thousandths of their unit.
     """
     points = {name: np.asarray(values) for name, values in summary["points"].items()}
     curve = {name: np.asarray(values) for name, values in summary["curve"].items()}
     small = np.abs(points["torque"]).max() < 0.1
-    scale, unit = (1e3, "mN m") if small else (1.0, "N m")
+    si, rate = summary["units"]["torque"], summary["units"]["rate"]
+    scale, unit = (1e3, f"m{si}") if small else (1.0, si)
     left = scale * (points["torque"] - points["fitted"])
     with matplotlib.rc_context(
         {**STYLE, "font.size": 10.0, "axes.titlesize": 10.0, "axes.xmargin": 0.03}
@@ -36,14 +37,14 @@ def friction_map_picture(summary: Mapping[str, Any]) -> bytes:
             points["rate"], scale * points["torque"], ".", color=BEFORE, ms=7, label="measured"
         )
         above.axhline(0.0, color="#c9cfd6", linewidth=0.8)
-        above.set_ylabel(f"torque [{unit}]")
+        above.set_ylabel(f"{summary['quantity']} [{unit}]")
         above.set_title(f"{summary['source']}, {summary['axis']}: {summary['member']}")
         above.legend(frameon=False, loc="lower right")
         below.axhline(0.0, color="#c9cfd6", linewidth=0.8)
         below.plot(points["rate"], left, ".", color=AFTER, ms=7)
         below.set_ylabel(f"left [{unit}]")
         below.set_title(f"measured − law, rms {scale * summary['rms']['law']:.3g} {unit}")
-        below.set_xlabel("rate [rad/s]")
+        below.set_xlabel(f"rate [{rate}]")
         buffer = io.BytesIO()
         figure.savefig(buffer, format="png", dpi=120, metadata={"Software": None})
     return buffer.getvalue()

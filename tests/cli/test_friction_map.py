@@ -9,7 +9,7 @@ import pytest
 from ptp_symbolic.numeric.friction_map.summary import LARGEST_DIFFERENCE
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.symbolic.effects.direction_dependent_friction import PARAMETERS
-from tests.friction_map.laws import Side, drawn
+from tests.friction_map.laws import RATES, Side, drawn, torque
 
 HEAD = '[platform]\nname = "t"\ntitle = "t"\naxes = ["pan"]\n[[effects]]\neffect = "rigid_bodies"\n'
 DIFFERENT = (Side(0.33, 0.33, 0.3, 0.0), Side(0.27, 0.27, 0.3, 0.0))
@@ -97,3 +97,58 @@ def test_refusals_write_nothing(
     done = call("friction-map", points, *arguments, "--out", out)
     assert done.code == 2 and message in done.err and done.err.count("\n") == 1
     assert not out.exists()
+
+
+def carriage_points(path: Path, heading: str = "force [N]", scale: float = 1.0) -> Path:
+    """20 N of Coulomb friction, 35 N static, 15 mm/s of Stribeck speed, 240 N s/m, both ways."""
+    side = Side(20.0, 35.0, 0.015, 240.0)
+    rates = 0.02 * RATES  # m/s
+    forces = torque(rates, side, side) + 0.2 * np.random.default_rng(3).standard_normal(len(rates))
+    rows = np.column_stack([1e3 * rates, forces / scale])
+    np.savetxt(path, rows, delimiter=",", header=f"rate [mm/s],{heading}", comments="", fmt="%.9g")
+    return path
+
+
+@pytest.mark.parametrize(("heading", "scale"), [("force [N]", 1.0), ("force [% of 60 N]", 0.6)])
+def test_points_of_a_linear_axis_are_in_newtons(
+    heading: str, scale: float, call, tmp_path: Path
+) -> None:
+    points, out = carriage_points(tmp_path / "p.csv", heading, scale), tmp_path / "out"
+    done = call("friction-map", points, "--torque", "force", "--out", out)
+    assert (done.code, done.err) == (0, "")
+    assert "this law 0.2" in done.out and " N\n" in done.out
+    summary = json.loads((out / "friction.json").read_text(encoding="utf-8"))
+    found = summary["parameters"]
+    for name, value, unit in (
+        ("F_c_pan", 20.0, "N"),
+        ("F_s_pan", 35.0, "N"),
+        ("v_s_pan", 0.015, "m/s"),
+        ("F_v_pan", 240.0, "N s/m"),
+    ):
+        assert found[name]["unit"] == unit
+        assert found[name]["low"] < value < found[name]["high"]
+    platform = tmp_path / "platform.toml"
+    linear = HEAD.replace('axes = ["pan"]', 'axes = ["pan"]\njoints = { pan = "linear" }')
+    platform.write_text(linear + (out / "friction.toml").read_text(encoding="utf-8"))
+    values = {p.name: p.value for p in read_platform(platform).parameters}
+    assert values["F_v_pan"] == pytest.approx(240.0, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((), "Unknown column 'torque'. Choose one of: rate, force"),
+        (("--torque", "force", "--platform", "thesis-pan-drive"), "moves in rad/s; give points"),
+    ],
+)
+def test_points_of_a_linear_axis_are_not_mistaken(
+    arguments: tuple[str, ...], message: str, call, tmp_path: Path
+) -> None:
+    done = call("friction-map", carriage_points(tmp_path / "p.csv"), *arguments)
+    assert done.code == 2 and message in done.err and done.err.count("\n") == 1
+
+
+def test_a_linear_axis_has_no_newton_metres(call, tmp_path: Path) -> None:
+    points = carriage_points(tmp_path / "p.csv", "force [N m]")
+    done = call("friction-map", points, "--torque", "force")
+    assert done.code == 2 and "column 'force' is in N m; give N, or one of mN" in done.err

@@ -133,7 +133,7 @@ def test_breakaway_torques_show_static_friction_without_a_speed() -> None:
 def test_one_direction_alone_leaves_the_difference_open() -> None:
     found = friction_map(drawn(0, CURVE, CURVE, SPEEDS), "pan", 0.95)
     assert not any("by direction" in row["member"] for row in found["members"])
-    assert any("All points turn one way" in text for text in found["remarks"])
+    assert any("All points move one way" in text for text in found["remarks"])
 
 
 def test_no_parameter_leaves_what_the_points_show() -> None:

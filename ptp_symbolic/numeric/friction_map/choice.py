@@ -26,7 +26,7 @@ class Comparison:
     """All members on one set of points.
 
     `torque` [n] is weighted. `rss` is infinite for a member whose best fit cannot exist; chance may
-    still bring it about, so that the tests reckon with it. `extra` is the standard deviation in N m
+    still bring it about, so that the tests reckon with it. `extra` is the standard deviation
     that the torques have beside those declared.
     """
 
@@ -53,7 +53,7 @@ class Comparison:
         return {m: left_out_errors(b, self.torque, groups) for m, b in self.blocks.items()}
 
     def prediction(self, member: Member) -> float:
-        """The rms of `errors` in N m."""
+        """The rms of `errors`, unweighted, in the unit of the torques."""
         scale = np.mean(self.design.weight**2)
         return float(np.sqrt(np.mean(self.errors[member] ** 2) / scale))
 

@@ -14,7 +14,7 @@ def platform_fragment(summary: Mapping[str, Any]) -> str:
     A law without a rise has F_s tied to F_c. A difference by direction that is larger than its
     effect allows is written as a constant torque on the joint, where it is one of Coulomb friction.
     """
-    axis, found = summary["axis"], summary["parameters"]
+    axis, found, units = summary["axis"], summary["parameters"], summary["units"]
     entries: dict[str, Any] = {
         name: {"value": max(of["value"], 0.0), "unit": of["unit"]}
         for name, of in found.items()
@@ -25,16 +25,16 @@ def platform_fragment(summary: Mapping[str, Any]) -> str:
         entries[f"F_s_{axis}"] = {"same_as": f"F_c_{axis}"}
     if rise and f"v_s_{axis}" not in entries:
         lowest = min(abs(rate) for rate in summary["points"]["rate"] if rate)
-        entries[f"v_s_{axis}"] = {"value": lowest, "unit": "rad/s"}
+        entries[f"v_s_{axis}"] = {"value": lowest, "unit": units["rate"]}
     if f"F_v_{axis}" not in entries:
-        entries[f"F_v_{axis}"] = {"value": 0.0, "unit": "N m s/rad"}
+        entries[f"F_v_{axis}"] = {"value": 0.0, "unit": units["viscous"]}
     effects = [{"effect": "csvs_friction", "axis": axis}]
     differences = {n: of["value"] for n, of in found.items() if n.startswith("a_")}
     if max(map(abs, differences.values()), default=0.0) > LARGEST_DIFFERENCE:
         torque = differences.pop(f"a_F_c_{axis}", 0.0) * found[f"F_c_{axis}"]["value"]
         effects.append({"effect": "constant_torque", "axis": axis})
         # what drives the joint against it has the other sign
-        entries[f"tau0_{axis}"] = {"value": -torque, "unit": "N m"}
+        entries[f"tau0_{axis}"] = {"value": -torque, "unit": units["torque"]}
         if f"a_F_s_{axis}" in differences:
             static = found[f"F_s_{axis}"]["value"]
             differences[f"a_F_s_{axis}"] -= torque / static

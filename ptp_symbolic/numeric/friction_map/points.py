@@ -20,18 +20,37 @@ _PERCENT = re.compile(r"% of (.+)")
 _QUANTITY = re.compile(r"([0-9.]++(?:[eE][+-]?[0-9]+)?) *([^0-9].*)")
 
 
+@dataclass(frozen=True)
+class Units:
+    """SI units of a joint that turns or slides, others that are often used, and its words."""
+
+    rate: str
+    torque: str
+    viscous: str
+    other_rates: str
+    other_torques: str
+    nominal: str
+    word: str
+
+
+ROTARY = Units("rad/s", "N m", "N m s/rad", "rpm, deg/s", "mN m", "9.84 mN m", "torque")
+LINEAR = Units("m/s", "N", "N s/m", "mm/s", "mN", "40 N", "force")
+
+
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Steady points: `rate` [n] in rad/s, `torque` [n] in N m that keeps it, `spread` [n].
+    """Steady points: `rate` [n], `torque` [n] (of a linear axis: force) that keeps it, `spread` [n]
+    in the SI units of `units`.
 
-    `spread` is the standard deviation of each torque in N m, None where it is not known. A point at
-    rate zero is a breakaway torque. `name` is that of the file.
+    `spread` is the standard deviation of each torque, None where it is not known. A point at rate
+    zero is a breakaway torque. `name` is that of the file.
     """
 
     name: str
     rate: FloatArray
     torque: FloatArray
     spread: FloatArray | None = None
+    units: Units = ROTARY
 
     @property
     def sign(self) -> FloatArray:
@@ -53,7 +72,7 @@ class Columns:
 
 
 def read_points(path: Path, wanted: Columns) -> Points:
-    """Read steady points from a CSV with units in its headings.
+    """Read steady points from a CSV with units in its headings; rates in m/s are of a linear axis.
 
     Raises InputError for a file that is damaged (see `read_table`), a missing
     column, a unit that does not fit, a spread that is not positive, fewer than four points, one
@@ -62,11 +81,12 @@ def read_points(path: Path, wanted: Columns) -> Points:
     table = read_table(path)
     names = [wanted.rate, wanted.torque, *([wanted.spread] if wanted.spread else [])]
     places = [_place(table, name) for name in names]
-    factors = [_factor(table, places[0], "rad/s", "rpm, deg/s", None)]
-    factors += [_factor(table, k, "N m", "mN m", wanted.nominal) for k in places[1:]]
+    units = _units(table, places[0])
+    factors = [_factor(table, places[0], units.rate, units.other_rates)]
+    factors += [_torque_factor(table, k, units, wanted.nominal) for k in places[1:]]
     values = table.numbers(places) * np.array(factors)
     spread = values[:, 2] if wanted.spread else None
-    points = Points(path.name, values[:, 0], values[:, 1], spread)
+    points = Points(path.name, values[:, 0], values[:, 1], spread, units)
     _check(path, points)
     return points
 
@@ -78,21 +98,37 @@ def _place(table: Table, name: str) -> int:
     return known.index(name)
 
 
-def _factor(table: Table, place: int, unit: str, others: str, nominal: str | None) -> float:
+def _units(table: Table, place: int) -> Units:
+    """Those of a linear axis where the rate is in m/s, or in a unit that is some of it."""
+    try:
+        _, unit = to_si(table.headings[place][1] or "")
+    except InputError:
+        return ROTARY
+    return LINEAR if unit == LINEAR.rate else ROTARY
+
+
+def _torque_factor(table: Table, place: int, units: Units, nominal: str | None) -> float:
+    """The factor from the unit of a heading, or from percents of a nominal torque."""
+    name, given = table.headings[place]
+    percent = _PERCENT.fullmatch(given or "")
+    if given != "%" and percent is None:
+        return _factor(table, place, units.torque, units.other_torques)
+    where = f"{table.head}: column '{name}'"
+    text = percent[1] if percent else nominal
+    if text is None:
+        raise InputError(
+            f"{where} is in % of a {units.word} that nobody declares; add --nominal"
+            f" '{units.nominal}', or write '{name} [% of {units.nominal}]'."
+        )
+    return 0.01 * _nominal(where, text, units)
+
+
+def _factor(table: Table, place: int, unit: str, others: str) -> float:
     """The factor from the unit of a heading to `unit`."""
     name, given = table.headings[place]
     where = f"{table.head}: column '{name}'"
     if not given:
         raise InputError(f"{where} has no unit; write '{name} [{unit}]', or one of {others}.")
-    percent = _PERCENT.fullmatch(given)
-    if unit == "N m" and (given == "%" or percent):
-        text = percent[1] if percent else nominal
-        if text is None:
-            raise InputError(
-                f"{where} is in % of a torque that nobody declares; add --nominal '9.84 mN m', or"
-                f" write '{name} [% of 9.84 mN m]'."
-            )
-        return 0.01 * _torque(where, text)
     try:
         factor, found = to_si(given)
     except InputError as error:
@@ -102,22 +138,23 @@ def _factor(table: Table, place: int, unit: str, others: str, nominal: str | Non
     return factor
 
 
-def _torque(where: str, text: str) -> float:
+def _nominal(where: str, text: str, units: Units) -> float:
     match = _QUANTITY.fullmatch(text.strip())
     try:
         value = float(match[1]) if match else 0.0
         factor, unit = to_si(match[2].strip()) if match else (1.0, "")
     except ValueError as error:
-        raise InputError(f"{where}: nominal torque {shown(text)}: {error}") from error
-    if unit != "N m" or not value > 0.0:
+        raise InputError(f"{where}: nominal {units.word} {shown(text)}: {error}") from error
+    if unit != units.torque or not value > 0.0:
         raise InputError(
-            f"{where}: {shown(text)} is no nominal torque; write a positive number and its unit,"
-            " such as '9.84 mN m'."
+            f"{where}: {shown(text)} is no nominal {units.word}; write a positive number and its"
+            f" unit, such as '{units.nominal}'."
         )
     return factor * value
 
 
 def _check(path: Path, points: Points) -> None:
+    word = points.units.word
     count, speeds = len(points.rate), np.unique(np.abs(points.rate))
     if count < MIN_POINTS or len(speeds) < 2:
         raise InputError(
@@ -127,17 +164,17 @@ def _check(path: Path, points: Points) -> None:
     rest = np.flatnonzero((points.rate == 0.0) & (points.torque == 0.0))
     if len(rest):
         raise InputError(
-            f"{path}:{rest[0] + 2}: both rate and torque are zero; give the torque with its sign"
+            f"{path}:{rest[0] + 2}: both rate and {word} are zero; give the {word} with its sign"
             " at which the joint breaks away, or remove the row."
         )
     if points.spread is not None and not (points.spread > 0.0).all():
         line = int(np.argmin(points.spread)) + 2
         raise InputError(
-            f"{path}:{line}: the standard deviation is {points.spread.min():g} N m; give a positive"
-            " one in every row, or leave out --spread."
+            f"{path}:{line}: the standard deviation is {points.spread.min():g}"
+            f" {points.units.torque}; give a positive one in every row, or leave out --spread."
         )
     if points.torque @ points.rate < 0.0:
         raise InputError(
-            f"{path}: most torques brake the motion; give the torque that drives the joint,"
+            f"{path}: most {word}s brake the motion; give the {word} that drives the joint,"
             " positive where the rate is positive."
         )

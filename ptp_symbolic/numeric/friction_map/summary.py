@@ -15,7 +15,6 @@ from ptp_symbolic.numeric.friction_map.points import Points
 FloatArray = NDArray[np.float64]
 
 SCHEMA_VERSION = 1
-UNITS = {"F_c": "N m", "F_s": "N m", "v_s": "rad/s", "F_v": "N m s/rad"}
 LARGEST_DIFFERENCE = 0.95  # bound of the effect direction_dependent_friction
 
 
@@ -23,7 +22,7 @@ def friction_map(points: Points, axis: str, confidence: float) -> dict[str, Any]
     """The smallest law of steady friction that predicts `points` as well as any other.
 
     The result is plain data in SI units: `member`, `parameters` by name for `axis`, `by_direction`,
-    `rms` in N m, all `members`, `remarks`, and the `points` with their fitted torques.
+    `rms`, all `members`, `remarks`, and the `points` with their fitted torques.
     """
     found = compare(points)
     verdict = choose(found)
@@ -40,14 +39,18 @@ def friction_map(points: Points, axis: str, confidence: float) -> dict[str, Any]
             if member.only in (0, sign):
                 speed = _speed(estimates, k if member.separate else 0)
                 by_direction[names[sign > 0]]["v_s"] = asdict(speed)
+    own = points.units
+    units = {"F_c": own.torque, "F_s": own.torque, "v_s": own.rate, "F_v": own.viscous}
     parameters = {
-        f"{name}_{axis}": {**asdict(estimate), "unit": UNITS.get(name, "1")}
+        f"{name}_{axis}": {**asdict(estimate), "unit": units.get(name, "1")}
         for name, estimate in _parameters(estimates)
     }
     return {
         "schema_version": SCHEMA_VERSION,
         "source": points.name,
         "axis": axis,
+        "units": {"rate": own.rate, "torque": own.torque, "viscous": own.viscous},
+        "quantity": own.word,
         "confidence": confidence,
         "member": member.title,
         "parts": list(member.parts),
@@ -149,11 +152,12 @@ def _finite(value: float) -> float | None:
 def _remarks(found: Comparison, member: Member, estimates: Profile) -> Iterator[str]:
     """What the points leave open, one sentence each."""
     points, lowest = found.points, float(estimates.scanned[0])
+    rate, torque, word = points.units.rate, points.units.torque, points.units.word
     if member == Member("", False):
         yield "No law predicts these points better than Coulomb friction alone."
     if len(estimates.signs) == 1:
         yield (
-            "All points turn one way: a difference by direction, and a constant torque beside"
+            f"All points move one way: a difference by direction, and a constant {word} beside"
             " Coulomb friction, cannot be told; measure the other direction too."
         )
     weights = estimates.weights()
@@ -164,32 +168,32 @@ def _remarks(found: Comparison, member: Member, estimates: Profile) -> Iterator[
     if not member.rise:
         at_rest = bool((points.rate == 0.0).any())
         yield (
-            f"Static friction does not show: a Stribeck curve that ends below {lowest:.3g} rad/s,"
+            f"Static friction does not show: a Stribeck curve that ends below {lowest:.3g} {rate},"
             " the lowest speed, would not; measure slower"
-            + ("." if at_rest else ", or add breakaway torques as points at rate 0.")
+            + ("." if at_rest else ", or add breakaway {word}s as points at rate 0.")
         )
     elif member.rise != STRIBECK:
         yield (
             "The Stribeck speed is not determined: static friction shows at rest alone, so it lies"
-            f" below {lowest:.3g} rad/s, the lowest speed."
+            f" below {lowest:.3g} {rate}, the lowest speed."
         )
     elif estimates.speeds.min() <= lowest:
         yield (
-            f"The Stribeck speed is not determined downwards: anything below {lowest:.3g} rad/s,"
+            f"The Stribeck speed is not determined downwards: anything below {lowest:.3g} {rate},"
             " the lowest speed, fits; F_s is what the curve reaches there. Measure slower."
         )
     if member.rise == STRIBECK and estimates.speeds.max() >= estimates.scanned[-1]:
         yield (
-            f"The Stribeck speed is not determined upwards: {estimates.scanned[-1]:.3g} rad/s, the"
-            " highest speed, fits. The torque is curved over the whole range; do not extrapolate."
+            f"The Stribeck speed is not determined upwards: {estimates.scanned[-1]:.3g} {rate}, the"
+            " highest speed, fits. The {word} is curved over the whole range; do not extrapolate."
         )
     if COULOMB in member.by_direction:
         yield (
-            "Coulomb friction that differs by direction and a constant torque on the joint are the"
+            f"Coulomb friction that differs by direction and a constant {word} on the joint are the"
             " same at steady rates; turn the axis over, or back-drive it, to tell them apart."
         )
     if found.extra:
         yield (
-            f"The torques scatter by {found.extra:.2g} N m (rms) more than their declared standard"
-            " deviations: between the points something else changes."
+            f"The {word}s scatter by {found.extra:.2g} {torque} (rms) more than their declared"
+            " standard deviations: between the points something else changes."
         )
