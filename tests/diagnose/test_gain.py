@@ -7,8 +7,8 @@ import pytest
 from scipy import special, stats
 
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared, gain
+from ptp_symbolic.numeric.diagnose.held_out import held_out_gain
 from ptp_symbolic.numeric.diagnose.trial import TUNING, Trial
-from ptp_symbolic.numeric.diagnose.verdict import held_out_gain
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 from tests.identify.straight import finished

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.findings import Step
-from ptp_symbolic.numeric.diagnose.floor import Floor
+from ptp_symbolic.numeric.diagnose.floor import Floor, leaves_noise_alone
+from ptp_symbolic.numeric.diagnose.held_out import held_out_gain, is_quiet, is_taken_back
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import (
     EXPLAINED,
@@ -16,10 +17,9 @@ from ptp_symbolic.numeric.diagnose.verdict import (
     UNEXPLAINED,
     UP_TO_GROUP,
     doubtful,
-    held_out_gain,
-    is_taken_back,
     word_of,
 )
+from ptp_symbolic.numeric.identify.constants import HELD_OUT_ABOVE
 from tests.identify.straight import finished
 
 WAVE = np.where(np.arange(400) % 2, 1.0, -1.0)
@@ -39,7 +39,8 @@ def word(
     """
     trial = Trial((EFFECT,) if named else (), finished([left * WAVE] * 3))
     after = finished([held_out * WAVE] * 2)
-    return word_of(trial, {"effect": group} if named else {}, floor(), floor(carried), after)
+    quiet = is_quiet(after, floor(carried), trial.fit) and leaves_noise_alone(trial, floor())
+    return word_of(trial, {"effect": group} if named else {}, quiet)
 
 
 @pytest.mark.parametrize(
@@ -70,9 +71,30 @@ def test_look_alikes_make_a_group_of_an_explanation_alone() -> None:
 
 
 def test_a_run_that_sticks_elsewhere_does_not_decide() -> None:
-    trial = Trial((), finished([WAVE] * 3))
-    after = finished([WAVE, WAVE, 40.0 * WAVE])
-    assert word_of(trial, {}, floor(), floor(), after) == NOTHING_MISSING
+    assert is_quiet(finished([WAVE, WAVE, 40.0 * WAVE]), floor(), finished([WAVE] * 3))
+
+
+def noisy(windows: int, spread: float, seed: int) -> list[Any]:
+    """Windows of noise at the floor; every fourth of them `spread` times as large."""
+    rng = np.random.default_rng(seed)
+    scale = np.where(np.arange(windows) % 4, 1.0, spread)
+    return [scale[k] * rng.standard_normal(100) for k in range(windows)]
+
+
+@pytest.mark.parametrize(("training", "validation"), [(1.0, 1.0), (5.0, 5.0), (5.0, 1.0)])
+def test_windows_that_are_alike_are_quiet(training: float, validation: float) -> None:
+    """A machine that sticks elsewhere in some windows does so in both parts."""
+    after, trained = finished(noisy(28, validation, 1)), finished(noisy(48, training, 2))
+    assert is_quiet(after, floor(), trained)
+
+
+def test_windows_half_of_which_leave_more_than_the_training_runs_are_not_quiet() -> None:
+    """The median alone is within its bound, and says nothing of the other half."""
+    squares = np.concatenate([np.linspace(1.0, 1.2, 14), np.linspace(1.25, 9.0, 14)])
+    after = finished([s * WAVE for s in squares])
+    assert np.median(squares) < HELD_OUT_ABOVE
+    assert not is_quiet(after, floor(), finished(noisy(48, 1.0, 3)))
+    assert is_quiet(after, floor(), finished(noisy(3, 1.0, 3)))  # too few to tell
 
 
 @pytest.mark.parametrize(
@@ -103,4 +125,13 @@ def test_validation_runs_that_improve_by_less_than_a_tenth_take_a_name_back(
     before, after = finished([2.0 * WAVE] * 4), finished([2.0 * left * WAVE] * 4)
     earned = held_out_gain(after, before)
     assert earned.share == pytest.approx(1.0 - left**2, rel=1e-9)
-    assert is_taken_back(earned) is taken_back
+    assert is_taken_back(earned, quiet=True) is taken_back
+
+
+@pytest.mark.parametrize(("left", "taken_back"), [(0.6, False), (0.8, True)])
+def test_beside_a_remainder_in_validation_runs_a_name_takes_away_more_than_it_leaves(
+    left: float, taken_back: bool
+) -> None:
+    """The share of the mean square: 64 and 36 %."""
+    before, after = finished([9.0 * WAVE] * 4), finished([9.0 * left * WAVE] * 4)
+    assert is_taken_back(held_out_gain(after, before), quiet=False) is taken_back

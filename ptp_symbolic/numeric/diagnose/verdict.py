@@ -8,32 +8,19 @@ import numpy as np
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, at_bound, why_unconfirmed
 from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import Floor, carried_noise, floor_of, leaves_noise_alone
-from ptp_symbolic.numeric.diagnose.gain import Gain, compared, gain, gain_in_innovations
+from ptp_symbolic.numeric.diagnose.gain import Gain, gain, gain_in_innovations
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
+from ptp_symbolic.numeric.diagnose.held_out import (
+    held_out_fit,
+    held_out_gain,
+    is_quiet,
+    is_taken_back,
+)
 from ptp_symbolic.numeric.diagnose.refits import forms
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.trial import (
-    Task,
-    Trial,
-    huber_loss,
-    mean_squares,
-    ranked,
-    tolerance_for,
-)
-from ptp_symbolic.numeric.identify.constants import (
-    BIGGEST,
-    GAIN,
-    HELD_OUT_ABOVE,
-    MATERIAL,
-    MOST,
-    POLISH,
-    ROUGH,
-    SHARP,
-    TUNING,
-)
-from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters, with_finite_differences
-from ptp_symbolic.numeric.identify.least_squares import weighted_median
-from ptp_symbolic.numeric.identify.run_groups import sizes
+from ptp_symbolic.numeric.diagnose.trial import Trial, ranked
+from ptp_symbolic.numeric.identify.constants import MATERIAL, MOST
+from ptp_symbolic.numeric.identify.fit import Fit, with_finite_differences
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"
@@ -100,13 +87,16 @@ def decide(found: Search) -> Verdict:
     after = held_out_fit(task, trial) if trial.candidates else before
     held_out = held_out_gain(after, before) if trial.candidates else None
     closest = None if trial.candidates else _closest(found)
-    if held_out is not None and is_taken_back(held_out):
+    floor = floor_of(task, trial, carried_noise(task, trial.fit))
+    quiet = is_quiet(after, replace(floor, carried=carried_noise(task, after)), trial.fit)
+    if held_out is not None and is_taken_back(held_out, quiet):
         for key in trial.keys:
             refused[key] = "takes away too little of the error of the validation runs"
         closest, trial, steps, after, held_out, alike = trial, found.declared, [], before, None, []
-    floor = floor_of(task, trial, carried_noise(task, trial.fit))
+        floor = floor_of(task, trial, carried_noise(task, trial.fit))
+        quiet = is_quiet(after, replace(floor, carried=carried_noise(task, after)), trial.fit)
     named = confusable(trial, alike)
-    word = word_of(trial, named, floor, replace(floor, carried=carried_noise(task, after)), after)
+    word = word_of(trial, named, quiet and leaves_noise_alone(trial, floor))
     if word == NOTHING_MISSING:
         closest = None
     return Verdict(
@@ -122,11 +112,6 @@ def decide(found: Search) -> Verdict:
         after,
         held_out,
     )
-
-
-def is_taken_back(held_out: Gain) -> bool:
-    """Whether the validation runs do not bear out what the training runs named."""
-    return held_out.share < MATERIAL
 
 
 def _confirmed(
@@ -254,41 +239,10 @@ def _closest(found: Search) -> Trial | None:
     return next((t for t in best if t.candidates and np.isfinite(t.fit.cost)), None)
 
 
-def word_of(
-    trial: Trial, named: Mapping[str, tuple[str, ...]], floor: Floor, held_out: Floor, after: Fit
-) -> str:
-    """The word for a confirmed set; `held_out` is the floor of the validation runs."""
-    quiet = leaves_noise_alone(trial, floor) and _is_quiet(after, held_out)
+def word_of(trial: Trial, named: Mapping[str, tuple[str, ...]], quiet: bool) -> str:
+    """The word for a confirmed set that leaves noise alone, or not (`quiet`), in any run."""
     if not trial.candidates:
         return NOTHING_MISSING if quiet else UNEXPLAINED
     if not quiet:
         return PARTLY
     return UP_TO_GROUP if any(named.values()) else EXPLAINED
-
-
-def _is_quiet(after: Fit, floor: Floor) -> bool:
-    """Whether validation runs show no more than noise; the median of the samples counts, for a run
-    that sticks at another sample than it did is off by counts.
-    """
-    squares = mean_squares(after.evaluations, after.runs)
-    size = sizes(after.runs)
-    held_out = np.sqrt(weighted_median(squares, size))
-    return bool(np.all(held_out <= HELD_OUT_ABOVE * floor.most))
-
-
-def held_out_fit(task: Task, trial: Trial) -> Fit:
-    """The validation runs by the model of a trial, nothing but their start unknowns fitted."""
-    effort = Effort(POLISH, GAIN * ROUGH, tolerance_for(task, SHARP))
-    return fit_parameters(task.model, task.validate, (), trial.values, None, effort, task.executor)
-
-
-def held_out_gain(after: Fit, before: Fit) -> Gain:
-    """The share of the mean square error of validation runs or windows that is taken away (Huber's
-    loss: those far worse than usual count linearly).
-    """
-    size = sizes(after.runs)
-    squares = [mean_squares(fit.evaluations, fit.runs) for fit in (after, before)]
-    usual = np.min([weighted_median(s, size) for s in squares], axis=0)
-    tuning = TUNING**2 * np.maximum(usual, 1.0)
-    losses = [size * huber_loss(np.minimum(s, BIGGEST), tuning).sum(axis=1) for s in squares]
-    return compared(losses[0], losses[1])

@@ -25,6 +25,7 @@ SIMILAR = 0.9  # 1; canonical correlation of effects that may be one another; st
 PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off; stated
 SMALL_PERCENT = 1.0  # %; change of a declared value that is called small; scaled
 ABOVE_NOISE = 1.1  # 1; rms over the floor that is still noise; scaled
+UNALIKE = 1e-3  # 1; chance that as much more in validation windows than in training ones; stated
 HELD_OUT_ABOVE = 1.25  # 1; the same on validation runs, which bear the errors of the fit; scaled
 MOST_CARRIED = 1.0  # 1; noise of the inputs that a signal may show, over its own; definition
 UNIDENTIFIED = 1.0  # 1; half width of an interval over a value that is not known; definition

@@ -1,0 +1,72 @@
+"""The validation runs: held to their own noise, and whether they bear out what was named."""
+
+import numpy as np
+from scipy.stats import mannwhitneyu
+
+from ptp_symbolic.numeric.diagnose.floor import Floor
+from ptp_symbolic.numeric.diagnose.gain import Gain, compared
+from ptp_symbolic.numeric.diagnose.trial import (
+    Task,
+    Trial,
+    huber_loss,
+    mean_squares,
+    tolerance_for,
+)
+from ptp_symbolic.numeric.identify.constants import (
+    BIGGEST,
+    GAIN,
+    HELD_OUT_ABOVE,
+    MANY_RUNS,
+    MATERIAL,
+    MOST,
+    POLISH,
+    ROUGH,
+    SHARP,
+    TUNING,
+    UNALIKE,
+)
+from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
+from ptp_symbolic.numeric.identify.least_squares import weighted_median
+from ptp_symbolic.numeric.identify.run_groups import sizes
+
+
+def is_taken_back(held_out: Gain, quiet: bool) -> bool:
+    """Whether the validation runs do not bear out what the training runs named. Where they show
+    more than noise (not `quiet`), a wrong effect may imitate what is missing, so that it has to
+    take away more than it leaves, as on training runs.
+    """
+    return held_out.share < (MATERIAL if quiet else MOST)
+
+
+def is_quiet(after: Fit, floor: Floor, trained: Fit) -> bool:
+    """Whether validation runs show no more than noise; the median of the samples counts, for a run
+    that sticks at another sample than it did is off by counts. Of many windows it sees half: beside
+    it they may not leave more than the windows of the training runs (Mann and Whitney, 1947).
+    """
+    squares = mean_squares(after.evaluations, after.runs)
+    size = sizes(after.runs)
+    held_out = np.sqrt(weighted_median(squares, size))
+    if not np.all(held_out <= HELD_OUT_ABOVE * floor.most):
+        return False
+    own = mean_squares(trained.evaluations, trained.runs)
+    if min(len(squares), len(own)) < MANY_RUNS:
+        return True
+    return bool(np.all(mannwhitneyu(squares, own, alternative="greater").pvalue > UNALIKE))
+
+
+def held_out_fit(task: Task, trial: Trial) -> Fit:
+    """The validation runs by the model of a trial, nothing but their start unknowns fitted."""
+    effort = Effort(POLISH, GAIN * ROUGH, tolerance_for(task, SHARP))
+    return fit_parameters(task.model, task.validate, (), trial.values, None, effort, task.executor)
+
+
+def held_out_gain(after: Fit, before: Fit) -> Gain:
+    """The share of the mean square error of validation runs or windows that is taken away (Huber's
+    loss: those far worse than usual count linearly).
+    """
+    size = sizes(after.runs)
+    squares = [mean_squares(fit.evaluations, fit.runs) for fit in (after, before)]
+    usual = np.min([weighted_median(s, size) for s in squares], axis=0)
+    tuning = TUNING**2 * np.maximum(usual, 1.0)
+    losses = [size * huber_loss(np.minimum(s, BIGGEST), tuning).sum(axis=1) for s in squares]
+    return compared(losses[0], losses[1])
