@@ -72,12 +72,13 @@ def friction_map(
 def _check_axis(source: str, axis: str, points: Path, rate: str) -> None:
     from ptp_symbolic.errors import InputError
     from ptp_symbolic.models.committed import declared_platform
+    from ptp_symbolic.numeric.friction_map.points import LINEAR, ROTARY
 
     platform = declared_platform(source)
     if axis not in platform.axes:
         axes = ", ".join(platform.axes)
         raise InputError(f"--axis {axis}: '{source}' has {axes}; give one of these.")
-    own = "m/s" if axis in platform.linear_axes else "rad/s"
+    own = (LINEAR if axis in platform.linear_axes else ROTARY).rate
     if rate != own:
         raise InputError(
             f"{points}: rates in {rate}, but the {axis} axis of '{source}' moves in {own}; give"

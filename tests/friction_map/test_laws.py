@@ -13,7 +13,7 @@ from scipy.stats import binom
 from ptp_symbolic.numeric.friction_map.choice import choose, compare
 from ptp_symbolic.numeric.friction_map.intervals import profile
 from ptp_symbolic.numeric.friction_map.members import Member
-from ptp_symbolic.numeric.friction_map.points import Points
+from ptp_symbolic.numeric.friction_map.points import LINEAR, Points
 from ptp_symbolic.numeric.friction_map.summary import friction_map
 from tests.friction_map.laws import RATES, SCATTER, SPEEDS, Side, drawn, torque
 
@@ -115,7 +115,9 @@ def test_a_curve_below_the_lowest_rate_is_not_named_and_said_to_be_out_of_sight(
     fast = RATES[np.abs(RATES) > 1.0]
     found = friction_map(drawn(0, CURVE, CURVE, fast), "pan", 0.95)
     assert found["parts"] == ["Coulomb", "viscous"]
-    assert any("below 1.5 rad/s, the lowest speed" in text for text in found["remarks"])
+    said = " ".join(found["remarks"])
+    assert "below 1.5 rad/s, the lowest speed" in said
+    assert "or add breakaway torques as points at rate 0." in said
 
 
 def test_breakaway_torques_show_static_friction_without_a_speed() -> None:
@@ -144,7 +146,18 @@ def test_no_parameter_leaves_what_the_points_show() -> None:
     found = friction_map(points, "pan", 0.95)
     for row in found["parameters"].values():
         assert abs(row["value"]) < 10.0
-    assert any("not determined upwards" in text for text in found["remarks"])
+    said = " ".join(found["remarks"])
+    assert "not determined upwards" in said
+    assert "The torque is curved over the whole range" in said
+
+
+def test_remarks_on_a_linear_axis_speak_of_forces_in_newtons() -> None:
+    fast = RATES[np.abs(RATES) > 1.0]
+    drawn_points = drawn(0, CURVE, CURVE, fast)
+    points = Points("l.csv", fast, drawn_points.torque, units=LINEAR)
+    said = " ".join(friction_map(points, "pan", 0.95)["remarks"])
+    assert "below 1.5 m/s, the lowest speed" in said
+    assert "or add breakaway forces as points at rate 0." in said
 
 
 def test_torques_with_a_larger_declared_scatter_weigh_less() -> None:

@@ -26,15 +26,19 @@ class Units:
 
     rate: str
     torque: str
-    viscous: str
     other_rates: str
     other_torques: str
     nominal: str
     word: str
 
+    @property
+    def viscous(self) -> str:
+        """The unit of torque over rate."""
+        return f"{self.torque} s/{self.rate.removesuffix('/s')}"
 
-ROTARY = Units("rad/s", "N m", "N m s/rad", "rpm, deg/s", "mN m", "9.84 mN m", "torque")
-LINEAR = Units("m/s", "N", "N s/m", "mm/s", "mN", "40 N", "force")
+
+ROTARY = Units("rad/s", "N m", "rpm, deg/s", "mN m", "9.84 mN m", "torque")
+LINEAR = Units("m/s", "N", "mm/s", "mN", "40 N", "force")
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,8 +21,9 @@ LARGEST_DIFFERENCE = 0.95  # bound of the effect direction_dependent_friction
 def friction_map(points: Points, axis: str, confidence: float) -> dict[str, Any]:
     """The smallest law of steady friction that predicts `points` as well as any other.
 
-    The result is plain data in SI units: `member`, `parameters` by name for `axis`, `by_direction`,
-    `rms`, all `members`, `remarks`, and the `points` with their fitted torques.
+    The result is plain data in the SI `units` of the joint: `member`, `parameters` by name for
+    `axis`, `by_direction`, `rms`, all `members`, `remarks`, and the `points` with their fitted
+    torques; `quantity` says whether these are torques or forces.
     """
     found = compare(points)
     verdict = choose(found)
@@ -170,7 +171,7 @@ def _remarks(found: Comparison, member: Member, estimates: Profile) -> Iterator[
         yield (
             f"Static friction does not show: a Stribeck curve that ends below {lowest:.3g} {rate},"
             " the lowest speed, would not; measure slower"
-            + ("." if at_rest else ", or add breakaway {word}s as points at rate 0.")
+            + ("." if at_rest else f", or add breakaway {word}s as points at rate 0.")
         )
     elif member.rise != STRIBECK:
         yield (
@@ -185,7 +186,7 @@ def _remarks(found: Comparison, member: Member, estimates: Profile) -> Iterator[
     if member.rise == STRIBECK and estimates.speeds.max() >= estimates.scanned[-1]:
         yield (
             f"The Stribeck speed is not determined upwards: {estimates.scanned[-1]:.3g} {rate}, the"
-            " highest speed, fits. The {word} is curved over the whole range; do not extrapolate."
+            f" highest speed, fits. The {word} is curved over the whole range; do not extrapolate."
         )
     if COULOMB in member.by_direction:
         yield (
