@@ -10,6 +10,7 @@ from ptp_symbolic.platform.declaration import (
     ParameterDeclaration,
     Platform,
     SignalDeclaration,
+    effect_key,
     naming_file,
 )
 from ptp_symbolic.platform.reader import platform_file, preset_names, read_platform
@@ -25,6 +26,7 @@ __all__ = [
     "ParameterDeclaration",
     "Platform",
     "SignalDeclaration",
+    "effect_key",
     "naming_file",
     "platform_file",
     "platform_text",

@@ -33,6 +33,11 @@ class ParameterDeclaration:
     uncertainty: float | None = None
 
 
+def effect_key(effect: str, axis: str | None) -> str:
+    """Id and axis of an effect in one word, e.g. ``cable_spring@pan``."""
+    return effect if axis is None else f"{effect}@{axis}"
+
+
 @dataclass(frozen=True)
 class EffectDeclaration:
     """One effect of the platform: its id, the axis it acts on, and where on the drive train.

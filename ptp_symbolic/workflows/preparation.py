@@ -13,7 +13,7 @@ from ptp_symbolic.numeric.diagnose.preparation import task_of
 from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.platform import Platform, naming_file
+from ptp_symbolic.platform import Platform, effect_key, naming_file
 from ptp_symbolic.workflows.result import Progress
 
 
@@ -30,7 +30,7 @@ def workers() -> Iterator[Executor]:
 
 def effect_keys(platform: Platform) -> list[str]:
     """Keys of the declared effects, ``effect`` or ``effect@axis``."""
-    return [e.effect if e.axis is None else f"{e.effect}@{e.axis}" for e in platform.effects]
+    return [effect_key(e.effect, e.axis) for e in platform.effects]
 
 
 def look_at(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from ptp_symbolic.numeric.identify.constants import PLAUSIBLE_FACTOR, WIDE_STEP
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
 from ptp_symbolic.numeric.runtime.model import EffectInstance, Model, ModelParameter
+from ptp_symbolic.platform import effect_key
 
 DECLARED_VALUE = "declared_value"
 
@@ -37,7 +38,7 @@ class Candidate:
     @property
     def key(self) -> str:
         """Id and axis in one word, e.g. ``cable_spring@pan``."""
-        return self.id if self.axis is None else f"{self.id}@{self.axis}"
+        return effect_key(self.id, self.axis)
 
     @property
     def is_declared_value(self) -> bool:

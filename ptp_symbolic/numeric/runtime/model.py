@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError, out_of_bounds, unknown
 from ptp_symbolic.numeric.runtime.element_layout import contact_count
+from ptp_symbolic.platform import effect_key
 
 FloatArray = NDArray[np.float64]
 
@@ -38,7 +39,7 @@ class EffectInstance:
     @property
     def key(self) -> str:
         """Id and axis in one word, e.g. ``cable_spring@pan``."""
-        return self.id if self.axis is None else f"{self.id}@{self.axis}"
+        return effect_key(self.id, self.axis)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from ptp_symbolic.platform import (
     STANDARD_GRAVITY,
     ParameterDeclaration,
     Platform,
+    effect_key,
     naming_file,
 )
 from ptp_symbolic.platform.units import compatible
@@ -134,9 +135,7 @@ def available_quantities(placed: list[tuple[Effect, Place]]) -> set[str]:
 def definitions(placed: list[tuple[Effect, Place]]) -> dict[str, set[str]]:
     """The quantities that every placed effect defines, by its key."""
     return {
-        effect.id if place.axis is None else f"{effect.id}@{place.axis}": set(
-            effect.contribute(place).quantities
-        )
+        effect_key(effect.id, place.axis): set(effect.contribute(place).quantities)
         for effect, place in placed
     }
 
