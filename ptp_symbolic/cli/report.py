@@ -59,12 +59,13 @@ def changes(before: str, after: str, diagnosis: Path | None, out: Path) -> None:
     """Write what platform AFTER has that BEFORE has not, in LaTeX (and PDF where pdflatex is)."""
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.models.committed import declared_platform
-    from ptp_symbolic.report.changes import read_diagnosis, render_changes
+    from ptp_symbolic.report.changes import render_changes, shown_of
     from ptp_symbolic.report.pdf import with_pdf
+    from ptp_symbolic.workflows.result import read_diagnosis
 
     one, other = declared_platform(before), declared_platform(after)
     check_writable(out)
-    found = None if diagnosis is None else read_diagnosis(diagnosis, one)
+    found = None if diagnosis is None else read_diagnosis(diagnosis, one, shown_of)
     files = with_pdf(render_changes(one, other, found), "changes")
     write_files_atomically(out, files)
     for name in files:

@@ -1,15 +1,12 @@
 """What one platform has that another has not, on paper; with a diagnosis the errors of both."""
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from ptp_symbolic import __version__
-from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.derivation.curves import PACKAGES
-from ptp_symbolic.report.derivation.effects import described, ledger_difference
+from ptp_symbolic.report.derivation.effects import described
 from ptp_symbolic.report.latex_equations import displayed_changes
 from ptp_symbolic.report.latex_text import PREAMBLE, escaped, table, unit_latex
 from ptp_symbolic.report.quantities import number
@@ -26,25 +23,10 @@ Record = Mapping[str, Any]
 SETS = {"validate": "never fitted", "train": "fitted"}
 
 
-def read_diagnosis(source: Path, platform: Platform) -> Record:
-    """The diagnosis in a file, or in the folder that `diagnose` has written.
-
-    Raises InputError for what is none, or is of another platform.
-    """
-    path = source / "diagnosis.json" if source.is_dir() else source
-    try:
-        found: Record = json.loads(path.read_text(encoding="utf-8"))
-        name, _, _ = found["platform"]["name"], found["error"]["train"], found["summary"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InputError(
-            f"{path}: is no diagnosis; name the diagnosis.json that `diagnose --out` has written."
-        ) from error
-    if name != platform.name:
-        raise InputError(
-            f"{path}: is of platform '{name}', not of '{platform.name}'; give the platform that was"
-            " diagnosed as the first one."
-        )
-    return found
+def shown_of(diagnosis: Record) -> Record:
+    """The diagnosis; raises KeyError where it lacks what the document shows."""
+    _ = diagnosis["summary"], diagnosis["error"]["train"]
+    return diagnosis
 
 
 def render_changes(
@@ -117,7 +99,7 @@ def _effects(after: Platform, old: Equations, new: Equations, changes: Sequence[
     parts = [r"\section{Effects}"]
     parts += [rf"\emph{{The thesis}} is {THESIS}"] if added else ["No effect was added."]
     if len(added) == 1:  # all that changed is due to it
-        parts.append(described(added[0], new, changes, ledger_difference(new.ledger, old.ledger)))
+        parts.append(described(added[0], new, changes, new.ledger - old.ledger))
     else:
         parts += [described(law, new) for law in added]
     if gone := sorted(had - has, key=str):

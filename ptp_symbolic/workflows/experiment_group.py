@@ -1,12 +1,11 @@
 """What a diagnosis left open: the group that its logs cannot tell apart."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ptp_symbolic.errors import InputError
-from ptp_symbolic.platform import Platform
+from ptp_symbolic.platform import Platform, effect_key
+from ptp_symbolic.workflows.result import read_diagnosis
 
 
 def group_of(folder: Path, platform: Platform) -> tuple[tuple[str, ...], dict[str, float]]:
@@ -15,22 +14,7 @@ def group_of(folder: Path, platform: Platform) -> tuple[tuple[str, ...], dict[st
 
     Raises InputError for a folder without a diagnosis of `platform`.
     """
-    path = folder / "diagnosis.json"
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-        name = found["platform"]["name"]
-        fitted = found["fit"]["after"]["parameters"]
-        named = {_key(a["effect"], a["axis"]): a["confusable_with"] for a in found["added"]}
-        ranking = found["ranking"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InputError(
-            f"{path}: is no diagnosis; name the folder that `diagnose --out` has written."
-        ) from error
-    if name != platform.name:
-        raise InputError(
-            f"{path}: is of platform '{name}', not of '{platform.name}'; give the platform that was"
-            " diagnosed."
-        )
+    fitted, named, ranking = read_diagnosis(folder, platform, _open_parts)
     sets = [tuple(named)]
     for key, others in named.items():
         sets += [tuple(other if k == key else k for k in named) for other in others]
@@ -41,8 +25,10 @@ def group_of(folder: Path, platform: Platform) -> tuple[tuple[str, ...], dict[st
     return tuple("+".join(members) for members in sets) if len(sets) > 1 else (), values
 
 
-def _key(effect: str, axis: str | None) -> str:
-    return effect if axis is None else f"{effect}@{axis}"
+def _open_parts(found: Mapping[str, Any]) -> tuple[Any, dict[str, list[str]], Any]:
+    """Fitted parameters, named effects with what may stand in their place, and the ranking."""
+    named = {effect_key(a["effect"], a["axis"]): a["confusable_with"] for a in found["added"]}
+    return found["fit"]["after"]["parameters"], named, found["ranking"]
 
 
 def _fitted_in(ranking: list[Mapping[str, Any]], members: tuple[str, ...]) -> dict[str, float]:

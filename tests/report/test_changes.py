@@ -13,9 +13,10 @@ from click.testing import CliRunner
 from ptp_symbolic.cli import commands
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, read_platform
-from ptp_symbolic.report.changes import read_diagnosis, render_changes
+from ptp_symbolic.report.changes import render_changes, shown_of
 from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.symbolic.codegen.latex import symbol_latex
+from ptp_symbolic.workflows.result import read_diagnosis
 from tests.report.synthetic_diagnosis import synthetic_diagnosis
 
 
@@ -75,7 +76,7 @@ def test_with_a_diagnosis_the_errors_are_those_of_the_diagnosis(tmp_path: Path) 
     found = synthetic_diagnosis("explained")
     (tmp_path / "diagnosis.json").write_text(json.dumps(found), encoding="utf-8")
     platform = replace(read_platform("thesis-payload"), name=found["platform"]["name"])
-    text = changes(platform, platform, read_diagnosis(tmp_path, platform))
+    text = changes(platform, platform, read_diagnosis(tmp_path, platform, shown_of))
     totals = found["error"]["validate"]
     for stage in ("before", "after", "noise_floor"):
         assert f"{totals[stage]['total']['rmse_counts']:.3g}" in text
@@ -87,9 +88,9 @@ def test_a_diagnosis_of_another_platform_is_refused(tmp_path: Path) -> None:
     with pytest.raises(
         InputError, match="not of 'pan_drive'; give the platform that was diagnosed"
     ):
-        read_diagnosis(tmp_path, read_platform("thesis-pan-drive"))
+        read_diagnosis(tmp_path, read_platform("thesis-pan-drive"), shown_of)
     with pytest.raises(InputError, match="is no diagnosis"):
-        read_diagnosis(tmp_path / "nothing.json", read_platform("thesis-pan-drive"))
+        read_diagnosis(tmp_path / "nothing.json", read_platform("thesis-pan-drive"), shown_of)
 
 
 @pytest.mark.parametrize("pair", [("pan_drive", "thesis-pan-servo"), ("ideal", "full")])
