@@ -26,8 +26,8 @@ class Comparison:
     """All members on one set of points.
 
     `torque` [n] is weighted. `rss` is infinite for a member whose best fit cannot exist; chance may
-    still bring it about, so that the tests reckon with it. `extra` is the standard deviation
-    that the torques have beside those declared.
+    still bring it about, so that the tests reckon with it. `extra` is the standard deviation that
+    the torques have beside those declared.
     """
 
     points: Points

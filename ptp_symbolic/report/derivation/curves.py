@@ -8,6 +8,7 @@ import sympy as sp
 
 from ptp_symbolic.report.derivation.loops import loop
 from ptp_symbolic.report.derivation.ranges import (
+    RATES,
     FloatArray,
     Setting,
     evaluated,
@@ -218,6 +219,3 @@ def _hysteresis(
     )
     across = _label(latex_of(position), equations.unit("rad"))
     yield Drawing(lines, across, _label(latex_of(left), equations.unit("N m")), words)
-
-
-RATES = {of(a) for of in (kinematics.rate, kinematics.gear_rate) for a in kinematics.AXES}

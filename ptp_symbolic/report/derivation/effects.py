@@ -37,7 +37,7 @@ def effect_section(law: Law, platform: Platform, equations: Equations) -> str:
         said = escaped(str(error).removeprefix(f"{platform.source}: "))
         return "\n".join([described(law, equations), rf"\par Not compared without it: {said}"])
     changes = comparison(statements(before), statements(equations))
-    parts = [described(law, equations, changes, ledger_difference(equations.ledger, before.ledger))]
+    parts = [described(law, equations, changes, equations.ledger - before.ledger)]
     if gone:
         names = ", ".join(rf"\texttt{{{escaped(e.id)}}}" for e in gone)
         parts.append(
@@ -75,15 +75,6 @@ def _is_news(change: Change, shown: set[tuple[object, object]]) -> bool:
     """Whether a change is not among the formulas `shown` already, nor told in words as a switch."""
     statement = change.statement
     return statement.key[0] != "switch" and (statement.left, statement.right) not in shown
-
-
-def ledger_difference(with_it: Ledger, without: Ledger) -> Ledger:
-    """What a machine stores and takes beside another."""
-    return Ledger(
-        with_it.stored - without.stored,
-        with_it.power_in - without.power_in,
-        with_it.dissipated - without.dissipated,
-    )
 
 
 def _states(law: Law, equations: Equations) -> str:

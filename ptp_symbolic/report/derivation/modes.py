@@ -7,7 +7,7 @@ import sympy as sp
 
 from ptp_symbolic.report.latex_text import escaped, numbered, table
 from ptp_symbolic.symbolic.codegen.dynamics import guard_expressions, solve_accelerations
-from ptp_symbolic.symbolic.codegen.latex import latex_of
+from ptp_symbolic.symbolic.codegen.latex import latex_of, rate_latex
 from ptp_symbolic.symbolic.codegen.statements import by_name, friction_statements, shaft_torque
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Switch
@@ -160,7 +160,7 @@ def _rigid_contact(contact: Contact) -> Automaton:
         latex_of(real(f"{name}_{contact.axis}"))
         for name in ("separation", "half_gap", "T_transmitted", "e")
     )
-    rate = rf"\dot{{{apart.partition('_')[0]}}}_{apart.partition('_')[2]}"
+    rate = rate_latex(f"separation_{contact.axis}")
     away = f"{face}\\,{passed} < 0"
     strike = rf"|{apart}| = {half}"
     return Automaton(

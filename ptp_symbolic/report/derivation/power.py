@@ -5,9 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from ptp_symbolic.report.derivation.curves import RATES
 from ptp_symbolic.report.derivation.loops import loop
-from ptp_symbolic.report.derivation.ranges import FloatArray, Setting, evaluated, extent, setting
+from ptp_symbolic.report.derivation.ranges import (
+    RATES,
+    FloatArray,
+    Setting,
+    evaluated,
+    extent,
+    setting,
+)
 from ptp_symbolic.report.latex_text import numbered
 from ptp_symbolic.symbolic.codegen.laws import Law
 from ptp_symbolic.symbolic.codegen.statements import by_name
@@ -46,23 +52,21 @@ def power(law: Law, difference: Ledger | None, equations: Equations) -> str:
     if _is_empty(ledger) or (ledger is difference and modes & _symbols(ledger)):
         return "It neither stores energy nor takes any: its power is that of what it acts on."
     names = ("E", r"P_{\mathrm{in}}", r"P_{\mathrm{diss}}")
-    parts = (ledger.stored, ledger.power_in, ledger.dissipated)
-    rows = [(name, by_name(e, equations)) for name, e in zip(names, parts, strict=True) if e != 0]
+    named = zip(names, ledger.parts, strict=True)
+    rows = [(name, by_name(e, equations)) for name, e in named if e != 0]
     return f"{opening}{numbered(rows)}{_words(judged(law, ledger, equations))}"
 
 
 def _is_empty(ledger: Ledger) -> bool:
-    return ledger.stored == 0 and ledger.power_in == 0 and ledger.dissipated == 0
+    return all(part == 0 for part in ledger.parts)
 
 
 def _terms(ledger: Ledger) -> int:
-    parts = (ledger.stored, ledger.power_in, ledger.dissipated)
-    return max(len(sp.Add.make_args(part)) for part in parts)
+    return max(len(sp.Add.make_args(part)) for part in ledger.parts)
 
 
 def _symbols(ledger: Ledger) -> set[sp.Symbol]:
-    parts = (ledger.stored, ledger.power_in, ledger.dissipated)
-    return set().union(*(part.free_symbols for part in parts))
+    return set().union(*(part.free_symbols for part in ledger.parts))
 
 
 def _words(found: Judgement) -> str:

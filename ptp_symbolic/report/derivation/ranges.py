@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 from ptp_symbolic.symbolic.codegen.laws import Law
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.mechanics import kinematics
 
 FloatArray = NDArray[np.float64]
+RATES = {of(a) for of in (kinematics.rate, kinematics.gear_rate) for a in kinematics.AXES}
 SCALES = 4.0  # range on either side, in the smallest parameter of the variable's unit
 USUAL = {  # half a range where no parameter says how far, in the unit
     "rad": np.pi,

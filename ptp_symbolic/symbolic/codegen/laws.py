@@ -32,7 +32,6 @@ COORDINATES = tuple(
     of(axis) for axis in kinematics.AXES for of in (kinematics.angle, kinematics.gear_angle)
 )
 DIRECTIONS = "xyz"
-NOTHING = Ledger(ZERO, ZERO, ZERO)
 
 
 @dataclass(frozen=True)
@@ -93,9 +92,8 @@ def _law(
         if other is not effect or there != place
     ]
     bringing = [each for each in bringing if each[2].quantities.keys() & added.changes.keys()]
-    frictions: list[tuple[Friction | None, Friction]] = []
-    frictions += [(None, f) for f in _frictions(added, own)]
-    ledger, changed = _ledger(added, own, place), NOTHING
+    frictions: list[tuple[Friction | None, Friction]] = [(None, f) for f in _frictions(added, own)]
+    ledger, changed = _ledger(added, own, place), Ledger()
     for _, there, other in bringing:
         known = Contributions((other,), (False,), _known(other, plain))
         after = {quantity(name): value for name, (_, value) in changes.items()}
@@ -103,7 +101,7 @@ def _law(
         pairs = zip(_frictions(other, known), _frictions(other, with_it), strict=True)
         frictions += [pair for pair in pairs if pair[0] != pair[1]]
         if _ledger(other, known, there) != (new := _ledger(other, with_it, there)):
-            changed = _sum(changed, new)
+            changed += new
     return Law(
         effect.worded_at(place),
         place,
@@ -177,14 +175,6 @@ def _ledger(added: Contribution, own: Contributions, place: Place) -> Ledger:
     if not added.drives:
         parts = (stored, ZERO, dissipated - found.power_in)
     return Ledger(*(_named(own.resolve(part)) for part in parts))
-
-
-def _sum(one: Ledger, other: Ledger) -> Ledger:
-    return Ledger(
-        one.stored + other.stored,
-        one.power_in + other.power_in,
-        one.dissipated + other.dissipated,
-    )
 
 
 def _rows(

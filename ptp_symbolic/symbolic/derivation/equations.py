@@ -18,6 +18,7 @@ from ptp_symbolic.symbolic.effect_interface.linear import linear_unit, linear_wo
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
+from ptp_symbolic.symbolic.symbols import ZERO
 
 
 @dataclass(frozen=True)
@@ -51,9 +52,20 @@ class Contact:
 class Ledger:
     """Energy in J and powers in W: d(stored)/dt = power_in - dissipated, in every mode."""
 
-    stored: sp.Expr
-    power_in: sp.Expr
-    dissipated: sp.Expr
+    stored: sp.Expr = ZERO
+    power_in: sp.Expr = ZERO
+    dissipated: sp.Expr = ZERO
+
+    @property
+    def parts(self) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+        """Stored energy, incoming and dissipated power."""
+        return self.stored, self.power_in, self.dissipated
+
+    def __add__(self, other: "Ledger") -> "Ledger":
+        return Ledger(*(a + b for a, b in zip(self.parts, other.parts, strict=True)))
+
+    def __sub__(self, other: "Ledger") -> "Ledger":
+        return Ledger(*(a - b for a, b in zip(self.parts, other.parts, strict=True)))
 
 
 @dataclass(frozen=True)

@@ -24,27 +24,18 @@ def energy_ledger(
 
     A potential that depends on time (a base that moves) takes in its partial derivative by time.
     """
-    stored, power_in, dissipated = rigid.kinetic + rigid.potential, ZERO, ZERO
-    power_in += sum(
-        (kinematics.torque(a) * kinematics.rate(a) for a in axes if a not in contributions.driven),
-        ZERO,
+    powers = (
+        kinematics.torque(a) * kinematics.rate(a) for a in axes if a not in contributions.driven
     )
+    total = Ledger(rigid.kinetic + rigid.potential, sum(powers, ZERO))
     for contribution, is_loss in zip(
         contributions.by_effect, contributions.dissipative, strict=True
     ):
-        own = ledger_of(contribution, contributions.drive_rate, is_loss)
-        stored, power_in = stored + own.stored, power_in + own.power_in
-        dissipated += own.dissipated
+        total += ledger_of(contribution, contributions.drive_rate, is_loss)
     for friction in frictions:
-        dissipated += slide(friction.axis) * friction.level * friction.rate
-    for shaft in shafts:
-        stored, dissipated = stored + shaft.stored, dissipated + shaft.dissipated
-    stored = contributions.resolve(stored)
-    return Ledger(
-        stored,
-        contributions.resolve(power_in) + sp.diff(stored, kinematics.TIME),
-        contributions.resolve(dissipated),
-    )
+        total += Ledger(dissipated=slide(friction.axis) * friction.level * friction.rate)
+    stored, power_in, dissipated = map(contributions.resolve, sum(shafts, total).parts)
+    return Ledger(stored, power_in + sp.diff(stored, kinematics.TIME), dissipated)
 
 
 def ledger_of(
