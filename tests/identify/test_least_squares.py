@@ -1,11 +1,10 @@
 """The bordered Levenberg-Marquardt against SciPy, which solves for all unknowns side by side."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import lsq_linear, minimize_scalar
+from scipy.optimize import lsq_linear
 
 from ptp_symbolic.numeric.identify.constants import LARGEST_STEP
 from ptp_symbolic.numeric.identify.least_squares import (
@@ -13,8 +12,6 @@ from ptp_symbolic.numeric.identify.least_squares import (
     Problem,
     cost_of,
     minimise,
-    robust_tuning,
-    weighted_median,
 )
 from tests.identify.curves import PHI, PRIOR, Curves, Floats, evaluation, measure
 
@@ -141,66 +138,6 @@ def test_what_a_bound_holds_up_the_others_make_good_at_once() -> None:
     assert exact[0] == pytest.approx(box[0][0])
     assert box[0][1] < exact[1] < box[1][1]
     assert found.phi == pytest.approx(exact, abs=2e-3)
-
-
-def location(values: Floats) -> Problem:
-    """One parameter for runs without start unknowns: run r measures 50 times `values[r]`."""
-    wave = np.tile([1.0, -1.0], 25)
-    none: list[Floats] = [np.zeros(0) for _ in values]
-
-    def evaluate(phi: Floats, z: object, tangents: bool):
-        return [evaluation(v - phi[0] + wave, -np.ones((50, 1)), np.zeros((50, 0))) for v in values]
-
-    return Problem(
-        evaluate, np.array([-99.0]), np.array([99.0]), none, none, none, np.zeros(1), np.zeros(1)
-    )
-
-
-def test_loss_of_windows_by_hand() -> None:
-    """Twenty windows of ten samples: 19 of rms 1, one of rms 10, with half weight at rms 2.5."""
-    none = np.zeros((10, 0))
-    windows = [evaluation(np.full(10, r), none, none) for r in (*[1.0] * 19, 10.0)]
-    problem = location(np.zeros(20))
-    no_starts = [np.zeros(0)] * 20
-    tuning = robust_tuning(windows)
-    assert tuning == 2.5
-    by_hand = 19 * 10 * 6.25 * math.log(1.16) + 10 * 6.25 * math.log(17.0)
-    assert cost_of(problem, windows, no_starts, tuning) == pytest.approx(by_hand, rel=1e-14)
-    assert cost_of(problem, windows, no_starts) == pytest.approx(190 + 10 * 100, rel=1e-14)
-    assert robust_tuning(windows[:19]) == np.inf
-    far = [replace(e, residual=8.0 * e.residual) for e in windows]
-    assert robust_tuning(far) == np.inf
-    assert robust_tuning([replace(windows[0], failed="stopped"), *windows[1:]]) == np.inf
-
-
-def test_a_median_counts_every_run_by_its_samples() -> None:
-    """Of 1, 2 and 9 with 5, 1 and 1 samples it lies where half of the samples are below: between
-    the middles of the first two, at 2.5 and 5.5 of 7, a third of the way.
-    """
-    values = np.array([[9.0, 1.0], [1.0, 1.0], [2.0, 1.0]])
-    assert weighted_median(values, np.array([1.0, 5.0, 1.0])) == pytest.approx([4.0 / 3.0, 1.0])
-    assert weighted_median(values, np.ones(3)) == pytest.approx([2.0, 1.0])
-
-
-def test_windows_in_a_wrong_branch_hardly_move_the_optimum() -> None:
-    """Three windows of 23 lie far off. The optimum is that of Cauchy's loss of windows, by search
-    over one number; least squares would go twenty times as far from the truth, 0.
-    """
-    values = np.array([*np.linspace(-0.4, 0.4, 20), 12.0, 13.0, 14.0])
-    problem = location(values)
-    found = minimise(problem, np.array([1.0]), [np.zeros(0)] * 23, 100, 1e-13, 12)
-
-    def rms(at: float) -> Floats:
-        return np.sqrt((values - at) ** 2 + 1.0)
-
-    tuning = 2.5 * np.median(rms(found.phi[0]))
-
-    def loss(at: float) -> float:
-        return float(np.sum(np.log(1.0 + (rms(at) / tuning) ** 2)))
-
-    exact = minimize_scalar(loss, bounds=(-5.0, 5.0), method="bounded", options={"xatol": 1e-10})
-    assert found.phi[0] == pytest.approx(exact.x, abs=1e-6)
-    assert found.phi[0] < np.mean(values) / 15.0
 
 
 def test_steps_into_a_failing_region_are_never_accepted(curves: Curves) -> None:

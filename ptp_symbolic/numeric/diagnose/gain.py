@@ -32,7 +32,7 @@ from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.innovations import innovations, prediction_error_filter
 from ptp_symbolic.numeric.identify.intervals import project_out
-from ptp_symbolic.numeric.identify.least_squares import weighted_median
+from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import by_source
 

@@ -26,7 +26,7 @@ from ptp_symbolic.numeric.identify.constants import (
     UNALIKE,
 )
 from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
-from ptp_symbolic.numeric.identify.least_squares import weighted_median
+from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run_groups import sizes
 
 

@@ -25,6 +25,7 @@ from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
     FAR_OFF,
     FIRST_RUNG,
+    FORGOTTEN,
     ITERATIONS,
     LAST_RUNG,
     NEARBY,
@@ -134,11 +135,31 @@ def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
 def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
     """The trial fitted to its end, and begun anew where that is near the floor; `carried` [ny]."""
     trial = _to_its_end(task, trial, carried)
-    return started_anew(task, trial, carried) if _is_near_floor(trial) else trial
+    if not _is_near_floor(trial):
+        return trial
+    return started_anew(task, _in_time(task, trial, carried), carried)
 
 
 def _is_near_floor(trial: Trial) -> bool:
     return bool(np.all(left_over(trial.fit) <= NEARBY))
+
+
+def _in_time(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+    """The trial, or a better end past valleys in which friction lets go a sample late somewhere: a
+    drive soon forgets it, so that blocks of runs tell it from the parameters, where the sum of all
+    squares pays for it with parameters that are wrong everywhere (see `identify.robust_loss`).
+    """
+    for _ in range(CYCLES):
+        if leaves_white_noise(trial, carried):
+            return trial
+        candidates, z, run = trial.candidates, trial.fit.z, task.executor
+        eased = fitted(task, candidates, trial.values, z, POLISH, block=FORGOTTEN, executor=run)
+        if eased.fit.failed:
+            return trial
+        before, trial = trial, ranked([trial, _to_its_end(task, eased, carried)])[0]
+        if is_alike(trial, before):
+            break
+    return trial
 
 
 def started_anew(task: Task, trial: Trial, carried: FloatArray) -> Trial:

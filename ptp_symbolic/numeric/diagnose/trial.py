@@ -14,7 +14,7 @@ from ptp_symbolic.numeric.identify.constants import GAIN, LITTLE, ROUGH, TUNING,
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
-from ptp_symbolic.numeric.identify.least_squares import weighted_median
+from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import sizes
 from ptp_symbolic.numeric.runtime.model import Model
@@ -93,18 +93,20 @@ def fitted(
     parent: Fit | None = None,
     share: float = ROUGH,
     secants: float | None = None,
+    block: float = np.inf,
     executor: Executor | None = None,
 ) -> Trial:
     """Fit from `values` (all parameters of the model) and the starts `z`, each [nz], of the runs.
 
     `secants` is the step of the differences that replace derivatives which mislead; those that
-    misled the parent are known to mislead. `share` is that of `tolerance_for`; values out of bounds
-    are projected onto them.
+    misled the parent are known to mislead. `share` is that of `tolerance_for`, `block` the length
+    (s) of the blocks that a robust loss weighs; values out of bounds are projected onto them.
     """
     free = all_free(task, candidates, values)
     names = {name for f in free for name in f.names}
     fixed = {name: value for name, value in task.fixed.items() if name not in names}
-    effort = Effort(iterations, GAIN * share, tolerance_for(task, share), secants=secants)
+    tolerance = tolerance_for(task, share)
+    effort = Effort(iterations, GAIN * share, tolerance, secants=secants, block=block)
     known = None if secants is None else _inherited(parent, free)
     fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known)
     return Trial(tuple(candidates), fit)
@@ -148,7 +150,7 @@ def continued(
         trial.fit,
         share,
         secants,
-        executor,
+        executor=executor,
     )
     if new.fit.misleading is None and trial.fit.misleading is not None:
         new = replace(new, fit=replace(new.fit, misleading=trial.fit.misleading))

@@ -22,7 +22,7 @@ from ptp_symbolic.numeric.identify.constants import (
     SINGULAR,
     TUNING,
 )
-from ptp_symbolic.numeric.identify.least_squares import weighted_median
+from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

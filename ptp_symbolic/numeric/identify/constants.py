@@ -45,6 +45,7 @@ HUBER = 2.0  # 1; standard deviations beyond which a row counts linearly: 99 % e
 SEEN = 3.29  # 1; standard deviations: found with 95 % where 5 % are false alarms; derived
 FAR = 4.0  # 1; standard deviations that noise seldom reaches (once in 16,000); derived
 RESTING = 5.0  # 1; the same for every rate of a log (once in 1,700,000); derived
+FORGOTTEN = 0.25  # s; five time constants of drives (0.05 s), after which 0.7 % is left; derived
 NEARBY = 2.0 * FAR  # 1; standard deviations from which on all windows count alike; scaled
 MANY_RUNS = 20  # 1; windows whose median stands for all: good to 28 % of their spread; scaled
 MISLEADING = 0.25  # 1; share of a difference by which its derivative misleads; scaled

@@ -20,6 +20,7 @@ from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evalua
 from ptp_symbolic.numeric.identify.gap_places import gears_in_place, residual_of, with_gap_places
 from ptp_symbolic.numeric.identify.least_squares import Optimum, Problem, cost_of, minimise
 from ptp_symbolic.numeric.identify.requirements import keep_possible, nearest_possible
+from ptp_symbolic.numeric.identify.robust_loss import blocks_of
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.secants import Secants, Shift
 from ptp_symbolic.numeric.runtime.model import Model
@@ -32,11 +33,12 @@ DEFAULT_TOLERANCE = Tolerance()
 
 @dataclass(frozen=True)
 class Effort:
-    """How hard to search: iterations, relative gain at which to stop, simulation tolerance, and how
-    many steps in a row may be rejected.
+    """How to search: iterations, relative gain at which to stop, simulation tolerance, and how many
+    steps in a row may be rejected.
 
     `secants` is the step, in search coordinates, of the finite differences that replace derivatives
-    which mislead (see `identify.secants`); None: none are replaced.
+    which mislead (see `identify.secants`); None: none are replaced. `block` is the length (s) of
+    the blocks of a run that the robust loss weighs: whole runs, unless given.
     """
 
     iterations: int = 30
@@ -44,6 +46,7 @@ class Effort:
     tolerance: Tolerance = DEFAULT_TOLERANCE
     secants: float | None = None
     rejections: int = 5
+    block: float = np.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +114,7 @@ def fit_parameters(
         z = gears_in_place(model, runs, values, guesses, effort.tolerance, executor)
     best = minimise(problem, phi, z, effort.iterations, effort.gain, effort.rejections)
     values = {**fixed, **all_values(free, best.phi)}
+    chosen = None if problem.refine is None else problem.refine.chosen
     return Fit(
         model,
         tuple(runs),
@@ -121,9 +125,7 @@ def fit_parameters(
         tuple(best.evaluations),
         best.failed,
         effort.tolerance,
-        None
-        if problem.refine is None or problem.refine.chosen is None
-        else tuple(problem.refine.chosen),
+        None if chosen is None else tuple(chosen),
     )
 
 
@@ -234,7 +236,7 @@ def simulations_of(
 
 def problem_of(simulations: Simulations, effort: Effort) -> Problem:
     """Least squares over the runs of `simulations`, within the bounds of its parameters."""
-    free, runs = simulations.free, simulations.runs
+    free, runs, length = simulations.free, simulations.runs, effort.block
     lower, upper = limits(free)
     return Problem(
         simulations.evaluate,
@@ -249,6 +251,7 @@ def problem_of(simulations: Simulations, effort: Effort) -> Problem:
         if effort.secants is None
         else Secants(simulations.residual, upper, simulations.executor, step=effort.secants),
         keep_possible(simulations.model, free, simulations.parameters),
+        [blocks_of(run.time, len(run.signals), length) for run in runs],
     )
 
 

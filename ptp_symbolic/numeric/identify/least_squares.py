@@ -16,12 +16,10 @@ from ptp_symbolic.numeric.identify.constants import (
     BIGGEST,
     FIRST_DAMPING,
     LARGEST_STEP,
-    MANY_RUNS,
-    NEARBY,
-    TUNING,
 )
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.requirements import Allow
+from ptp_symbolic.numeric.identify.robust_loss import Block, loss, robust_tuning, shares
 from ptp_symbolic.numeric.identify.secants import Secants
 
 FloatArray = NDArray[np.float64]
@@ -37,7 +35,8 @@ class Problem:
 
     `refine`, where given, corrects the Jacobians from which steps are taken: those that come out
     are always the ones at the point, which intervals need. `allow` projects steps that lead where
-    no machine is possible.
+    no machine is possible. `blocks` are, run by run, the blocks of rows that the robust loss weighs
+    (see `identify.robust_loss`): whole runs, unless given.
     """
 
     evaluate: Evaluate
@@ -50,6 +49,7 @@ class Problem:
     prior_precision: FloatArray
     refine: Secants | None = None
     allow: Allow | None = None
+    blocks: Sequence[Block] | None = None
 
 
 @dataclass(frozen=True)
@@ -61,45 +61,6 @@ class Optimum:
     cost: float
     evaluations: list[Evaluation] = field(repr=False, default_factory=list)
     failed: str | None = None
-
-
-def weighted_median(values: FloatArray, weight: FloatArray) -> FloatArray:
-    """Medians [v] of the columns of `values` [k, v], whose rows count by `weight` [k]."""
-    order = np.argsort(values, axis=0, kind="stable")
-    below = np.cumsum(weight[order], axis=0) - 0.5 * weight[order]
-    at = 0.5 * weight.sum()
-    ordered = np.take_along_axis(values, order, axis=0)
-    columns = zip(below.T, ordered.T, strict=True)
-    return np.array([np.interp(at, b, v) for b, v in columns])
-
-
-def robust_tuning(evaluations: Sequence[Evaluation]) -> float:
-    """Tuning constant of Cauchy's loss: the root mean square at which a window counts half.
-
-    Infinite for a few whole runs, and while most windows are still far off.
-    """
-    if len(evaluations) < MANY_RUNS or any(e.failed for e in evaluations):
-        return np.inf
-    squares = np.array([[float(np.mean(e.residual**2))] for e in evaluations])
-    size = np.array([float(e.residual.size) for e in evaluations])
-    middle = float(np.sqrt(weighted_median(squares, size)[0]))
-    return TUNING * middle if middle < NEARBY else np.inf
-
-
-def _loss(e: Evaluation, tuning: float) -> float:
-    """Cauchy's loss of a window: square well below the tuning constant, its logarithm beyond: a
-    window that began on the wrong side of a rest says nothing about the parameters (Black and
-    Anandan, 1996).
-    """
-    square = float(e.residual @ e.residual)
-    if np.isinf(tuning):
-        return square
-    return float(e.residual.size * tuning**2 * np.log1p(square / e.residual.size / tuning**2))
-
-
-def _share(e: Evaluation, tuning: float) -> float:
-    """Weight of a window in the normal equations."""
-    return 1.0 / (1.0 + float(np.mean(e.residual**2)) / tuning**2)
 
 
 def cost_of(
@@ -114,7 +75,7 @@ def cost_of(
     """
     if any(e.failed for e in evaluations):
         return np.inf
-    fit = sum(_loss(e, tuning) for e in evaluations)
+    fit = sum(loss(e, block, tuning) for e, block in _pairs(problem, evaluations))
     steepest = max(
         (np.max(np.abs(j), initial=0.0) for e in evaluations for j in (e.by_parameter, e.by_start)),
         default=0.0,
@@ -183,10 +144,19 @@ class _Weights:
     scale: float
 
 
+def _pairs(
+    problem: Problem, evaluations: Sequence[Evaluation]
+) -> list[tuple[Evaluation, Block | None]]:
+    if problem.blocks is None:
+        return [(e, None) for e in evaluations]
+    return list(zip(evaluations, problem.blocks, strict=True))
+
+
 def _weigh(problem: Problem, at: _Point) -> _Weights:
-    tuning = robust_tuning(at.evaluations)
+    pairs = _pairs(problem, at.evaluations)
+    tuning = robust_tuning(pairs)
     size = sum(e.residual.size for e in at.evaluations)
-    mean_square = sum(_loss(e, tuning) for e in at.evaluations) / size
+    mean_square = sum(loss(e, block, tuning) for e, block in pairs) / size
     return _Weights(tuning, problem.prior_precision * mean_square, max(1.0, mean_square))
 
 
@@ -228,16 +198,16 @@ def _step(
     schur, right = np.diag(weight), -weight * (phi - problem.prior_centre)
     diagonal = weight.copy()
     blocks = []
-    for e, a, sigma, low, high in zip(
-        at.evaluations,
+    for (e, block), a, sigma, low, high in zip(
+        _pairs(problem, at.evaluations),
         at.z,
         problem.start_sigma,
         problem.start_lower,
         problem.start_upper,
         strict=True,
     ):
-        share = np.sqrt(_share(e, weights.tuning))
-        j, k, r = share * e.by_parameter, share * e.by_start, share * e.residual
+        root = np.sqrt(shares(e, block, weights.tuning))
+        j, k, r = root[:, None] * e.by_parameter, root[:, None] * e.by_start, root * e.residual
         jj, jk, kk = j.T @ j, j.T @ k, k.T @ k
         kk = kk + np.diag(scale / sigma**2)
         kk = kk + damping * np.diag(np.diag(kk))
