@@ -26,7 +26,14 @@ from ptp_symbolic.numeric.diagnose.responses import Columns, least, response_col
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.signatures import Signature
 from ptp_symbolic.numeric.diagnose.starts import in_place
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, ranked
+from ptp_symbolic.numeric.diagnose.trial import (
+    Task,
+    Trial,
+    fitted,
+    halving,
+    keys_of,
+    ranked,
+)
 from ptp_symbolic.numeric.identify.constants import (
     ITERATIONS,
     MATERIAL,
@@ -60,12 +67,14 @@ class Similarity:
 
 def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> list[Rival]:
     """Sets as large as the chosen one, of which these logs do not prefer the chosen one clearly and
-    materially, `others` among them. `fit` is its fit, from `with_finite_differences`.
+    materially, `others`, which the search has begun already, among them. `fit` is its fit, from
+    `with_finite_differences`.
 
     A few iterations tell which come near the chosen set. Where that leaves more than noise, a set
     that it cannot be told from by its response is fitted to its end, however far it is till then.
     """
     task = seeker.task
+    tried = {t.keys for t in others}
     begun: list[Trial] = []
     resembling: set[tuple[str, ...]] = set()
     for member in chosen.candidates:
@@ -77,10 +86,11 @@ def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> 
         along = alike_along_motion(seeker.proposals, chosen, member)
         wanted = {c.key: c for c in (*(s.candidate for s in similar), *along)}
         for candidate in wanted.values():
-            begun += in_place(task, seeker.proposals, (*kept, candidate), chosen)
+            instead = (*kept, candidate)
+            if keys_of(instead) not in tried:
+                begun += in_place(task, seeker.proposals, instead, chosen)
         if not seeker.is_at_noise(chosen):
-            keys = {c.key for c in kept}
-            resembling |= {tuple(sorted({*keys, s.candidate.key})) for s in similar}
+            resembling |= {keys_of((*kept, s.candidate)) for s in similar}
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
     trials = halving(task, begun, ((ITERATIONS, len(begun)),))

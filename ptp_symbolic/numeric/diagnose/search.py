@@ -50,10 +50,12 @@ def _from_declared(seeker: Seeker) -> Search:
     task, best = seeker.task, seeker.declared
     if seeker.proposals.asked_for or not seeker.is_at_noise(best):
         sets = started(task, seeker.declared, seeker.proposals)
-        unseen = [] if seeker.is_at_noise(best) else seeker.unseen(best)
-        task.progress(f"refitting {len(sets) + len(unseen)} proposed sets")
+        task.progress(f"refitting {len(sets)} proposed sets")
         found = halving(task, sets, FIRST_RUNG + LAST_RUNG, seeker.others)
-        found += halving(task, unseen, LAST_RUNG)
+        if not seeker.have_answer(best, *found, *seeker.others):
+            unseen = seeker.unseen(best)
+            task.progress(f"refitting {len(unseen)} effects that the motion does not show")
+            found += halving(task, unseen, LAST_RUNG)
         found = [t for t in ranked(found) if is_near(t, found)]
         best = seeker.restarted(ranked([best, *(seeker.completed(t) for t in found)])[0])
     begun, steps = seeker.pruned(best)
@@ -67,8 +69,9 @@ def _from_declared(seeker: Seeker) -> Search:
     if best.candidates:
         again = declared_from(task, best, seeker.declared, seeker.carried)
         if again is not None:
-            seeker.declared, seeker.others = again, []
+            seeker.declared = again
             if not seeker.is_at_noise(best):
+                seeker.others = []
                 return _from_declared(seeker)
             best, steps = seeker.pruned(best)
     best = seeker.sharpened(seeker.simplified(best))

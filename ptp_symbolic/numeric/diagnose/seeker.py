@@ -71,6 +71,12 @@ class Seeker:
         """Whether a trial leaves white noise alone."""
         return leaves_white_noise(trial, self.carried)
 
+    def have_answer(self, *trials: Trial) -> bool:
+        """Whether any of them leaves white noise alone, with one candidate at most: no other set
+        fits better, and those as small are compared with it later, in its place.
+        """
+        return any(len(t.candidates) < 2 and self.is_at_noise(t) for t in trials)
+
     def polished(self, trial: Trial) -> Trial:
         """The trial fitted to its end."""
         return polished(self.task, trial, self.carried)
@@ -202,7 +208,7 @@ class Seeker:
         ]
         left = halving(self.task, begun, ((ITERATIONS, TRIED),), self.others)
         found = [self.polished(t) for t in left if is_near(t, [trial])]
-        self.others += found
+        self.others += [*found, *(t for t in left if not is_near(t, [trial]))]
         best = ranked([trial, *found])[0]
         return None if best is trial else best
 

@@ -60,12 +60,17 @@ class Trial:
     @property
     def keys(self) -> tuple[str, ...]:
         """Keys of the candidates, sorted."""
-        return tuple(sorted(c.key for c in self.candidates))
+        return keys_of(self.candidates)
 
     @property
     def values(self) -> dict[str, float]:
         """Values of all parameters of the model."""
         return dict(self.fit.values)
+
+
+def keys_of(candidates: Sequence[Candidate]) -> tuple[str, ...]:
+    """Keys of candidates, sorted: equal for equal sets."""
+    return tuple(sorted(c.key for c in candidates))
 
 
 def all_free(
