@@ -225,7 +225,10 @@ class Seeker:
                 lost = {n: v for n, v in candidate.vanishing.items() if n not in names}
                 if expected_gain(trial, lost) > MOST:
                     continue
-                smaller = self.in_form(trial, candidate, form)
+                smaller = self.begun_in_form(trial, candidate, form)
+                if gain(trial, smaller).share >= MOST:
+                    continue
+                smaller = self.polished(smaller)
                 if not self.is_earned(gain(trial, smaller), p_value(trial, lost)):
                     trial = smaller
                     break
@@ -233,12 +236,12 @@ class Seeker:
 
     def in_form(self, trial: Trial, candidate: Candidate, form: Candidate) -> Trial:
         """The trial refitted with a candidate in another form."""
+        return self.polished(self.begun_in_form(trial, candidate, form))
+
+    def begun_in_form(self, trial: Trial, candidate: Candidate, form: Candidate) -> Trial:
+        """The same after some iterations."""
         dropped = set(candidate.parameters) - set(form.parameters)
         values = trial.values | {name: self.task.fixed[name] for name in dropped}
         candidates = tuple(form if c is candidate else c for c in trial.candidates)
-        task = self.task
-        return self.polished(
-            fitted(
-                task, candidates, values, trial.fit.z, ITERATIONS, trial.fit, executor=task.executor
-            )
-        )
+        task, run = self.task, self.task.executor
+        return fitted(task, candidates, values, trial.fit.z, ITERATIONS, trial.fit, executor=run)
