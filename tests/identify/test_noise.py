@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from ptp_symbolic.numeric.identify.noise import coloured_noise, hidden_from_differences, white_noise
+from ptp_symbolic.numeric.identify.noise import (
+    coloured_noise,
+    hidden_from_differences,
+    neighbour_correlation,
+    white_noise,
+)
 from tests.identify.curves import Floats
 
 TIME = np.arange(4000)
@@ -108,3 +113,40 @@ def test_so_much_of_an_autoregression_is_hidden_from_differences(pole: float) ->
     series = lfilter([np.sqrt(1.0 - pole**2)], [1.0, -pole], drawn)
     size = hidden_from_differences(pole)
     assert white_noise(size * series) == pytest.approx(1.0, rel=0.05)
+
+
+@pytest.mark.parametrize("pole", [0.0, 0.3, 0.9])
+def test_noise_is_correlated_from_sample_to_sample_as_its_interval_says(pole: float) -> None:
+    """On a motion with kinks; of 40 intervals of 95 % at least 35 hold (38 less 3 deviations)."""
+    time = 0.005 * np.arange(10_000)
+    motion = np.sin(8.0 * time) + np.abs(np.sin(2.0 * time))
+    found = [neighbour_correlation(motion + 1e-3 * row) for row in remembering(pole, 40, 10_000)]
+    assert sum(c is not None and c.least <= pole <= c.most for c in found) >= 35
+
+
+@pytest.mark.parametrize("pole", [0.0, 0.3, 0.6])
+def test_a_long_series_shows_the_correlation_of_its_noise(pole: float) -> None:
+    """Up to what 25,000 segments leave open: poles near one have all but one slope there."""
+    found = neighbour_correlation(remembering(pole, 1, 800_000)[0])
+    assert found is not None and found.value == pytest.approx(pole, abs=0.05)
+
+
+def test_coloured_noise_is_told_from_white_noise() -> None:
+    """The interval of the one begins above zero, that of the other does not."""
+    found = [neighbour_correlation(remembering(pole, 1, 20_000)[0]) for pole in (0.8, 0.0)]
+    assert found[0] is not None and found[0].least > 0.3
+    assert found[1] is not None and found[1].least == 0.0
+
+
+def test_rounding_is_white_where_the_motion_goes_through_many_counts() -> None:
+    """A motion that rests half of the time, which leaves half of the segments out."""
+    time = 0.005 * np.arange(20_000)
+    moving = np.where(np.sin(0.6 * time) > 0.0, np.sin(6.0 * time), 0.0)
+    found = neighbour_correlation(np.rint(4000.0 * moving))
+    assert found is not None and found.least < 0.1 and found.most < 0.3
+
+
+def test_a_signal_that_rests_or_is_short_shows_no_correlation() -> None:
+    """Nothing is left of the one, two segments of the other."""
+    assert neighbour_correlation(np.ones(5000)) is None
+    assert neighbour_correlation(remembering(0.0, 1, 150)[0]) is None

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from ptp_symbolic.numeric.identify.constants import FAR, LEAST_START, START_SPAN
-from ptp_symbolic.numeric.identify.noise import white_noise
+from ptp_symbolic.numeric.identify.noise import Correlation, neighbour_correlation, white_noise
 from ptp_symbolic.numeric.identify.run import Run
 
 FloatArray = NDArray[np.float64]
@@ -21,7 +21,8 @@ class SignalFacts:
     its levels (None where it has no few levels), and the share of samples at its ends.
 
     Of an angle or a position `resting` is the share of the time in which it stays within its noise
-    for a tenth of a second, and `fastest` its largest rate per second over that span.
+    for a tenth of a second, and `fastest` its largest rate per second over that span. Of an output
+    `correlation` is that of its noise from sample to sample (None: too few samples).
     """
 
     name: str
@@ -31,6 +32,7 @@ class SignalFacts:
     noise: float
     step: float | None
     at_ends: float
+    correlation: Correlation | None = None
     resting: float | None = None
     fastest: float | None = None
 
@@ -95,4 +97,6 @@ def _signal(
     ends = float(np.mean((column == low) | (column == high))) if high > low else 1.0
     levels = np.unique(column)
     step = float(np.median(np.diff(levels))) if 1 < len(levels) <= len(column) // 2 else None
-    return SignalFacts(name, role, low, high, white_noise(column), step, ends, resting, fastest)
+    noise = white_noise(column)
+    colour = neighbour_correlation(column) if role == "output" else None
+    return SignalFacts(name, role, low, high, noise, step, ends, colour, resting, fastest)

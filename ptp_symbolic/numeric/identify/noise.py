@@ -3,17 +3,17 @@
 Differences of high order of a signal remove its smooth motion and keep its white noise, which gives
 a first size. What a model leaves shows the colour: its spectrum above the frequencies of the motion
 is that of a first-order autoregression plus white noise, whose likelihood (Whittle, 1953) gives the
-whole variance, also below.
+whole variance, also below. Before any fit, only the upper half of the spectrum is free of motion.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import optimize, stats
 
 from ptp_symbolic.numeric.identify.constants import (
     FAR,
@@ -84,6 +84,59 @@ def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
     return Noise(float(np.sqrt(fits[best][1])), float(POLES[best]), float(np.sqrt(most)))
 
 
+@dataclass(frozen=True)
+class Correlation:
+    """Correlation of noise from one sample to the next, and its 95 % interval."""
+
+    value: float
+    least: float
+    most: float
+
+
+def neighbour_correlation(signal: FloatArray) -> Correlation | None:
+    """How the noise of a smooth `signal` [n], evenly sampled, is correlated from sample to sample,
+    were it an autoregression: by what its differences hold above a quarter of the sampling rate.
+
+    Whittle's likelihood of the median periodogram, which a few kinks of the motion do not change.
+    Stretches that do not change at all are left out; None where too few others remain.
+    """
+    parts = [part for part in _segments(np.diff(signal, ORDER)) if np.any(part)]
+    if len(parts) < 2 * LOWEST:
+        return None
+    upper = slice(SEGMENT // 4, -LOWEST)  # at half the rate the taper mixes a bin with its mirror
+    power = np.median([_periodogram(part)[upper] for part in parts], axis=0) / np.log(2.0)
+    power /= np.mean(power)
+    efficiency = np.log(2.0) ** 2  # of the median of exponential numbers beside their mean
+    mixed = SEGMENT * np.sum(_taper() ** 4) / np.sum(_taper() ** 2) ** 2  # bins, by the taper
+    degrees = 2.0 * efficiency * len(parts) / (OVERLAP_CORRELATION * mixed)
+
+    def likelihood(pole: float) -> float:
+        shape = _windowed(_differenced(pole))[upper]
+        return _likelihood(power, shape * np.mean(power / shape), degrees)
+
+    last = float(POLES[-1])
+    best = optimize.minimize_scalar(lambda pole: -likelihood(pole), bounds=(0.0, last))
+    allowed = -float(best.fun) - 0.5 * float(stats.chi2.ppf(0.95, 1))
+
+    def bound(end: float) -> float:
+        inside = likelihood(end) >= allowed
+        return end if inside else _root(lambda pole: likelihood(pole) - allowed, best.x, end)
+
+    return Correlation(float(best.x), bound(0.0), bound(last))
+
+
+def _root(function: Callable[[float], float], one: float, other: float) -> float:
+    return float(optimize.brentq(function, one, other))
+
+
+def _differenced(pole: float) -> FloatArray:
+    """Autocovariance [SEGMENT] of the differences of order ORDER of an autoregression."""
+    weights = np.array([(-1.0) ** k * comb(ORDER, k) for k in range(ORDER + 1)])
+    product = np.convolve(weights, weights[::-1])
+    lags = np.abs(np.arange(SEGMENT)[:, None] + np.arange(-ORDER, ORDER + 1))
+    return np.asarray(pole**lags @ product, dtype=np.float64)
+
+
 def hidden_from_differences(pole: float) -> float:
     """Standard deviation of an autoregression with `pole` that adds as much to the differences of
     order ORDER as white noise of standard deviation 1 does: `white_noise` sees no more of it.
@@ -97,14 +150,25 @@ def _spectrum(series: Sequence[FloatArray]) -> tuple[FloatArray, int]:
     """Mean periodogram [SEGMENT/2 + 1] per sample of Hann windows that overlap by half (Welch,
     1967), scaled so that white noise of variance 1 has power 1, and the number of windows.
     """
-    taper = np.hanning(SEGMENT + 1)[:-1]
-    total, count = np.zeros(SEGMENT // 2 + 1), 0
-    for values in series:
-        for first in range(0, len(values) - SEGMENT + 1, SEGMENT // 2):
-            part = values[first : first + SEGMENT]
-            total += np.abs(np.fft.rfft((part - part.mean()) * taper)) ** 2
-            count += 1
-    return total / max(count, 1) / float(np.sum(taper**2)), count
+    found = [_periodogram(part) for values in series for part in _segments(values)]
+    return np.sum(found, axis=0) / max(len(found), 1), len(found)
+
+
+def _segments(values: FloatArray) -> list[FloatArray]:
+    """Stretches [SEGMENT] of `values` [n] that overlap by half."""
+    last = len(values) - SEGMENT
+    return [values[first : first + SEGMENT] for first in range(0, last + 1, SEGMENT // 2)]
+
+
+def _periodogram(part: FloatArray) -> FloatArray:
+    """Periodogram [SEGMENT/2 + 1] per sample of a stretch [SEGMENT] under a Hann window."""
+    taper = _taper()
+    power = np.abs(np.fft.rfft((part - part.mean()) * taper)) ** 2
+    return np.asarray(power / np.sum(taper**2))
+
+
+def _taper() -> FloatArray:
+    return np.hanning(SEGMENT + 1)[:-1]
 
 
 @lru_cache(maxsize=64)
@@ -112,12 +176,16 @@ def _expected(pole: float) -> FloatArray:
     """Expected periodogram [SEGMENT/2 + 1] under the window of an autoregression with innovations
     of variance 1: the window smears a steep spectrum far beyond its corner (Sykulski et al., 2019).
     """
-    taper = np.hanning(SEGMENT + 1)[:-1]
+    return _windowed(np.asarray(pole ** np.arange(SEGMENT) / (1.0 - pole**2), dtype=np.float64))
+
+
+def _windowed(autocovariance: FloatArray) -> FloatArray:
+    """Expected periodogram [SEGMENT/2 + 1] under the window, by the `autocovariance` [SEGMENT]."""
+    taper = _taper()
     overlap = np.correlate(taper, taper, "full")[SEGMENT - 1 :] / np.sum(taper**2)
-    lags = np.arange(SEGMENT)
-    covariance = overlap * pole**lags / (1.0 - pole**2)
+    covariance = overlap * autocovariance
     omega = 2.0 * np.pi * np.arange(SEGMENT // 2 + 1) / SEGMENT
-    sums = np.cos(np.outer(omega, lags)) @ covariance
+    sums = np.cos(np.outer(omega, np.arange(SEGMENT))) @ covariance
     return np.asarray(2.0 * sums - covariance[0])
 
 
