@@ -9,7 +9,7 @@ from ptp_symbolic.numeric.data import log_files, read_logs
 from ptp_symbolic.numeric.diagnose.errors import error_of
 from ptp_symbolic.numeric.diagnose.floor import carried_noise, floor_of
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.refits import fit_declared, refitted_in_windows
+from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.summary import fit_table
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
 from ptp_symbolic.numeric.identify.fit import (
@@ -58,7 +58,7 @@ def fit_platform(
         trial = begun
         if task.free:
             progress("fitting")
-            task, trial = refitted_in_windows(task, fit_declared(task, propose(task)))
+            task, trial = fit_declared(task, propose(task))
             trial = replace(trial, fit=with_finite_differences(trial.fit, executor))
         floor = floor_of(task, trial, carried_noise(task, trial.fit))
     units = model.units

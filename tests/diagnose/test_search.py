@@ -19,7 +19,7 @@ from tests.diagnose.spring_table import STIFFNESS, spring_table
 def seeker(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Seeker]:
     with spring_table(tmp_path_factory.mktemp("table")) as task:
         proposals = propose(task)
-        declared = fit_declared(task, proposals)
+        task, declared = fit_declared(task, proposals)
         yield Seeker(task, declared, proposals, carried_noise(task, declared.fit))
 
 

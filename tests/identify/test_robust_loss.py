@@ -41,8 +41,6 @@ def test_loss_of_windows_by_hand() -> None:
     assert cost_of(problem, windows, no_starts, tuning) == pytest.approx(by_hand, rel=1e-14)
     assert cost_of(problem, windows, no_starts) == pytest.approx(190 + 10 * 100, rel=1e-14)
     assert robust_tuning([(e, None) for e in windows[:19]]) == np.inf
-    far = [replace(e, residual=8.0 * e.residual) for e in windows]
-    assert robust_tuning([(e, None) for e in far]) == np.inf
     failed = [replace(windows[0], failed="stopped"), *windows[1:]]
     assert robust_tuning([(e, None) for e in failed]) == np.inf
 

@@ -7,7 +7,12 @@ import numpy as np
 
 from ptp_symbolic.numeric.diagnose.candidates import find_candidates, vanished
 from ptp_symbolic.numeric.diagnose.trial import Progress, Task
-from ptp_symbolic.numeric.identify.constants import LONG, MANY_RUNS, SHORT, WINDOW_PERIOD
+from ptp_symbolic.numeric.identify.constants import (
+    FORGOTTEN,
+    MANY_RUNS,
+    SHORT,
+    WINDOW_PERIOD,
+)
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.fit import all_values_at_start
 from ptp_symbolic.numeric.identify.run import Run
@@ -43,12 +48,12 @@ def task_of(
     if length is not None and length >= max(float(run.time[-1] - run.time[0]) for run in train):
         length = None
     few = [thinned(run, WINDOW_PERIOD) for run in train]
-    windows = (_spread(cut(model, few, SHORT)), cut(model, few, LONG)) if length is None else ()
+    windows = tuple(_spread(cut(model, few, w), w) for w in (FORGOTTEN, SHORT))
     return Task(
         model,
         train,
         cut(model, train, length),
-        windows,
+        windows if length is None else (),
         cut(model, validate, length),
         free,
         fixed,
@@ -61,9 +66,11 @@ def task_of(
     )
 
 
-def _spread(windows: tuple[Run, ...]) -> tuple[Run, ...]:
-    """Windows spread over the logs, at least as many as tell what is usual."""
-    return windows[:: max(1, len(windows) // MANY_RUNS)]
+def _spread(windows: tuple[Run, ...], length: float) -> tuple[Run, ...]:
+    """Windows of `length` s spread over the logs, at least as many as tell what is usual, and more
+    of shorter ones, in the same time.
+    """
+    return windows[:: max(1, int(len(windows) * length / (MANY_RUNS * SHORT)))]
 
 
 def _finest_angle(runs: Sequence[Run]) -> float:

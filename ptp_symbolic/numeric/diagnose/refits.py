@@ -22,6 +22,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
     ranked,
 )
 from ptp_symbolic.numeric.identify.constants import (
+    ABOVE_NOISE,
     CYCLES,
     FAR_OFF,
     FIRST_RUNG,
@@ -42,19 +43,33 @@ from ptp_symbolic.numeric.identify.windows import cut_where_noise_grows
 FloatArray = NDArray[np.float64]
 
 
-def fit_declared(task: Task, proposals: Proposals) -> Trial:
+def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
     """The declared model, from where windows lead from the rows' start and from the declared one,
-    and from those two themselves; where runs are windows already, from starts far off too.
+    and from those two themselves; where runs are windows already, from starts far off too. And the
+    task with windows for runs that multiply the noise of their inputs (see `in_windows`), which
+    would lead the fit astray.
     """
     starts = [proposals.start, declared_start(task)]
     spread = far_starts(task, proposals.start) if has_rough_starts(task) else []
-    begun = over_windows(task, (), [*starts, *spread], task.executor)
+    begun = over_windows(task, (), starts, task.executor, spread)
+    if begun:
+        part = in_windows(task, begun[0])
+        if part is not task:
+            task, begun = part, [fitted(part, (), begun[0].values, None)]
     begun += [fitted(task, (), values, None) for values in starts]
     if not task.windows:
         far = [fitted(task, (), values, None) for values in spread]
         begun += halving(task, far, FIRST_RUNG)
     best = halving(task, begun, LAST_RUNG) or begun[-1:]
-    return polished(task, best[0], carried_noise(task, best[0].fit))
+    trial = polished(task, best[0], carried_noise(task, best[0].fit))
+    part = in_windows(task, trial)
+    if part is task:
+        return task, trial
+    short = fitted(part, (), trial.values, None)
+    short = polished(part, short, carried_noise(part, short.fit))
+    if np.any(left_over(short.fit) > left_over(trial.fit)):
+        return task, trial
+    return part, short
 
 
 def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]]:
@@ -70,23 +85,21 @@ def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]
     ]
 
 
-def refitted_in_windows(task: Task, declared: Trial) -> tuple[Task, Trial]:
+def in_windows(task: Task, declared: Trial) -> Task:
     """The task with runs cut into windows where the fitted model amplifies the noise of the inputs
-    beyond that of the outputs (see `cut_where_noise_grows`), and the declared model refitted.
+    beyond that of the outputs (see `cut_where_noise_grows`).
     """
     model, noise = task.model, task.input_noise
     p = model.parameter_vector(declared.values)
     left = np.sqrt(mean_squares(declared.fit.evaluations, task.train))
     train = cut_where_noise_grows(model, task.train, declared.fit.z, left, p, noise)
     if len(train) == len(task.train):
-        return task, declared
-    task.progress("refitting, runs that multiply the noise of their inputs in windows")
+        return task
+    task.progress("runs that multiply the noise of their inputs are cut into windows")
     starts = [run.guess for run in task.validate]
     any_left = np.zeros((len(starts), left.shape[1]))
     validate = cut_where_noise_grows(model, task.validate, starts, any_left, p, noise)
-    task = replace(task, train=train, validate=validate)
-    begun = fitted(task, (), declared.values, None)
-    return task, polished(task, begun, carried_noise(task, begun.fit))
+    return replace(task, train=train, validate=validate)
 
 
 def without_misleading(trial: Trial) -> Trial:
@@ -99,22 +112,33 @@ def over_windows(
     candidates: Sequence[Candidate],
     starts: Sequence[Mapping[str, float]],
     executor: Executor | None = None,
+    spread: Sequence[Mapping[str, float]] = (),
 ) -> list[Trial]:
-    """The trial that begins where fits over ever longer windows lead from the best of `starts`: a
-    whole run that sticks where the machine slid leads a fit astray, windows do not (multiple
-    shooting: Bock, 1983). None where the runs are windows already, or no fit succeeds.
+    """The trial that begins where fits over ever longer windows lead from the best of `starts`, and
+    of those `spread` further off where these leave more than white noise: a whole run that sticks
+    where the machine slid leads a fit astray, windows do not (multiple shooting: Bock, 1983). None
+    where the runs are windows already, or no fit succeeds.
     """
-    trials: list[Trial] = []
+    best: Trial | None = None
     for windows in task.windows:
         part = replace(task, train=windows)
-        trials = [
-            fitted(part, candidates, values, None, ITERATIONS, executor=executor)
-            for values in ([t.values for t in trials] or starts)
-        ]
-        trials = [settled(part, ranked(trials)[0], executor)]
-        if trials[0].fit.failed:
+        begun: list[Trial] = []
+        for group in ([best.values],) if best else (starts, spread):
+            if not begun or not np.all(left_over(begun[0].fit) <= ABOVE_NOISE):
+                begun = ranked([*begun, *_begun(part, candidates, group, executor)])
+        best = settled(part, begun[0], executor)
+        if best.fit.failed:
             return []
-    return [fitted(task, candidates, t.values, None) for t in trials]
+    return [fitted(task, candidates, best.values, None)] if best else []
+
+
+def _begun(
+    task: Task,
+    candidates: Sequence[Candidate],
+    starts: Sequence[Mapping[str, float]],
+    executor: Executor | None,
+) -> list[Trial]:
+    return [fitted(task, candidates, v, None, ITERATIONS, executor=executor) for v in starts]
 
 
 def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:

@@ -24,7 +24,7 @@ def screened(
     to some windows of the task, the best fit first. A fit begins where the rows start the set, or
     at `values` and the candidate's own start, whichever is better.
     """
-    part = replace(task, train=task.windows[0]) if task.windows else task
+    part = replace(task, train=task.windows[1]) if task.windows else task
     have = {c.key for c in kept}
     by_key = {c.key: c for c in reversed(task.candidates)}
 

@@ -11,10 +11,7 @@ from ptp_symbolic.numeric.diagnose.proposals import (
     propose,
     with_lines,
 )
-from ptp_symbolic.numeric.diagnose.refits import (
-    fit_declared,
-    refitted_in_windows,
-)
+from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import started
 from ptp_symbolic.numeric.diagnose.trial import (
@@ -37,8 +34,7 @@ def search(task: Task) -> Search:
     proposals = propose(task)
     task = replace(task, candidates=with_lines(task.candidates, proposals))
     task.progress("fitting the declared model")
-    declared = fit_declared(task, proposals)
-    task, declared = refitted_in_windows(task, declared)
+    task, declared = fit_declared(task, proposals)
     seeker = Seeker(task, declared, proposals, carried_noise(task, declared.fit))
     return _from_declared(seeker)
 

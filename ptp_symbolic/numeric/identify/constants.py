@@ -73,7 +73,6 @@ SHARP = 0.1 * ROUGH  # 1; the same, at last; derived
 
 # Windows and rows
 SHORT = 1.0  # s; window beside the time constants of drives (0.05 s); scaled
-LONG = 3.0  # s; window beside runs of 10 s; scaled
 WINDOW_PERIOD = 5e-3  # s; between samples where windows only give starts; scaled
 START_SPAN = 0.1  # s; motion that tells a rate; scaled
 ANYWHERE = 1e3  # rad/s, half gaps; beyond any start of a machine; definition

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import MANY_RUNS, NEARBY, TUNING
+from ptp_symbolic.numeric.identify.constants import MANY_RUNS, TUNING
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 
 FloatArray = NDArray[np.float64]
@@ -39,7 +39,7 @@ def weighted_median(values: FloatArray, weight: FloatArray) -> FloatArray:
 def robust_tuning(pairs: Sequence[tuple[Evaluation, Block | None]]) -> float:
     """Tuning constant of the loss: the root mean square at which a block counts half.
 
-    Infinite for a few blocks, and while most of them are still far off.
+    Infinite for a few blocks.
     """
     if any(e.failed for e, _ in pairs):
         return np.inf
@@ -49,7 +49,7 @@ def robust_tuning(pairs: Sequence[tuple[Evaluation, Block | None]]) -> float:
         return np.inf
     sizes = np.concatenate([n for _, n in parts])
     middle = float(np.sqrt(weighted_median(squares[:, None], sizes)[0]))
-    return TUNING * middle if middle < NEARBY else np.inf
+    return TUNING * middle
 
 
 def loss(e: Evaluation, block: Block | None, tuning: float) -> float:
