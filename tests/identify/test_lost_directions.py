@@ -8,7 +8,6 @@ from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import estimates
 from tests.identify.straight import finished
 
-RNG = np.random.default_rng(5)
 TIME = np.arange(0.0, 20.0, 0.01)
 
 
@@ -16,7 +15,7 @@ def straight_line(columns: dict[str, np.ndarray], noise: float) -> Fit:
     """A finished fit of y = sum of columns, every coefficient 2, with white noise."""
     free = tuple(free_parameter(name, 2.0, 0.0, 50.0) for name in columns)
     matrix = np.column_stack(list(columns.values()))
-    residual = noise * RNG.standard_normal(len(TIME))
+    residual = noise * np.random.default_rng(5).standard_normal(len(TIME))
     return finished([residual], [-2.0 * matrix], None, free, dict.fromkeys(columns, 2.0))
 
 
