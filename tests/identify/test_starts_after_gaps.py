@@ -34,3 +34,14 @@ def test_what_follows_a_gap_is_told_to_rounding(first: int) -> None:
     judged = fit_parameters(MODEL, parts, (), {**KNOWN, **TRUTH}, None, FINE_STEPS)
     after = judged.evaluations[1].residual.reshape(parts[1].measured.shape)[:, 1]
     assert np.sqrt(np.mean(after**2)) * FLOOR < 1.15 * FLOOR
+
+
+def test_what_stays_within_its_noise_after_a_gap_may_turn_back_there() -> None:
+    """A log that begins at rest has no rate to be found; after a gap nothing tells rest."""
+    (whole,) = make_runs(PanDrive(), [sine()], 3).runs
+    still = np.tile(whole.measured[:1], (len(whole.time), 1))
+    kept = np.r_[0:200, 200 + LONG : len(whole.time)]
+    log = Log("still", whole.time[kept], whole.held_inputs[kept], still[kept])
+    before, after = ({u.name for u in run.unknowns} for run in prepare_runs(MODEL, PLATFORM, [log]))
+    assert before == {"theta_pan", "gap_place_0"}
+    assert after == {"theta_pan", "omega_pan", "omega_gear_pan", "gap_place_0"}

@@ -115,14 +115,16 @@ def with_start(
     window and `around` it is the rest of a log. A joint with dry friction whose rate is within its
     noise is taken to be at rest; one that is near it may be. A moving joint is driven: its gear
     touches the face ahead and has wound up the shaft, nobody knows by how much; or it crosses its
-    gap, at anything between standstill and twice the rate of the joint. Of one that is `underway`,
-    as in a window, the shaft may be wound up at rest too.
+    gap, at anything between standstill and twice the rate of the joint. In a window, and of one
+    that is `underway` after a gap in the log, the shaft may be wound up at rest too; and one that
+    is underway may turn back within its noise.
     """
-    underway = underway or around is not None
+    wound = underway or around is not None
     states = list(model.state_names)
     start = np.array(model.module.STATE_INITIAL, dtype=np.float64)
     friction_rates = {states[i] for i in model.friction_rates}
     unknowns: list[StartUnknown] = []
+    spread: dict[str, float] = {}  # of the rate of a joint that is not taken to be at rest
     for column, signal in enumerate(run.signals):
         if f"shown_{signal}" in states:
             start[states.index(f"shown_{signal}")] = run.measured[0, column]
@@ -134,6 +136,7 @@ def with_start(
                 rates = [n for n in (signal, f"omega_gear{signal[5:]}") if n in states]
                 start[[states.index(name) for name in rates]] = run.measured[0, column]
                 sigma = 1.0 / run.weight[column]
+                spread[signal] = float(np.hypot(run.measured[0, column], sigma))
                 unknowns.append(_unknown(states, signal, rates, ANYWHERE, sigma))
             continue
         if axis == signal or f"omega_{axis}" not in states:
@@ -147,20 +150,22 @@ def with_start(
         limit = 10.0 * sigma
         unknowns.append(_unknown(states, signal, angles, limit, sigma))
         may_rest = bool(friction_rates & set(rates))
-        if may_rest and _stays(run, column):
+        if may_rest and not underway and _stays(run, column):
             continue
         start[[states.index(name) for name in rates]] = rate
+        spread[rates[0]] = float(np.hypot(rate, error))
         instead = (0.0, -rate) if may_rest and abs(rate) <= 3.0 * FAR * error else ()
         unknowns.append(_unknown(states, rates[0], rates, ANYWHERE, error, instead))
     for contact, (gear, joint) in enumerate(model.module.CONTACT_ANGLES):
         tangent = np.zeros(len(states))
         tangent[gear] = 1.0
-        rate = start[states.index(states[joint].replace("theta_", "omega_", 1))]
+        joint_rate = states[joint].replace("theta_", "omega_", 1)
+        rate = start[states.index(joint_rate)]
         seen = run.signals.index(states[joint]) if states[joint] in run.signals else None
-        reach = ANYWHERE if underway or rate != 0.0 else 1.0
-        if rate != 0.0:
+        reach = ANYWHERE if wound or rate != 0.0 else 1.0
+        if joint_rate in spread:
             turning = states[gear].replace("theta_", "omega_", 1)
-            unknowns.append(_unknown(states, turning, [turning], ANYWHERE, abs(float(rate))))
+            unknowns.append(_unknown(states, turning, [turning], ANYWHERE, spread[joint_rate]))
         unknowns.append(
             StartUnknown(
                 f"gap_place_{contact}",
