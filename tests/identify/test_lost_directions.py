@@ -11,11 +11,11 @@ from tests.identify.straight import finished
 TIME = np.arange(0.0, 20.0, 0.01)
 
 
-def straight_line(columns: dict[str, np.ndarray], noise: float) -> Fit:
+def straight_line(columns: dict[str, np.ndarray], noise: float, seed: int = 5) -> Fit:
     """A finished fit of y = sum of columns, every coefficient 2, with white noise."""
     free = tuple(free_parameter(name, 2.0, 0.0, 50.0) for name in columns)
     matrix = np.column_stack(list(columns.values()))
-    residual = noise * np.random.default_rng(5).standard_normal(len(TIME))
+    residual = noise * np.random.default_rng(seed).standard_normal(len(TIME))
     return finished([residual], [-2.0 * matrix], None, free, dict.fromkeys(columns, 2.0))
 
 
@@ -39,11 +39,14 @@ def test_what_the_data_hardly_see_may_be_lost_with_what_they_see_well() -> None:
 
 
 def test_the_interval_of_what_is_seen_stays_that_of_the_textbook() -> None:
+    """Of 20 draws the usual one: blocks of the residual may widen it, never narrow it."""
     angle = np.cos(3.0 * TIME)
-    found = {
-        e.name: e
-        for e in estimates(straight_line({"b": np.sin(TIME), "k": angle, "idle": 0.0 * TIME}, 1.0))
-    }
-    half_width = 0.5 * (found["k"].upper - found["k"].lower)
-    assert half_width == pytest.approx(1.96 / np.linalg.norm(angle), rel=0.4)
-    assert not found["idle"].identified and found["idle"].only_with == ()
+    columns = {"b": np.sin(TIME), "k": angle, "idle": 0.0 * TIME}
+    half_widths = []
+    for seed in range(20):
+        found = {e.name: e for e in estimates(straight_line(columns, 1.0, seed))}
+        half_widths.append(0.5 * (found["k"].upper - found["k"].lower))
+        assert not found["idle"].identified and found["idle"].only_with == ()
+    textbook = 1.96 / np.linalg.norm(angle)
+    assert min(half_widths) > 0.99 * textbook
+    assert np.median(half_widths) == pytest.approx(textbook, rel=0.25)
