@@ -238,6 +238,7 @@ def problem_of(simulations: Simulations, effort: Effort) -> Problem:
     """Least squares over the runs of `simulations`, within the bounds of its parameters."""
     free, runs, length = simulations.free, simulations.runs, effort.block
     lower, upper = limits(free)
+    blocks = [blocks_of(r.time, len(r.signals), length) for r in runs] if length < np.inf else None
     return Problem(
         simulations.evaluate,
         lower,
@@ -251,7 +252,7 @@ def problem_of(simulations: Simulations, effort: Effort) -> Problem:
         if effort.secants is None
         else Secants(simulations.residual, upper, simulations.executor, step=effort.secants),
         keep_possible(simulations.model, free, simulations.parameters),
-        [blocks_of(run.time, len(run.signals), length) for run in runs],
+        blocks,
     )
 
 
