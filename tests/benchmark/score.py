@@ -26,7 +26,8 @@ class Score:
     """Class of an answer: "right", "missed" or "wrong".
 
     `group`: right, but a truth is named only as a member of a group; `covered`: effects of the
-    truth that are named, `by_group`: those of them named only through a group.
+    truth that are named, `by_group`: those of them named only through a group; `small`: dishonest
+    names of effects that a slightly wrong machine does have, too small to be named.
     """
 
     answer: str
@@ -36,6 +37,7 @@ class Score:
     dishonest: tuple[str, ...]
     covered: tuple[str, ...]
     by_group: tuple[str, ...]
+    small: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data."""
@@ -75,7 +77,8 @@ def score(truth: Data, diagnosis: Data | None) -> Score:
         return Score("missed", False, "none", (), (), (), ())
     listed: list[Key] = list(zip(truth["effects"], truth["axes"], strict=True))
     verdict = str(diagnosis["verdict"])
-    named, dishonest, covered, direct = [], [], set(), set()
+    deviating = set(truth["hidden"]) if truth["kind"] == "slightly_wrong" else set()
+    named, dishonest, small, covered, direct = [], [], [], set(), set()
     for one in diagnosis["added"]:
         key: Key = (one["effect"], one["axis"])
         group = [read_key(text) for text in one["confusable_with"]]
@@ -86,6 +89,7 @@ def score(truth: Data, diagnosis: Data | None) -> Score:
         covered |= hits
         if not hits:
             dishonest.append(write_key(key))
+            small += [write_key(key)] if deviating & set(one["parameters"]) else []
     right = not dishonest and _is_right(truth["kind"], verdict, covered == set(listed))
     return Score(
         answer="wrong" if dishonest else "right" if right else "missed",
@@ -95,6 +99,7 @@ def score(truth: Data, diagnosis: Data | None) -> Score:
         dishonest=tuple(dishonest),
         covered=tuple(sorted(write_key(key) for key in covered)),
         by_group=tuple(sorted(write_key(key) for key in covered - direct)),
+        small=tuple(small),
     )
 
 

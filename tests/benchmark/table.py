@@ -135,6 +135,7 @@ def failures(results: Sequence[Result]) -> list[Row]:
                         "floors": result.truth["response_floors"],
                         "verdict": result.score.verdict,
                         "named": ", ".join(result.score.named) or "-",
+                        "small": result.score.small,
                         "status": result.outcome["status"],
                     }
                 )
@@ -204,6 +205,8 @@ def _failure_line(row: Row) -> str:
     """A wrong or missed set as text."""
     size = f"level {row['levels']}, " if row["levels"] else ""
     status = "" if row["status"] == "done" else f" [{row['status']}]"
+    if row["small"]:
+        status += f" (deviations of this machine: {', '.join(row['small'])})"
     return (
         f"{row['answer']}: {row['id']} ({size}{row['floors']:.1f} floors): "
         f"{row['verdict']}, {row['named']}{status}"

@@ -15,6 +15,7 @@ def truth(kind: str, *keys: tuple[str, str | None], unlisted: tuple[str, ...] = 
         "axes": [axis for _, axis in keys],
         "unlisted": list(unlisted),
         "parameters": {"J_pan": 0.1, "alpha_base": 3.0, "k1_cable_pan": 0.5},
+        "hidden": {},
     }
 
 
@@ -56,6 +57,15 @@ def test_a_name_where_there_is_none_is_wrong(kind: str) -> None:
     result = score(truth(kind), answer("explained", (*SPRING, ("base_tilt",))))
     assert result.answer == "wrong"
     assert result.dishonest == ("cable_spring@pan",)
+
+
+def test_a_deviation_of_a_slightly_wrong_machine_is_told_apart_from_an_invented_effect() -> None:
+    named = answer("partly_explained", (*SPRING, ()), (*LEAN, ()))
+    named["added"][0]["parameters"] = {"k1_cable_pan": {"value": 0.4}}
+    machine = truth("slightly_wrong") | {"hidden": {"k1_cable_pan": 0.5}}
+    result = score(machine, named)
+    assert (result.answer, result.small) == ("wrong", ("cable_spring@pan",))
+    assert result.dishonest == ("cable_spring@pan", "base_tilt")
 
 
 def test_the_right_name_is_right_under_every_verdict_that_tells_one() -> None:
