@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
@@ -72,3 +73,39 @@ def test_a_better_place_that_a_third_candidate_shows_is_kept(seeker: Seeker) -> 
     found, _ = extended(seeker, poor, [])
     assert found.keys == poor.keys
     assert found.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
+
+
+def test_a_simpler_form_that_begins_far_off_is_fitted_to_its_end(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A linear spring beside one with a cubic part, begun without any stiffness: nearly all of the
+    fit is lost there, though linear prediction foresees no loss.
+    """
+    task = seeker.task
+    full = trial(seeker, "cable_spring@pan")
+    nothing = full.values | {"k1_cable_pan": 0.0, "k3_cable_pan": 0.0}
+
+    def far_off(whole: Trial, candidate: Candidate, form: Candidate) -> Trial:
+        return fitted(task, [form], nothing, whole.fit.z)
+
+    monkeypatch.setattr(seeker, "begun_in_form", far_off)
+    (found,) = seeker.simplified(full).candidates
+    assert [f.name for f in found.free] == ["k1_cable_pan", "theta0_cable_pan"]
+
+
+def test_what_is_left_is_fitted_no_worse_than_the_search_has_fitted_it_before(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A wrong declared value beside a spring of half the stiffness: taken out, it leaves the spring
+    in a poor place, and here no refit may leave it.
+    """
+    task = seeker.task
+    wrong, right = trial(seeker, "declared_value:c_x_payload"), trial(seeker, "cable_spring@pan")
+    half = right.values | {"k1_cable_pan": 0.5 * STIFFNESS}
+    both = fitted(task, [*wrong.candidates, *right.candidates], half, right.fit.z)
+    monkeypatch.setattr("ptp_symbolic.numeric.diagnose.seeker.ITERATIONS", 0)
+    monkeypatch.setattr(seeker, "polished", lambda trial: trial)
+    monkeypatch.setattr(seeker, "restarted", lambda trial: trial)
+    monkeypatch.setattr(seeker, "others", [right])
+    left = seeker.without(both, wrong.candidates[0])
+    assert left.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)

@@ -35,14 +35,16 @@ def test_loss_of_windows_by_hand() -> None:
     windows = [evaluation(np.full(10, r), none, none) for r in (*[1.0] * 19, 10.0)]
     problem = location(np.zeros(20))
     no_starts = [np.zeros(0)] * 20
-    tuning = robust_tuning([(e, None) for e in windows])
+    tuning = robust_tuning([(e, None) for e in windows], np.inf)
     assert tuning == 2.5
     by_hand = 19 * 10 * 6.25 * math.log(1.16) + 10 * 6.25 * math.log(17.0)
     assert cost_of(problem, windows, no_starts, tuning) == pytest.approx(by_hand, rel=1e-14)
     assert cost_of(problem, windows, no_starts) == pytest.approx(190 + 10 * 100, rel=1e-14)
-    assert robust_tuning([(e, None) for e in windows[:19]]) == np.inf
+    assert robust_tuning([(e, None) for e in windows[:19]], np.inf) == np.inf
+    assert robust_tuning([(e, None) for e in windows], 1.0) == np.inf
+    assert robust_tuning([(e, None) for e in windows], 1.1) == 2.5
     failed = [replace(windows[0], failed="stopped"), *windows[1:]]
-    assert robust_tuning([(e, None) for e in failed]) == np.inf
+    assert robust_tuning([(e, None) for e in failed], np.inf) == np.inf
 
 
 def test_a_median_counts_every_run_by_its_samples() -> None:

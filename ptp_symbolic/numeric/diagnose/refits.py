@@ -118,10 +118,13 @@ def over_windows(
     of those `spread` further off where these leave more than white noise: a whole run that sticks
     where the machine slid leads a fit astray, windows do not (multiple shooting: Bock, 1983). None
     where the runs are windows already, or no fit succeeds.
+
+    Whatever they leave, windows that leave far more than usual hardly count: they are many, and
+    only lead the way.
     """
     best: Trial | None = None
     for windows in task.windows:
-        part = replace(task, train=windows)
+        part = replace(task, train=windows, robust_below=np.inf)
         begun: list[Trial] = []
         for group in ([best.values],) if best else (starts, spread):
             if not begun or not np.all(left_over(begun[0].fit) <= ABOVE_NOISE):

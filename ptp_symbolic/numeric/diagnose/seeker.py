@@ -30,6 +30,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
     fitted,
+    forms_of,
     halving,
     is_alike,
     is_near,
@@ -106,7 +107,10 @@ class Seeker:
         return self.polished(fitted(self.task, full, trial.values, trial.fit.z, 0, trial.fit))
 
     def without(self, trial: Trial, candidate: Candidate) -> Trial:
-        """The trial refitted without one of its candidates, and without what needs it."""
+        """The trial refitted without one of its candidates, and without what needs it; or what is
+        left where the search has come to before, if that is a better place: a candidate gains no
+        more than what it adds to the best fit without it.
+        """
         kept = tuple(
             c for c in trial.candidates if c is not candidate and candidate.key not in c.brings
         )
@@ -118,6 +122,10 @@ class Seeker:
         smaller = fitted(self.task, kept, values, trial.fit.z, ITERATIONS, trial.fit, executor=run)
         if gain(trial, smaller).share < MOST:
             smaller = self.restarted(self.polished(smaller))
+        same = [t for t in self.others if forms_of(t.candidates) == forms_of(kept)]
+        known = ranked([smaller, *same])[0]
+        if not is_alike(known, smaller):
+            smaller = self.polished(known)
         if ranked([smaller, self.declared])[0] is self.declared:
             smaller = beside_declared(self.task, smaller, self.declared, self.carried)
         self.others.append(smaller)
@@ -213,7 +221,10 @@ class Seeker:
         return None if best is trial else best
 
     def simplified(self, trial: Trial) -> Trial:
-        """Every candidate in the simplest of its forms that loses nothing clear and material."""
+        """Every candidate in the simplest of its forms that loses nothing clear and material. A form
+        is given up unfitted where most is lost by linear prediction, and after some iterations
+        where that foresees a material loss and most is lost till then.
+        """
         for key in trial.keys:
             candidate = next(c for c in trial.candidates if c.key == key)
             simpler = sorted(
@@ -223,10 +234,11 @@ class Seeker:
             for form in simpler:
                 names = {f.name for f in form.free}
                 lost = {n: v for n, v in candidate.vanishing.items() if n not in names}
-                if expected_gain(trial, lost) > MOST:
+                foreseen = expected_gain(trial, lost)
+                if foreseen > MOST:
                     continue
                 smaller = self.begun_in_form(trial, candidate, form)
-                if gain(trial, smaller).share >= MOST:
+                if foreseen >= MATERIAL and gain(trial, smaller).share >= MOST:
                     continue
                 smaller = self.polished(smaller)
                 if not self.is_earned(gain(trial, smaller), p_value(trial, lost)):

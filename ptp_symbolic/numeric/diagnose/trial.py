@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.identify.constants import GAIN, LITTLE, ROUGH, TUNING, WIDE_STEP
+from ptp_symbolic.numeric.identify.constants import GAIN, LITTLE, NEARBY, ROUGH, TUNING, WIDE_STEP
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
@@ -32,7 +32,7 @@ class Task:
     declared free parameters, `fixed` the values of all others, every candidate at its vanishing
     value. `input_noise` is the declared noise (rms) of every input [nu] in its unit (None: as the
     logs show it), `declared_noise` names the outputs whose noise is declared, and `resolution` is
-    the noise of the finest angle in rad.
+    the noise of the finest angle in rad; `robust_below` is that of `robust_tuning`.
     """
 
     model: Model
@@ -48,6 +48,7 @@ class Task:
     input_noise: tuple[float | None, ...]
     declared_noise: frozenset[str]
     resolution: float
+    robust_below: float = NEARBY
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +72,11 @@ class Trial:
 def keys_of(candidates: Sequence[Candidate]) -> tuple[str, ...]:
     """Keys of candidates, sorted: equal for equal sets."""
     return tuple(sorted(c.key for c in candidates))
+
+
+def forms_of(candidates: Sequence[Candidate]) -> tuple[tuple[str, int], ...]:
+    """Keys and forms of candidates, sorted: equal for equal sets in equal forms."""
+    return tuple(sorted((c.key, c.member) for c in candidates))
 
 
 def all_free(
@@ -111,7 +117,8 @@ def fitted(
     names = {name for f in free for name in f.names}
     fixed = {name: value for name, value in task.fixed.items() if name not in names}
     tolerance = tolerance_for(task, share)
-    effort = Effort(iterations, GAIN * share, tolerance, secants=secants, block=block)
+    below = task.robust_below
+    effort = Effort(iterations, GAIN * share, tolerance, secants, block=block, robust_below=below)
     known = None if secants is None else _inherited(parent, free)
     fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known)
     return Trial(tuple(candidates), fit)
@@ -226,8 +233,7 @@ def ranked(trials: Sequence[Trial]) -> list[Trial]:
     order = sorted(range(len(trials)), key=lambda k: cost[k])
     best: dict[tuple[tuple[str, int], ...], Trial] = {}
     for k in order:
-        members = tuple(sorted((c.key, c.member) for c in trials[k].candidates))
-        best.setdefault(members, trials[k])
+        best.setdefault(forms_of(trials[k].candidates), trials[k])
     return list(best.values())
 
 

@@ -62,10 +62,11 @@ def decide(found: Search) -> Verdict:
     task = found.task
     refused: dict[str, str] = {}
     seeker = Seeker(task, found.declared, found.proposals, found.carried)
+    seeker.others = list(found.others)
     trial, steps, fit = _confirmed(seeker, found.chosen, list(found.members), refused)
     alike: list[Rival] = []
     while trial.candidates:
-        alike = rivals(seeker, trial, (*found.others, *seeker.others), fit)
+        alike = rivals(seeker, trial, seeker.others, fit)
         better = overtaking(trial, alike)
         if better is not None:
             seeker.others.append(trial)

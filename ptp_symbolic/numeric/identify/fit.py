@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, BLIND, STEP
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, BLIND, NEARBY, STEP
 from ptp_symbolic.numeric.identify.coordinates import (
     FreeParameter,
     limits,
@@ -27,7 +27,6 @@ from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 
-
 DEFAULT_TOLERANCE = Tolerance()
 
 
@@ -37,8 +36,8 @@ class Effort:
     steps in a row may be rejected.
 
     `secants` is the step, in search coordinates, of the finite differences that replace derivatives
-    which mislead (see `identify.secants`); None: none are replaced. `block` is the length (s) of
-    the blocks of a run that the robust loss weighs: whole runs, unless given.
+    which mislead (see `identify.secants`); None: none are replaced. The robust loss weighs blocks
+    of `block` s, whole runs unless given; `robust_below` is that of `robust_tuning`.
     """
 
     iterations: int = 30
@@ -47,6 +46,7 @@ class Effort:
     secants: float | None = None
     rejections: int = 5
     block: float = np.inf
+    robust_below: float = NEARBY
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,9 +136,8 @@ def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
     if not fit.free or fit.failed:
         return fit
     effort = Effort(tolerance=fit.tolerance, secants=STEP)
-    problem = problem_of(
-        simulations_of(fit.model, fit.runs, fit.free, fit.values, effort, executor), effort
-    )
+    simulations = simulations_of(fit.model, fit.runs, fit.free, fit.values, effort, executor)
+    problem = problem_of(simulations, effort)
     assert problem.refine is not None
     phi = to_search(fit.free, fit.values)
     here = problem.evaluate(phi, fit.z, True)
@@ -187,8 +186,8 @@ class Simulations:
 
     def residual(self, index: int, phi: FloatArray, z: FloatArray) -> FloatArray | None:
         """Residual of one run; None where the simulation fails."""
-        p = self.parameters(phi)
-        return residual_of(self.model, p, self.tolerance, self.runs[index], z)
+        run = self.runs[index]
+        return residual_of(self.model, self.parameters(phi), self.tolerance, run, z)
 
     def evaluate(
         self, phi: FloatArray, z: Sequence[FloatArray], tangents: bool
@@ -253,6 +252,7 @@ def problem_of(simulations: Simulations, effort: Effort) -> Problem:
         else Secants(simulations.residual, upper, simulations.executor, step=effort.secants),
         keep_possible(simulations.model, free, simulations.parameters),
         blocks,
+        effort.robust_below,
     )
 
 

@@ -16,6 +16,7 @@ from ptp_symbolic.numeric.identify.constants import (
     BIGGEST,
     FIRST_DAMPING,
     LARGEST_STEP,
+    NEARBY,
 )
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.requirements import Allow
@@ -36,7 +37,8 @@ class Problem:
     `refine`, where given, corrects the Jacobians from which steps are taken: those that come out
     are always the ones at the point, which intervals need. `allow` projects steps that lead where
     no machine is possible. `blocks` are, run by run, the blocks of rows that the robust loss weighs
-    (see `identify.robust_loss`): whole runs, unless given.
+    (see `identify.robust_loss`): whole runs, unless given; `robust_below` is that of
+    `robust_tuning`.
     """
 
     evaluate: Evaluate
@@ -50,6 +52,7 @@ class Problem:
     refine: Secants | None = None
     allow: Allow | None = None
     blocks: Sequence[Block] | None = None
+    robust_below: float = NEARBY
 
 
 @dataclass(frozen=True)
@@ -154,7 +157,7 @@ def _pairs(
 
 def _weigh(problem: Problem, at: _Point) -> _Weights:
     pairs = _pairs(problem, at.evaluations)
-    tuning = robust_tuning(pairs)
+    tuning = robust_tuning(pairs, problem.robust_below)
     size = sum(e.residual.size for e in at.evaluations)
     mean_square = sum(loss(e, block, tuning) for e, block in pairs) / size
     return _Weights(tuning, problem.prior_precision * mean_square, max(1.0, mean_square))

@@ -36,10 +36,11 @@ def weighted_median(values: FloatArray, weight: FloatArray) -> FloatArray:
     return np.array([np.interp(at, b, v) for b, v in columns])
 
 
-def robust_tuning(pairs: Sequence[tuple[Evaluation, Block | None]]) -> float:
+def robust_tuning(pairs: Sequence[tuple[Evaluation, Block | None]], below: float) -> float:
     """Tuning constant of the loss: the root mean square at which a block counts half.
 
-    Infinite for a few blocks.
+    Infinite for a few blocks, and where the usual one leaves `below` standard deviations or more:
+    far from the noise the blocks that leave most may be those that show what is missing.
     """
     if any(e.failed for e, _ in pairs):
         return np.inf
@@ -49,7 +50,7 @@ def robust_tuning(pairs: Sequence[tuple[Evaluation, Block | None]]) -> float:
         return np.inf
     sizes = np.concatenate([n for _, n in parts])
     middle = float(np.sqrt(weighted_median(squares[:, None], sizes)[0]))
-    return TUNING * middle
+    return TUNING * middle if middle < below else np.inf
 
 
 def loss(e: Evaluation, block: Block | None, tuning: float) -> float:
