@@ -221,9 +221,10 @@ class Seeker:
         return None if best is trial else best
 
     def simplified(self, trial: Trial) -> Trial:
-        """Every candidate in the simplest of its forms that loses nothing clear and material. A form
-        is given up unfitted where most is lost by linear prediction, and after some iterations
-        where that foresees a material loss and most is lost till then.
+        """Every candidate in the simplest of its forms that loses nothing clear and material.
+
+        A form is not fitted where linear prediction loses most, and not to its end where that
+        foresees a material loss and most is lost after some iterations.
         """
         for key in trial.keys:
             candidate = next(c for c in trial.candidates if c.key == key)
