@@ -2,6 +2,7 @@
 
 import itertools
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import partial
 
@@ -33,7 +34,7 @@ from ptp_symbolic.numeric.identify.constants import (
     SHORT,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
-from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised
+from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised, solve_equations
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace, prepare_equation_space
 from ptp_symbolic.numeric.identify.fit import all_values, all_values_at_start
 from ptp_symbolic.numeric.identify.requirements import nearest_possible
@@ -104,14 +105,15 @@ def _refined(
     rows: Regression,
     values: Mapping[str, float],
     candidates: Sequence[Candidate],
+    executor: Executor | None = None,
 ) -> Proposal:
     """A set started where the rows ask for it, the parameters that shape it fitted to them too."""
     begun = start_of(task, rows, candidates, values)
     own = {(s.candidate.key, s.candidate.member): s.candidate for s in rows.signatures}
     placed = tuple(own[c.key, c.member] for c in candidates)
     free = (*task.free, *(restarted(f, begun[f.name]) for c in placed for f in c.free))
-    found = fit_equations(space, free, begun, REFINEMENTS)
-    return Proposal(placed, possible(task, free, {**begun, **found.values}))
+    found = solve_equations(space, free, begun, REFINEMENTS, executor)
+    return Proposal(placed, possible(task, free, {**begun, **found}))
 
 
 def with_lines(candidates: Sequence[Candidate], found: Proposals) -> tuple[Candidate, ...]:
@@ -145,7 +147,7 @@ def start_for(
         return found.start | kept
     if linear:
         return start_of(task, rows, shown, found.start) | kept
-    return _refined(task, space, rows, found.start, shown).values | kept
+    return _refined(task, space, rows, found.start, shown, task.executor).values | kept
 
 
 def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | None:

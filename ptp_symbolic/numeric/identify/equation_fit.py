@@ -54,6 +54,18 @@ def fit_equations(
     iterations: int,
     executor: Executor | None = None,
 ) -> EquationFit:
+    """The values of `solve_equations`, with the rows and their Jacobian there."""
+    found = solve_equations(space, free, values, iterations, executor)
+    return linearised(space, free, values, found, executor)
+
+
+def solve_equations(
+    space: EquationSpace,
+    free: Sequence[FreeParameter],
+    values: Mapping[str, float],
+    iterations: int,
+    executor: Executor | None = None,
+) -> dict[str, float]:
     """Fit `free`, begun at `values` (all parameters of the model), to the rows of `space` by
     reweighted Gauss-Newton steps within bounds.
 
@@ -90,7 +102,7 @@ def fit_equations(
         change = np.max(np.abs(new - at) / np.maximum(np.abs(new), 1e-3 * sigma), initial=0.0)
         if change < SAME or iteration == iterations - 1:
             break
-    return linearised(space, free, values, here, executor)
+    return all_values_of(free, here)
 
 
 def linearised(
