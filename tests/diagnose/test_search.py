@@ -109,3 +109,20 @@ def test_what_is_left_is_fitted_no_worse_than_the_search_has_fitted_it_before(
     monkeypatch.setattr(seeker, "others", [right])
     left = seeker.without(both, wrong.candidates[0])
     assert left.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
+
+
+def test_forward_selection_stops_where_it_meets_a_set_that_could_not_be_grown(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    grown, begun = Seeker.grown, []
+
+    def counted(self: Seeker, from_trial: Trial) -> Trial | None:
+        begun.append(from_trial.keys)
+        return grown(self, from_trial)
+
+    monkeypatch.setattr(Seeker, "grown", counted)
+    end = trial(seeker, "cable_spring@pan")
+    found, steps = extended(seeker, seeker.declared, [], end)
+    assert found.keys == ("cable_spring@pan",)
+    assert [s.candidate.key for s in steps] == ["cable_spring@pan"]
+    assert begun == [()]

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import carried_noise
+from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.nested import declared_from
 from ptp_symbolic.numeric.diagnose.proposals import (
     propose,
@@ -25,6 +26,7 @@ from ptp_symbolic.numeric.identify.constants import (
     FIRST_RUNG,
     LARGEST,
     LAST_RUNG,
+    MATERIAL,
 )
 
 
@@ -56,12 +58,12 @@ def _from_declared(seeker: Seeker) -> Search:
         best = seeker.restarted(ranked([best, *(seeker.completed(t) for t in found)])[0])
     begun, steps = seeker.pruned(best)
     best, steps = extended(seeker, begun, steps)
-    other = seeker.exchanged(best)
+    other, end = seeker.exchanged(best), best
     if other is not None:
         seeker.others.append(best)
         best, steps = seeker.pruned(other)
     if begun.candidates or any(c.is_declared_value for c in best.candidates):
-        best, steps = by_effects_alone(seeker, best, steps)
+        best, steps = by_effects_alone(seeker, best, steps, end)
     if best.candidates:
         again = declared_from(task, best, seeker.declared, seeker.carried)
         if again is not None:
@@ -77,11 +79,15 @@ def _from_declared(seeker: Seeker) -> Search:
     return Search(task, seeker.declared, best, members, others, seeker.proposals, seeker.carried)
 
 
-def extended(seeker: Seeker, best: Trial, steps: list[Step]) -> tuple[Trial, list[Step]]:
-    """A pruned trial with one candidate more as long as one is needed; and the `steps` of its
-    candidates.
+def extended(
+    seeker: Seeker, best: Trial, steps: list[Step], end: Trial | None = None
+) -> tuple[Trial, list[Step]]:
+    """A pruned trial with one candidate more as long as one is needed, up to the set of `end`, to
+    which none could be added before; and the `steps` of its candidates.
     """
     for _ in range(LARGEST):
+        if end is not None and best.keys == end.keys and gain(best, end).share < MATERIAL:
+            break
         grown = seeker.grown(best)
         if grown is None:
             break
@@ -94,9 +100,11 @@ def extended(seeker: Seeker, best: Trial, steps: list[Step]) -> tuple[Trial, lis
     return best, steps
 
 
-def by_effects_alone(seeker: Seeker, best: Trial, steps: list[Step]) -> tuple[Trial, list[Step]]:
+def by_effects_alone(
+    seeker: Seeker, best: Trial, steps: list[Step], end: Trial | None = None
+) -> tuple[Trial, list[Step]]:
     """The trial, or what forward selection from the declared model makes of effects alone, if that
-    fits better, or leaves only noise too with no more parameters.
+    fits better, or leaves only noise too with no more parameters. `end` is that of `extended`.
 
     Declared values are known, and a few of them changed together imitate much: they scale all
     torques of an axis that is driven by a voltage. A single one that leaves only noise is not
@@ -111,7 +119,7 @@ def by_effects_alone(seeker: Seeker, best: Trial, steps: list[Step]) -> tuple[Tr
         replace(seeker.task, candidates=effects), seeker.declared, seeker.proposals, seeker.carried
     )
     alone.others = seeker.others
-    other, fewer = extended(alone, seeker.declared, [])
+    other, fewer = extended(alone, seeker.declared, [], end)
     no_larger = seeker.is_at_noise(other) and len(other.fit.free) <= len(best.fit.free)
     if ranked([best, other])[0] is best and not (quiet and no_larger):
         seeker.others.append(other)
