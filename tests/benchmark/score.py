@@ -89,7 +89,8 @@ def score(truth: Data, diagnosis: Data | None) -> Score:
         covered |= hits
         if not hits:
             dishonest.append(write_key(key))
-            small += [write_key(key)] if deviating & set(one["parameters"]) else []
+            if deviating & set(one["parameters"]):
+                small.append(write_key(key))
     right = not dishonest and _is_right(truth["kind"], verdict, covered == set(listed))
     return Score(
         answer="wrong" if dishonest else "right" if right else "missed",

@@ -65,16 +65,16 @@ class Similarity:
     values: dict[str, float]
 
 
-def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> list[Rival]:
+def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
     """Sets as large as the chosen one, of which these logs do not prefer the chosen one clearly and
-    materially, `others`, which the search has begun already, among them. `fit` is its fit, from
+    materially, those that the search has begun already among them. `fit` is its fit, from
     `with_finite_differences`.
 
     A few iterations tell which come near the chosen set. Where that leaves more than noise, a set
     that it cannot be told from by its response is fitted to its end, however far it is till then.
     """
     task = seeker.task
-    tried = {t.keys for t in others}
+    tried = {t.keys for t in seeker.others}
     begun: list[Trial] = []
     resembling: set[tuple[str, ...]] = set()
     for member in chosen.candidates:
@@ -94,7 +94,7 @@ def rivals(seeker: Seeker, chosen: Trial, others: Sequence[Trial], fit: Fit) -> 
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
     trials = halving(task, begun, ((ITERATIONS, len(begun)),))
-    for other in ranked(others):
+    for other in ranked(seeker.others):
         same_size = len(other.candidates) == len(chosen.candidates)
         fresh = same_size and other.keys != chosen.keys and np.isfinite(other.fit.cost)
         if fresh and gain(chosen, other).share < MOST:

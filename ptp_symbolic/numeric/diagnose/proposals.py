@@ -27,6 +27,7 @@ from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
     DEVIATIONS,
     FAR_OFF,
+    ITERATIONS,
     LARGEST,
     LITTLE,
     PROPOSED,
@@ -34,7 +35,7 @@ from ptp_symbolic.numeric.identify.constants import (
     SHORT,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
-from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised, solve_equations
+from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace, prepare_equation_space
 from ptp_symbolic.numeric.identify.fit import all_values, all_values_at_start
 from ptp_symbolic.numeric.identify.requirements import nearest_possible
@@ -77,8 +78,8 @@ def propose(task: Task) -> Proposals:
     space = equation_space(task, start)
     if space is None:
         return Proposals(start, (), task.candidates, False, None, None)
-    first = fit_equations(space, task.free, start, 4, task.executor)
-    values = possible(task, task.free, {**start, **first.values})
+    first = fit_equations(space, task.free, start, ITERATIONS, task.executor)
+    values = possible(task, task.free, {**start, **first})
     here = {f.name: values[f.name] for f in task.free}
     found = linearised(space, task.free, values, here, task.executor, own_torque=True)
     equation, run, time = space.labels()
@@ -112,7 +113,7 @@ def _refined(
     own = {(s.candidate.key, s.candidate.member): s.candidate for s in rows.signatures}
     placed = tuple(own[c.key, c.member] for c in candidates)
     free = (*task.free, *(restarted(f, begun[f.name]) for c in placed for f in c.free))
-    found = solve_equations(space, free, begun, REFINEMENTS, executor)
+    found = fit_equations(space, free, begun, REFINEMENTS, executor)
     return Proposal(placed, possible(task, free, {**begun, **found}))
 
 

@@ -58,7 +58,8 @@ def _from_declared(seeker: Seeker) -> Search:
         best = seeker.restarted(ranked([best, *(seeker.completed(t) for t in found)])[0])
     begun, steps = seeker.pruned(best)
     best, steps = extended(seeker, begun, steps)
-    other, end = seeker.exchanged(best), best
+    end = best
+    other = seeker.exchanged(best)
     if other is not None:
         seeker.others.append(best)
         best, steps = seeker.pruned(other)

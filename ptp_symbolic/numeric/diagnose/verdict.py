@@ -66,7 +66,7 @@ def decide(found: Search) -> Verdict:
     trial, steps, fit = _confirmed(seeker, found.chosen, list(found.members), refused)
     alike: list[Rival] = []
     while trial.candidates:
-        alike = rivals(seeker, trial, seeker.others, fit)
+        alike = rivals(seeker, trial, fit)
         better = overtaking(trial, alike)
         if better is not None:
             seeker.others.append(trial)

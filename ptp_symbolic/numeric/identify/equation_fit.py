@@ -21,12 +21,11 @@ IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
-class EquationFit:
-    """Values of the free parameters (and of those tied to them), residual rows [n], their Jacobian
-    [n, nf] by the values, and the weight [n] of every row.
+class Linearised:
+    """Residual rows [n], their Jacobian [n, nf] by the free parameters, and the weight [n] of every
+    row.
     """
 
-    values: dict[str, float]
     rows: FloatArray
     jacobian: FloatArray
     weight: FloatArray
@@ -53,21 +52,9 @@ def fit_equations(
     values: Mapping[str, float],
     iterations: int,
     executor: Executor | None = None,
-) -> EquationFit:
-    """The values of `solve_equations`, with the rows and their Jacobian there."""
-    found = solve_equations(space, free, values, iterations, executor)
-    return linearised(space, free, values, found, executor)
-
-
-def solve_equations(
-    space: EquationSpace,
-    free: Sequence[FreeParameter],
-    values: Mapping[str, float],
-    iterations: int,
-    executor: Executor | None = None,
 ) -> dict[str, float]:
-    """Fit `free`, begun at `values` (all parameters of the model), to the rows of `space` by
-    reweighted Gauss-Newton steps within bounds.
+    """The values of `free`, and of those tied to them, that fit the rows of `space`: reweighted
+    Gauss-Newton steps within bounds, begun at `values` (all parameters of the model).
 
     A prior of one start value (or one scale) around the start of every parameter keeps those in
     place that the rows do not see; thousands of rows, which overlap, outweigh it where they do.
@@ -102,7 +89,7 @@ def solve_equations(
         change = np.max(np.abs(new - at) / np.maximum(np.abs(new), 1e-3 * sigma), initial=0.0)
         if change < SAME or iteration == iterations - 1:
             break
-    return all_values_of(free, here)
+    return {name: here[f.name] for f in free for name in f.names}
 
 
 def linearised(
@@ -112,7 +99,7 @@ def linearised(
     here: Mapping[str, float],
     executor: Executor | None = None,
     own_torque: bool = False,
-) -> EquationFit:
+) -> Linearised:
     """The rows [n] and their difference quotients [n, nf] with `free` at the values `here`, the
     quotients with the model's `own_torque` if asked for (see `EquationSpace.own_torque`). Raises
     InputError for `values` out of bounds.
@@ -140,10 +127,4 @@ def linearised(
     slopes: list[FloatArray] = list(quotients)
     jacobian = np.column_stack(slopes) if slopes else np.zeros((len(rows), 0))
     equation, _, _ = space.labels()
-    found = all_values_of(free, here)
-    return EquationFit(found, rows, jacobian, huber_weight(rows, equation))
-
-
-def all_values_of(free: Sequence[FreeParameter], here: Mapping[str, float]) -> dict[str, float]:
-    """Values of the free parameters and of those tied to them."""
-    return {name: here[f.name] for f in free for name in f.names}
+    return Linearised(rows, jacobian, huber_weight(rows, equation))
