@@ -23,7 +23,7 @@ def inverse_of(fx, rate, width):
 def sums(count, weights, scale, k, start):
     """Stages before `count` added to `start`."""
     out = start.copy()
-    linear.add_stages(count, weights, scale, k, out)
+    linear.add_stages(count, weights, scale, k, out, len(out))
     return out
 
 
@@ -33,8 +33,10 @@ def products(matrix, columns, vector, vectors, start):
     single = np.zeros(columns.shape[1])
     linear.multiply(columns, vector, 0.5 * vector, single)
     full, sparse = start.copy(), start.copy()
-    linear.add_product(matrix, vectors, full)
-    linear.add_sparse_product(matrix, vectors, sparse)
+    n = matrix.shape[0]
+    width = len(start) // n
+    linear.add_product(matrix, width, vectors, full)
+    linear.add_sparse_product(matrix, n, width, vectors, sparse)
     return single, full, sparse
 
 

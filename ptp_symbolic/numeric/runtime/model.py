@@ -190,6 +190,29 @@ class Model:
         return len(self.state_names) - len(set(self.sampled[:, 1]))
 
     @cached_property
+    def _idle(self) -> dict[str, list[tuple[int, float]]]:
+        """Index and vanishing value of the parameters that leave a state without influence."""
+        index = {p.name: (k, p.vanishes) for k, p in enumerate(self.parameters)}
+        return {
+            state: [(index[name][0], float(index[name][1] or 0.0)) for name in names]
+            for state, names in self.module.IDLE_STATES
+        }
+
+    def acting(self, p: FloatArray, columns: NDArray[np.int64]) -> int:
+        """Number of states, from the first on, that may act on anything at p [np], or on the
+        derivatives by the parameters `columns` [nc]: states of effects at their vanishing values
+        come last.
+        """
+        count = len(self.state_names)
+        if len(self.sampled):
+            return count
+        while count and (off := self._idle.get(self.state_names[count - 1])):
+            if any(p[k] != value or k in columns for k, value in off):
+                break
+            count -= 1
+        return count
+
+    @cached_property
     def limits(self) -> tuple[tuple[str, str], ...]:
         """State and meaning of every limit of the domain in which the equations hold."""
         return tuple(self.module.DOMAIN)

@@ -25,6 +25,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     TIME,
     Watch,
 )
+from ptp_symbolic.numeric.simulation.kernels.specialised import specialised, zeros_of
 from ptp_symbolic.numeric.simulation.methods.exponential_step import new_propagator
 from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
 from ptp_symbolic.numeric.simulation.sampling import new_sampling
@@ -130,25 +131,34 @@ def integrate(
     delay_column: IntArray | None = None,
     ledger: bool = False,
     event_room: int = 0,
+    lean: bool = False,
 ) -> Solution:
     """Integrate `model` at p [np] from the first to the last of `stops` in s, from x [n] with
     tangents s [n, ns]; outputs at `times` [k] in s.
 
     `held`: inputs are zero-order hold, with jumps at stops only; those that samplers alone read
     need not be. With tangents, output times must be stops. The first tangents are by the parameters
-    `columns`; `delay_column` [nu] is per input the tangent of its delay, or -1. Raises InputError
-    as `refuse_start` and `new_sampling` do.
+    `columns`; `delay_column` [nu] is per input the tangent of its delay, or -1. `lean`: states
+    and terms of effects at their vanishing values are left out, which changes nothing else (see
+    `Model.acting` and `kernels.specialised`); for the implicit method. Raises InputError as
+    `refuse_start` and `new_sampling` do.
     """
     n, nu, module = len(x), len(model.input_names), model.module
-    none = np.zeros(0, dtype=np.int64)
+    columns = np.zeros(0, dtype=np.int64) if columns is None else columns
     s = np.zeros((n, 0)) if s is None else s
     tangents = new_tangents(
         s,
-        none if columns is None else columns,
+        columns,
         np.full(nu, -1) if delay_column is None else delay_column,
         len(p),
         nu,
     )
+    solved, functions, c = n if s.shape[1] else model.moving, addresses(module), model.prepared(p)
+    if lean:
+        acting = model.acting(p, columns)
+        solved = min(solved, acting)
+        zeros = zeros_of(x, acting, p, c, columns)
+        functions = specialised(module).addresses(zeros, len(stops))
     x, u, cursor = x.copy(), np.zeros((3, nu)), inputs.new_cursor()
     watch = new_watch(model, n, p)
     hybrid.evaluate_inputs(stops[0], 1, *inputs.arrays, cursor, u[0])
@@ -157,9 +167,9 @@ def integrate(
     record = new_record(times, n, s.shape[1], len(times) if ledger else 0, event_room)
     status = hybrid.runner()(
         METHODS[method],
-        addresses(module),
+        functions,
         p,
-        model.prepared(p),
+        c,
         model.friction_rates,
         model.zero_at_rest,
         contact_table(model),
@@ -171,7 +181,7 @@ def integrate(
         stops,
         np.array([accuracy.relative, accuracy.largest_step, accuracy.most_steps]),
         accuracy.absolute,
-        tuple(new_step(n, nu, len(p), n if s.shape[1] else model.moving)),
+        tuple(new_step(n, nu, len(p), solved)),
         tuple(watch),
         tuple(tangents),
         tuple(record),

@@ -47,6 +47,8 @@ def _signal_lines(equations: Equations) -> list[str]:
         named_tuple_text("STATE_NAMES", (f'"{s}"' for s in equations.state_symbols)),
         named_tuple_text("STATE_UNITS", map(repr_text, _state_units(equations))),
         named_tuple_text("STATE_INITIAL", map(repr, _state_initial(equations))),
+        "# States without influence while these parameters are at their vanishing values.",
+        named_tuple_text("IDLE_STATES", _idle_states(equations)),
         named_tuple_text("INPUT_NAMES", (f'"{i.name}"' for i in equations.inputs)),
         named_tuple_text("INPUT_UNITS", (f'"{i.unit}"' for i in equations.inputs)),
         "# Per input: index of the parameter by which it is late, or -1.",
@@ -180,6 +182,13 @@ def _state_units(equations: Equations) -> list[str]:
 def _state_initial(equations: Equations) -> list[float]:
     initial = {state.name: float(state.initial) for state in equations.extra_states}
     return [initial.get(str(symbol), 0.0) for symbol in equations.state_symbols]
+
+
+def _idle_states(equations: Equations) -> list[str]:
+    return [
+        f"({repr_text(name)}, ({listed(map(repr_text, off))}))"
+        for name, off in equations.idle_states.items()
+    ]
 
 
 def _contact_states(equations: Equations) -> list[str]:

@@ -92,8 +92,11 @@ def assemble(platform: Platform) -> Equations:
                 place.axis,
                 tuple(parameter.name for parameter in effect.parameters_at(place)),
                 acts_on(effect, place, defined),
+                tuple(state.name for state in contribution.states),
             )
-            for effect, place in placed
+            for (effect, place), contribution in zip(
+                placed, contributions.by_effect, strict=True
+            )
         ),
         rigid=rigid,
         rigid_equations=rigid_equations,

@@ -70,14 +70,15 @@ class Ledger:
 
 @dataclass(frozen=True)
 class PlacedEffect:
-    """An effect at its place, the names of its parameters there, and the keys (``effect`` or
-    ``effect@axis``) of the effects that define what it needs.
+    """An effect at its place, the names of its parameters there, the keys (``effect`` or
+    ``effect@axis``) of the effects that define what it needs, and the names of its states.
     """
 
     effect: Effect
     axis: str | None
     parameters: tuple[str, ...]
     acts_on: tuple[str, ...] = ()
+    states: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,9 @@ class Equations:
 
     @property
     def state_symbols(self) -> tuple[sp.Symbol, ...]:
-        """States in the order of the emitted module: joints, drives, effects, what samplers set."""
+        """States in the order of the emitted module: joints, drives, effects that can vanish, what
+        samplers set.
+        """
         joints = len(self.axes)
         gears = [
             symbol
@@ -136,9 +139,22 @@ class Equations:
             for symbol in pair
         ]
         sampled = {symbol for _, symbol, _ in self.updates}
+        idle = self.idle_states
         extra = [state.symbol for state in self.extra_states]
-        extra.sort(key=sampled.__contains__)
+        extra.sort(key=lambda symbol: (symbol in sampled, str(symbol) in idle))
         return (*self.coordinates[:joints], *self.rates[:joints], *gears, *extra)
+
+    @property
+    def idle_states(self) -> dict[str, tuple[str, ...]]:
+        """States of effects that can vanish: without influence while these parameters, by their
+        names, are at their vanishing values.
+        """
+        vanishing = {p.name for p in self.parameters if p.vanishes is not None}
+        found = {}
+        for placed in self.effects:
+            off = tuple(name for name in placed.parameters if name in vanishing)
+            found.update(dict.fromkeys(placed.states if off else (), off))
+        return found
 
     def written_out(self, expression: sp.Expr) -> sp.Expr:
         """Return `expression` with the named functions put in."""

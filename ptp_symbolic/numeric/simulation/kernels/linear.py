@@ -18,9 +18,11 @@ def weighted(weights, row, count, k, e):
 
 
 @inlined
-def add_stages(i, weights, scale, k, out):
-    """Add the stages k [8, w] before i with row i of their weights, times scale, to out [w]."""
-    for e in range(0, len(out), LANES):
+def add_stages(i, weights, scale, k, out, count):
+    """Add the stages k [8, w] before i with row i of their weights, times scale, to the first
+    `count` elements of out [w].
+    """
+    for e in range(0, count, LANES):
         store(plus_times(load(out, e), scale, weighted(weights, i, i, k, e)), out, e)
 
 
@@ -39,10 +41,11 @@ def multiply(columns, vector, added, out):
 
 
 @inlined
-def add_product(matrix, vectors, out):
-    """Add the product of matrix [n, n or more] and vectors to out, both [n * columns] by rows."""
+def add_product(matrix, width, vectors, out):
+    """Add the product of matrix [n, n or more] and vectors to out, both by rows of `width` and with
+    at least n of them.
+    """
     n = matrix.shape[0]
-    width = len(out) // n
     for a in range(n):
         for c in range(0, width, LANES):
             total = load(out, a * width + c)
@@ -52,10 +55,10 @@ def add_product(matrix, vectors, out):
 
 
 @inlined
-def add_sparse_product(matrix, vectors, out):
-    """Add the product of a sparse matrix [n, n] and vectors to out, both [n * columns] by rows."""
-    n = matrix.shape[0]
-    width = len(out) // n
+def add_sparse_product(matrix, n, width, vectors, out):
+    """Add the product of a sparse matrix, its first n rows and columns, and vectors to out, both by
+    rows of `width`.
+    """
     for a in range(n):
         for b in range(n):
             if matrix[a, b] != 0.0:

@@ -6,15 +6,15 @@ TIME_DIFFERENCE = 1e-5  # s; of the difference quotient by time
 
 
 @inlined
-def fill_drive(inputs, tangents, out):
+def fill_drive(inputs, tangents, fu, fp, out):
     """Write the inhomogeneous term [n * ns] of the variational equation: fp of the parameters, and
     -fu du/dt of the delays, du/dt in inputs.ahead.
     """
-    n, columns = tangents.fp.shape[0], tangents.columns
+    n, columns = fp.shape[0], tangents.columns
     width = len(out) // n
     for a in range(n):
         for c in range(len(columns)):
-            out[a * width + c] = tangents.fp[a, columns[c]]
+            out[a * width + c] = fp[a, columns[c]]
         for c in range(len(columns), width):
             out[a * width + c] = 0.0
     if inputs.held:
@@ -23,4 +23,4 @@ def fill_drive(inputs, tangents, out):
         column = tangents.delay_column[c]
         if column >= 0:
             for a in range(n):
-                out[a * width + column] -= tangents.fu[a, c] * inputs.ahead[c]
+                out[a * width + column] -= fu[a, c] * inputs.ahead[c]

@@ -105,31 +105,34 @@ def push_tangents(equations, inputs, t, h, m, step, tangents):
     The variational equation is linear; its coefficients are a parabola in time through start,
     middle and end of the step, so that three Jacobians do where the stages would need sixteen. With
     W = rate I - fx at the start, inverse(W) fx s = rate inverse(W) s - s: only the change of fx
-    over the step is ever multiplied, and it has few entries.
+    over the step is ever multiplied, and it has few entries. States that the inverse leaves out
+    have no influence, nor have their tangents.
     """
     rate = 1.0 / (h * GAMMA)
+    n, width = step.inverse.shape[0], tangents.table.shape[1]
+    count = n * width
     s, point, right, along = tangents.s, tangents.point, tangents.right, tangents.along
     fit_coefficients(equations, inputs, t, h, m, step, tangents)
     copy(tangents.by[1], along)
-    add_sparse_product(tangents.fx[1], s, along)
+    add_sparse_product(tangents.fx[1], n, width, s, along)
     for i in range(STAGES):
         k = tangents.k[i]
         if i > 5:
-            add_scaled(1.0, tangents.k[i - 1], 0, point, 0, len(s))
+            add_scaled(1.0, tangents.k[i - 1], 0, point, 0, count)
         else:
             copy(s, point)
-            add_stages(i, A, 1.0, tangents.k, point)
-        place_coefficients(C[i], tangents)
-        for e in range(0, len(s), LANES):
+            add_stages(i, A, 1.0, tangents.k, point, count)
+        place_coefficients(C[i], n, count, tangents)
+        for e in range(0, count, LANES):
             here = load(point, e)
             driven = plus_times(load(right, e), D[i], load(along, e))
             store(plus_times(driven, rate, here), right, e)
             store(plus_times(nothing(), -1.0, here), k, e)
-        add_sparse_product(tangents.matrix, point, right)
-        add_stages(i, COUPLING, 1.0 / h, tangents.k, right)
-        add_product(step.inverse, right, k)
+        add_sparse_product(tangents.matrix, n, width, point, right)
+        add_stages(i, COUPLING, 1.0 / h, tangents.k, right, count)
+        add_product(step.inverse, width, right, k)
     copy(point, s)
-    add_scaled(1.0, tangents.k[STAGES - 1], 0, s, 0, len(s))
+    add_scaled(1.0, tangents.k[STAGES - 1], 0, s, 0, count)
 
 
 @inlined
@@ -147,9 +150,8 @@ def fit_coefficients(equations, inputs, t, h, m, step, tangents):
             evaluate_inputs(time, side, *inputs.table, inputs.cursor, inputs.u)
             evaluate_input_slopes(time, side, *inputs.table, inputs.cursor, inputs.ahead)
         if node == 0:
-            copy_matrix(step.fu, tangents.fu)
-            copy_matrix(step.fp, tangents.fp)
             copy_matrix(step.fx, tangents.fx[0])
+            fill_drive(inputs, tangents, step.fu, step.fp, tangents.by[0])
         else:
             jacobian(
                 equations,
@@ -161,7 +163,7 @@ def fit_coefficients(equations, inputs, t, h, m, step, tangents):
                 tangents.fu,
                 tangents.fp,
             )
-        fill_drive(inputs, tangents, tangents.by[node])
+            fill_drive(inputs, tangents, tangents.fu, tangents.fp, tangents.by[node])
     for a in range(n):
         parabola(tangents.fx[0, a], tangents.fx[1, a], tangents.fx[2, a])
     parabola(tangents.by[0], tangents.by[1], tangents.by[2])
@@ -177,14 +179,16 @@ def parabola(start, middle, end):
 
 
 @inlined
-def place_coefficients(fraction, tangents):
-    """Write the change of fx and the inhomogeneous term at a fraction of the step."""
+def place_coefficients(fraction, n, count, tangents):
+    """Write the change of fx, its first n rows and columns, and the first `count` elements of the
+    inhomogeneous term at a fraction of the step.
+    """
     square = fraction * fraction
     start, first, second = tangents.by[0], tangents.by[1], tangents.by[2]
-    for e in range(0, len(start), LANES):
+    for e in range(0, count, LANES):
         rising = plus_times(load(start, e), fraction, load(first, e))
         store(plus_times(rising, square, load(second, e)), tangents.right, e)
-    for a in range(tangents.matrix.shape[0]):
+    for a in range(n):
         first, second = tangents.fx[1, a], tangents.fx[2, a]
-        for b in range(len(first)):
+        for b in range(n):
             tangents.matrix[a, b] = fraction * first[b] + square * second[b]

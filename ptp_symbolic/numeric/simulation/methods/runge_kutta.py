@@ -55,9 +55,11 @@ def fill_dense(h, x, step):
 @kernel
 def push_tangents(equations, inputs, t, h, m, step, tangents):
     """Propagate the tangents over an accepted step: the exact derivative of the discrete step."""
+    n, width = tangents.table.shape
+    count = n * width
     for i in range(STAGES - 1):
         copy(tangents.s, tangents.point)
-        add_stages(i, A, h, tangents.k, tangents.point)
+        add_stages(i, A, h, tangents.k, tangents.point, count)
         if not inputs.held:
             side = -1 if C[i] == 1.0 else 1
             evaluate_inputs(t + C[i] * h, side, *inputs.table, inputs.cursor, inputs.u)
@@ -65,6 +67,6 @@ def push_tangents(equations, inputs, t, h, m, step, tangents):
         jacobian(
             equations, t + C[i] * h, step.stage[i], inputs.u, m, step.fx, tangents.fu, tangents.fp
         )
-        fill_drive(inputs, tangents, tangents.k[i])
-        add_sparse_product(step.fx, tangents.point, tangents.k[i])
-    add_stages(STAGES - 1, A, h, tangents.k, tangents.s)
+        fill_drive(inputs, tangents, tangents.fu, tangents.fp, tangents.k[i])
+        add_sparse_product(step.fx, n, width, tangents.point, tangents.k[i])
+    add_stages(STAGES - 1, A, h, tangents.k, tangents.s, count)
