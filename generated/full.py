@@ -146,6 +146,8 @@ STATE_NAMES = (
 )
 STATE_UNITS = ("rad", "rad", "rad/s", "rad/s", "rad", "rad/s", "A", "A")
 STATE_INITIAL = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+# States without influence while these parameters are at their vanishing values.
+IDLE_STATES = ()
 INPUT_NAMES = ("u_pan", "u_tilt")
 INPUT_UNITS = ("V", "V")
 # Per input: index of the parameter by which it is late, or -1.
@@ -4788,4 +4790,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 50e59b04f45919bc4f3f9f517606367dd50cf4bd68f29198a624491621896984
+# END sha256 3947fd897a34251d878e6b4db69ebf4ed023d5a54dda5b0bf88c133059a9ae8b

@@ -32,6 +32,8 @@ AXES = ("pan", "tilt")
 STATE_NAMES = ("theta_pan", "theta_tilt", "omega_pan", "omega_tilt")
 STATE_UNITS = ("rad", "rad", "rad/s", "rad/s")
 STATE_INITIAL = (0.0, 0.0, 0.0, 0.0)
+# States without influence while these parameters are at their vanishing values.
+IDLE_STATES = ()
 INPUT_NAMES = ("tau_pan", "tau_tilt")
 INPUT_UNITS = ("N m", "N m")
 # Per input: index of the parameter by which it is late, or -1.
@@ -395,4 +397,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 bb087171be0111b07722e8e2aa152ca1cc4ad93b747ed083036cf7191080fb71
+# END sha256 2dd7fae7bbf3f0e8861c23947a5837a4d7e43115bf6d825e5a82b762ae99f399

@@ -41,6 +41,8 @@ AXES = ("pan",)
 STATE_NAMES = ("theta_pan", "omega_pan", "theta_gear_pan", "omega_gear_pan", "i_pan")
 STATE_UNITS = ("rad", "rad/s", "rad", "rad/s", "A")
 STATE_INITIAL = (0.0, 0.0, 0.0, 0.0, 0.0)
+# States without influence while these parameters are at their vanishing values.
+IDLE_STATES = ()
 INPUT_NAMES = ("u_pan",)
 INPUT_UNITS = ("V",)
 # Per input: index of the parameter by which it is late, or -1.
@@ -851,4 +853,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 1b21fb9cd95ebf3e4f51d1fae509cd66e50593edcdc6240189250f0ac74c97ab
+# END sha256 af71802b86e4de74f42ea141bf84fad35dd5561ee87d0f426353ddc29e583717

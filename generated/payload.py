@@ -55,6 +55,8 @@ AXES = ("pan", "tilt")
 STATE_NAMES = ("theta_pan", "theta_tilt", "omega_pan", "omega_tilt")
 STATE_UNITS = ("rad", "rad", "rad/s", "rad/s")
 STATE_INITIAL = (0.0, 0.0, 0.0, 0.0)
+# States without influence while these parameters are at their vanishing values.
+IDLE_STATES = ()
 INPUT_NAMES = ("tau_pan", "tau_tilt")
 INPUT_UNITS = ("N m", "N m")
 # Per input: index of the parameter by which it is late, or -1.
@@ -883,4 +885,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 3ce23299fa17549189efc742c5cc5d3dd0ba956e9de7d9dabc643c9f41d72360
+# END sha256 1350fab574066f9a9440d508ae827680dcbc747a50bbce55905b37d25b93fc88

@@ -64,6 +64,8 @@ AXES = ("tilt",)
 STATE_NAMES = ("theta_tilt", "omega_tilt", "i_tilt")
 STATE_UNITS = ("rad", "rad/s", "A")
 STATE_INITIAL = (0.0, 0.0, 0.0)
+# States without influence while these parameters are at their vanishing values.
+IDLE_STATES = ()
 INPUT_NAMES = ("u_tilt",)
 INPUT_UNITS = ("V",)
 # Per input: index of the parameter by which it is late, or -1.
@@ -2145,4 +2147,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 c6eb0d533810076b6b6f398c361c474b358e5a2d50ec0ccf1e07e1dde7b02173
+# END sha256 1d756c3f874ac19762db231150f217ddc0b7dbbe06a2c1dc811babba7d3a5894

@@ -25,6 +25,7 @@ from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
     CYCLES,
     FAR_OFF,
+    FAR_RUNGS,
     FIRST_RUNG,
     FORGOTTEN,
     ITERATIONS,
@@ -125,23 +126,18 @@ def over_windows(
     best: Trial | None = None
     for windows in task.windows:
         part = replace(task, train=windows, robust_below=np.inf)
+        groups = [(starts, LAST_RUNG), (spread, FAR_RUNGS)]
+        if best is not None:
+            groups = [([best.values], LAST_RUNG)]
         begun: list[Trial] = []
-        for group in ([best.values],) if best else (starts, spread):
+        for group, rungs in groups:
             if not begun or not np.all(left_over(begun[0].fit) <= ABOVE_NOISE):
-                begun = ranked([*begun, *_begun(part, candidates, group, executor)])
-        best = settled(part, begun[0], executor)
-        if best.fit.failed:
+                first = [fitted(part, candidates, v, None, executor=executor) for v in group]
+                begun = ranked([*begun, *halving(part, first, rungs)])
+        if not begun:
             return []
+        best = settled(part, begun[0], executor)
     return [fitted(task, candidates, best.values, None)] if best else []
-
-
-def _begun(
-    task: Task,
-    candidates: Sequence[Candidate],
-    starts: Sequence[Mapping[str, float]],
-    executor: Executor | None,
-) -> list[Trial]:
-    return [fitted(task, candidates, v, None, ITERATIONS, executor=executor) for v in starts]
 
 
 def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:

@@ -69,6 +69,7 @@ GAIN = 0.1  # 1; of the error of simulations: two gains in a row below end a fit
 ROUGH = 1e-2  # 1; error of simulations over the noise, while searching; scaled
 FIRST_RUNG = ((ITERATIONS, SCREENED),)  # iterations, sets; of halving; derived
 LAST_RUNG = ((ITERATIONS, 1),)  # iterations, sets; of halving at last; definition
+FAR_RUNGS = ((1, ADDED), (ITERATIONS, 1))  # iterations, starts; of those far off; scaled
 SHARP = 0.1 * ROUGH  # 1; the same, at last; derived
 
 # Windows and rows

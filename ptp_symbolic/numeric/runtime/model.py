@@ -194,7 +194,7 @@ class Model:
         """Index and vanishing value of the parameters that leave a state without influence."""
         index = {p.name: (k, p.vanishes) for k, p in enumerate(self.parameters)}
         return {
-            state: [(index[name][0], float(index[name][1] or 0.0)) for name in names]
+            state: [(k, float(off or 0.0)) for k, off in map(index.__getitem__, names)]
             for state, names in self.module.IDLE_STATES
         }
 

@@ -26,7 +26,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     Watch,
 )
 from ptp_symbolic.numeric.simulation.kernels.specialised import specialised, zeros_of
-from ptp_symbolic.numeric.simulation.methods.exponential_step import new_propagator
+from ptp_symbolic.numeric.simulation.methods.exponential_step import Propagator, new_propagator
 from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
 from ptp_symbolic.numeric.simulation.sampling import new_sampling
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
@@ -186,7 +186,7 @@ def integrate(
         tuple(tangents),
         tuple(record),
         tuple(new_sampling(model, p, x, stops, padded(s.shape[1]))),
-        tuple(new_propagator(len(model.mode_names), model.moving, n)),
+        tuple(_propagator(model)),
     )
     return Solution(
         status,
@@ -199,6 +199,12 @@ def integrate(
         int(record.counts[EVENTS]),
         int(record.counts[STEPS]),
     )
+
+
+def _propagator(model: Model) -> Propagator:
+    """Room for the matrices of a machine with samplers; none in others."""
+    n = len(model.state_names) if len(model.sampled) else 0
+    return new_propagator(len(model.mode_names), model.moving if n else 0, n)
 
 
 def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watch: Watch) -> None:

@@ -94,9 +94,7 @@ def assemble(platform: Platform) -> Equations:
                 acts_on(effect, place, defined),
                 tuple(state.name for state in contribution.states),
             )
-            for (effect, place), contribution in zip(
-                placed, contributions.by_effect, strict=True
-            )
+            for (effect, place), contribution in zip(placed, contributions.by_effect, strict=True)
         ),
         rigid=rigid,
         rigid_equations=rigid_equations,

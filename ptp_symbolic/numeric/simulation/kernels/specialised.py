@@ -54,9 +54,7 @@ class Zeros:
         return tuple(a.tobytes() for a in (self.x, self.p, self.c, self.columns))
 
 
-def zeros_of(
-    x: FloatArray, acting: int, p: FloatArray, c: FloatArray, columns: IntArray
-) -> Zeros:
+def zeros_of(x: FloatArray, acting: int, p: FloatArray, c: FloatArray, columns: IntArray) -> Zeros:
     """The zeros of a run: states after the first `acting` stay where they are in x [n]; parameters
     in `columns` are not taken for zero, for their derivatives count.
     """
