@@ -34,6 +34,7 @@ def task() -> Iterator[Task]:
             runs,
             (),
             (),
+            (),
             FREE,
             fixed,
             (),

@@ -49,11 +49,13 @@ def task_of(
         length = None
     few = [thinned(run, WINDOW_PERIOD) for run in train]
     windows = tuple(_spread(cut(model, few, w), w) for w in (FORGOTTEN, SHORT))
+    pieces = cut(model, train, length)
     return Task(
         model,
         train,
-        cut(model, train, length),
+        pieces,
         windows if length is None else (),
+        windows[-1] if length is None else _spread(pieces, length),
         cut(model, validate, length),
         free,
         fixed,

@@ -171,8 +171,9 @@ def _in_time(task: Task, trial: Trial, carried: FloatArray) -> Trial:
     """The trial, or a better end past valleys in which friction lets go a sample late somewhere: a
     drive soon forgets it, so that blocks of runs tell it from the parameters, where the sum of all
     squares pays for it with parameters that are wrong everywhere (see `identify.robust_loss`).
+    Where runs are windows, these are such blocks.
     """
-    for _ in range(CYCLES):
+    for _ in range(CYCLES if task.windows else 0):
         if leaves_white_noise(trial, carried):
             return trial
         candidates, z, run = trial.candidates, trial.fit.z, task.executor

@@ -30,6 +30,8 @@ from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
 from ptp_symbolic.numeric.identify.fit import all_values
 
 FloatArray = NDArray[np.float64]
+# By the parameters that go together, their start, and the values that shape the candidate.
+SeenColumns = dict[tuple[tuple[str, ...], float, tuple[tuple[str, float], ...]], FloatArray | None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,15 +74,19 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
     """
     have = set(trial.keys)
     by_key = {c.key: c for c in reversed(task.candidates)}
-    wanted = [(c, shape) for c in candidates if c.key not in have for shape in c.shapes]
+    wanted: dict[str, list[Candidate]] = {}
+    for c in candidates:
+        if c.key not in have:
+            wanted.setdefault(c.key, []).append(c)
     fit = trial.fit
     residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
     declared = stacked(fit, [e.by_parameter for e in fit.evaluations])
     most = REACH * float(np.linalg.norm(residual))
 
-    def respond(pair: tuple[Candidate, Mapping[str, float]]) -> Response | None:
-        candidate, shape = pair
-        found = response_columns(task, trial, candidate, shape, most)
+    def respond(
+        candidate: Candidate, shape: Mapping[str, float], seen: SeenColumns
+    ) -> Response | None:
+        found = response_columns(task, trial, candidate, shape, most, seen)
         if found is None:
             return None
         amounts, left = least(residual, declared, found)
@@ -92,18 +98,26 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
             candidate, left, Proposal((*trial.candidates, *added, candidate), values), shape
         )
 
-    jobs = list(task.executor.map(respond, wanted))
-    best: dict[str, Response] = {}
-    for response in sorted((r for r in jobs if r is not None), key=lambda r: r.left):
-        best.setdefault(response.candidate.key, response)
-    return list(best.values())
+    def best_form(forms: Sequence[Candidate]) -> Response | None:
+        seen: SeenColumns = {}
+        found = [respond(c, shape, seen) for c in forms for shape in c.shapes]
+        return min((r for r in found if r is not None), key=lambda r: r.left, default=None)
+
+    jobs = task.executor.map(best_form, wanted.values())
+    return sorted((r for r in jobs if r is not None), key=lambda r: r.left)
 
 
 def response_columns(
-    task: Task, trial: Trial, candidate: Candidate, shape: Mapping[str, float], most: float
+    task: Task,
+    trial: Trial,
+    candidate: Candidate,
+    shape: Mapping[str, float],
+    most: float,
+    seen: SeenColumns | None = None,
 ) -> Columns | None:
     """Responses of `candidate` at the fit of `trial`, shaped by `shape`, to amounts that change the
-    residuals by at most the norm `most`; None where nothing changes or can be simulated.
+    residuals by at most the norm `most`; None where nothing changes or can be simulated. Columns
+    that other forms of the candidate have `seen` are not simulated again.
     """
     by_key = {c.key: c for c in reversed(task.candidates)}
     brings = any(key not in trial.keys for key in candidate.brings)
@@ -115,10 +129,14 @@ def response_columns(
         if any(e.failed for e in plain):
             return None
         without = [e.residual for e in plain]
-    found = [
-        (f, _column(task, trial, without, base, f, candidate, most)) for f in candidate.defining
-    ]
-    kept = [(f, column) for f, column in found if column is not None]
+    seen = {} if seen is None else seen
+    kept = []
+    for f in candidate.defining:
+        key = f.names, f.start, tuple(sorted(base.items()))
+        if key not in seen:
+            seen[key] = _column(task, trial, without, base, f, candidate, most)
+        if (column := seen[key]) is not None:
+            kept.append((f, column))
     if not kept:
         return None
     table = np.column_stack([column for _, column in kept])

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_for
+from ptp_symbolic.numeric.diagnose.refits import fullest
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, continued, fitted, ranked
 from ptp_symbolic.numeric.identify.constants import ITERATIONS
 
@@ -20,11 +21,11 @@ def screened(
     wanted: Sequence[Candidate],
     values: Mapping[str, float],
 ) -> list[Trial]:
-    """The set `kept` with each of the candidates `wanted`, and with what that brings along, fitted
-    to some windows of the task, the best fit first. A fit begins where the rows start the set, or
-    at `values` and the candidate's own start, whichever is better.
+    """The set `kept` with each of the candidates `wanted` in its fullest form, and with what that
+    brings along, fitted to a few windows of the task, the best fit first. A fit begins where the
+    rows start the set, or at `values` and the candidate's own start, whichever is better.
     """
-    part = replace(task, train=task.windows[1]) if task.windows else task
+    part = replace(task, train=task.few)
     have = {c.key for c in kept}
     by_key = {c.key: c for c in reversed(task.candidates)}
 
@@ -37,5 +38,5 @@ def screened(
         first = ranked([fitted(part, candidates, start, None) for start in starts])[0]
         return continued(part, first, ITERATIONS)
 
-    fresh = [c for c in wanted if c.key not in have]
+    fresh = [fullest(task, c) for c in {c.key: c for c in wanted if c.key not in have}.values()]
     return [t for t in ranked(list(task.executor.map(begun, fresh))) if not t.fit.failed]

@@ -15,7 +15,7 @@ def started(task: Task, declared: Trial, found: Proposals) -> list[Trial]:
     """The proposed sets that do best over short windows, each at the better of two starts: where
     the windows lead, and beside the declared model.
     """
-    part = replace(task, train=task.windows[1]) if task.windows else task
+    part = replace(task, train=task.few)
     jobs = [
         task.executor.submit(fitted, part, s.candidates, s.values, None, ITERATIONS)
         for s in found.sets

@@ -28,7 +28,8 @@ class Task:
     """What stays the same through a diagnosis.
 
     `whole` are the training runs as they were logged, `train` the same or their windows, `windows`
-    some short and all longer ones, `validate` the runs that only the report sees. `free` are the
+    some short and some longer ones (none where `train` are windows already), `few` those windows
+    that tell what a set is worth, `validate` the runs that only the report sees. `free` are the
     declared free parameters, `fixed` the values of all others, every candidate at its vanishing
     value. `input_noise` is the declared noise (rms) of every input [nu] in its unit (None: as the
     logs show it), `declared_noise` names the outputs whose noise is declared, and `resolution` is
@@ -39,6 +40,7 @@ class Task:
     whole: tuple[Run, ...]
     train: tuple[Run, ...]
     windows: tuple[tuple[Run, ...], ...]
+    few: tuple[Run, ...]
     validate: tuple[Run, ...]
     free: tuple[FreeParameter, ...]
     fixed: Mapping[str, float]
