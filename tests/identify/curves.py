@@ -63,9 +63,12 @@ class Curves:
     ) -> Problem:
         """The problem as `minimise` takes it; `precision` holds phi near zero."""
 
-        def evaluate(phi: Floats, z: Sequence[Floats], tangents: bool) -> list[Evaluation]:
+        def evaluate(
+            phi: Floats, z: Sequence[Floats], tangents: bool, only: Sequence[int] | None = None
+        ) -> list[Evaluation]:
             failed = "the model fails here" if fails(phi) else None
-            return [self.evaluate(r, phi, a, failed) for r, a in enumerate(z)]
+            runs = range(len(z)) if only is None else only
+            return [self.evaluate(r, phi, z[r], failed) for r in runs]
 
         return Problem(
             evaluate,

@@ -1,5 +1,6 @@
 """The bordered Levenberg-Marquardt against SciPy, which solves for all unknowns side by side."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from scipy.optimize import lsq_linear
 
 from ptp_symbolic.numeric.identify.constants import LARGEST_STEP
+from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.least_squares import (
     Optimum,
     Problem,
@@ -154,6 +156,33 @@ def test_steps_into_a_failing_region_are_never_accepted(curves: Curves) -> None:
     assert found.failed is None
     assert not any(e.failed for e in found.evaluations)
     assert np.isfinite(found.cost)
+
+
+def test_a_run_that_falls_off_a_cliff_with_its_start_keeps_it_and_the_others_move() -> None:
+    """Two runs share phi, whose optimum is 2. The start of the first wants to 1, but its residual
+    jumps by 1000 as soon as it leaves zero: its derivative misleads at every length of a step.
+    """
+
+    def evaluate(
+        phi: Floats, z: Sequence[Floats], tangents: bool, only: Sequence[int] | None = None
+    ) -> list[Evaluation]:
+        slope, cliff = -np.ones((2, 1)), 1e3 * (z[0][0] != 0.0)
+        runs = [
+            evaluation(
+                np.array([2.0 - phi[0], 1.0 - z[0][0] + cliff]),
+                slope * [[1.0], [0.0]],
+                slope * [[0.0], [1.0]],
+            ),
+            evaluation(np.array([2.0 - phi[0], 0.5]), slope * [[1.0], [0.0]], 0.0 * slope),
+        ]
+        return [runs[k] for k in (range(2) if only is None else only)]
+
+    ends = [np.full(1, 9.0)] * 2
+    far = np.full(1, 9.0)
+    problem = Problem(evaluate, -far, far, [-e for e in ends], ends, ends, np.zeros(1), np.zeros(1))
+    found = minimise(problem, np.zeros(1), [np.zeros(1), np.zeros(1)], gain=1e-9)
+    assert found.phi[0] == pytest.approx(2.0, abs=1e-3)
+    assert found.z[0][0] == 0.0
 
 
 def test_a_start_that_fails_is_reported_and_left_as_it_is(curves: Curves) -> None:

@@ -9,7 +9,6 @@ from dataclasses import replace
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_for
-from ptp_symbolic.numeric.diagnose.refits import fullest
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, continued, fitted, ranked
 from ptp_symbolic.numeric.identify.constants import ITERATIONS
 
@@ -21,9 +20,10 @@ def screened(
     wanted: Sequence[Candidate],
     values: Mapping[str, float],
 ) -> list[Trial]:
-    """The set `kept` with each of the candidates `wanted` in its fullest form, and with what that
-    brings along, fitted to a few windows of the task, the best fit first. A fit begins where the
-    rows start the set, or at `values` and the candidate's own start, whichever is better.
+    """The set `kept` with each of the candidates `wanted`, and with what that brings along, fitted
+    to a few windows of the task, the best fit first. A candidate is tried in its simplest and in
+    its fullest form. A fit begins where the rows start the set, or at `values` and the candidate's
+    own start, whichever is better.
     """
     part = replace(task, train=task.few)
     have = {c.key for c in kept}
@@ -38,5 +38,13 @@ def screened(
         first = ranked([fitted(part, candidates, start, None) for start in starts])[0]
         return continued(part, first, ITERATIONS)
 
-    fresh = [fullest(task, c) for c in {c.key: c for c in wanted if c.key not in have}.values()]
-    return [t for t in ranked(list(task.executor.map(begun, fresh))) if not t.fit.failed]
+    own: dict[str, list[Candidate]] = {}
+    for c in sorted(wanted, key=lambda c: len(c.free)):
+        if c.key not in have:
+            own.setdefault(c.key, []).append(c)
+    ends = [c for forms in own.values() for c in (forms[0], *forms[1:][-1:])]
+    best: dict[tuple[str, ...], Trial] = {}
+    for trial in ranked(list(task.executor.map(begun, ends))):
+        if not trial.fit.failed:
+            best.setdefault(trial.keys, trial)
+    return list(best.values())

@@ -104,9 +104,17 @@ def _remembering(problem: Problem, contender: Contender) -> Problem:
     centre, memory = contender.phi, contender.memory
     by_start, nothing = np.zeros((len(memory), 0)), np.zeros(0)
 
-    def both(phi: FloatArray, z: Sequence[FloatArray], tangents: bool) -> list[Evaluation]:
+    def both(
+        phi: FloatArray,
+        z: Sequence[FloatArray],
+        tangents: bool,
+        only: Sequence[int] | None = None,
+    ) -> list[Evaluation]:
         logs = Evaluation(memory @ (phi - centre), memory, by_start)
-        return [*problem.evaluate(phi, z[:-1], tangents), logs]
+        asked = range(len(z)) if only is None else only
+        simulated = [k for k in asked if k < len(z) - 1]
+        found = problem.evaluate(phi, z[:-1], tangents, simulated) if simulated else []
+        return [*found, *(logs for k in asked if k == len(z) - 1)]
 
     return replace(
         problem,

@@ -190,9 +190,13 @@ class Simulations:
         return residual_of(self.model, self.parameters(phi), self.tolerance, run, z)
 
     def evaluate(
-        self, phi: FloatArray, z: Sequence[FloatArray], tangents: bool
+        self,
+        phi: FloatArray,
+        z: Sequence[FloatArray],
+        tangents: bool,
+        only: Sequence[int] | None = None,
     ) -> list[Evaluation]:
-        """Evaluations of all runs, their Jacobians by phi."""
+        """Evaluations of the runs `only`, all unless given, their Jacobians by phi."""
         p = self.parameters(phi)
         by_phi = np.zeros((len(self.columns), len(self.free)))
         if len(self.free):
@@ -204,6 +208,7 @@ class Simulations:
             return replace(e, by_parameter=e.by_parameter @ by_phi) if tangents else e
 
         pairs = list(zip(self.runs, z, strict=True))
+        pairs = pairs if only is None else [pairs[k] for k in only]
         return list(self.executor.map(one, pairs)) if self.executor else [one(a) for a in pairs]
 
 

@@ -5,8 +5,9 @@ equations are bordered block diagonal and solved by a Schur complement (Golub an
 call the elimination variable projection).
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,23 @@ from ptp_symbolic.numeric.identify.robust_loss import Block, loss, robust_tuning
 from ptp_symbolic.numeric.identify.secants import Secants
 
 FloatArray = NDArray[np.float64]
-Evaluate = Callable[[FloatArray, Sequence[FloatArray], bool], list[Evaluation]]
+
+
+class Evaluate(Protocol):
+    """Evaluations of the runs `only` (all unless given) at phi [nf] from their starts z, each [nz],
+    with Jacobians where `tangents` are asked for.
+    """
+
+    def __call__(
+        self,
+        phi: FloatArray,
+        z: Sequence[FloatArray],
+        tangents: bool,
+        only: Sequence[int] | None = None,
+    ) -> list[Evaluation]:
+        """See above."""
+        ...
+
 
 SHARE_TO_BOUND = -np.expm1(-LARGEST_STEP)  # of the way there in one step
 
@@ -168,7 +185,9 @@ def _better(
 ) -> tuple[_Point, float, float] | None:
     """The first of ever shorter steps that gains, its cost and the next damping; None if none.
 
-    After a rejection the next step is tried without derivatives: most of them are rejected too.
+    After a rejection the next step is tried without derivatives: most of them are rejected too. A
+    run that its start makes worse keeps the one that it has: a gear that begins at rest, or next to
+    a face, has no derivative to follow, and would hold back the parameters of all.
     """
     for attempt in range(rejections):
         step, steps_z = _step(problem, at, damping, weights)
@@ -181,12 +200,48 @@ def _better(
         for tangents in (True,) if attempt == 0 else (False, True):
             trial = _Point(phi, z, problem.evaluate(phi, z, tangents))
             after = cost_of(problem, trial.evaluations, z, weights.tuning, weights.scale)
+            if attempt > 0 and not after < enough:
+                trial = _with_kept_starts(problem, at, trial, weights, tangents)
+                z = trial.z
+                after = cost_of(problem, trial.evaluations, z, weights.tuning, weights.scale)
             if not after < enough:
                 break
         else:
             return trial, after, max(damping / 10.0, 1e-12)
         damping *= 10.0
     return None
+
+
+def _with_kept_starts(
+    problem: Problem, at: _Point, trial: _Point, weights: _Weights, tangents: bool
+) -> _Point:
+    """The trial, runs that it makes worse with their starts of `at` where these fit better."""
+    before, after = (_losses(problem, point, weights) for point in (at, trial))
+    worse = [k for k, own in enumerate(at.z) if len(own) and not after[k] <= before[k]]
+    if not worse:
+        return trial
+    z, evaluations = list(trial.z), list(trial.evaluations)
+    for k in worse:
+        z[k] = at.z[k]
+    kept = problem.evaluate(trial.phi, z, tangents, worse)
+    for k, e in zip(worse, kept, strict=True):
+        evaluations[k] = e
+    other = _Point(trial.phi, z, evaluations)
+    for k, own in enumerate(_losses(problem, other, weights)):
+        if k in worse and not own < after[k]:
+            z[k], evaluations[k] = trial.z[k], trial.evaluations[k]
+    return other
+
+
+def _losses(problem: Problem, at: _Point, weights: _Weights) -> list[float]:
+    """Robust loss of every run with the prior of its start; infinite where it failed."""
+    pairs = zip(_pairs(problem, at.evaluations), at.z, problem.start_sigma, strict=True)
+    return [
+        np.inf
+        if e.failed
+        else loss(e, block, weights.tuning) + weights.scale * float(np.sum((a / s) ** 2))
+        for (e, block), a, s in pairs
+    ]
 
 
 def _prior(problem: Problem, weight: FloatArray, phi: FloatArray) -> float:
