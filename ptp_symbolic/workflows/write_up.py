@@ -21,7 +21,6 @@ from ptp_symbolic.numeric.diagnose.summary import (
 )
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.diagnose.verdict import Verdict
-from ptp_symbolic.numeric.identify.fit import with_finite_differences
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, platform_text
 from ptp_symbolic.report.changes import render_changes
@@ -46,7 +45,7 @@ def written_up(
     """What was found, as data and as files; `sources` say what it rests on (see `provenance`), and
     `beside` how rivals do that know no physics.
     """
-    after = replace(verdict.final, fit=with_finite_differences(verdict.final.fit, task.executor))
+    after = replace(verdict.final, fit=verdict.fit)
     intervals = {e.name: e for e in estimates(after.fit)}
     parts = {
         "train": (found.declared.fit, after.fit),
