@@ -80,15 +80,16 @@ def written_up(
         "equations": equations,
         "provenance": dict(sources),
     }
+    changes = task.executor.submit(with_pdf, render_changes(platform, extended, summary), "changes")
     curves = curves_of(parts)
     files: dict[str, str | bytes] = {"platform.toml": platform_text(extended)}
     files["equations.tex"] = equations_tex(equations)
-    files |= with_pdf(render_changes(platform, extended, summary), "changes")
     files[f"{extended.name}.py"] = emission.module_of(extended)
     marked = {name for candidate in after.candidates for name in candidate.parameters}
     machine = drawn(extended, assemble(extended), marked)
     files["report.html"] = render_diagnosis(summary, curves, machine)
     files.update({f"curves/{name}": text for name, text in write_curves_csv(curves).items()})
+    files |= changes.result()  # pdflatex runs beside the drawing
     files["diagnosis.json"] = json_text(summary)
     return Output(summary, files)
 
