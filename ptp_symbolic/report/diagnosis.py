@@ -174,11 +174,11 @@ def _motion(
     """Figures of the runs: the two worst validation runs, and all the others."""
     lines = sum(6 * len(curve["signals"]) for curve in curves.values())
     points = min(max(POINTS_IN_ALL // max(lines, 1), 100), 900)
-    entries = []
+    entries, sheets = [], figures.Sheets()
     for key_of_curve, curve in curves.items():
         run = curve.get("run", key_of_curve)
         errors = {s: tables.error_of(diagnosis, curve["set"], s, run) for s in tables.STAGES}
-        svg = figures.motion_figure(curve, _floors(diagnosis, curve["set"]), points)
+        svg = figures.motion_figure(curve, _floors(diagnosis, curve["set"]), points, sheets)
         before, after = (errors[stage].get(key) for stage in ("before", "after"))
         entries.append(
             {"run": run, "set": curve["set"], "svg": Markup(svg), "before": before, "after": after}

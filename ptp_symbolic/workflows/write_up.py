@@ -21,7 +21,6 @@ from ptp_symbolic.numeric.diagnose.summary import (
 )
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.diagnose.verdict import Verdict
-from ptp_symbolic.numeric.identify.fit import with_finite_differences
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, platform_text
 from ptp_symbolic.report.changes import render_changes
@@ -46,7 +45,7 @@ def written_up(
     """What was found, as data and as files; `sources` say what it rests on (see `provenance`), and
     `beside` how rivals do that know no physics.
     """
-    after = replace(verdict.final, fit=with_finite_differences(verdict.final.fit, task.executor))
+    after = replace(verdict.final, fit=verdict.fit)
     intervals = {e.name: e for e in estimates(after.fit)}
     parts = {
         "train": (found.declared.fit, after.fit),
@@ -81,15 +80,16 @@ def written_up(
         "equations": equations,
         "provenance": dict(sources),
     }
+    changes = task.executor.submit(with_pdf, render_changes(platform, extended, summary), "changes")
     curves = curves_of(parts)
     files: dict[str, str | bytes] = {"platform.toml": platform_text(extended)}
     files["equations.tex"] = equations_tex(equations)
-    files |= with_pdf(render_changes(platform, extended, summary), "changes")
     files[f"{extended.name}.py"] = emission.module_of(extended)
     marked = {name for candidate in after.candidates for name in candidate.parameters}
     machine = drawn(extended, assemble(extended), marked)
     files["report.html"] = render_diagnosis(summary, curves, machine)
     files.update({f"curves/{name}": text for name, text in write_curves_csv(curves).items()})
+    files |= changes.result()  # pdflatex runs beside the drawing
     files["diagnosis.json"] = json_text(summary)
     return Output(summary, files)
 

@@ -12,7 +12,12 @@ from scipy.optimize import lsq_linear
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.signatures import Signature, locked_signatures, signatures
+from ptp_symbolic.numeric.diagnose.signatures import (
+    Signature,
+    locked_signatures,
+    rows_around,
+    signatures,
+)
 from ptp_symbolic.numeric.diagnose.subsets import (
     Regression,
     Subset,
@@ -36,7 +41,8 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
 from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised
-from ptp_symbolic.numeric.identify.equation_space import EquationSpace, prepare_equation_space
+from ptp_symbolic.numeric.identify.equation_preparation import prepare_equation_space
+from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.fit import all_values, all_values_at_start
 from ptp_symbolic.numeric.identify.requirements import nearest_possible
 
@@ -84,12 +90,13 @@ def propose(task: Task) -> Proposals:
     found = linearised(space, task.free, values, here, task.executor, own_torque=True)
     equation, run, time = space.labels()
     block = run * 100_000 + (time // SHORT).astype(np.int64)
-    seen, unseen = signatures(space, task.candidates, values, found.weight, task.executor)
+    around = rows_around(space, values)
+    seen, unseen = signatures(space, task.candidates, around, found.weight, task.executor)
     declared, base = task.free, found.jacobian
     rows = regression(found.rows, declared, base, seen, equation, block, found.weight)
 
     def scan(left: FloatArray) -> list[Signature]:
-        return locked_signatures(space, task.candidates, values, left, rows.weight)
+        return locked_signatures(space, task.candidates, around, left, rows.weight)
 
     every = [*seen, *lines(rows, scan)]
     rows = regression(found.rows, declared, base, every, equation, block, found.weight)

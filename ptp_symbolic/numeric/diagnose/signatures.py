@@ -26,6 +26,7 @@ from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.row_motion import row_motion
 
 FloatArray = NDArray[np.float64]
+Rows = Callable[[Mapping[str, float]], FloatArray]  # see `rows_around`
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,26 +45,39 @@ class Signature:
     columns: FloatArray
 
 
-def signatures(
-    space: EquationSpace,
-    candidates: Sequence[Candidate],
-    values: Mapping[str, float],
-    weight: FloatArray,
-    executor: Executor | None = None,
-) -> tuple[list[Signature], list[Candidate]]:
-    """Signatures at the parameter `values`, each row counted by its `weight` [n]; and candidates
-    that change nothing along the measured motion.
+def rows_around(space: EquationSpace, values: Mapping[str, float]) -> Rows:
+    """The rows of `space` at the parameter `values` with some of them changed, each set of changes
+    evaluated once; beyond their bounds too, for a frequency of zero. The torque is the model's own
+    one at `values`.
     """
-    by_key = {c.key: c for c in reversed(candidates)}
-    own = space.own_torque(space.model.parameter_vector(dict(values)))
-    cache: dict[tuple[tuple[str, float], ...], FloatArray] = {}
+    vector = space.model.parameter_vector(dict(values))
+    own = space.own_torque(vector)
+    number = {name: k for k, name in enumerate(space.model.parameter_names)}
+    known: dict[tuple[tuple[str, float], ...], FloatArray] = {}
 
     def rows(changed: Mapping[str, float]) -> FloatArray:
         key = tuple(sorted(changed.items()))
-        if key not in cache:
-            p = space.model.parameter_vector({**values, **changed})
-            cache[key] = space.rows(p, own)
-        return cache[key]
+        if key not in known:
+            p = vector.copy()
+            for name, value in changed.items():
+                p[number[name]] = value
+            known[key] = space.rows(p, own)
+        return known[key]
+
+    return rows
+
+
+def signatures(
+    space: EquationSpace,
+    candidates: Sequence[Candidate],
+    rows: Rows,
+    weight: FloatArray,
+    executor: Executor | None = None,
+) -> tuple[list[Signature], list[Candidate]]:
+    """Signatures by the `rows` of `space` (see `rows_around`), each row counted by its `weight`
+    [n]; and candidates that change nothing along the measured motion.
+    """
+    by_key = {c.key: c for c in reversed(candidates)}
 
     def signature(candidate: Candidate) -> Signature:
         return _signature(candidate, brought(candidate, by_key), rows, weight)
@@ -88,7 +102,7 @@ def brought(candidate: Candidate, by_key: Mapping[str, Candidate]) -> dict[str, 
 def _signature(
     candidate: Candidate,
     base: Mapping[str, float],
-    rows: Callable[[Mapping[str, float]], FloatArray],
+    rows: Rows,
     weight: FloatArray,
 ) -> Signature:
     """Difference quotients of `rows` by every defining parameter at every set of shaping values."""
@@ -128,29 +142,19 @@ def _orthonormal(columns: FloatArray, weight: FloatArray) -> FloatArray:
 def locked_signatures(
     space: EquationSpace,
     candidates: Sequence[Candidate],
-    values: Mapping[str, float],
+    rows: Rows,
     residual: FloatArray,
     weight: FloatArray,
 ) -> list[Signature]:
-    """Signatures of candidates with a frequency, at the strongest line of the weighted `residual`
-    [n]; `weight` [n].
+    """Signatures of candidates with a frequency by the `rows` of `space` (see `rows_around`), at
+    the strongest line of the weighted `residual` [n]; `weight` [n].
 
     A full scan over the place (time, or the angle of the candidate's axis): all frequencies from a
     few cycles over the whole range to those that the windows average away. What the wave moves may
     turn with the machine: the residual is scanned as the candidate at no frequency shows it.
     """
     by_key = {c.key: c for c in reversed(candidates)}
-    own = space.own_torque(space.model.parameter_vector(dict(values)))
     found = []
-
-    number = {name: k for k, name in enumerate(space.model.parameter_names)}
-
-    def rows(changed: Mapping[str, float]) -> FloatArray:
-        p = space.model.parameter_vector(dict(values))
-        for name, value in changed.items():
-            p[number[name]] = value  # beyond its bounds too: a frequency of zero
-        return space.rows(p, own)
-
     lines: dict[str, tuple[float, float]] = {}
     for candidate in candidates:
         if candidate.locked is None:

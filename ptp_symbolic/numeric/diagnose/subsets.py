@@ -190,26 +190,29 @@ def exchanges(found: Regression, candidates: Sequence[Candidate]) -> list[tuple[
 
 
 class _Folds:
-    """The normal equations of every fold, for all columns at once."""
+    """The normal equations of every fold, for all columns at once; rows fold by fold."""
 
     def __init__(self, found: Regression) -> None:
         self.found = found
         size = np.linalg.norm(found.base * np.sqrt(found.weight)[:, None], axis=0)
         base = found.base / np.where(size > 0.0, size, 1.0)
-        self.columns = np.column_stack([base, *(s.columns for s in found.signatures)])
+        columns = np.column_stack([base, *(s.columns for s in found.signatures)])
         sizes = [found.base.shape[1], *(s.columns.shape[1] for s in found.signatures)]
         ends = np.cumsum(sizes)
         self.own = [np.arange(b - n, b) for b, n in zip(ends, sizes, strict=True)]
-        blocks, self.label = np.unique(found.block, return_inverse=True)
-        order = np.random.default_rng(SEED).permutation(len(blocks))
-        fold = order[self.label] % FOLDS
-        self.members = [np.flatnonzero(fold == k) for k in range(FOLDS)]
-        root = np.sqrt(found.weight)
-        weighted, right = self.columns * root[:, None], found.rows * root
-        matrices = [weighted[m].T @ weighted[m] for m in self.members]
-        sides = [weighted[m].T @ right[m] for m in self.members]
-        self.matrices = [sum(matrices) - m for m in matrices]
-        self.sides = [sum(sides) - s for s in sides]
+        blocks, label = np.unique(found.block, return_inverse=True)
+        fold = (np.random.default_rng(SEED).permutation(len(blocks)) % FOLDS)[label]
+        order = np.argsort(fold, kind="stable")
+        ends = np.searchsorted(fold[order], np.arange(FOLDS + 1))
+        self.members = [slice(a, b) for a, b in itertools.pairwise(ends)]
+        self.label, self.rows, self.scale = label[order], found.rows[order], found.scale[order]
+        self.columns = np.ascontiguousarray(columns[order].T)
+        root = np.sqrt(found.weight)[order]
+        weighted, right = columns[order] * root[:, None], self.rows * root
+        matrices = np.stack([weighted[m].T @ weighted[m] for m in self.members])
+        sides = np.stack([weighted[m].T @ right[m] for m in self.members])
+        self.matrices = sum(matrices) - matrices
+        self.sides = sum(sides) - sides
 
     def is_complete(self, chosen: Sequence[int]) -> bool:
         """Whether no key occurs twice and everything that is brought along is there."""
@@ -220,13 +223,14 @@ class _Folds:
     def subset(self, chosen: Sequence[int]) -> Subset:
         """Losses of all blocks, each with the amounts that the other folds give."""
         index = np.concatenate([self.own[0], *(self.own[i + 1] for i in chosen)])
-        loss = np.empty(len(self.found.rows))
-        for members, matrix, side in zip(self.members, self.matrices, self.sides, strict=True):
-            part = matrix[np.ix_(index, index)]
-            ridge = NOTHING * np.trace(part) / len(index) * np.eye(len(index))
-            amounts = np.linalg.solve(part + ridge, side[index])
-            left = self.found.rows[members] - self.columns[np.ix_(members, index)] @ amounts
-            loss[members] = np.minimum((left / self.found.scale[members]) ** 2, FAR**2)
+        parts = self.matrices[:, index[:, None], index]
+        ridge = NOTHING * np.trace(parts, axis1=1, axis2=2) / len(index)
+        parts[:, range(len(index)), range(len(index))] += ridge[:, None]
+        amounts = np.linalg.solve(parts, self.sides[:, index, None])[..., 0]
+        columns, left = self.columns[index], self.rows.copy()
+        for members, amount in zip(self.members, amounts, strict=True):
+            left[members] -= amount @ columns[:, members]
+        loss = np.minimum((left / self.scale) ** 2, FAR**2)
         losses = np.asarray(np.bincount(self.label, loss), dtype=np.float64)
         candidates = tuple(self.found.signatures[i].candidate for i in chosen)
         return Subset(candidates, losses, len(index))

@@ -33,14 +33,16 @@ UNEXPLAINED = "unexplained"
 class Verdict:
     """What the logs say.
 
-    `final` is the declared model with what is confirmed, `members` what each of its effects gains,
-    `confusable` the keys that may stand in the place of each; `closest` the best set where nothing
-    is confirmed. `refused` tells why candidates that gained were not named. `floor` is that of
-    `final`; `before` and `after` are the validation runs by the declared and by the final model.
+    `final` is the declared model with what is confirmed and `fit` its fit, from
+    `with_finite_differences`; `members` what each of its effects gains, `confusable` the keys
+    that may stand in the place of each; `closest` the best set where nothing is confirmed.
+    `refused` tells why candidates that gained were not named. `floor` is that of `final`;
+    `before` and `after` are the validation runs by the declared and by the final model.
     """
 
     word: str
     final: Trial
+    fit: Fit
     members: tuple[Step, ...]
     confusable: Mapping[str, tuple[str, ...]]
     rivals: tuple[Rival, ...]
@@ -75,7 +77,7 @@ def decide(found: Search) -> Verdict:
             )
             alike = []
             continue
-        trial, steps, alike = _simplest(seeker, trial, steps, alike)
+        trial, steps, fit, alike = _simplest(seeker, trial, steps, fit, alike)
         floor = floor_of(task, trial, seeker.carried)
         step = doubtful(trial, steps, confusable(trial, alike), floor)
         if step is None:
@@ -94,6 +96,7 @@ def decide(found: Search) -> Verdict:
         for key in trial.keys:
             refused[key] = "takes away too little of the error of the validation runs"
         closest, trial, steps, after, held_out, alike = trial, found.declared, [], before, None, []
+        fit = with_finite_differences(trial.fit, task.executor)
         floor = floor_of(task, trial, carried_noise(task, trial.fit))
         quiet = is_quiet(after, replace(floor, carried=carried_noise(task, after)), trial.fit)
     named = confusable(trial, alike)
@@ -103,6 +106,7 @@ def decide(found: Search) -> Verdict:
     return Verdict(
         word,
         trial,
+        fit,
         tuple(steps),
         named,
         tuple(alike),
@@ -157,23 +161,24 @@ def doubtful(
 
 
 def _simplest(
-    seeker: Seeker, chosen: Trial, steps: list[Step], alike: list[Rival]
-) -> tuple[Trial, list[Step], list[Rival]]:
+    seeker: Seeker, chosen: Trial, steps: list[Step], chosen_fit: Fit, alike: list[Rival]
+) -> tuple[Trial, list[Step], Fit, list[Rival]]:
     """Of one effect and what cannot be told from it, the one with the fewest parameters, if
-    that is confirmed too.
+    that is confirmed too; with its fit from `with_finite_differences`, `chosen_fit` of the first.
     """
+    unchanged = chosen, steps, chosen_fit, alike
     best = min(alike, key=lambda r: len(r.trial.fit.free), default=None)
     if len(steps) != 1 or best is None or len(best.trial.fit.free) >= len(chosen.fit.free):
-        return chosen, steps, alike
+        return unchanged
     if len(best.trial.candidates) != 1:
-        return chosen, steps, alike
+        return unchanged
     (candidate,) = best.trial.candidates
     fit = with_finite_differences(best.trial.fit, seeker.task.executor)
     step = step_of(best.trial, candidate, steps[0].without)
     if _weakness(seeker, best.trial, [step], fit) is not None:
-        return chosen, steps, alike
+        return unchanged
     others = [chosen, *(r.trial for r in alike if r is not best)]
-    return best.trial, [step], [Rival(other, gain(best.trial, other)) for other in others]
+    return best.trial, [step], fit, [Rival(other, gain(best.trial, other)) for other in others]
 
 
 def _off_bounds(seeker: Seeker, trial: Trial, fit: Fit) -> Trial | None:

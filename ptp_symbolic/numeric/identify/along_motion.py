@@ -49,19 +49,23 @@ def _fill(layout, motion, k, x, m, resting):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def gear_ahead(addresses, layout, motion, p, resting, given):
+def gear_ahead(addresses, layout, motion, p, resting, given, wanted):
     """How far [k, na] in rad every gear output is ahead of its joint at p [np], and the face
     [k, na] (-1, 0, 1) that it touches: the `given` [k, na] one, or where that is 0 the one on which
-    the joint must rest; `resting` [na] in rad/s.
+    the joint must rest; `resting` [na] in rad/s. Both stay 0 where they are not `wanted` [k].
     """
     n, na = motion.angle.shape
     ahead, face = np.zeros((n, na)), np.zeros((n, na))
+    if np.all(layout.contact < 0):
+        return ahead, face
     frictions = len(layout.friction_axis)
     x, m = np.zeros(layout.states + layout.rows), np.zeros(layout.modes)
     r = np.zeros(layout.rows + len(layout.further))
     contacts = contact_count(frictions, layout.modes)
     g = np.zeros(contact_guards(frictions, contacts))
     for k in range(n):
+        if not wanted[k]:
+            continue
         _fill(layout, motion, k, x, m, resting)
         for e in range(len(layout.further)):
             value = motion.measured[k, e]
@@ -91,12 +95,12 @@ def gear_ahead(addresses, layout, motion, p, resting, given):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def further_states(addresses, layout, motion, p, resting, acts, shown, late):
+def further_states(addresses, layout, motion, p, resting, acts, shown, wanted, late):
     """The further states [k, e] integrated along the motion at p [np], their averages [k, e] over
     the cells around the samples, and the quasi-static derivative [k, e, na] by the joint rates of
-    those that are `shown` [e]. `late` [k - 1, parts, nu] holds the inputs between samples, an even
-    number of parts, each one exponential Euler step per state; a state that does not act (`acts`
-    [e]) on anything stays at zero.
+    those that are `shown` [e], 0 where it is not `wanted` [k]. `late` [k - 1, parts, nu] holds the
+    inputs between samples, an even number of parts, each one exponential Euler step per state; a
+    state that does not act (`acts` [e]) on anything stays at zero.
     """
     n, na = motion.angle.shape
     count, frictions, parts = len(layout.further), len(layout.friction_axis), late.shape[1]
@@ -134,7 +138,7 @@ def further_states(addresses, layout, motion, p, resting, acts, shown, late):
             found[k + 1, e] = x[layout.further[e]]
             mean[k, e] += halves[0, e]
             mean[k + 1, e] += halves[1, e]
-            if shown[e] and decay[e] != 0.0:
+            if wanted[k] and shown[e] and decay[e] != 0.0:
                 _settle(addresses, layout, motion.time[k], x, late[k, 0], p, m, r, by_rate[k])
                 by_rate[k, e] /= -decay[e]
     if n > 1:
@@ -192,10 +196,11 @@ def _settle(addresses, layout, time, x, u, p, m, r, by_rate):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def torques_along(addresses, layout, motion, p, resting, ahead, ahead_rate, face, further):
+def torques_along(addresses, layout, motion, p, resting, ahead, ahead_rate, face, further, part):
     """Inverse dynamics per sample at p [np]: the torque [k, na] in N m that every axis lacks
     without accelerations, its derivatives [k, na, rows] by every acceleration (inertia), and
     [k, na, 2 na] by the angles, then the rates of the joints; a gear output counts with its joint.
+    Samples whose `part` [k] is 0 stay zero, and derivatives where it is 1.
     """
     n, na = motion.angle.shape
     frictions = len(layout.friction_axis)
@@ -205,6 +210,8 @@ def torques_along(addresses, layout, motion, p, resting, ahead, ahead_rate, face
     r = np.zeros(layout.rows + len(layout.further))
     still = np.zeros(layout.rows + len(layout.further))
     for k in range(n):
+        if part[k] == 0:
+            continue
         _fill(layout, motion, k, x, m, resting)
         for a in range(na):
             if layout.contact[a] >= 0:
@@ -218,6 +225,12 @@ def torques_along(addresses, layout, motion, p, resting, ahead, ahead_rate, face
             x[layout.further[e]] = further[k, e]
         x[layout.states :] = 0.0
         call(addresses[0], motion.time[k], x, motion.inputs[k], p, m, still)
+        for a in range(na):
+            lacking[k, a] = still[a]
+            if layout.gear_row[a] >= 0:
+                lacking[k, a] += still[layout.gear_row[a]]
+        if part[k] == 1:
+            continue
         for row in range(layout.rows):
             x[layout.states + row] = 1.0
             call(addresses[0], motion.time[k], x, motion.inputs[k], p, m, r)
@@ -226,10 +239,6 @@ def torques_along(addresses, layout, motion, p, resting, ahead, ahead_rate, face
                 inertia[k, a, row] = r[a] - still[a]
                 if layout.gear_row[a] >= 0:
                     inertia[k, a, row] += r[layout.gear_row[a]] - still[layout.gear_row[a]]
-        for a in range(na):
-            lacking[k, a] = still[a]
-            if layout.gear_row[a] >= 0:
-                lacking[k, a] += still[layout.gear_row[a]]
         for j in range(2 * na):
             axis = j % na
             at = layout.angle[axis] if j < na else layout.rate[axis]

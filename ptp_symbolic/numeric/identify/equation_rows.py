@@ -1,7 +1,7 @@
 """The rows of a run in equation space: how wide their windows are, and which of them count."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,13 @@ from ptp_symbolic.numeric.identify.constants import (
     SAMPLES_PER_WINDOW,
 )
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.weak_form import curvature_noise, weak_average
+from ptp_symbolic.numeric.identify.weak_form import (
+    Windows,
+    averages,
+    curvature_noise,
+    weak_average,
+    windows,
+)
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -29,12 +35,20 @@ class RunRows:
     """The rows of a run: `grid` [g] are the samples at which torques are taken, `chosen` [c] those
     of the grid that have a row, `kept` [c, equations] the rows that count; `face` [g, na] is the
     face that every gear output touches.
+
+    `part` [g] tells what a row needs of a sample of the grid: 0 nothing, 1 its torque, 2 the
+    derivatives of the torque too. The windows of the rows: `on_grid` and `curved` (of second
+    derivatives) over the grid, `on_samples` over all samples.
     """
 
     grid: IntArray
     chosen: IntArray
     kept: BoolArray
     face: FloatArray
+    part: IntArray
+    on_grid: Windows
+    curved: Windows
+    on_samples: Windows
 
 
 def half_width_of(
@@ -85,10 +99,30 @@ def every_row(run: Run, half_width: float, axes: int, equations: int) -> RunRows
     spacing = window / max(1, int(window / SAMPLES_PER_WINDOW))
     chosen = np.arange(0, len(grid), max(1, round(spacing / ROWS_PER_WINDOW)))
     kept = np.ones((len(chosen), equations), dtype=np.bool_)
-    return RunRows(grid, chosen, kept, np.zeros((len(grid), axes)))
+    return _with_windows(run, half_width, grid, chosen, kept, np.zeros((len(grid), axes)))
+
+
+def _with_windows(
+    run: Run,
+    half_width: float,
+    grid: IntArray,
+    chosen: IntArray,
+    kept: BoolArray,
+    face: FloatArray,
+) -> RunRows:
+    """The rows of a run with their windows of `half_width` s."""
+    time = run.time[grid]
+    on_grid, curved = (windows(time, half_width, d, chosen) for d in (0, 2))
+    part = np.zeros(len(grid), dtype=np.int64)
+    for first, end in zip(on_grid.first, on_grid.end, strict=True):
+        part[first:end] = 1
+    part[chosen] = 2
+    on_samples = windows(run.time, half_width, 0, grid[chosen])
+    return RunRows(grid, chosen, kept, face, part, on_grid, curved, on_samples)
 
 
 def rows_that_count(
+    run: Run,
     rows: RunRows,
     motion: Motion,
     faces: Sequence[FloatArray],
@@ -96,18 +130,19 @@ def rows_that_count(
     half_width: float,
     measured: int,
 ) -> RunRows:
-    """The `rows` whose windows, of `half_width` s, are whole and hold neither rest (`resting` [na]
-    in rad/s) nor a change of one of the `faces` [g, na], the first of which are those at the
-    parameters; so many further states are `measured`.
+    """The `rows` of a run whose windows, of `half_width` s, are whole and hold neither rest
+    (`resting` [na] in rad/s) nor a change of one of the `faces` [g, na], the first of which are
+    those at the parameters; so many further states are `measured`.
     """
     rests = (np.abs(motion.rate) < resting).astype(np.float64)
     changed = np.zeros_like(rests)
     for face in faces:
         changed[1:] = np.maximum(changed[1:], face[1:] != face[:-1])
     both = np.column_stack([rests, changed])
-    both = weak_average(motion.time, both, half_width, 0, rows.chosen)
+    both = averages(rows.on_grid, both)
     axes = rests.shape[1]
     slides = (both[:, :axes] < NOTHING) & (both[:, axes:] < NOTHING)
     electric = np.all(both[:, axes:] < NOTHING, axis=1)
     kept = np.column_stack([slides, *[electric] * measured])
-    return replace(rows, kept=kept, face=faces[0])
+    some = kept.any(axis=1)
+    return _with_windows(run, half_width, rows.grid, rows.chosen[some], kept[some], faces[0])

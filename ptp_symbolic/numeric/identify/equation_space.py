@@ -13,22 +13,18 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.identify.along_motion import (
     further_states,
     gear_ahead,
     torques_along,
 )
 from ptp_symbolic.numeric.identify.constants import FINITE, LATE_PARTS, PARTS
-from ptp_symbolic.numeric.identify.dependence import dependence_of
 from ptp_symbolic.numeric.identify.equation_rows import (
     RunRows,
     every_row,
-    half_width_of,
-    resting_rates,
     rows_that_count,
 )
-from ptp_symbolic.numeric.identify.layout import Layout, equation_addresses, layout_of
+from ptp_symbolic.numeric.identify.layout import Layout, equation_addresses
 from ptp_symbolic.numeric.identify.measured_motion import (
     FurtherStates,
     MeasuredMotion,
@@ -41,7 +37,7 @@ from ptp_symbolic.numeric.identify.sample_averages import (
     grid_averages,
     part_averages,
 )
-from ptp_symbolic.numeric.identify.weak_form import weak_average
+from ptp_symbolic.numeric.identify.weak_form import averages
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.delays import delays_of
 
@@ -74,6 +70,7 @@ class EquationSpace:
     rows_of: tuple[RunRows, ...] = ()
     _motions: dict[tuple[int, bytes], MeasuredMotion] = field(default_factory=dict, repr=False)
     _states: dict[tuple[int, bytes, int], FurtherStates] = field(default_factory=dict, repr=False)
+    _inputs: dict[tuple[int, bytes], FloatArray] = field(default_factory=dict, repr=False)
 
     @property
     def equations(self) -> int:
@@ -114,42 +111,54 @@ class EquationSpace:
 
     def _run_rows(self, number: int, p: FloatArray, own: FloatArray | None) -> FloatArray:
         """Rows [c, equations] of one run."""
-        run, rows = self.runs[number], self.rows_of[number]
-        along, ahead, (lacking, inertia, slopes), further = self._torques(number, p, own)
-        time, h, curvature = along.coarse.time, self.half_width, along.curvature
+        rows = self.rows_of[number]
+        along, ahead, (lacking, inertia, slopes), further = self._torques(number, p, own, rows.part)
+        curvature = along.curvature
         if self.gears:
-            behind = weak_average(time, ahead, h, 2, rows.chosen)[:, self.gears]
+            behind = averages(rows.curved, ahead)[:, self.gears]
             curvature = np.column_stack([curvature, curvature[:, self.gears] + behind])
-        torque = weak_average(time, lacking, h, 0, rows.chosen)
+        torque = averages(rows.on_grid, lacking)
         torque += np.einsum("kar,kr->ka", inertia[rows.chosen], curvature)
         torque += np.einsum("kaj,kj->ka", slopes[rows.chosen], along.missed)
         if not self.measured:
             return torque
         at, places = rows.grid[rows.chosen], [place for _, place in self.measured]
-        electric = weak_average(run.time, np.ascontiguousarray(further.left[:, places]), h, 0, at)
+        electric = averages(rows.on_samples, np.ascontiguousarray(further.left[:, places]))
         rates = along.missed[:, len(self.layout.angle) :]
         electric -= np.einsum("kea,ka->ke", further.by_rate[at][:, places], rates)
         return np.column_stack([torque, electric])
 
     def _torques(
-        self, number: int, p: FloatArray, own: FloatArray | None
+        self, number: int, p: FloatArray, own: FloatArray | None, part: IntArray
     ) -> tuple[MeasuredMotion, FloatArray, Torques, FurtherStates]:
-        """Motion, lead of the gears, what `torques_along` gives on the grid, and further states."""
-        run, addresses = self.runs[number], equation_addresses(self.model)
+        """Motion, lead of the gears, what `torques_along` gives on the grid (of every sample the
+        `part` [g] that is needed), and further states.
+        """
+        addresses = equation_addresses(self.model)
         rows, along = self.rows_of[number], self._motion(number, p)
-        delays, inputs = delays_of(self.model, p), len(self.model.input_names)
-        given = np.column_stack([cell_averages(run, j, d, rows.grid) for j, d in enumerate(delays)])
+        inputs = len(self.model.input_names)
         added = np.zeros((len(rows.grid), inputs + len(self.layout.further)))
         added = added if own is None else own
-        motion = along.coarse._replace(inputs=given + added[:, :inputs])
-        ahead, face = gear_ahead(addresses, self.layout, motion, p, self.resting, rows.face)
+        motion = along.coarse._replace(inputs=self._given(number, p) + added[:, :inputs])
+        wanted = np.convolve(part, np.ones(3), "same") > 0.0  # neighbours too, for the rate
+        ahead, face = gear_ahead(addresses, self.layout, motion, p, self.resting, rows.face, wanted)
         further = self._further(number, p, along, added[:, :inputs])
         acting = further.acting + added[:, inputs:]
         rate = np.gradient(ahead, motion.time, axis=0) if self.gears else ahead
         torques = torques_along(
-            addresses, self.layout, motion, p, self.resting, ahead, rate, face, acting
+            addresses, self.layout, motion, p, self.resting, ahead, rate, face, acting, part
         )
         return along, ahead, torques, further
+
+    def _given(self, number: int, p: FloatArray) -> FloatArray:
+        """Inputs [g, nu] of a run, delayed and averaged over the cells of the grid."""
+        delays = delays_of(self.model, p)
+        key = (number, delays.tobytes())
+        if key not in self._inputs:
+            run, grid = self.runs[number], self.rows_of[number].grid
+            every = [cell_averages(run, j, d, grid) for j, d in enumerate(delays)]
+            self._inputs[key] = np.column_stack(every)
+        return self._inputs[key]
 
     def _motion(self, number: int, p: FloatArray) -> MeasuredMotion:
         """The measured motion, errors of the sensors at p taken out."""
@@ -167,7 +176,8 @@ class EquationSpace:
         self, number: int, p: FloatArray, along: MeasuredMotion, added: FloatArray
     ) -> FurtherStates:
         """Further states along the motion, with what is `added` [g, nu] to the inputs."""
-        run, fine, grid = self.runs[number], along.fine, self.rows_of[number].grid
+        run, fine, rows = self.runs[number], along.fine, self.rows_of[number]
+        grid = rows.grid
         count = len(self.layout.further)
         if not count:
             return FurtherStates(
@@ -183,9 +193,11 @@ class EquationSpace:
                 late = late + np.column_stack(more)[:, None, :]
             shown = np.zeros(count, dtype=np.bool_)
             shown[[place for _, place in self.measured]] = True
+            wanted = np.zeros(len(run.time), dtype=np.bool_)
+            wanted[grid[rows.chosen]] = True
             addresses, resting = equation_addresses(self.model), self.resting
             found, mean, by_rate = further_states(
-                addresses, self.layout, fine, p, resting, self.acting, shown, late
+                addresses, self.layout, fine, p, resting, self.acting, shown, wanted, late
             )
             left = fine.measured - found
             acts = grid_averages(np.where(np.isnan(left), mean, mean + left), grid)
@@ -208,17 +220,18 @@ class EquationSpace:
     def _that_count(self, number: int, p: FloatArray, others: Sequence[FloatArray]) -> RunRows:
         """The rows of a run, those that count decided anew."""
         rows, motion = self.rows_of[number], self._motion(number, p).coarse
-        addresses = equation_addresses(self.model)
+        addresses, every = equation_addresses(self.model), np.ones(len(rows.grid), dtype=np.bool_)
         faces = [
-            gear_ahead(addresses, self.layout, motion, q, self.resting, rows.face)[1]
+            gear_ahead(addresses, self.layout, motion, q, self.resting, rows.face, every)[1]
             for q in (p, *others)
         ]
-        measured = len(self.measured)
-        return rows_that_count(rows, motion, faces, self.resting, self.half_width, measured)
+        run, measured = self.runs[number], len(self.measured)
+        return rows_that_count(run, rows, motion, faces, self.resting, self.half_width, measured)
 
     def forget(self) -> None:
-        """Clear the caches of motions and states: after a search over sensors or currents."""
+        """Clear all caches: after a search over sensors, currents or delays."""
         self._motions.clear()
+        self._inputs.clear()
         self._states.clear()
 
     def own_torque(self, p: FloatArray) -> list[FloatArray]:
@@ -229,7 +242,8 @@ class EquationSpace:
         acting = self._acting(p)
         found = []
         for number in range(len(self.runs)):
-            along, _, (lacking, inertia, _), _ = self._torques(number, p, None)
+            part = np.full(len(self.rows_of[number].grid), 2)
+            along, _, (lacking, inertia, _), _ = self._torques(number, p, None, part)
             acceleration = along.coarse.acceleration
             every = np.column_stack([acceleration, acceleration[:, self.gears]])
             torque = lacking + np.einsum("kar,kr->ka", inertia, every)
@@ -248,52 +262,13 @@ class EquationSpace:
         inputs, further = len(self.model.input_names), len(self.layout.further)
         shown = {inputs + place for _, place in self.measured}
         none = np.zeros((len(self.rows_of[0].grid), inputs + further))
-        middle = len(none) // 2
-        here = self._torques(0, p, none)[2][0][middle]
+        middle, part = len(none) // 2, np.ones(len(none), dtype=np.int64)
+        here = self._torques(0, p, none, part)[2][0][middle]
         result = np.zeros((len(here), inputs + further))
         for j in range(inputs + further):
             if j < inputs or j in shown:
                 shifted = none.copy()
                 shifted[:, j] = FINITE
-                result[:, j] = (self._torques(0, p, shifted)[2][0][middle] - here) / FINITE
+                result[:, j] = (self._torques(0, p, shifted, part)[2][0][middle] - here) / FINITE
                 self._states.clear()
         return result
-
-
-def prepare_equation_space(
-    model: Model,
-    runs: Sequence[Run],
-    p: FloatArray,
-    others: Sequence[FloatArray],
-    varied: FloatArray,
-) -> EquationSpace:
-    """The equation space of `model` over whole `runs`.
-
-    Which rows count is decided at the parameters p [np] and at `others` (see `decide_rows`);
-    `varied` are parameters that differ from p in all that may be searched, to see which of them act
-    on sensors and on further states. Raises InputError for a model with sampled states, and where
-    an axis has no angle among the signals.
-    """
-    layout = layout_of(model)
-    axes = model.module.AXES
-    for axis in axes:
-        if any(f"theta_{axis}" not in run.signals for run in runs):
-            raise InputError(f"Signal 'theta_{axis}' is not measured; torques need every angle.")
-    further = [model.state_names[i] for i in layout.further]
-    measured = tuple(
-        (column, further.index(name))
-        for column, name in enumerate(runs[0].signals)
-        if name in further
-    )
-    depends = dependence_of(model, layout, runs, p, varied)
-    columns = [runs[0].signals.index(f"theta_{axis}") for axis in axes]
-    noise = 1.0 / runs[0].weight[columns]
-    period = float(np.median(np.concatenate([np.diff(run.time) for run in runs])))
-    half_width = half_width_of(runs, columns, noise, period)
-    resting = resting_rates(runs[0].counts[columns], noise, period, 0.5 * half_width)
-    frictions = set(layout.friction_axis.tolist())
-    resting = np.where([a in frictions for a in range(len(axes))], resting, 0.0)
-    widths, acts = (half_width, 0.5 * half_width), (depends.sensing, depends.moving, depends.acting)
-    space = EquationSpace(model, tuple(runs), layout, *widths, resting, measured, *acts)
-    space.decide_rows(p, others)
-    return space

@@ -13,7 +13,7 @@ from ptp_symbolic.numeric.identify.constants import SENSOR_ITERATIONS
 from ptp_symbolic.numeric.identify.equation_rows import RunRows
 from ptp_symbolic.numeric.identify.layout import Layout, equation_addresses
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.weak_form import local_motion, weak_average
+from ptp_symbolic.numeric.identify.weak_form import averages, local_motion, weak_average
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
@@ -83,7 +83,10 @@ def measured_motion(
     coarse = Motion(*(np.ascontiguousarray(column[rows.grid]) for column in fine))
     at = rows.grid[rows.chosen]
     curvature = weak_average(run.time, angles, half_width, 2, at)
-    exact = [weak_average(run.time, angles, half_width, d, at) for d in (0, 1)]
-    taken = [weak_average(coarse.time, c, half_width, 0, rows.chosen) for c in coarse[1:3]]
+    exact = [
+        averages(rows.on_samples, angles),
+        weak_average(run.time, angles, half_width, 1, at),
+    ]
+    taken = [averages(rows.on_grid, c) for c in coarse[1:3]]
     missed = np.column_stack([e - s for e, s in zip(exact, taken, strict=True)])
     return MeasuredMotion(fine, coarse, curvature, missed)

@@ -6,6 +6,8 @@ test function (modulating functions: Shinbrot, 1957; weak form: Messenger and Bo
 function is (1 - s^2)^4 over a window that is centred on the sample.
 """
 
+from typing import Any, NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -14,51 +16,69 @@ from scipy.special import beta
 from ptp_symbolic.numeric.identify.constants import LARGEST_GAP, LEAST_SAMPLES
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+class Windows(NamedTuple):
+    """The weights of the samples in the windows of chosen samples [c], window after window.
+
+    A window holds the samples from `first` to before `end`, both [c], equal where it is cut off by
+    an end of the run or interrupted by a gap; their weights begin at `begin` [c] in `weight` [w],
+    and their average is divided by `whole` [c]. Values count from that of the sample `middle` [c]
+    where `relative`, as in derivatives.
+    """
+
+    first: Any
+    end: Any
+    begin: Any
+    weight: Any
+    whole: Any
+    middle: Any
+    relative: bool
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _windows(time, half_width):
-    """First and one past the last sample of the window of every sample; empty where it is cut off
-    by an end of the run or interrupted by a gap.
+def _is_whole(time, half_width, k, low, high):
+    """Whether the window of sample k, from `low` to before `high`, is not cut off by an end of the
+    run nor interrupted by a gap.
     """
-    n = len(time)
-    first, end = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
-    low, high = 0, 0
     slack = 1e-9 * half_width
-    for k in range(n):
-        while time[low] < time[k] - half_width - slack:
-            low += 1
-        while high < n and time[high] <= time[k] + half_width + slack:
-            high += 1
-        whole = (
-            time[k] - half_width >= time[0] - slack and time[k] + half_width <= time[n - 1] + slack
-        )
-        if not whole or high - low < LEAST_SAMPLES:
-            continue
-        longest = max(time[low] - time[k], time[k] - time[high - 1]) + half_width
-        for j in range(low, high - 1):
-            longest = max(longest, time[j + 1] - time[j])
-        if longest <= LARGEST_GAP * half_width:
-            first[k], end[k] = low, high
+    if time[k] - half_width < time[0] - slack or time[k] + half_width > time[-1] + slack:
+        return False
+    if high - low < LEAST_SAMPLES:
+        return False
+    longest = max(time[low] - time[k], time[k] - time[high - 1]) + half_width
+    for j in range(low, high - 1):
+        longest = max(longest, time[j + 1] - time[j])
+    return longest <= LARGEST_GAP * half_width
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _bounds(time, half_width, chosen):
+    """First and one past the last sample [c] of the windows of `chosen` [c]; equal where a window
+    is not whole.
+    """
+    first, end = np.zeros_like(chosen), np.zeros_like(chosen)
+    slack = 1e-9 * half_width
+    low = np.searchsorted(time, time[chosen] - half_width - slack)
+    high = np.searchsorted(time, time[chosen] + half_width + slack, side="right")
+    for row, k in enumerate(chosen):
+        if _is_whole(time, half_width, k, low[row], high[row]):
+            first[row], end[row] = low[row], high[row]
     return first, end
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def weak_average(time, values, half_width, derivative, chosen):
-    """Average [c, v] of `values` [k, v] at `time` [k] in s, or of their first or second derivative
-    (`derivative` 1 or 2, per s or s^2), under the test function of `half_width` s centred on the
-    samples `chosen` [c]; nan where its window is not whole. Weights are normalised so that a
-    constant has the average 1 and a parabola its exact derivatives, however few the samples.
+def windows(time, half_width, derivative, chosen):
+    """The windows of `half_width` s around the samples `chosen` [c] of `time` [k] in s, for the
+    average of a signal, or of its first or second `derivative` (1 or 2). Weights are normalised so
+    that a constant has the average 1 and a parabola its exact derivatives, however few the samples.
     """
-    columns = values.shape[1]
-    first, end = _windows(time, half_width)
-    result = np.full((len(chosen), columns), np.nan)
+    first, end = _bounds(time, half_width, chosen)
+    begin = np.cumsum(end - first) - (end - first)
+    weights, wholes = np.zeros(int(np.sum(end - first))), np.zeros(len(chosen))
     for row, k in enumerate(chosen):
-        low, high = first[k], end[k]
-        if low == high:
-            continue
-        whole = 0.0
-        total = np.zeros(columns)
+        low, high = first[row], end[row]
         for j in range(low, high):
             before = time[j - 1] if j > low else time[k] - half_width
             after = time[j + 1] if j < high - 1 else time[k] + half_width
@@ -73,12 +93,43 @@ def weak_average(time, values, half_width, derivative, chosen):
             elif derivative == 2:
                 weight = base * base * (48.0 * s * s - 8.0 * base)
                 share = 0.5 * weight * s * s * half_width * half_width
-            whole += width * share
+            wholes[row] += width * share
+            weights[begin[row] + j - low] = width * weight
+    return Windows(first, end, begin, weights, wholes, chosen, derivative > 0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def averages(found, values):
+    """Averages [c, v] of `values` [k, v], or of their derivatives per s or s^2, in the windows
+    `found`; nan where a window is not whole.
+    """
+    columns = values.shape[1]
+    result = np.full((len(found.middle), columns), np.nan)
+    total, origin = np.zeros(columns), np.zeros(columns)
+    for row, k in enumerate(found.middle):
+        low, high = found.first[row], found.end[row]
+        if low == high:
+            continue
+        total[:] = 0.0
+        if found.relative:
+            origin[:] = values[k]
+        for j in range(low, high):
+            weight = found.weight[found.begin[row] + j - low]
             for c in range(columns):
-                origin = values[k, c] if derivative > 0 else 0.0
-                total[c] += width * weight * (values[j, c] - origin)
-        result[row] = total / whole
+                total[c] += weight * (values[j, c] - origin[c])
+        result[row] = total / found.whole[row]
     return result
+
+
+def weak_average(
+    time: FloatArray, values: FloatArray, half_width: float, derivative: int, chosen: IntArray
+) -> FloatArray:
+    """Average [c, v] of `values` [k, v] at `time` [k] in s, or of their first or second derivative
+    (`derivative` 1 or 2, per s or s^2), under the test function of `half_width` s centred on the
+    samples `chosen` [c]; nan where its window is not whole.
+    """
+    found: FloatArray = averages(windows(time, half_width, derivative, chosen), values)
+    return found
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
