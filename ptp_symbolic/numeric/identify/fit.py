@@ -291,7 +291,10 @@ def _fit_starts(
         return min(found, key=lambda optimum: optimum.cost)
 
     known = [[]] * len(runs) if z is None else [[start] for start in z]
-    best = list((executor.map if executor else map)(one, runs, known))
+    order = sorted(range(len(runs)), key=lambda k: -runs[k].size)  # the longest would end last
+    found = (executor.map if executor else map)(lambda k: one(runs[k], known[k]), order)
+    by_run = dict(zip(order, found, strict=True))
+    best = [by_run[k] for k in range(len(runs))]
     return Fit(
         model,
         tuple(runs),
