@@ -27,6 +27,7 @@ from ptp_symbolic.numeric.identify.constants import (
     LARGEST,
     LAST_RUNG,
     MATERIAL,
+    MOST,
 )
 
 
@@ -93,7 +94,10 @@ def extended(
         if grown is None:
             break
         seeker.others.append(best)
-        pruned, fewer = seeker.pruned(seeker.restarted(seeker.completed(grown)))
+        full = seeker.completed(grown)
+        if gain(grown, best).share >= MOST:  # one that gains less has been begun anew before
+            full = seeker.restarted(full)
+        pruned, fewer = seeker.pruned(full)
         same = pruned.keys == best.keys
         if same and ranked([best, pruned])[0] is best:
             break

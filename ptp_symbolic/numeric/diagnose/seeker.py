@@ -109,7 +109,8 @@ class Seeker:
     def without(self, trial: Trial, candidate: Candidate) -> Trial:
         """The trial refitted without one of its candidates, and without what needs it; or what is
         left where the search has come to before, if that is a better place: a candidate gains no
-        more than what it adds to the best fit without it.
+        more than what it adds to the best fit without it. One that gains next to nothing after a
+        few iterations gains no more at their end: that fit is not brought there.
         """
         kept = tuple(
             c for c in trial.candidates if c is not candidate and candidate.key not in c.brings
@@ -120,7 +121,7 @@ class Seeker:
         values = trial.values | {name: self.task.fixed[name] for name in names}
         run = self.task.executor
         smaller = fitted(self.task, kept, values, trial.fit.z, ITERATIONS, trial.fit, executor=run)
-        if gain(trial, smaller).share < MOST:
+        if MATERIAL <= gain(trial, smaller).share < MOST:
             smaller = self.restarted(self.polished(smaller))
         same = [t for t in self.others if forms_of(t.candidates) == forms_of(kept)]
         known = ranked([smaller, *same])[0]
@@ -161,6 +162,7 @@ class Seeker:
                 steps += fresh
                 if unneeded:
                     trial = ranked(unneeded)[0]
+                    trial = self.polished(trial) if trial.candidates else trial
                     break
             else:
                 return trial, steps
