@@ -35,10 +35,8 @@ from ptp_symbolic.numeric.diagnose.trial import (
     ranked,
 )
 from ptp_symbolic.numeric.identify.constants import (
-    ITERATIONS,
     MATERIAL,
     MOST,
-    NO_RIVAL,
     REACH,
     SIMILAR,
 )
@@ -93,7 +91,7 @@ def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
             resembling |= {keys_of((*kept, s.candidate)) for s in similar}
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
-    trials = halving(task, begun, ((ITERATIONS, len(begun)),))
+    trials = halving(task, begun, len(begun))
     for other in ranked(seeker.others):
         same_size = len(other.candidates) == len(chosen.candidates)
         fresh = same_size and other.keys != chosen.keys and np.isfinite(other.fit.cost)
@@ -106,7 +104,7 @@ def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
     for trial in best.values():
         if trial.keys in resembling:
             found.append(started_anew(task, seeker.polished(trial), seeker.carried))
-        elif gain(chosen, trial).share < NO_RIVAL:
+        elif gain(chosen, trial).share < 1.0 - MATERIAL:
             found.append(seeker.polished(trial))
     compared = [Rival(trial, gain(chosen, trial)) for trial in found]
     return [r for r in compared if not is_clearly_more(r.gain, len(compared))]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.refits import polished
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, is_near, ranked
-from ptp_symbolic.numeric.identify.constants import LAST_RUNG, MATERIAL
+from ptp_symbolic.numeric.identify.constants import MATERIAL
 
 FloatArray = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ def beside_declared(task: Task, trial: Trial, declared: Trial, carried: FloatArr
         fitted(task, trial.candidates, values, declared.fit.z, 0, declared.fit)
         for values in (declared.values | own, declared.values | own | off)
     ]
-    left = halving(task, begun, LAST_RUNG)
+    left = halving(task, begun, 1)
     return ranked([trial, *(polished(task, t, carried) for t in left)])[0]
 
 
@@ -34,7 +34,7 @@ def declared_from(task: Task, trial: Trial, declared: Trial, carried: FloatArray
     None unless that is materially better than `declared`, which was in a local minimum then.
     """
     off = {name: task.fixed[name] for c in trial.candidates for name in c.names}
-    left = halving(task, [fitted(task, (), trial.values | off, trial.fit.z)], LAST_RUNG)
+    left = halving(task, [fitted(task, (), trial.values | off, trial.fit.z)], 1)
     again = [polished(task, t, carried) for t in left if is_near(t, [declared])]
     best = ranked([declared, *again])[0]
     return best if gain(best, declared).share >= MATERIAL else None

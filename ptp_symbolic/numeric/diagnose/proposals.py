@@ -35,9 +35,9 @@ from ptp_symbolic.numeric.identify.constants import (
     ITERATIONS,
     LARGEST,
     LITTLE,
-    PROPOSED,
     REFINEMENTS,
     SHORT,
+    TRIED,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
 from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised
@@ -218,7 +218,7 @@ def _best_sets(rows: Regression) -> tuple[Subset, list[Subset], Regression]:
     for subset in (*close[:2], every[0], *_best_by_size(every), *close[2:]):
         if subset.candidates:
             kept.setdefault(_keys(subset), subset)
-    return close[0], list(kept.values())[:PROPOSED], rows
+    return close[0], list(kept.values())[: 2 * TRIED], rows
 
 
 def _best_by_size(every: Sequence[Subset]) -> list[Subset]:

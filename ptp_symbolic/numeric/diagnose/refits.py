@@ -23,16 +23,15 @@ from ptp_symbolic.numeric.diagnose.trial import (
 )
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
+    ADDED,
     CYCLES,
     FAR_OFF,
-    FAR_RUNGS,
-    FIRST_RUNG,
     FORGOTTEN,
     ITERATIONS,
-    LAST_RUNG,
     NEARBY,
     POLISH,
     ROUGH,
+    SCREENED,
     SHARP,
     STEP,
     WIDE_STEP,
@@ -60,8 +59,8 @@ def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
     begun += [fitted(task, (), values, None) for values in starts]
     if not task.windows:
         far = [fitted(task, (), values, None) for values in spread]
-        begun += halving(task, far, FIRST_RUNG)
-    best = halving(task, begun, LAST_RUNG) or begun[-1:]
+        begun += halving(task, far, SCREENED)
+    best = halving(task, begun, 1) or begun[-1:]
     trial = polished(task, best[0], carried_noise(task, best[0].fit))
     part = in_windows(task, trial)
     if part is task:
@@ -126,14 +125,15 @@ def over_windows(
     best: Trial | None = None
     for windows in task.windows:
         part = replace(task, train=windows, robust_below=np.inf)
-        groups = [(starts, LAST_RUNG), (spread, FAR_RUNGS)]
-        if best is not None:
-            groups = [([best.values], LAST_RUNG)]
-        begun: list[Trial] = []
-        for group, rungs in groups:
-            if not begun or not np.all(left_over(begun[0].fit) <= ABOVE_NOISE):
-                first = [fitted(part, candidates, v, None, executor=executor) for v in group]
-                begun = ranked([*begun, *halving(part, first, rungs)])
+
+        def begin(values: Mapping[str, float], part: Task = part) -> Trial:
+            return fitted(part, candidates, values, None, executor=executor)
+
+        near = starts if best is None else [best.values]
+        begun = halving(part, list(map(begin, near)), 1)
+        if best is None and not (begun and np.all(left_over(begun[0].fit) <= ABOVE_NOISE)):
+            far = halving(part, list(map(begin, spread)), ADDED, iterations=1)
+            begun = ranked([*begun, *halving(part, far, 1)])
         if not begun:
             return []
         best = settled(part, begun[0], executor)
@@ -201,7 +201,7 @@ def started_anew(task: Task, trial: Trial, carried: FloatArray) -> Trial:
         back = {n: _inside(f, factor * f.start) for f in strayed for n in f.names}
         values = trial.values | back
         begun.append(fitted(task, trial.candidates, values, trial.fit.z, parent=trial.fit))
-    left = halving(task, begun, LAST_RUNG)
+    left = halving(task, begun, 1)
     return ranked([trial, *(_to_its_end(task, t, carried) for t in left)])[0]
 
 

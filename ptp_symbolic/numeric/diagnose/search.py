@@ -23,11 +23,10 @@ from ptp_symbolic.numeric.diagnose.trial import (
     ranked,
 )
 from ptp_symbolic.numeric.identify.constants import (
-    FIRST_RUNG,
     LARGEST,
-    LAST_RUNG,
     MATERIAL,
     MOST,
+    SCREENED,
 )
 
 
@@ -50,11 +49,11 @@ def _from_declared(seeker: Seeker) -> Search:
     if seeker.proposals.asked_for or not seeker.is_at_noise(best):
         sets = started(task, seeker.declared, seeker.proposals)
         task.progress(f"refitting {len(sets)} proposed sets")
-        found = halving(task, sets, FIRST_RUNG + LAST_RUNG, seeker.others)
+        found = halving(task, sets, SCREENED, 1, seen=seeker.others)
         if not seeker.have_answer(best, *found, *seeker.others):
             unseen = seeker.unseen(best)
             task.progress(f"refitting {len(unseen)} effects that the motion does not show")
-            found += halving(task, unseen, LAST_RUNG)
+            found += halving(task, unseen, 1)
         found = [t for t in ranked(found) if is_near(t, found)]
         best = seeker.restarted(ranked([best, *(seeker.completed(t) for t in found)])[0])
     begun, steps = seeker.pruned(best)

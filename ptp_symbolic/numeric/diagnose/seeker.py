@@ -38,9 +38,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
 )
 from ptp_symbolic.numeric.identify.constants import (
     ADDED,
-    FIRST_RUNG,
     ITERATIONS,
-    LAST_RUNG,
     MATERIAL,
     MOST,
     SCREENED,
@@ -93,7 +91,7 @@ class Seeker:
         if not trial.candidates or self.is_at_noise(trial):
             return trial
         begun = from_rows(self.task, self.proposals, trial.candidates, trial.values)
-        left = halving(self.task, begun, LAST_RUNG)
+        left = halving(self.task, begun, 1)
         fresh = [t for t in left if is_near(t, [trial]) and not is_alike(t, trial)]
         return ranked([trial, *(self.polished(t) for t in fresh)])[0]
 
@@ -195,7 +193,7 @@ class Seeker:
         `trial` gains clearly and materially; None if there is none. An effect may fit best in a
         form whose parameters trade for each other, and be clear in a simpler one.
         """
-        left = halving(self.task, begun, FIRST_RUNG, self.others)
+        left = halving(self.task, begun, SCREENED, seen=self.others)
         found = ranked([self.polished(t) for t in left if is_near(t, left)])
         if found and gain(found[0], trial).share < MOST:
             found[0] = self.restarted(found[0])
@@ -216,7 +214,7 @@ class Seeker:
         begun = [
             t for candidates in sets for t in in_place(self.task, self.proposals, candidates, trial)
         ]
-        left = halving(self.task, begun, ((ITERATIONS, TRIED),), self.others)
+        left = halving(self.task, begun, TRIED, seen=self.others)
         found = [self.polished(t) for t in left if is_near(t, [trial])]
         self.others += [*found, *(t for t in left if not is_near(t, [trial]))]
         best = ranked([trial, *found])[0]

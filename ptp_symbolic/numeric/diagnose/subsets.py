@@ -18,13 +18,12 @@ from ptp_symbolic.numeric.identify.constants import (
     DEVIATIONS,
     FAR,
     FOLDS,
-    HUBER,
     LARGEST,
     LITTLE,
     NOTHING,
     REWEIGHTINGS,
     SEED,
-    WIDTH,
+    TRIED,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.equation_fit import robust_scale
@@ -85,7 +84,7 @@ def reweighted(found: Regression, candidates: Sequence[Candidate]) -> Regression
     for _ in range(REWEIGHTINGS):
         left = found.rows - columns @ _amounts(columns, found.rows, weight)
         scale = robust_scale(left, found.equation)
-        weight = np.minimum(1.0, HUBER * scale / np.maximum(np.abs(left), 1e-300)) / scale**2
+        weight = np.minimum(1.0, DEVIATIONS * scale / np.maximum(np.abs(left), 1e-300)) / scale**2
     return replace(found, weight=weight, scale=scale)
 
 
@@ -153,8 +152,8 @@ def ranked_subsets(found: Regression, largest: int) -> list[Subset]:
                 every[chosen] = folds.subset(chosen)
     for size in range(3, largest + 1):
         smaller = sorted((k for k in every if len(k) == size - 1), key=lambda k: every[k].loss)
-        pool = list(dict.fromkeys(entry for chosen in smaller for entry in chosen))[:WIDTH]
-        for chosen in smaller[:WIDTH]:
+        pool = list(dict.fromkeys(entry for chosen in smaller for entry in chosen))[: 4 * TRIED]
+        for chosen in smaller[: 4 * TRIED]:
             for entry in pool:
                 grown = tuple(sorted({*chosen, entry}))
                 if len(grown) == size and grown not in every and folds.is_complete(grown):

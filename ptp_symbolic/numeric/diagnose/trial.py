@@ -10,7 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.identify.constants import GAIN, LITTLE, NEARBY, ROUGH, TUNING, WIDE_STEP
+from ptp_symbolic.numeric.identify.constants import (
+    GAIN,
+    ITERATIONS,
+    LITTLE,
+    NEARBY,
+    ROUGH,
+    TUNING,
+    WIDE_STEP,
+)
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
@@ -254,14 +262,15 @@ def is_alike(trial: Trial, other: Trial) -> bool:
 def halving(
     task: Task,
     trials: Sequence[Trial],
-    rungs: Sequence[tuple[int, int]],
+    *rungs: int,
     seen: list[Trial] | None = None,
+    iterations: int = ITERATIONS,
 ) -> list[Trial]:
     """Successive halving (Jamieson and Talwalkar, 2016): every rung gives the trials that are left
-    so many iterations, side by side, and keeps so many of them; the others end up in `seen`.
+    some iterations, side by side, and keeps so many of them; the others end up in `seen`.
     """
     left = list(trials)
-    for iterations, kept in rungs:
+    for kept in rungs:
         go_on = [
             task.executor.submit(
                 continued,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from ptp_symbolic.numeric.identify.constants import FINITE, HUBER, MAD_TO_SIGMA, SAME, SHORT
+from ptp_symbolic.numeric.identify.constants import DEVIATIONS, FINITE, MAD_TO_SIGMA, SAME, SHORT
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 
@@ -43,7 +43,7 @@ def robust_scale(rows: FloatArray, equation: IntArray) -> FloatArray:
 def huber_weight(rows: FloatArray, equation: IntArray) -> FloatArray:
     """Huber's weight [n] of every row in a least squares fit: 1 / variance, less for outliers."""
     scale = robust_scale(rows, equation)
-    return np.minimum(1.0, HUBER * scale / np.maximum(np.abs(rows), 1e-300)) / scale**2
+    return np.minimum(1.0, DEVIATIONS * scale / np.maximum(np.abs(rows), 1e-300)) / scale**2
 
 
 def fit_equations(

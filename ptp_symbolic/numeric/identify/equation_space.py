@@ -18,7 +18,7 @@ from ptp_symbolic.numeric.identify.along_motion import (
     gear_ahead,
     torques_along,
 )
-from ptp_symbolic.numeric.identify.constants import FINITE, LATE_PARTS, PARTS
+from ptp_symbolic.numeric.identify.constants import FINITE, PARTS
 from ptp_symbolic.numeric.identify.equation_rows import (
     RunRows,
     every_row,
@@ -186,7 +186,7 @@ class EquationSpace:
         key = (number, p[self.moving | self.sensing].tobytes(), int(np.any(added)))
         if key not in self._states:
             delays = delays_of(self.model, p)
-            parts = LATE_PARTS if np.any(delays) else PARTS
+            parts = 2 * PARTS if np.any(delays) else PARTS
             late = np.stack([part_averages(run, j, d, parts) for j, d in enumerate(delays)], axis=2)
             if np.any(added):
                 more = [np.interp(run.time[:-1], run.time[grid], a) for a in added.T]

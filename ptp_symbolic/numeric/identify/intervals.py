@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.identify.blocks import (
     leave_blocks_out,
     long_blocks,
 )
-from ptp_symbolic.numeric.identify.constants import NOTHING, SAME, UNIDENTIFIED, WIDEST
+from ptp_symbolic.numeric.identify.constants import NOTHING, SAME, WIDEST
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search, wrapped
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run_groups import by_source
@@ -64,7 +64,7 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
         low, high, width = _interval(free, value, float(spreads[index]), float(units[index]))
         near = 1e-4 * max(abs(free.start), abs(value))
         at_bound = value - free.lower <= near or free.upper - value <= near
-        seen = bool(np.isfinite(width) and width < UNIDENTIFIED)
+        seen = bool(np.isfinite(width) and width < 1.0)
         result.append(Estimate(free.name, value, low, high, bool(at_bound), seen, partners))
     return tuple(result)
 

@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.constants import (
-    AT_BOUND,
     BIGGEST,
     FIRST_DAMPING,
     LARGEST_STEP,
     NEARBY,
+    WIDE_STEP,
 )
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.requirements import Allow
@@ -293,7 +293,7 @@ def _reach(distance: FloatArray) -> FloatArray:
     A parameter that one step takes from its start to zero takes the others to where no step leads
     back: the share is that of an interior point method (Coleman and Li, 1996).
     """
-    share = np.where(distance > AT_BOUND, SHARE_TO_BOUND, 1.0)
+    share = np.where(distance > WIDE_STEP, SHARE_TO_BOUND, 1.0)
     return np.minimum(LARGEST_STEP, share * distance)
 
 

@@ -18,7 +18,6 @@ from ptp_symbolic.numeric.identify.constants import (
     ALLOWED_RISE,
     LEAST_START,
     LENGTHS,
-    MOST_CARRIED,
     SEED,
     SHORT,
     START_SPAN,
@@ -151,7 +150,7 @@ def cut_where_noise_grows(
     breakaways amplify it until nothing can be predicted.
     """
     carried = propagated_noise(model, runs, z, p, declared_noise)
-    grows = np.any((carried > MOST_CARRIED) & (left < TUNING * carried), axis=1)
+    grows = np.any((carried > 1.0) & (left < TUNING * carried), axis=1)
     found: list[Run] = []
     for run, chaotic in zip(runs, grows, strict=True):
         found += split_run(model, run, SHORT) if chaotic else (run,)
