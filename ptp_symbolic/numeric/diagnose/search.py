@@ -84,9 +84,12 @@ def extended(
     seeker: Seeker, best: Trial, steps: list[Step], end: Trial | None = None
 ) -> tuple[Trial, list[Step]]:
     """A pruned trial with one candidate more as long as one is needed, up to the set of `end`, to
-    which none could be added before; and the `steps` of its candidates.
+    which none could be added before; and the `steps` of its candidates. A candidate that leads the
+    way may be dropped once others are there: then there is room for one more.
     """
-    for _ in range(LARGEST):
+    for rounds in range(2 * LARGEST):
+        if rounds >= LARGEST <= len(best.candidates):
+            break
         if end is not None and best.keys == end.keys and gain(best, end).share < MATERIAL:
             break
         grown = seeker.grown(best)
