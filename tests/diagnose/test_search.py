@@ -13,6 +13,7 @@ from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.search import by_effects_alone, extended
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
+from ptp_symbolic.numeric.identify.constants import LARGEST
 from tests.diagnose.spring_table import STIFFNESS, spring_table
 
 
@@ -126,3 +127,30 @@ def test_forward_selection_stops_where_it_meets_a_set_that_could_not_be_grown(
     assert found.keys == ("cable_spring@pan",)
     assert [s.candidate.key for s in steps] == ["cable_spring@pan"]
     assert begun == [()]
+
+
+@pytest.mark.parametrize(
+    ("others", "rounds"), [((), 2 * LARGEST), (("base_tilt", "constant_torque@pan"), LARGEST)]
+)
+def test_a_set_with_room_grows_on_after_candidates_that_led_the_way_were_dropped(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch, others: tuple[str, ...], rounds: int
+) -> None:
+    """Every round brings the spring nearer to its stiffness, whatever else was added and dropped: a
+    set of one goes on after three rounds, a full set does not.
+    """
+    full = trial(seeker, "cable_spring@pan", *others)
+    shares = iter(range(10, 90, 10))
+    begun: list[Trial] = []
+
+    def nearer(best: Trial) -> Trial:
+        begun.append(best)
+        part = full.values | {"k1_cable_pan": 0.01 * next(shares) * STIFFNESS}
+        return fitted(seeker.task, full.candidates, part, full.fit.z)
+
+    monkeypatch.setattr(seeker, "grown", nearer)
+    for move in ("completed", "restarted"):
+        monkeypatch.setattr(seeker, move, lambda t: t)
+    monkeypatch.setattr(seeker, "pruned", lambda t: (t, []))
+    found, _ = extended(seeker, seeker.declared, [])
+    assert len(begun) == rounds
+    assert found.values["k1_cable_pan"] == pytest.approx(0.1 * rounds * STIFFNESS)
