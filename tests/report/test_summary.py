@@ -82,7 +82,7 @@ def _verdict(word: str, final: Trial, **more: Any) -> Any:
 
 
 def _errors(counts: float | None = 0.5) -> dict[str, Any]:
-    stage = {"total": {"rmse_counts": counts, "rmse": 5.4321e-4, "unit": "rad"}}
+    stage = {"total": {"rmse_counts": counts, "rmse": 5.4321e-4, "unit": "rad"}, "without": None}
     return {"validate": {"before": stage, "after": stage, "noise_floor": stage}}
 
 
@@ -123,6 +123,24 @@ def test_the_size_is_that_of_the_parameter_clearest_of_zero_in_degrees() -> None
     assert sizes == {"x": "theta_pan = 5.73 deg"}
     text = summary.headline(_verdict(EXPLAINED, _trial(candidate)), _errors(), sizes)
     assert text.startswith("Missing: a cause (theta_pan = 5.73 deg); validation error")
+
+
+def test_the_headline_says_where_one_window_holds_most_of_the_error() -> None:
+    """Two windows leave one count, the third 100: sqrt(10002 / 3) in all."""
+    fit = _fit(np.full((20, 2), COUNT), windows=3)
+    far = SimpleNamespace(
+        **{**vars(fit.evaluations[0]), "residual": 100.0 * fit.evaluations[0].residual}
+    )
+    pairs = [*fit.pairs()[:2], (fit.runs[2], far)]
+    stage = error_of(SimpleNamespace(runs=fit.runs, pairs=lambda: pairs), UNITS)
+    assert stage["total"]["rmse_counts"] == pytest.approx(np.sqrt(10002.0 / 3.0))
+    assert stage["without"]["run"] == "run#2"
+    assert stage["without"]["rmse_counts"] == pytest.approx(1.0)
+    errors = {"validate": {"before": stage, "after": stage, "noise_floor": stage}}
+    text = summary.headline(_verdict(EXPLAINED, _trial(_candidate("x"))), errors, {})
+    assert text.endswith("Most of that lies in run#2; the others leave 1.000 counts rms.")
+    even = SimpleNamespace(runs=fit.runs, pairs=fit.pairs)
+    assert error_of(even, UNITS)["without"] is None
 
 
 def test_look_alikes_and_a_remainder_are_in_the_headline() -> None:

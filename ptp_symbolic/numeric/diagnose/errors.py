@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.numeric.identify.constants import MOST
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run import Run
@@ -40,7 +41,8 @@ def angle_columns(run: Run) -> list[int]:
 
 
 def error_of(fit: Fit, units: dict[str, str], floor: FloatArray | None = None) -> dict[str, Any]:
-    """Errors of `fit` in total, by run and by signal; those of a `floor` [ny], in units of the
+    """Errors of `fit` in total, by run and by signal, and those `without` the run or window that
+    alone holds most of the error, None where none does; those of a `floor` [ny], in units of the
     noise of every signal, where one is given.
     """
     pairs = fit.pairs()
@@ -52,7 +54,24 @@ def error_of(fit: Fit, units: dict[str, str], floor: FloatArray | None = None) -
             name: _signal_error(pairs, k, units[name], floor)
             for k, name in enumerate(fit.runs[0].signals)
         },
+        "without": None if floor is not None else _without_worst(pairs, unit),
     }
+
+
+def _without_worst(pairs: Sequence[Pair], unit: str) -> dict[str, Any] | None:
+    """The error without the run or window that leaves most of the root mean square, by its name: a
+    machine that sticks where the model slides on, or the other way round, is far off for a while.
+    """
+    if len(pairs) < 2:
+        return None
+    columns = angle_columns(pairs[0][0])
+    squares = [float(np.sum(residual(run, e, None)[:, columns] ** 2)) for run, e in pairs]
+    worst = int(np.argmax(squares))
+    rest = [pair for k, pair in enumerate(pairs) if k != worst]
+    whole, left = _error(pairs, None), _error(rest, None)
+    if not float(left["rmse"] or 0.0) < (1.0 - MOST) * float(whole["rmse"] or 0.0):
+        return None
+    return {"run": pairs[worst][0].name, **left, "unit": unit}
 
 
 def residual(run: Run, evaluation: Evaluation, floor: FloatArray | None) -> FloatArray:

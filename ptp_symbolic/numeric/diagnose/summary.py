@@ -42,6 +42,7 @@ def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -
         declared = all(c.is_declared_value for c in found.final.candidates)
         begin = f"{causes[:1].upper()}{causes[1:]}" if declared else f"Missing: {causes}"
         sentences = [f"{begin}; validation error {before} to {after}."]
+        sentences += _mostly_in_one_run(errors["validate"]["after"]["without"])
         sentences += [SMALL for c in found.final.candidates if _is_small(c, found.final)][:1]
         alike = sorted({key for keys in found.confusable.values() for key in keys})
         if alike:
@@ -56,6 +57,13 @@ def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -
     if found.closest is not None:
         text += f" The closest candidate, not confirmed: {' + '.join(found.closest.keys)}."
     return text
+
+
+def _mostly_in_one_run(without: Mapping[str, Any] | None) -> list[str]:
+    """Where most of the error after lies in one run or window: which, and what the others leave."""
+    if without is None:
+        return []
+    return [f"Most of that lies in {without['run']}; the others leave {_worded(without)}."]
 
 
 def _worded(error: Mapping[str, Any]) -> str:
