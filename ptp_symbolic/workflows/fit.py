@@ -12,11 +12,11 @@ from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.summary import fit_table
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
+from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import (
     Effort,
     all_values_at_start,
     fit_parameters,
-    with_finite_differences,
 )
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.platform import Platform, platform_text

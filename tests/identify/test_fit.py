@@ -8,12 +8,12 @@ from scipy import stats
 
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
+from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import (
     Effort,
     Fit,
     fit_parameters,
     run_counts,
-    with_finite_differences,
 )
 from ptp_symbolic.numeric.identify.intervals import estimates
 from tests.identify.pan_runs import (

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, BLIND, NEARBY, STEP
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, NEARBY
 from ptp_symbolic.numeric.identify.coordinates import (
     FreeParameter,
     limits,
@@ -127,27 +127,6 @@ def fit_parameters(
         effort.tolerance,
         None if chosen is None else tuple(chosen),
     )
-
-
-def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
-    """`fit` with finite-difference columns in its Jacobians where the tangents at the optimum are
-    blind to such a step: intervals of an effect that acts through breakaways need them.
-    """
-    if not fit.free or fit.failed:
-        return fit
-    effort = Effort(tolerance=fit.tolerance, secants=STEP)
-    simulations = simulations_of(fit.model, fit.runs, fit.free, fit.values, effort, executor)
-    problem = problem_of(simulations, effort)
-    assert problem.refine is not None
-    phi = to_search(fit.free, fit.values)
-    here = problem.evaluate(phi, fit.z, True)
-    refined = problem.refine(phi, fit.z, here)
-    chosen = []
-    for at_point, finite in zip(here, refined, strict=True):
-        seen, size = (np.linalg.norm(e.by_parameter, axis=0) for e in (at_point, finite))
-        columns = np.where(seen < BLIND * size, finite.by_parameter, at_point.by_parameter)
-        chosen.append(replace(at_point, by_parameter=columns))
-    return replace(fit, evaluations=tuple(chosen))
 
 
 def all_values(free: Sequence[FreeParameter], phi: FloatArray) -> dict[str, float]:

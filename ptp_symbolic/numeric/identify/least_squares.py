@@ -12,12 +12,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.numeric.identify.bounded_step import limited_step, reach
 from ptp_symbolic.numeric.identify.constants import (
     BIGGEST,
     FIRST_DAMPING,
-    LARGEST_STEP,
     NEARBY,
-    WIDE_STEP,
 )
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.requirements import Allow
@@ -41,9 +40,6 @@ class Evaluate(Protocol):
     ) -> list[Evaluation]:
         """See above."""
         ...
-
-
-SHARE_TO_BOUND = -np.expm1(-LARGEST_STEP)  # of the way there in one step
 
 
 @dataclass(frozen=True)
@@ -282,39 +278,8 @@ def _step(
     step = np.zeros(nf)
     if free.any():
         matrix = schur[np.ix_(free, free)] + np.diag(damping * diagonal[free])
-        down, up = _reach(phi - problem.lower), _reach(problem.upper - phi)
-        step[free] = _limited(matrix, right[free], np.sqrt(diagonal[free]), -down[free], up[free])
+        down, up = reach(phi - problem.lower), reach(problem.upper - phi)
+        step[free] = limited_step(
+            matrix, right[free], np.sqrt(diagonal[free]), -down[free], up[free]
+        )
     return step, [inverse @ (gz - jk.T @ step) for jk, inverse, gz in blocks]
-
-
-def _reach(distance: FloatArray) -> FloatArray:
-    """How far one step may go [nf] towards bounds at `distance` [nf].
-
-    A parameter that one step takes from its start to zero takes the others to where no step leads
-    back: the share is that of an interior point method (Coleman and Li, 1996).
-    """
-    share = np.where(distance > WIDE_STEP, SHARE_TO_BOUND, 1.0)
-    return np.minimum(LARGEST_STEP, share * distance)
-
-
-def _limited(
-    matrix: FloatArray, right: FloatArray, size: FloatArray, low: FloatArray, high: FloatArray
-) -> FloatArray:
-    """Solve matrix @ step = right with low <= step <= high [nf]; `size` scales them [nf].
-
-    The one that wants furthest beyond is fixed there and the others solved anew: scaling all alike
-    would let a parameter on its way to zero stop the rest.
-    """
-    step, moves = np.zeros(len(right)), np.ones(len(right), dtype=np.bool_)
-    matrix, right = matrix / np.outer(size, size), right / size
-    while moves.any():
-        rest = right[moves] - matrix[np.ix_(moves, ~moves)] @ (size * step)[~moves]
-        found = np.linalg.lstsq(matrix[np.ix_(moves, moves)], rest, rcond=1e-14)[0]
-        step[moves] = found / size[moves]
-        allowed = np.clip(step, low, high)
-        worst = int(np.argmax(np.abs(step - allowed)))
-        if step[worst] == allowed[worst]:
-            break
-        step[worst] = allowed[worst]
-        moves[worst] = False
-    return step

@@ -192,11 +192,8 @@ class Model:
     @cached_property
     def _idle(self) -> dict[str, list[tuple[int, float]]]:
         """Index and vanishing value of the parameters that leave a state without influence."""
-        index = {p.name: (k, p.vanishes) for k, p in enumerate(self.parameters)}
-        return {
-            state: [(k, float(off or 0.0)) for k, off in map(index.__getitem__, names)]
-            for state, names in self.module.IDLE_STATES
-        }
+        off = {p.name: (k, float(p.vanishes or 0.0)) for k, p in enumerate(self.parameters)}
+        return {state: [off[name] for name in names] for state, names in self.module.IDLE_STATES}
 
     def acting(self, p: FloatArray, columns: NDArray[np.int64]) -> int:
         """Number of states, from the first on, that may act on anything at p [np], or on the

@@ -42,9 +42,8 @@ from ptp_symbolic.symbolic.symbols import ZERO
 def assemble(platform: Platform) -> Equations:
     """Return the equations of `platform`.
 
-    Raises InputError for an unknown effect, a parameter that no effect declares, a wrong unit or
-    a value outside the bounds of its effect; ValueError for an effect whose states share a name
-    with others, or whose expressions hold a symbol that nothing defines.
+    Raises InputError for an unknown effect, a parameter that no effect declares, a wrong unit or a
+    value out of bounds; ValueError for states of one name, and symbols that nothing defines.
     """
     placed = place_effects(platform)
     defined = definitions(placed)
@@ -92,9 +91,9 @@ def assemble(platform: Platform) -> Equations:
                 place.axis,
                 tuple(parameter.name for parameter in effect.parameters_at(place)),
                 acts_on(effect, place, defined),
-                tuple(state.name for state in contribution.states),
+                tuple(state.name for state in own.states),
             )
-            for (effect, place), contribution in zip(placed, contributions.by_effect, strict=True)
+            for (effect, place), own in zip(placed, contributions.by_effect, strict=True)
         ),
         rigid=rigid,
         rigid_equations=rigid_equations,

@@ -1,0 +1,61 @@
+"""The docstring of an emitted module: its equations, what they cost, the effects in them."""
+
+import textwrap
+
+import sympy as sp
+
+from ptp_symbolic.symbolic.codegen.latex import plain_text_of
+from ptp_symbolic.symbolic.codegen.literals import repr_text
+from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.symbols import real
+
+
+def docstring(equations: Equations, operations: tuple[int, int, int]) -> str:
+    """The docstring of the module of `equations`: its equations, the `operations` of the state
+    derivative (as derived, as written, at every call), its effects.
+    """
+    title = repr_text(equations.title)[1:-1]
+    lines = [f'"""{title}: equations of motion, emitted; do not edit.', ""]
+    lines.append("M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:")
+    lines.append("")
+    n = len(equations.coordinates)
+    for i in range(n):
+        for j in range(i, n):
+            entry = equations.mass_matrix[i, j]
+            if entry != 0:
+                lines += _wrapped(f"M[{i}, {j}]", entry)
+    for i, rate in enumerate(equations.rates):
+        lines += _wrapped(f"forcing[{rate}]", equations.forcing[i])
+    for symbol, term in equations.terms:
+        lines += _wrapped(str(symbol), term)
+    for friction in equations.frictions:
+        lines += _wrapped(f"sliding friction[{friction.rate}]", friction.level)
+    sampled = {symbol for _, symbol, _ in equations.updates}
+    for state in equations.extra_states:
+        if state.symbol not in sampled:
+            lines += _wrapped(f"{state.name}'", state.derivative)
+    for sampler in equations.samplers:
+        start = real("k") + sampler.phase
+        lines += _wrapped("instants", sampler.offset + start * sampler.period)
+        for symbol, term in sampler.terms.items():
+            lines += _wrapped(str(symbol), term)
+        for symbol, value in sampler.updates.items():
+            lines += _wrapped(f"{symbol} from there", value)
+    before, written, left = operations
+    lines += [
+        "",
+        f"Operations of the state derivative: {before} as derived, {written} as written, {left} of"
+        " them at every",
+        "call where `prepare` does the others once per parameter set.",
+    ]
+    lines += ["", "Effects:"]
+    for placed in equations.effects:
+        where = f" ({placed.axis})" if placed.axis else ""
+        lines.append(f"- {placed.effect.id}{where}: {placed.effect.reference}")
+    lines.append('"""')
+    return "\n".join(lines)
+
+
+def _wrapped(name: str, expression: sp.Expr) -> list[str]:
+    text = f"{name} = {plain_text_of(expression)}"
+    return textwrap.wrap(text, 96, initial_indent="  ", subsequent_indent="      ")
