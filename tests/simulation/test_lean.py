@@ -106,6 +106,14 @@ def test_derivatives_by_an_effect_that_is_off_are_not_lost(union, at_once) -> No
         assert error < 0.02 * np.linalg.norm(slope)
 
 
+def test_a_parameter_may_be_asked_for_twice(union, at_once) -> None:
+    """As one that follows another one in a fit is."""
+    twice = ("F_s_pan", "J_pan", "F_s_pan")
+    lean, whole = (run(union, ON, twice, lean=lean) for lean in (True, False))
+    np.testing.assert_allclose(lean[1], whole[1], rtol=1e-9, atol=1e-12)
+    np.testing.assert_array_equal(lean[1][..., 0], lean[1][..., 2])
+
+
 def test_it_is_compiled_once_and_only_where_it_pays(union, monkeypatch) -> None:
     specialised.specialised.cache_clear()
     monkeypatch.setattr(specialised, "PAYS_AFTER", 2 * len(TIMES))

@@ -204,9 +204,9 @@ def _copied(array: str, zero: Sequence[bool] | BoolArray) -> list[str]:
 
 
 def _copied_back(rows: int, width: int, columns: IntArray) -> list[str]:
-    """Code that copies columns of the Jacobian by p to where they are asked for."""
-    lines = []
-    for k in (row * width + int(column) for row in range(rows) for column in columns):
+    """Code that copies columns of the Jacobian by p to where they are asked for, each once."""
+    lines, asked = [], np.unique(columns)
+    for k in (row * width + int(column) for row in range(rows) for column in asked):
         lines += [
             f"%from.{k} = getelementptr double, ptr %own.fp, i64 {k}",
             f"%entry.{k} = load double, ptr %from.{k}",
