@@ -27,9 +27,7 @@ FloatArray = NDArray[np.float64]
 
 
 class Evaluate(Protocol):
-    """Evaluations of the runs `only` (all unless given) at phi [nf] from their starts z, each [nz],
-    with Jacobians where `tangents` are asked for.
-    """
+    """Simulates the runs of a problem."""
 
     def __call__(
         self,
@@ -38,7 +36,9 @@ class Evaluate(Protocol):
         tangents: bool,
         only: Sequence[int] | None = None,
     ) -> list[Evaluation]:
-        """See above."""
+        """Evaluations of the runs `only` (all unless given) at phi [nf] from their starts z, each
+        [nz], with Jacobians where `tangents` are asked for.
+        """
         ...
 
 

@@ -8,7 +8,6 @@ second, which pays after some runs.
 
 import re
 import threading
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from types import ModuleType
@@ -186,7 +185,7 @@ def _arguments(head: str) -> list[tuple[str, str]]:
     return [(text.split()[0], text.split()[-1]) for text in texts]
 
 
-def _copied(array: str, zero: Sequence[bool] | BoolArray) -> list[str]:
+def _copied(array: str, zero: BoolArray) -> list[str]:
     """Code that copies an argument, its zeros as constants."""
     lines = [f"%own.{array} = alloca [{max(len(zero), 1)} x double]"]
     for k, is_zero in enumerate(zero):
