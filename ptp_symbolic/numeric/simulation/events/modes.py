@@ -18,6 +18,7 @@ from ptp_symbolic.numeric.simulation.events.pressed import PRESSED, fill_guards,
 from ptp_symbolic.numeric.simulation.kernels.records import inlined, kernel
 
 REVERSAL_DEAD_BAND = 1e-13
+PUSH_DEAD_BAND = 1e-12  # N m, or N; a face at rest without load would let go and push by rounding
 
 
 @kernel
@@ -39,8 +40,8 @@ def violation(element, x, m, g, friction_rates):
         return max(g[at] - g[at + 1], -g[at] - g[at + 1])
     pushing = side * (g[at + 2] if side > 0.0 else g[at + 3])
     if active > 0.0:
-        return -pushing
-    return max(pushing, g[at + 1] - side * g[at])
+        return -pushing - PUSH_DEAD_BAND
+    return max(pushing - PUSH_DEAD_BAND, g[at + 1] - side * g[at])
 
 
 @kernel
