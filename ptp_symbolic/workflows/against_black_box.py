@@ -41,7 +41,7 @@ def against_black_box(
     free = FreeRuns(
         task.model,
         verdict.before.runs,
-        task.model.parameter_vector(found.declared.values),
+        task.model.parameter_vector(verdict.declared.values),
         (verdict.before.z, verdict.after.z),
         tolerance_for(task, ROUGH),
     )
@@ -50,7 +50,7 @@ def against_black_box(
         space,
         task.whole,
         prepare_runs(task.model, platform, tuple(validate)),
-        found.declared.values,
+        verdict.declared.values,
         verdict.final.values if added else None,
         f"{len(names)} parameter{'s' if len(names) != 1 else ''}",
         free,

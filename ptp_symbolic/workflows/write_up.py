@@ -1,7 +1,6 @@
 """A diagnosis written up: its summary, and every file of it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 from ptp_symbolic.models import emission, variants
@@ -45,10 +44,10 @@ def written_up(
     """What was found, as data and as files; `sources` say what it rests on (see `provenance`), and
     `beside` how rivals do that know no physics.
     """
-    after = replace(verdict.final, fit=verdict.fit)
+    after = verdict.final
     intervals = {e.name: e for e in estimates(after.fit)}
     parts = {
-        "train": (found.declared.fit, after.fit),
+        "train": (verdict.declared.fit, after.fit),
         "validate": (verdict.before, verdict.after),
     }
     errors = error_table(parts, verdict.floor)
@@ -67,7 +66,7 @@ def written_up(
         "repeatability": repeatability_table(task.whole, task.model.units),
         "residual_tests": residual_tests(verdict.after, task.model.input_names),
         "fit": {
-            "before": {"parameters": fit_table(found.declared, estimates(found.declared.fit))},
+            "before": {"parameters": fit_table(verdict.declared, estimates(verdict.declared.fit))},
             "after": {"parameters": fit_table(after, tuple(intervals.values()))},
         },
         "held_out": None if verdict.held_out is None else gain_table(verdict.held_out),

@@ -32,6 +32,7 @@ def task() -> Iterator[Task]:
             MODEL,
             runs,
             runs,
+            runs,
             (),
             (),
             (),

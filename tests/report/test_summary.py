@@ -78,7 +78,7 @@ def _trial(*candidates: Candidate, value: float = DECLARED, left: float = 1.0) -
 
 def _verdict(word: str, final: Trial, **more: Any) -> Any:
     usual = {"confusable": {}, "closest": None, "rivals": (), "refused": {}}
-    return SimpleNamespace(word=word, final=final, **{**usual, **more})
+    return SimpleNamespace(word=word, final=final, compared=final, **{**usual, **more})
 
 
 def _errors(counts: float | None = 0.5) -> dict[str, Any]:

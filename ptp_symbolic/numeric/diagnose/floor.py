@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.numeric.diagnose.fewer_samples import is_thinned, with_every_residual
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, huber_loss, mean_squares
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, MANY_RUNS, POLES, TUNING
 from ptp_symbolic.numeric.identify.fit import Fit
@@ -66,7 +67,8 @@ def carried_noise(task: Task, fit: Fit) -> FloatArray:
 
     The median of the samples counts, so that a replay which sticks elsewhere does not.
     """
-    p, runs = task.model.parameter_vector(dict(fit.values)), fit.runs
+    p = task.model.parameter_vector(dict(fit.values))
+    runs = task.every_sample if is_thinned(task, fit) else fit.runs
     every = propagated_noise(task.model, runs, fit.z, p, task.input_noise)
     size = sizes(runs)
     return weighted_median(np.nan_to_num(every), size)
@@ -78,15 +80,16 @@ def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
     Where more is left than noise of that colour, it is model error that has a colour: the floor is
     white then.
     """
-    runs = trial.fit.runs
+    fit = with_every_residual(task, trial.fit)
+    runs = fit.runs
     rms, most = np.ones(len(runs[0].signals)), np.ones(len(runs[0].signals))
-    squares = mean_squares(trial.fit.evaluations, runs)
-    usual = squares <= TUNING**2 * np.maximum(left_over(trial.fit) ** 2, 1.0)
+    squares = mean_squares(fit.evaluations, runs)
+    usual = squares <= TUNING**2 * np.maximum(left_over(fit) ** 2, 1.0)
     for column, signal in enumerate(runs[0].signals):
         if signal not in task.declared_noise:
             series = [
                 e.residual.reshape(run.measured.shape)[:, column]
-                for (run, e), as_usual in zip(trial.fit.pairs(), usual[:, column], strict=True)
+                for (run, e), as_usual in zip(fit.pairs(), usual[:, column], strict=True)
                 if as_usual
             ]
             noise = coloured_noise(series, 1.0)

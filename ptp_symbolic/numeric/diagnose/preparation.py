@@ -10,13 +10,13 @@ from ptp_symbolic.numeric.diagnose.trial import Progress, Task
 from ptp_symbolic.numeric.identify.constants import (
     FORGOTTEN,
     MANY_RUNS,
+    SEARCH_PERIOD,
     SHORT,
-    WINDOW_PERIOD,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.fit import all_values_at_start
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.sample_averages import thinned
+from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
 from ptp_symbolic.numeric.identify.windows import cut, window_length
 from ptp_symbolic.numeric.runtime.model import Model
 
@@ -47,12 +47,13 @@ def task_of(
     length = window_length(model, train, start, noise) if window is None else window
     if length is not None and length >= max(float(run.time[-1] - run.time[0]) for run in train):
         length = None
-    few = [thinned(run, WINDOW_PERIOD) for run in train]
+    few = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in train]
     windows = tuple(_spread(cut(model, few, w), w) for w in (FORGOTTEN, SHORT))
     pieces = cut(model, train, length)
     return Task(
         model,
         train,
+        pieces,
         pieces,
         windows if length is None else (),
         windows[-1] if length is None else _spread(pieces, length),

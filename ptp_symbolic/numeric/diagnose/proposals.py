@@ -10,8 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.declared_rows import (
+    declared_start,
+    equation_space,
+    first_fit,
+    possible,
+)
 from ptp_symbolic.numeric.diagnose.signatures import (
     Signature,
     locked_signatures,
@@ -31,20 +36,15 @@ from ptp_symbolic.numeric.diagnose.trial import Task, restarted
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
     DEVIATIONS,
-    FAR_OFF,
-    ITERATIONS,
     LARGEST,
     LITTLE,
     REFINEMENTS,
     SHORT,
     TRIED,
 )
-from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised
-from ptp_symbolic.numeric.identify.equation_preparation import prepare_equation_space
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
-from ptp_symbolic.numeric.identify.fit import all_values, all_values_at_start
-from ptp_symbolic.numeric.identify.requirements import nearest_possible
 
 FloatArray = NDArray[np.float64]
 
@@ -73,19 +73,13 @@ class Proposals:
     regression: Regression | None
 
 
-def declared_start(task: Task) -> dict[str, float]:
-    """All parameters at the declared starts, every candidate at its vanishing value."""
-    return {**task.fixed, **all_values_at_start(task.free)}
-
-
 def propose(task: Task) -> Proposals:
     """Regress the residual torques and currents along the measured motion on all candidates."""
     start = declared_start(task)
     space = equation_space(task, start)
     if space is None:
         return Proposals(start, (), task.candidates, False, None, None)
-    first = fit_equations(space, task.free, start, ITERATIONS, task.executor)
-    values = possible(task, task.free, {**start, **first})
+    values = first_fit(task, space, start)
     here = {f.name: values[f.name] for f in task.free}
     found = linearised(space, task.free, values, here, task.executor, own_torque=True)
     equation, run, time = space.labels()
@@ -156,48 +150,6 @@ def start_for(
     if linear:
         return start_of(task, rows, shown, found.start) | kept
     return _refined(task, space, rows, found.start, shown, task.executor).values | kept
-
-
-def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | None:
-    """The equation space of the training runs; None where angles are missing, states are sampled or
-    switched, or rows are too few for the free parameters.
-    """
-    vector = task.model.parameter_vector
-    varied = dict(start)
-    for candidate in task.candidates:
-        for f in candidate.free:
-            amount = f.start
-            if candidate.is_declared_value:
-                amount = min(1.05 * f.start, f.upper)
-            varied.update(dict.fromkeys(f.names, amount))
-    others = []
-    for f in task.free:
-        for factor in (FAR_OFF, 1.0 / FAR_OFF):
-            value = float(np.clip(f.start * factor, f.lower, f.upper))
-            others.append(vector({**start, **dict.fromkeys(f.names, value)}))
-    try:
-        space = prepare_equation_space(
-            task.model, task.whole, vector(dict(start)), others, vector(varied)
-        )
-    except InputError:
-        return None
-    total = sum(int(rows.kept.sum()) for rows in space.rows_of)
-    return space if total > 4 * (len(task.free) + 1) else None
-
-
-def possible(
-    task: Task, free: Sequence[FreeParameter], values: Mapping[str, float]
-) -> dict[str, float]:
-    """`values` with `free` projected onto the boundary of every relation of the machine that they
-    break, as a fit does with its start.
-    """
-
-    def parameters(phi: FloatArray) -> FloatArray:
-        return task.model.parameter_vector({**values, **all_values(free, phi)})
-
-    phi = to_search(free, values)
-    found = nearest_possible(task.model, free, parameters, phi)
-    return dict(values) if found is phi else {**values, **all_values(free, found)}
 
 
 def _best_sets(rows: Regression) -> tuple[Subset, list[Subset], Regression]:

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.floor import carried_noise, leaves_white_noise, left_over
 from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, declared_start
+from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -92,14 +93,16 @@ def in_windows(task: Task, declared: Trial) -> Task:
     model, noise = task.model, task.input_noise
     p = model.parameter_vector(declared.values)
     left = np.sqrt(mean_squares(declared.fit.evaluations, task.train))
-    train = cut_where_noise_grows(model, task.train, declared.fit.z, left, p, noise)
+    train = cut_where_noise_grows(model, task.every_sample, declared.fit.z, left, p, noise)
     if len(train) == len(task.train):
         return task
+    fewer = dict(zip(task.every_sample, task.train, strict=True))
     task.progress("runs that multiply the noise of their inputs are cut into windows")
     starts = [run.guess for run in task.validate]
     any_left = np.zeros((len(starts), left.shape[1]))
     validate = cut_where_noise_grows(model, task.validate, starts, any_left, p, noise)
-    return replace(task, train=train, validate=validate)
+    kept = tuple(fewer.get(run, run) for run in train)
+    return replace(task, every_sample=train, train=kept, validate=validate)
 
 
 def without_misleading(trial: Trial) -> Trial:

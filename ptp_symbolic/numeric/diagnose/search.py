@@ -4,6 +4,7 @@ completed, pruned and grown until every candidate in it is needed and none outsi
 
 from dataclasses import replace
 
+from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
 from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import carried_noise
 from ptp_symbolic.numeric.diagnose.gain import gain
@@ -35,6 +36,7 @@ def search(task: Task) -> Search:
     task.progress("comparing all sets of effects along the measured motion")
     proposals = propose(task)
     task = replace(task, candidates=with_lines(task.candidates, proposals))
+    task = with_fewer_samples(task, proposals.start)
     task.progress("fitting the declared model")
     task, declared = fit_declared(task, proposals)
     seeker = Seeker(task, declared, proposals, carried_noise(task, declared.fit))

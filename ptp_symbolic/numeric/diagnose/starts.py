@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, declared_start, start_for
+from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
+from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_for
 from ptp_symbolic.numeric.diagnose.refits import over_windows
 from ptp_symbolic.numeric.diagnose.responses import Response
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, continued, fitted, ranked

@@ -35,9 +35,10 @@ Progress = Callable[[str], None]
 class Task:
     """What stays the same through a diagnosis.
 
-    `whole` are the training runs as they were logged, `train` the same or their windows, `windows`
-    some short and some longer ones (none where `train` are windows already), `few` those windows
-    that tell what a set is worth, `validate` the runs that only the report sees. `free` are the
+    `whole` are the training runs as they were logged, `every_sample` the same or their windows, and
+    `train` these with as many samples as the search needs (see `fewer_samples`); `windows` some
+    short and some longer ones (none where `train` are windows already), `few` those windows that
+    tell what a set is worth, `validate` the runs that only the report sees. `free` are the
     declared free parameters, `fixed` the values of all others, every candidate at its vanishing
     value. `input_noise` is the declared noise (rms) of every input [nu] in its unit (None: as the
     logs show it), `declared_noise` names the outputs whose noise is declared, and `resolution` is
@@ -46,6 +47,7 @@ class Task:
 
     model: Model
     whole: tuple[Run, ...]
+    every_sample: tuple[Run, ...]
     train: tuple[Run, ...]
     windows: tuple[tuple[Run, ...], ...]
     few: tuple[Run, ...]

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, at_bound, why_unconfirmed
+from ptp_symbolic.numeric.diagnose.fewer_samples import fitted_to_every_sample
 from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import Floor, carried_noise, floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, gain_in_innovations
@@ -16,9 +17,9 @@ from ptp_symbolic.numeric.diagnose.held_out import (
     is_quiet,
     is_taken_back,
 )
-from ptp_symbolic.numeric.diagnose.refits import forms
+from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.trial import Trial, ranked
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, ranked
 from ptp_symbolic.numeric.identify.constants import MATERIAL, MOST
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import (
@@ -36,16 +37,18 @@ UNEXPLAINED = "unexplained"
 class Verdict:
     """What the logs say.
 
-    `final` is the declared model with what is confirmed and `fit` its fit, from
-    `with_finite_differences`; `members` what each of its effects gains, `confusable` the keys
-    that may stand in the place of each; `closest` the best set where nothing is confirmed.
-    `refused` tells why candidates that gained were not named. `floor` is that of `final`;
-    `before` and `after` are the validation runs by the declared and by the final model.
+    `final` is the declared model with what is confirmed, fitted to every sample, its derivatives
+    those of `with_finite_differences`, `compared` the same as the search compared it with others,
+    and `declared` the declared model fitted to every sample; `members` what each of its effects
+    gains, `confusable` the keys that may stand in the place of each; `closest` the best set where
+    nothing is confirmed. `refused` tells why candidates that gained were not named. `floor` is that
+    of `final`; `before` and `after` are the validation runs by the declared and by the final model.
     """
 
     word: str
     final: Trial
-    fit: Fit
+    compared: Trial
+    declared: Trial
     members: tuple[Step, ...]
     confusable: Mapping[str, tuple[str, ...]]
     rivals: tuple[Rival, ...]
@@ -80,6 +83,12 @@ def decide(found: Search) -> Verdict:
             )
             alike = []
             continue
+        leaner = _leaner(seeker, trial, alike)
+        if leaner is not None:
+            seeker.others.append(trial)
+            trial, steps, fit = _confirmed(seeker, *_shortened(seeker, leaner), refused)
+            alike = []
+            continue
         trial, steps, fit, alike = _simplest(seeker, trial, steps, fit, alike)
         floor = floor_of(task, trial, seeker.carried)
         step = doubtful(trial, steps, confusable(trial, alike), floor)
@@ -88,38 +97,44 @@ def decide(found: Search) -> Verdict:
         refused[step.candidate.key] = "others predict as well, and more than noise is left"
         trial, steps, fit = _confirmed(seeker, *_shortened(seeker, step.without), refused)
         alike = []
-    task.progress("simulating the validation runs")
-    before = held_out_fit(task, found.declared)
-    after = held_out_fit(task, trial) if trial.candidates else before
+    task.progress("fitting every sample, and simulating the validation runs")
+    known = [found.declared, trial] if trial.candidates else [found.declared]
+    declared, *rest = fitted_to_every_sample(task, known)
+    final = rest[0] if rest else declared
+    before = held_out_fit(task, declared)
+    after = held_out_fit(task, final) if trial.candidates else before
     held_out = held_out_gain(after, before) if trial.candidates else None
     closest = None if trial.candidates else _closest(found)
-    floor = floor_of(task, trial, carried_noise(task, trial.fit))
-    quiet = is_quiet(after, replace(floor, carried=carried_noise(task, after)), trial.fit)
+    floor, quiet = _floor_and_quiet(task, final, after)
     if held_out is not None and is_taken_back(held_out, quiet):
         for key in trial.keys:
             refused[key] = "takes away too little of the error of the validation runs"
         closest, trial, steps, after, held_out, alike = trial, found.declared, [], before, None, []
-        fit = with_finite_differences(trial.fit, task.executor)
-        floor = floor_of(task, trial, carried_noise(task, trial.fit))
-        quiet = is_quiet(after, replace(floor, carried=carried_noise(task, after)), trial.fit)
+        final = declared
+        floor, quiet = _floor_and_quiet(task, final, after)
     named = confusable(trial, alike)
-    word = word_of(trial, named, quiet and leaves_noise_alone(trial, floor))
-    if word == NOTHING_MISSING:
-        closest = None
+    word = word_of(trial, named, quiet and leaves_noise_alone(final, floor))
     return Verdict(
         word,
+        replace(final, fit=with_finite_differences(final.fit, task.executor)),
         trial,
-        fit,
+        declared,
         tuple(steps),
         named,
         tuple(alike),
-        closest,
+        None if word == NOTHING_MISSING else closest,
         refused,
         floor,
         before,
         after,
         held_out,
     )
+
+
+def _floor_and_quiet(task: Task, final: Trial, after: Fit) -> tuple[Floor, bool]:
+    """The floor of the final model, and whether its validation runs `after` leave no more."""
+    floor = floor_of(task, final, carried_noise(task, final.fit))
+    return floor, is_quiet(after, replace(floor, carried=carried_noise(task, after)), final.fit)
 
 
 def _confirmed(
@@ -148,6 +163,21 @@ def _shortened(seeker: Seeker, trial: Trial) -> tuple[Trial, list[Step]]:
     """A trial that lacks something now, fitted sharply, and what its candidates gain."""
     trial = seeker.sharpened(trial)
     return trial, [seeker.step(trial, c) for c in trial.candidates]
+
+
+def _leaner(seeker: Seeker, trial: Trial, alike: Sequence[Rival]) -> Trial | None:
+    """Where the trial leaves noise alone, one of those that it cannot be told from, without a
+    candidate that is of no use there, if that leaves noise alone too; None where there is none.
+    """
+    if not seeker.is_at_noise(trial):
+        return None
+    for rival in alike:
+        for candidate in rival.trial.candidates:
+            if expected_gain(rival.trial, candidate.vanishing) < MATERIAL:
+                smaller = seeker.without(rival.trial, candidate)
+                if seeker.is_at_noise(smaller) and len(smaller.candidates) < len(trial.candidates):
+                    return smaller
+    return None
 
 
 def doubtful(

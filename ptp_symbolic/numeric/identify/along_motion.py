@@ -95,6 +95,29 @@ def gear_ahead(addresses, layout, motion, p, resting, given, wanted):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def gear_pushes(addresses, layout, motion, p, resting, face, further):
+    """Torque [k, na] in N m (force of a linear joint) with which every gear output must push the
+    `face` [k, na] that it touches to turn with its joint, at p [np] and the `further` states
+    [k, e]: below zero it would have to pull, which no face can.
+    """
+    n, na = motion.angle.shape
+    pushes = np.zeros((n, na))
+    x, m = np.zeros(layout.states + layout.rows), np.zeros(layout.modes)
+    r = np.zeros(layout.rows + len(layout.further))
+    for k in range(n):
+        _fill(layout, motion, k, x, m, resting)
+        for e in range(len(layout.further)):
+            x[layout.further[e]] = further[k, e]
+        for f in range(len(layout.friction_axis)):
+            m[f] = np.sign(motion.rate[k, layout.friction_axis[f]])
+        call(addresses[0], motion.time[k], x, motion.inputs[k], p, m, r)
+        for a in range(na):
+            if layout.contact[a] >= 0 and layout.gear_row[a] >= 0:
+                pushes[k, a] = -face[k, a] * r[layout.gear_row[a]]
+    return pushes
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def further_states(addresses, layout, motion, p, resting, acts, shown, wanted, late):
     """The further states [k, e] integrated along the motion at p [np], their averages [k, e] over
     the cells around the samples, and the quasi-static derivative [k, e, na] by the joint rates of

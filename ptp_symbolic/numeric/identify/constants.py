@@ -65,7 +65,7 @@ SHARP = 0.1 * ROUGH  # 1; the same, at last; derived
 
 # Windows and rows
 SHORT = 1.0  # s; window beside the time constants of drives (0.05 s); scaled
-WINDOW_PERIOD = 5e-3  # s; between samples where windows only give starts; scaled
+SEARCH_PERIOD = 5e-3  # s; between samples of a search, at most; scaled
 START_SPAN = 0.1  # s; motion that tells a rate; scaled
 ANYWHERE = 1e3  # rad/s, half gaps; beyond any start of a machine; definition
 LEAST_START = 5  # samples; of a parabola with two degrees of freedom left; derived

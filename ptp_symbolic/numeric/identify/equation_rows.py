@@ -146,3 +146,13 @@ def rows_that_count(
     kept = np.column_stack([slides, *[electric] * measured])
     some = kept.any(axis=1)
     return _with_windows(run, half_width, rows.grid, rows.chosen[some], kept[some], faces[0])
+
+
+def rows_without(run: Run, rows: RunRows, wrong: BoolArray, half_width: float) -> RunRows:
+    """The `rows` of a run whose windows, of `half_width` s, hold no sample of the grid at which an
+    axis is `wrong` [g, na]; all rows of a window with one are left out.
+    """
+    clean = np.all(averages(rows.on_grid, wrong.astype(np.float64)) < NOTHING, axis=1)
+    kept = rows.kept & clean[:, None]
+    some = kept.any(axis=1)
+    return _with_windows(run, half_width, rows.grid, rows.chosen[some], kept[some], rows.face)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.identify.along_motion import (
     further_states,
     gear_ahead,
+    gear_pushes,
     torques_along,
 )
 from ptp_symbolic.numeric.identify.constants import FINITE, PARTS
@@ -23,6 +24,7 @@ from ptp_symbolic.numeric.identify.equation_rows import (
     RunRows,
     every_row,
     rows_that_count,
+    rows_without,
 )
 from ptp_symbolic.numeric.identify.layout import Layout, equation_addresses
 from ptp_symbolic.numeric.identify.measured_motion import (
@@ -216,6 +218,27 @@ class EquationSpace:
         self.forget()
         self.rows_of = tuple(self._that_count(k, p, others) for k in range(len(self.runs)))
         self.forget()
+
+    def leave_out_pulled(self, p: FloatArray, margin: FloatArray) -> bool:
+        """Leave out rows in whose window a gear would have to pull its joint by more than `margin`
+        [na] in N m at p [np]: the joint has left the face and crosses its gap. Whether any was.
+        """
+        if not self.gears:
+            return False
+        addresses, every = equation_addresses(self.model), []
+        for number, rows in enumerate(self.rows_of):
+            along, _, _, further = self._torques(number, p, None, rows.part)
+            pushes = gear_pushes(
+                addresses, self.layout, along.coarse, p, self.resting, rows.face, further.acting
+            )
+            every.append(rows_without(self.runs[number], rows, pushes < -margin, self.half_width))
+        fewer = any(
+            new.kept.sum() < old.kept.sum() for new, old in zip(every, self.rows_of, strict=True)
+        )
+        if fewer:
+            self.rows_of = tuple(every)
+            self.forget()
+        return fewer
 
     def _that_count(self, number: int, p: FloatArray, others: Sequence[FloatArray]) -> RunRows:
         """The rows of a run, those that count decided anew."""

@@ -6,8 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.data.zero_order_hold import held_averages
+from ptp_symbolic.numeric.identify.constants import FAR, LITTLE, MAD_TO_SIGMA
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.run_inputs import with_inputs
+from ptp_symbolic.numeric.simulation.signals.inputs import (
+    InputSignal,
+    held_values,
+    stack,
+    table,
+)
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -35,22 +41,38 @@ def part_averages(run: Run, column: int, delay: float, parts: int) -> FloatArray
     return held_averages(run.time, run.held_inputs[:, column], flat - delay).reshape(-1, parts)
 
 
-def thinned(run: Run, period: float) -> Run:
-    """`run` decimated to samples about every `period` s, the inputs averaged in between; the run
-    itself where less than two samples come in that time.
+def samples_within(run: Run, period: float) -> int:
+    """How many samples of `run` come within `period` s, at least one."""
+    return max(1, int(period / float(np.median(np.diff(run.time))) + 1e-6))
+
+
+def thinned(run: Run, every: int) -> Run:
+    """`run` with the first of `every` so many samples, the inputs averaged in between. Inputs jump
+    where they did: a step that comes half a sample late moves an angle by counts.
     """
-    every = int(period / float(np.median(np.diff(run.time))) + 1e-6)
     if every < 2:
         return run
     kept = np.arange(0, len(run.time), every)
-    time, last = run.time[kept], run.held_inputs[kept[-1:]]
-    means = [held_averages(run.time, column, time) for column in run.held_inputs.T]
-    few = replace(
+    time = np.ascontiguousarray(run.time[kept])
+    return replace(
         run,
-        time=np.ascontiguousarray(time),
+        time=time,
         measured=np.ascontiguousarray(run.measured[kept]),
+        held_inputs=np.ascontiguousarray(run.held_inputs[kept]),
+        inputs=stack([_averaged(*signal, time) for signal in held_values(run.inputs)]),
     )
-    return with_inputs(few, np.vstack([np.column_stack(means), last]))
+
+
+def _averaged(times: FloatArray, values: FloatArray, edges: FloatArray) -> InputSignal:
+    """A zero-order hold averaged between `edges` in s and the jumps that stand out: beyond noise
+    and slope, and a material share of its range.
+    """
+    rise = np.abs(np.diff(values))
+    usual = MAD_TO_SIGMA * float(np.median(rise)) if rise.size else 0.0
+    jumps = times[1:][rise > max(FAR * usual, LITTLE * float(np.ptp(values)))]
+    at = np.union1d(edges, jumps[(jumps > edges[0]) & (jumps < edges[-1])])
+    last = values[max(0, int(np.searchsorted(times, edges[-1], side="right")) - 1)]
+    return table(at, np.append(held_averages(times, values, at), last))
 
 
 def grid_averages(values: FloatArray, grid: IntArray) -> FloatArray:

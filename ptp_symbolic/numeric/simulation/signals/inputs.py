@@ -271,11 +271,18 @@ def stack(signals: Sequence[InputSignal]) -> InputTable:
     )
 
 
+def held_values(whole: InputTable) -> list[tuple[FloatArray, FloatArray]]:
+    """Times [m] in s and values [m] of every zero-order hold of `whole`."""
+    return [
+        (whole.breaks[first + j : last + j], whole.coefficients[first:last, 0])
+        for j, (first, last) in enumerate(pairwise(whole.offsets))
+    ]
+
+
 def part_of_held(whole: InputTable, begin: float, end: float) -> InputTable:
     """The zero-order holds of `whole` from `begin` to `end` in s; before it what holds then."""
     signals = []
-    for j, (first, last) in enumerate(pairwise(whole.offsets)):
-        times, values = whole.breaks[first + j : last + j], whole.coefficients[first:last, 0]
+    for times, values in held_values(whole):
         a = max(0, int(np.searchsorted(times, begin, side="right")) - 1)
         b = max(a + 1, int(np.searchsorted(times, end, side="right")))
         signals.append(table(times[a:b], values[a:b], "hold"))
