@@ -138,6 +138,15 @@ class Seeker:
         """Whether what a candidate gains is earned."""
         return self.is_earned(step.gain, step.p_value)
 
+    def is_kept(self, trial: Trial, step: Step) -> bool:
+        """Whether a candidate stays in the set while the search goes on. Where more than noise is
+        left, a material gain is enough: what else is missing is in every block, and hides whether
+        the gain is clear. Only a name asks for that.
+        """
+        if self.is_at_noise(trial):
+            return self.is_needed(step)
+        return step.gain.share >= MATERIAL
+
     def is_earned(self, earned: Gain, p: float) -> bool:
         """Whether a gain is material, and clear over all candidates that were looked at."""
         return is_earned(earned, p, len(self.task.candidates))
@@ -156,7 +165,7 @@ class Seeker:
             little = [c for c in trial.candidates if expected[c.key] < MOST]
             for part in (little, [c for c in trial.candidates if c not in little]):
                 fresh = [self.step(trial, candidate) for candidate in part]
-                unneeded = [step.without for step in fresh if not self.is_needed(step)]
+                unneeded = [step.without for step in fresh if not self.is_kept(trial, step)]
                 steps += fresh
                 if unneeded:
                     trial = ranked(unneeded)[0]
