@@ -2,12 +2,17 @@
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.constants import PLAUSIBLE_FACTOR, WIDE_STEP
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
 from ptp_symbolic.numeric.runtime.model import EffectInstance, Model, ModelParameter
 from ptp_symbolic.platform import effect_key
+
+FloatArray = NDArray[np.float64]
 
 DECLARED_VALUE = "declared_value"
 
@@ -143,6 +148,25 @@ def _declared_value(
             {parameter.name: value},
         )
     ]
+
+
+def within_reach(candidate: Candidate, model: Model, largest: FloatArray) -> Candidate:
+    """The candidate; a limit that nothing reaches where it vanishes, such as a largest voltage,
+    begins just below the `largest` value [nu] in the logs of an input of its axis and unit.
+    """
+
+    def begun(f: FreeParameter) -> FreeParameter:
+        sizes = [
+            size
+            for name, size in zip(model.input_names, largest, strict=True)
+            if name.endswith(f"_{candidate.axis}") and model.units[name] == model.units[f.name]
+        ]
+        if candidate.vanishing.get(f.name) != f.upper or not max(sizes, default=0.0) > 0.0:
+            return f
+        start = float(np.clip(np.exp(-WIDE_STEP) * max(sizes), f.lower, f.upper))
+        return replace(f, start=start, scale=start)
+
+    return replace(candidate, free=tuple(begun(f) for f in candidate.free))
 
 
 def vanished(model: Model, declared: Sequence[str]) -> dict[str, float]:

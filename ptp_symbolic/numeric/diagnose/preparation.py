@@ -5,7 +5,7 @@ from concurrent.futures import Executor
 
 import numpy as np
 
-from ptp_symbolic.numeric.diagnose.candidates import find_candidates, vanished
+from ptp_symbolic.numeric.diagnose.candidates import find_candidates, vanished, within_reach
 from ptp_symbolic.numeric.diagnose.trial import Progress, Task
 from ptp_symbolic.numeric.identify.constants import (
     FORGOTTEN,
@@ -50,6 +50,9 @@ def task_of(
     few = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in train]
     windows = tuple(_spread(cut(model, few, w), w) for w in (FORGOTTEN, SHORT))
     pieces = cut(model, train, length)
+    largest = np.max([np.max(np.abs(run.held_inputs), axis=0) for run in train], axis=0)
+    found = find_candidates(model, declared, known) if declared else ()
+    candidates = tuple(within_reach(c, model, largest) for c in found)
     return Task(
         model,
         train,
@@ -60,7 +63,7 @@ def task_of(
         cut(model, validate, length),
         free,
         fixed,
-        find_candidates(model, declared, known) if declared else (),
+        candidates,
         executor,
         progress,
         noise,

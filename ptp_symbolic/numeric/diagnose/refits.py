@@ -160,7 +160,7 @@ def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
 
 def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
     """The trial fitted to its end, and begun anew where that is near the floor; `carried` [ny]."""
-    trial = _to_its_end(task, trial, carried)
+    trial = to_its_end(task, trial, carried)
     if not _is_near_floor(trial):
         return trial
     return started_anew(task, _in_time(task, trial, carried), carried)
@@ -183,7 +183,7 @@ def _in_time(task: Task, trial: Trial, carried: FloatArray) -> Trial:
         eased = fitted(task, candidates, trial.values, z, POLISH, block=FORGOTTEN, executor=run)
         if eased.fit.failed:
             return trial
-        before, trial = trial, ranked([trial, _to_its_end(task, eased, carried)])[0]
+        before, trial = trial, ranked([trial, to_its_end(task, eased, carried)])[0]
         if is_alike(trial, before):
             break
     return trial
@@ -205,7 +205,7 @@ def started_anew(task: Task, trial: Trial, carried: FloatArray) -> Trial:
         values = trial.values | back
         begun.append(fitted(task, trial.candidates, values, trial.fit.z, parent=trial.fit))
     left = halving(task, begun, 1)
-    return ranked([trial, *(_to_its_end(task, t, carried) for t in left)])[0]
+    return ranked([trial, *(to_its_end(task, t, carried) for t in left)])[0]
 
 
 def has_rough_starts(task: Task) -> bool:
@@ -226,7 +226,7 @@ def _inside(free: FreeParameter, value: float) -> float:
     return float(np.clip(value, free.lower, free.upper))
 
 
-def _to_its_end(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+def to_its_end(task: Task, trial: Trial, carried: FloatArray) -> Trial:
     """The trial fitted with derivatives where the motion is smooth, with finite differences where
     friction makes it a staircase, in turn.
     """

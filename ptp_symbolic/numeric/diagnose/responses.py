@@ -25,31 +25,37 @@ from ptp_symbolic.numeric.identify.constants import (
     RIDGE,
     SHRINK,
     SHRINKS,
+    WIDE_STEP,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
 from ptp_symbolic.numeric.identify.fit import all_values
 
 FloatArray = NDArray[np.float64]
 # By the parameters that go together, their start, and the values that shape the candidate.
-SeenColumns = dict[tuple[tuple[str, ...], float, tuple[tuple[str, float], ...]], FloatArray | None]
+SeenColumns = dict[
+    tuple[tuple[str, ...], float, tuple[tuple[str, float], ...]], tuple[float, FloatArray] | None
+]
 
 
 @dataclass(frozen=True, eq=False)
 class Columns:
     """Responses `table` [n, k] of a candidate, sigmas per unit of each of its `free` parameters,
-    the others at `base` (shaping values, and candidates that it brings along).
+    the others at `base` (shaping values, and candidates that it brings along). `limits` are the
+    values of parameters that nothing reaches where they vanish, whatever their amounts.
     """
 
     candidate: Candidate
     free: tuple[FreeParameter, ...]
     table: FloatArray
     base: Mapping[str, float]
+    limits: Mapping[str, float]
 
     def values(self, amounts: FloatArray) -> dict[str, float]:
         """Values of the parameters of the candidate, at `amounts` [k] from where it vanishes."""
         found = dict(self.base)
         for f, amount in zip(self.free, amounts, strict=True):
             value = float(np.clip(self.candidate.vanishing[f.name] + amount, f.lower, f.upper))
+            value = self.limits.get(f.name, value)
             found.update(dict.fromkeys(f.names, value))
         return found
 
@@ -136,11 +142,17 @@ def response_columns(
         if key not in seen:
             seen[key] = _column(task, trial, without, base, f, candidate, most)
         if (column := seen[key]) is not None:
-            kept.append((f, column))
+            kept.append((f, *column))
     if not kept:
         return None
-    table = np.column_stack([column for _, column in kept])
-    return Columns(candidate, tuple(f for f, _ in kept), table, base)
+    table = np.column_stack([change / amount for _, amount, change in kept])
+    limits = {f.name: f.upper + amount for f, amount, _ in kept if _is_limit(candidate, f)}
+    return Columns(candidate, tuple(f for f, _, _ in kept), table, base, limits)
+
+
+def _is_limit(candidate: Candidate, f: FreeParameter) -> bool:
+    """Whether a parameter limits something, and vanishes where nothing reaches it."""
+    return candidate.vanishing[f.name] == f.upper
 
 
 def _column(
@@ -151,12 +163,13 @@ def _column(
     f: FreeParameter,
     candidate: Candidate,
     most: float,
-) -> FloatArray | None:
-    """The response [n] per unit of a defining parameter, to an amount whose response stays below
-    `most`, with a margin where the first is too large: an encoder may show a thousandth of what is
-    usual. None where nothing can be simulated or nothing changes.
+) -> tuple[float, FloatArray] | None:
+    """An amount of a defining parameter whose response [n] stays below `most`, with a margin where
+    the first is too large: an encoder may show a thousandth of what is usual. None where nothing
+    can be simulated or nothing changes. A limit comes closer to the largest value that it meets.
     """
     zero = candidate.vanishing[f.name]
+    largest = f.start * np.exp(WIDE_STEP)
     amount = f.start - zero
     if candidate.is_declared_value:
         amount = min(DECLARED_AMOUNT * abs(f.start), 0.5 * (f.upper - f.start))
@@ -170,10 +183,14 @@ def _column(
             if size == 0.0:
                 return None
             if size <= most:
-                return change / amount
-            amount *= min(SHRINK, MOST * most / size)
+                return amount, change
+            shrink = min(SHRINK, MOST * most / size)
         else:
-            amount *= SHRINK
+            shrink = SHRINK
+        if _is_limit(candidate, f):
+            amount += (1.0 - shrink) * (largest - zero - amount)
+        else:
+            amount *= shrink
     return None
 
 

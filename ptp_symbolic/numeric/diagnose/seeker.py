@@ -21,6 +21,7 @@ from ptp_symbolic.numeric.diagnose.refits import (
     fullest,
     polished,
     sharpened,
+    to_its_end,
 )
 from ptp_symbolic.numeric.diagnose.responses import responses
 from ptp_symbolic.numeric.diagnose.screening import screened
@@ -39,6 +40,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
 from ptp_symbolic.numeric.identify.constants import (
     ADDED,
     ITERATIONS,
+    LITTLE,
     MATERIAL,
     MOST,
     SCREENED,
@@ -58,6 +60,7 @@ class Seeker:
     ) -> None:
         self.task, self.declared, self.proposals, self.carried = task, declared, proposals, carried
         self.others: list[Trial] = []
+        self._at_end: set[Trial] = set()
 
     def unseen(self, trial: Trial) -> list[Trial]:
         """The trial with each candidate that the rows cannot show, begun at its response in the
@@ -77,8 +80,11 @@ class Seeker:
         return any(len(t.candidates) < 2 and self.is_at_noise(t) for t in trials)
 
     def polished(self, trial: Trial) -> Trial:
-        """The trial fitted to its end."""
-        return polished(self.task, trial, self.carried)
+        """The trial fitted to its end; one that was is not fitted again."""
+        if trial not in self._at_end:
+            trial = polished(self.task, trial, self.carried)
+            self._at_end.add(trial)
+        return trial
 
     def sharpened(self, trial: Trial) -> Trial:
         """A polished trial fitted with sharp simulations, where only noise is left."""
@@ -104,11 +110,12 @@ class Seeker:
             return self.polished(trial)
         return self.polished(fitted(self.task, full, trial.values, trial.fit.z, 0, trial.fit))
 
-    def without(self, trial: Trial, candidate: Candidate) -> Trial:
+    def without(self, trial: Trial, candidate: Candidate, *, briefly: bool = False) -> Trial:
         """The trial refitted without one of its candidates, and without what needs it; or what is
         left where the search has come to before, if that is a better place: a candidate gains no
         more than what it adds to the best fit without it. One that gains next to nothing after a
-        few iterations gains no more at their end: that fit is not brought there.
+        few iterations gains no more at their end: that fit is not brought there. `briefly` it is
+        not begun anew either.
         """
         kept = tuple(
             c for c in trial.candidates if c is not candidate and candidate.key not in c.brings
@@ -120,7 +127,8 @@ class Seeker:
         run = self.task.executor
         smaller = fitted(self.task, kept, values, trial.fit.z, ITERATIONS, trial.fit, executor=run)
         if MATERIAL <= gain(trial, smaller).share < MOST:
-            smaller = self.restarted(self.polished(smaller))
+            smaller = self.polished(smaller)
+            smaller = smaller if briefly else self.restarted(smaller)
         same = [t for t in self.others if forms_of(t.candidates) == forms_of(kept)]
         known = ranked([smaller, *same])[0]
         if not is_alike(known, smaller):
@@ -130,9 +138,9 @@ class Seeker:
         self.others.append(smaller)
         return smaller
 
-    def step(self, trial: Trial, candidate: Candidate) -> Step:
-        """What a candidate gains."""
-        return step_of(trial, candidate, self.without(trial, candidate))
+    def step(self, trial: Trial, candidate: Candidate, *, briefly: bool = False) -> Step:
+        """What a candidate gains; `briefly` is that of `without`."""
+        return step_of(trial, candidate, self.without(trial, candidate, briefly=briefly))
 
     def is_needed(self, step: Step) -> bool:
         """Whether what a candidate gains is earned."""
@@ -161,10 +169,11 @@ class Seeker:
             if gain(trial, self.declared).share < MATERIAL:
                 return self.declared, []
             steps: list[Step] = []
+            briefly = not self.is_at_noise(trial)
             expected = {c.key: expected_gain(trial, c.vanishing) for c in trial.candidates}
             little = [c for c in trial.candidates if expected[c.key] < MOST]
             for part in (little, [c for c in trial.candidates if c not in little]):
-                fresh = [self.step(trial, candidate) for candidate in part]
+                fresh = [self.step(trial, candidate, briefly=briefly) for candidate in part]
                 unneeded = [step.without for step in fresh if not self.is_kept(trial, step)]
                 steps += fresh
                 if unneeded:
@@ -203,11 +212,14 @@ class Seeker:
         form whose parameters trade for each other, and be clear in a simpler one.
         """
         left = halving(self.task, begun, SCREENED, seen=self.others)
-        found = ranked([self.polished(t) for t in left if is_near(t, left)])
-        if found and gain(found[0], trial).share < MOST:
-            found[0] = self.restarted(found[0])
+        found = ranked([to_its_end(self.task, t, self.carried) for t in left if is_near(t, left)])
         have = {f.name for c in trial.candidates for f in c.free}
-        for best in found:
+        for number, near in enumerate(found):
+            if gain(near, trial).share < LITTLE:
+                continue
+            best = self.polished(near)
+            if number == 0 and gain(best, trial).share < MOST:
+                best = self.restarted(best)
             added = {n: v for c in best.candidates for n, v in c.vanishing.items() if n not in have}
             if self.is_earned(gain(best, trial), p_value(best, added)):
                 return best

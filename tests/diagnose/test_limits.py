@@ -1,0 +1,72 @@
+"""A limit that nothing reaches where it vanishes: it begins where the logs meet it, and comes ever
+closer to their largest value until its response is small enough to tell.
+"""
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.numeric.diagnose import responses
+from ptp_symbolic.numeric.diagnose.candidates import Candidate, within_reach
+from ptp_symbolic.numeric.diagnose.responses import response_columns
+from ptp_symbolic.numeric.identify.coordinates import free_parameter
+from tests.identify.straight import run_of
+
+LARGEST = 24.0  # V
+TIME = np.linspace(0.0, 1.0, 101)
+LIMIT = Candidate(
+    "voltage_saturation",
+    "pan",
+    "a limit",
+    "",
+    (free_parameter("u_max_pan", 10.0, 1e-3, 1e6),),
+    {"u_max_pan": 1e6},
+)
+MODEL = cast(
+    Any,
+    SimpleNamespace(
+        input_names=("voltage_tilt", "voltage_pan"),
+        units={"voltage_tilt": "V", "voltage_pan": "V", "u_max_pan": "V", "u0": "V"},
+    ),
+)
+
+
+def test_a_limit_begins_just_below_the_largest_value_of_its_axis() -> None:
+    (f,) = within_reach(LIMIT, MODEL, np.array([100.0, LARGEST])).free
+    assert 0.9 * LARGEST < f.start < LARGEST
+
+
+def test_other_parameters_begin_where_they_did() -> None:
+    offset = Candidate(
+        "voltage_offset", "pan", "", "", (free_parameter("u0", 0.3, -9.0, 9.0),), {"u0": 0.0}
+    )
+    assert within_reach(offset, MODEL, np.array([100.0, LARGEST])) == offset
+
+
+@pytest.mark.parametrize("most", [1e9, 20.0, 2.0, 0.2])
+def test_a_response_stays_below_what_is_asked(monkeypatch: pytest.MonkeyPatch, most: float) -> None:
+    """A ramp up to 24 V: what a limit cuts off is its excess, so that the response is known."""
+    ramp = LARGEST * TIME
+
+    def cut_off(task: Any, fit: Any, values: dict[str, float], executor: Any) -> list[Any]:
+        left = np.maximum(ramp - values.get("u_max_pan", 1e6), 0.0)
+        return [SimpleNamespace(residual=left, failed=None)]
+
+    monkeypatch.setattr(responses, "simulated", cut_off)
+    monkeypatch.setattr(responses, "stacked", lambda fit, columns: columns[0])
+    run = run_of(len(TIME))
+    plain = SimpleNamespace(residual=np.zeros(len(TIME)))
+    trial = cast(
+        Any, SimpleNamespace(keys=(), fit=SimpleNamespace(runs=(run,), evaluations=[plain]))
+    )
+    limit = within_reach(LIMIT, MODEL, np.array([0.0, LARGEST]))
+    task = cast(Any, SimpleNamespace(candidates=(limit,)))
+    found = response_columns(task, trial, limit, {}, most)
+    assert found is not None
+    value = found.values(np.array([-5e5]))["u_max_pan"]
+    assert limit.free[0].start <= value < LARGEST
+    expected = np.maximum(ramp - value, 0.0)
+    assert np.linalg.norm(expected) <= most
+    assert found.table[:, 0] * (value - 1e6) == pytest.approx(expected)
