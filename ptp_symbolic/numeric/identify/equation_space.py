@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.identify.along_motion import (
     gear_pushes,
     torques_along,
 )
-from ptp_symbolic.numeric.identify.constants import FINITE, PARTS
+from ptp_symbolic.numeric.identify.constants import FINITE, MOST, PARTS
 from ptp_symbolic.numeric.identify.equation_rows import (
     RunRows,
     every_row,
@@ -221,7 +221,8 @@ class EquationSpace:
 
     def leave_out_pulled(self, p: FloatArray, margin: FloatArray) -> bool:
         """Leave out rows in whose window a gear would have to pull its joint by more than `margin`
-        [na] in N m at p [np]: the joint has left the face and crosses its gap. Whether any was.
+        [na] in N m at p [np]: the joint has left the face and crosses its gap. Whether any was;
+        where that were most of them, p is wrong, not the face, and all stay.
         """
         if not self.gears:
             return False
@@ -232,13 +233,12 @@ class EquationSpace:
                 addresses, self.layout, along.coarse, p, self.resting, rows.face, further.acting
             )
             every.append(rows_without(self.runs[number], rows, pushes < -margin, self.half_width))
-        fewer = any(
-            new.kept.sum() < old.kept.sum() for new, old in zip(every, self.rows_of, strict=True)
-        )
-        if fewer:
-            self.rows_of = tuple(every)
-            self.forget()
-        return fewer
+        before, after = (sum(int(r.kept.sum()) for r in rows) for rows in (self.rows_of, every))
+        if not (1.0 - MOST) * before <= after < before:
+            return False
+        self.rows_of = tuple(every)
+        self.forget()
+        return True
 
     def _that_count(self, number: int, p: FloatArray, others: Sequence[FloatArray]) -> RunRows:
         """The rows of a run, those that count decided anew."""
