@@ -3,6 +3,7 @@ refits in simulation.
 """
 
 from collections.abc import Sequence
+from weakref import WeakSet
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +61,7 @@ class Seeker:
     ) -> None:
         self.task, self.declared, self.proposals, self.carried = task, declared, proposals, carried
         self.others: list[Trial] = []
-        self._at_end: set[Trial] = set()
+        self._at_end: WeakSet[Trial] = WeakSet()  # their Jacobians are large
 
     def unseen(self, trial: Trial) -> list[Trial]:
         """The trial with each candidate that the rows cannot show, begun at its response in the
