@@ -65,6 +65,10 @@ class Candidate:
         """The parameters that switch it on, those in `vanishing`."""
         return tuple(f for f in self.free if f.name in self.vanishing)
 
+    def is_limit(self, f: FreeParameter) -> bool:
+        """Whether a parameter limits something: it vanishes at its upper bound, out of reach."""
+        return self.vanishing.get(f.name) == f.upper
+
 
 def find_candidates(
     model: Model, declared: Sequence[str], known: Mapping[str, tuple[float, float | None]]
@@ -161,7 +165,7 @@ def within_reach(candidate: Candidate, model: Model, largest: FloatArray) -> Can
             for name, size in zip(model.input_names, largest, strict=True)
             if name.endswith(f"_{candidate.axis}") and model.units[name] == model.units[f.name]
         ]
-        if candidate.vanishing.get(f.name) != f.upper or not max(sizes, default=0.0) > 0.0:
+        if not candidate.is_limit(f) or not max(sizes, default=0.0) > 0.0:
             return f
         start = float(np.clip(np.exp(-WIDE_STEP) * max(sizes), f.lower, f.upper))
         return replace(f, start=start, scale=start)

@@ -7,7 +7,13 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.diagnose.trial import Task
-from ptp_symbolic.numeric.identify.constants import CYCLES, FAR, FAR_OFF, ITERATIONS
+from ptp_symbolic.numeric.identify.constants import (
+    CYCLES,
+    DECLARED_AMOUNT,
+    FAR,
+    FAR_OFF,
+    ITERATIONS,
+)
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
 from ptp_symbolic.numeric.identify.equation_fit import fit_equations, robust_scale
 from ptp_symbolic.numeric.identify.equation_preparation import prepare_equation_space
@@ -33,7 +39,7 @@ def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | No
         for f in candidate.free:
             amount = f.start
             if candidate.is_declared_value:
-                amount = min(1.05 * f.start, f.upper)
+                amount = min((1.0 + DECLARED_AMOUNT) * f.start, f.upper)
             varied.update(dict.fromkeys(f.names, amount))
     others = []
     for f in task.free:

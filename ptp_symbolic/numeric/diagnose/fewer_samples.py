@@ -45,8 +45,9 @@ def with_fewer_samples(task: Task, values: Mapping[str, float]) -> Task:
 
     def fewer(run: Run) -> Run:
         every = samples_within(run, SEARCH_PERIOD)
-        whole = of(run) if every > 1 else None
-        while every > 1 and whole is not None and not whole.failed:
+        if every == 1 or (whole := of(run)).failed:
+            return run
+        while every > 1:
             part = thinned(run, every)
             e = of(part)
             change = simulated_signals(part, e) - simulated_signals(run, whole)[::every]
@@ -72,8 +73,8 @@ def with_every_residual(task: Task, fit: Fit) -> Fit:
 
 
 def fitted_to_every_sample(task: Task, trials: Sequence[Trial]) -> list[Trial]:
-    """Trials of the search fitted on to every sample of the training runs, sharply at last; as they
-    are where some of these cannot be simulated with one of them.
+    """Trials of the search fitted on to every sample of the training runs, sharply at last; all of
+    them as they are where no run has fewer samples, or where one trial cannot be simulated.
     """
     whole, run = replace(task, train=task.every_sample), task.executor
     begun = [

@@ -146,13 +146,8 @@ def response_columns(
     if not kept:
         return None
     table = np.column_stack([change / amount for _, amount, change in kept])
-    limits = {f.name: f.upper + amount for f, amount, _ in kept if _is_limit(candidate, f)}
+    limits = {f.name: f.upper + amount for f, amount, _ in kept if candidate.is_limit(f)}
     return Columns(candidate, tuple(f for f, _, _ in kept), table, base, limits)
-
-
-def _is_limit(candidate: Candidate, f: FreeParameter) -> bool:
-    """Whether a parameter limits something, and vanishes where nothing reaches it."""
-    return candidate.vanishing[f.name] == f.upper
 
 
 def _column(
@@ -187,7 +182,7 @@ def _column(
             shrink = min(SHRINK, MOST * most / size)
         else:
             shrink = SHRINK
-        if _is_limit(candidate, f):
+        if candidate.is_limit(f):
             amount += (1.0 - shrink) * (largest - zero - amount)
         else:
             amount *= shrink

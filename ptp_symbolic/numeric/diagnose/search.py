@@ -76,8 +76,9 @@ def _from_declared(seeker: Seeker) -> Search:
                 return _from_declared(seeker)
             best, steps = seeker.pruned(best)
     best = seeker.sharpened(seeker.simplified(best))
-    without = {s.candidate.key: s.without for s in steps}
-    if not seeker.is_at_noise(best):  # the search was brief
+    if seeker.is_at_noise(best):
+        without = {s.candidate.key: s.without for s in steps}
+    else:  # the search was brief
         without = {c.key: seeker.without(best, c) for c in best.candidates}
     members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
     others = tuple(seeker.others)

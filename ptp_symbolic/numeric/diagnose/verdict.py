@@ -22,9 +22,7 @@ from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, ranked
 from ptp_symbolic.numeric.identify.constants import MATERIAL, MOST
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
-from ptp_symbolic.numeric.identify.fit import (
-    Fit,
-)
+from ptp_symbolic.numeric.identify.fit import Fit
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"

@@ -144,8 +144,7 @@ def rows_that_count(
     slides = (both[:, :axes] < NOTHING) & (both[:, axes:] < NOTHING)
     electric = np.all(both[:, axes:] < NOTHING, axis=1)
     kept = np.column_stack([slides, *[electric] * measured])
-    some = kept.any(axis=1)
-    return _with_windows(run, half_width, rows.grid, rows.chosen[some], kept[some], faces[0])
+    return _those_kept(run, rows, kept, faces[0], half_width)
 
 
 def rows_without(run: Run, rows: RunRows, wrong: BoolArray, half_width: float) -> RunRows:
@@ -153,6 +152,12 @@ def rows_without(run: Run, rows: RunRows, wrong: BoolArray, half_width: float) -
     axis is `wrong` [g, na]; all rows of a window with one are left out.
     """
     clean = np.all(averages(rows.on_grid, wrong.astype(np.float64)) < NOTHING, axis=1)
-    kept = rows.kept & clean[:, None]
+    return _those_kept(run, rows, rows.kept & clean[:, None], rows.face, half_width)
+
+
+def _those_kept(
+    run: Run, rows: RunRows, kept: BoolArray, face: FloatArray, half_width: float
+) -> RunRows:
+    """The `rows` of a run, those `kept` [c, equations] alone, with their windows."""
     some = kept.any(axis=1)
-    return _with_windows(run, half_width, rows.grid, rows.chosen[some], kept[some], rows.face)
+    return _with_windows(run, half_width, rows.grid, rows.chosen[some], kept[some], face)
