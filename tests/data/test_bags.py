@@ -1,5 +1,6 @@
 """A bag that rosbags has written: topics with clocks of their own become one log."""
 
+import json
 import shutil
 import sys
 from pathlib import Path
@@ -12,7 +13,9 @@ from ptp_symbolic.numeric.data import log_files, read_log, stored_at
 from ptp_symbolic.platform import Platform, read_platform
 
 pytest.importorskip("rosbags")
+pytest.importorskip("mcap")
 
+from mcap.writer import Writer as JsonWriter
 from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
@@ -149,3 +152,51 @@ def test_without_the_library_the_extra_is_named(
     with pytest.raises(InputError, match=r"pip install 'ptp-symbolic\[bag\]'"):
         read_log(bag, platform)
     shutil.rmtree(bag)
+
+
+def write_json(path: Path, stamped: bool = True, broken: bool = False) -> Path:
+    """The same run in JSON: joint states with stamps, voltages without; one message cut short."""
+    with path.open("wb") as file:
+        bag = JsonWriter(file)
+        bag.start()
+        schema = bag.register_schema("state", "jsonschema", b'{"type": "object"}')
+        joints, drive = (bag.register_channel(t, "json", schema) for t in ("/joints", "/drive"))
+        for k, (angle, voltage) in enumerate(zip(ANGLES, VOLTAGES, strict=True)):
+            at = START + k * PERIOD
+            state: dict[str, object] = {"name": ["tilt", "pan"], "position": [9.0, angle]}
+            if stamped:
+                state["timestamp"] = {"sec": at // 10**9, "nsec": at % 10**9}
+            text = json.dumps(state)[: -1 if broken and k == 30 else None].encode()
+            bag.add_message(joints, at + 1_000_000, text, at)
+            text = json.dumps({"voltage": {"data": voltage}, "note": "-"}).encode()
+            bag.add_message(drive, at + 2_000_000, text, at)
+        bag.finish()
+    return path
+
+
+@pytest.mark.parametrize("field", ["pan", "1"])
+def test_messages_in_json_are_read_as_those_of_ros(tmp_path: Path, field: str) -> None:
+    platform = platform_with(tmp_path, f"/joints/position/{field}")
+    log = read_log(write_json(tmp_path / "run.mcap"), platform)
+    ros = read_log(
+        write_bag(tmp_path / "run"), platform_with(tmp_path, f"/joint_states/position/{field}")
+    )
+    np.testing.assert_allclose(log.time - log.time[0], ros.time - ros.time[0], atol=1e-9)
+    np.testing.assert_array_equal(log.outputs, ros.outputs)
+    np.testing.assert_allclose(log.inputs, ros.inputs, atol=1e-6)
+
+
+def test_messages_in_json_without_a_stamp_have_the_time_of_recording(tmp_path: Path) -> None:
+    platform = platform_with(tmp_path, "/joints/position/pan")
+    log = read_log(write_json(tmp_path / "run.mcap", stamped=False), platform)
+    # voltages come 1 ms after angles: 1 ms of the one before, 4 ms of the next
+    mean = 0.2 * VOLTAGES[:-1] + 0.8 * VOLTAGES[1:]
+    np.testing.assert_allclose(log.inputs[:-1, 0], mean[:-1], atol=1e-6)
+
+
+def test_a_message_that_is_no_json_is_refused_with_its_topic(tmp_path: Path) -> None:
+    platform = platform_with(tmp_path, "/joints/position/pan")
+    path = write_json(tmp_path / "run.mcap", broken=True)
+    with pytest.raises(InputError, match=r"run\.mcap: topic /joints: ") as error:
+        read_log(path, platform)
+    assert "\n" not in str(error.value)
