@@ -45,7 +45,7 @@ def written_up(
     `beside` how rivals do that know no physics.
     """
     after = verdict.final
-    intervals = {e.name: e for e in estimates(after.fit)}
+    intervals = {e.name: e for e in estimates(verdict.estimated)}
     parts = {
         "train": (verdict.declared.fit, after.fit),
         "validate": (verdict.before, verdict.after),

@@ -67,30 +67,34 @@ counts_per_revolution = 65536
 """
 
 
-def log(seed: int) -> Log:
-    """Six seconds under a torque that changes every half second."""
+def log(seed: int, stiffness: float = STIFFNESS, gust: float = 0.0) -> Log:
+    """Six seconds under a torque that changes every half second, and under one that is not logged
+    and changes every sample, `gust` (rms) in N m.
+    """
     rng = np.random.default_rng(seed)
     torque = np.repeat(rng.uniform(-0.5, 0.5, SAMPLES // 50), 50)
+    acting = torque + gust * rng.standard_normal(SAMPLES)
     flow = np.zeros((3, 3))
-    flow[0, 1], flow[1] = 1.0, [-STIFFNESS / INERTIA, -DAMPING / INERTIA, 1.0 / INERTIA]
+    flow[0, 1], flow[1] = 1.0, [-stiffness / INERTIA, -DAMPING / INERTIA, 1.0 / INERTIA]
     step = expm(PERIOD * flow)
     state, angle = np.zeros(2), np.zeros(SAMPLES)
     for k in range(SAMPLES - 1):
-        state = (step @ [*state, torque[k]])[:2]
+        state = (step @ [*state, acting[k]])[:2]
         angle[k + 1] = state[0]
     reading = np.rint(angle / COUNT) * COUNT
     return Log(f"run_{seed}", PERIOD * np.arange(SAMPLES), torque[:, None], reading[:, None])
 
 
 @contextmanager
-def spring_table(folder: Path) -> Iterator[Task]:
-    """The task, its platform written to `folder`."""
+def spring_table(folder: Path, stiffness: float = STIFFNESS, gust: float = 0.0) -> Iterator[Task]:
+    """The task, its platform written to `folder`; the other arguments are those of `log`."""
     path = folder / "table.toml"
     path.write_text(PLATFORM)
     platform = read_platform(path)
     model = emission.emit(variants.with_candidates(platform))
     train, validate = (
-        prepare_runs(model, platform, [log(seed) for seed in seeds]) for seeds in ((1, 2), (3,))
+        prepare_runs(model, platform, [log(seed, stiffness, gust) for seed in seeds])
+        for seeds in ((1, 2), (3,))
     )
     free, known = declared.free_parameters(platform, model), declared.known_values(platform, model)
     noises = {signal.signal: signal.noise for signal in platform.signals}

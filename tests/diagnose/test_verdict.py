@@ -6,6 +6,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from ptp_symbolic.numeric.diagnose.confirmation import doubtful
 from ptp_symbolic.numeric.diagnose.findings import Step
 from ptp_symbolic.numeric.diagnose.floor import Floor, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.held_out import held_out_gain, is_quiet, is_taken_back
@@ -16,7 +17,6 @@ from ptp_symbolic.numeric.diagnose.verdict import (
     PARTLY,
     UNEXPLAINED,
     UP_TO_GROUP,
-    doubtful,
     word_of,
 )
 from ptp_symbolic.numeric.identify.constants import HELD_OUT_ABOVE

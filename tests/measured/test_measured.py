@@ -4,16 +4,20 @@ The data are Janot, Gautier and Brunot (2019) and Duclusaud et al. (2025); both 
 friction their machine has beyond Coulomb and viscous friction.
 """
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scipy.io import loadmat, savemat
 
 from ptp_symbolic.machines.study import EMPS_FILES, PLATFORMS, emps_logs, pendulum_logs
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
+
+Floats = NDArray[np.float64]
 
 pytestmark = pytest.mark.long
 
@@ -30,39 +34,70 @@ def diagnosed(name: str, logs: tuple[list[Path], list[Path]]) -> dict[str, Any]:
     return diagnose_platform(read_platform(PLATFORMS / f"{name}.toml"), *logs).summary
 
 
-@pytest.mark.parametrize(
-    ("name", "source", "logs", "effect", "share"),
-    [
-        ("emps", "emps", emps_logs, "direction_dependent_friction", 0.7),
-        ("servo_pendulum", "servo_pendulum", pendulum_logs, "load_dependent_friction", 0.6),
-    ],
-)
-def test_the_published_friction_is_named(
-    name: str, source: str, logs: Any, effect: str, share: float, measured: Path
-) -> None:
-    found = diagnosed(name, logs(measured / source))
+def test_the_published_friction_of_a_servo_is_named(measured: Path) -> None:
+    found = diagnosed("servo_pendulum", pendulum_logs(measured / "servo_pendulum"))
     assert found["verdict"] == "partly_explained"
-    assert [added["effect"] for added in found["added"]] == [effect]
-    assert found["held_out"]["share"] > share
+    assert named(found) == ["load_dependent_friction"]
+    assert found["held_out"]["share"] > 0.6
     assert found["hints"]
 
 
-STIFFNESS, MIDDLE = 7.26, 0.123  # N/m and m: 0.6 N rms over the stroke of the training file
+def test_friction_of_a_screw_is_named_and_its_mass_is_the_published_one(measured: Path) -> None:
+    """Asymmetric viscous friction is published; that it levels off is not. Least squares of the
+    force with both leaves 2.26 % of it on the training file and 3.25 % on the other, of 2.98 and
+    3.70 % with the first alone.
+    """
+    found = diagnosed("emps", emps_logs(measured / "emps"))
+    assert found["verdict"] == "partly_explained"
+    assert named(found) == FRICTION
+    assert found["held_out"]["share"] > 0.7
+    assert found["hints"]
+    low, high = found["fit"]["after"]["parameters"]["m_pan"]["ci95"]
+    assert low < PUBLISHED_MASS < high
+
+
+FRICTION = ["direction_dependent_friction", "shear_thinning_friction"]
+PUBLISHED_MASS = 95.1  # kg
 FORCE = 35.1507  # N per volt
+SIZE = 0.6  # N rms
+
+
+def named(found: dict[str, Any]) -> list[str]:
+    return sorted(added["effect"] for added in found["added"])
+
+
+def with_force(source: Path, folder: Path, law: Callable[[Floats], Floats]) -> dict[str, Any]:
+    """The diagnosis of a machine that needs a force more for the same motion: it is added to the
+    measured one.
+    """
+    for name in EMPS_FILES:
+        content = loadmat(source / name)
+        columns = {k: np.asarray(v) for k, v in content.items() if not k.startswith("__")}
+        columns["vir"] = columns["vir"] + law(columns["qm"]) / FORCE
+        savemat(folder / name, columns)
+    return diagnosed("emps", emps_logs(folder))
+
+
+STIFFNESS, MIDDLE = 7.26, 0.123  # N/m and m: of that size over the stroke of the training file
 
 
 def test_a_spring_put_into_the_force_is_found(measured: Path, tmp_path: Path) -> None:
-    """A machine with a spring needs its force besides for the same motion: added to that of EMPS,
-    whose own friction differs by direction.
-    """
-    for name in EMPS_FILES:
-        content = loadmat(measured / "emps" / name)
-        columns = {k: np.asarray(v) for k, v in content.items() if not k.startswith("__")}
-        spring = STIFFNESS * (columns["qm"] - MIDDLE)
-        columns["vir"] = columns["vir"] + spring / FORCE
-        savemat(tmp_path / name, columns)
-    found = diagnosed("emps", emps_logs(tmp_path))
-    named = {added["effect"]: added["parameters"] for added in found["added"]}
-    assert sorted(named) == ["cable_spring", "direction_dependent_friction"]
-    low, high = named["cable_spring"]["k1_cable_pan"]["ci95"]
+    found = with_force(measured / "emps", tmp_path, lambda x: STIFFNESS * (x - MIDDLE))
+    assert {"cable_spring", "direction_dependent_friction"} <= set(named(found))
+    assert set(named(found)) <= {"cable_spring", *FRICTION}
+    spring = next(a for a in found["added"] if a["effect"] == "cable_spring")
+    low, high = spring["parameters"]["k1_cable_pan"]["ci95"]
     assert low < STIFFNESS < high
+
+
+def test_cogging_once_per_turn_of_the_screw_put_into_the_force_is_found(
+    measured: Path, tmp_path: Path
+) -> None:
+    """A screw of 20 mm per turn; 2 pi times the waves per metre are counted."""
+    waves, size = 2.0 * np.pi / 0.02, np.sqrt(2.0) * SIZE
+    found = with_force(measured / "emps", tmp_path, lambda x: size * np.sin(waves * x + 0.7))
+    assert named(found) == ["cogging", *FRICTION]
+    cogging = next(a for a in found["added"] if a["effect"] == "cogging")["parameters"]
+    amplitude = np.hypot(cogging["T_sin_pan"]["value"], cogging["T_cos_pan"]["value"])
+    assert amplitude == pytest.approx(size, rel=0.1)
+    assert cogging["n_cog_pan"]["value"] == pytest.approx(waves, rel=0.01)

@@ -29,8 +29,11 @@ def declared_start(task: Task) -> dict[str, float]:
     return {**task.fixed, **all_values_at_start(task.free)}
 
 
-def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | None:
-    """The equation space of the training runs; None where angles are missing, states are sampled or
+def equation_space(
+    task: Task, start: Mapping[str, float], shorter: Sequence[float] = ()
+) -> EquationSpace | None:
+    """The equation space of the training runs, windows of `shorter` half widths in s tried first;
+    None where angles are missing, states are sampled or
     switched, or rows are too few for the free parameters.
     """
     vector = task.model.parameter_vector
@@ -48,7 +51,7 @@ def equation_space(task: Task, start: Mapping[str, float]) -> EquationSpace | No
             others.append(vector({**start, **dict.fromkeys(f.names, value)}))
     try:
         space = prepare_equation_space(
-            task.model, task.whole, vector(dict(start)), others, vector(varied)
+            task.model, task.whole, vector(dict(start)), others, vector(varied), shorter
         )
     except InputError:
         return None

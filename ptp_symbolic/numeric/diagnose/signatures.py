@@ -155,7 +155,7 @@ def locked_signatures(
     """
     by_key = {c.key: c for c in reversed(candidates)}
     found = []
-    lines: dict[str, tuple[float, float]] = {}
+    lines: dict[str, tuple[float, float, int]] = {}
     for candidate in candidates:
         if candidate.locked is None:
             continue
@@ -166,7 +166,7 @@ def locked_signatures(
                 replace(candidate, shapes=still), brought(candidate, by_key), rows, weight
             )
             lines[candidate.key] = _strongest(space, candidate, residual, weight, constant.columns)
-        frequency, lowest = lines[candidate.key]
+        frequency, lowest, compared = lines[candidate.key]
         limits = next(f for f in candidate.free if f.name == name)
         if not max(lowest, limits.lower) < frequency < limits.upper:
             continue
@@ -178,7 +178,7 @@ def locked_signatures(
         )
         free = tuple(line if f.name == name else f for f in candidate.free)
         shapes = tuple({**shape, name: frequency} for shape in candidate.shapes)
-        placed = replace(candidate, free=free, shapes=shapes)
+        placed = replace(candidate, free=free, shapes=shapes, lines=compared)
         found.append(_signature(placed, brought(placed, by_key), rows, weight))
     return [s for s in found if s.columns.shape[1]]
 
@@ -189,9 +189,9 @@ def _strongest(
     residual: FloatArray,
     weight: FloatArray,
     carriers: FloatArray,
-) -> tuple[float, float]:
+) -> tuple[float, float, int]:
     """The frequency in Hz, or in cycles per turn, of the strongest line of the residual torques,
-    and the lowest that is a line.
+    the lowest that is a line, and how many can be told from one another.
 
     `carriers` [n, m] is what the candidate does at no frequency, orthonormal when rows count by
     `weight`: over many cycles sines and cosines on them are orthogonal too, so that the squared
@@ -214,7 +214,7 @@ def _strongest(
     highest = min(ATTENUATED / max(2.0 * space.half_width * slow, 1e-12), limits.upper)
     lowest = LEAST_CYCLES / span
     if highest <= lowest:
-        return 0.0, 0.9 * lowest
+        return 0.0, 0.9 * lowest, 1
     width = 1.0 / (BINS_PER_CYCLE * highest)
     bins = (place / width).astype(np.int64)
     value = residual[rows] * weight[rows]
@@ -224,4 +224,5 @@ def _strongest(
     for carrier in carriers[rows].T:
         power += np.abs(np.fft.rfft(np.bincount(bins, weights=value * carrier), count)) ** 2
     power[(frequency < lowest) | (frequency > highest)] = 0.0
-    return float(frequency[int(np.argmax(power))]), 0.9 * lowest
+    apart = max(1, int((highest - lowest) * span))
+    return float(frequency[int(np.argmax(power))]), 0.9 * lowest, apart

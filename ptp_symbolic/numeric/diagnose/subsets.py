@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.gain import Gain, compared
 from ptp_symbolic.numeric.diagnose.signatures import Signature
 from ptp_symbolic.numeric.identify.constants import (
     DEVIATIONS,
@@ -166,9 +167,9 @@ def exchanges(found: Regression, candidates: Sequence[Candidate]) -> list[tuple[
     in cross-validation, the best first. What the rows do not show of the candidates is kept.
     """
     found = reweighted(found, candidates)
-    number = {(s.candidate.key, s.candidate.member): k for k, s in enumerate(found.signatures)}
-    own = [number[c.key, c.member] for c in candidates if (c.key, c.member) in number]
-    hidden = tuple(c for c in candidates if (c.key, c.member) not in number)
+    number = {_form(s.candidate): k for k, s in enumerate(found.signatures)}
+    own = [number[_form(c)] for c in candidates if _form(c) in number]
+    hidden = tuple(c for c in candidates if _form(c) not in number)
     folds = _Folds(found)
     whole = folds.subset(own)
     sets = [
@@ -186,6 +187,50 @@ def exchanges(found: Regression, candidates: Sequence[Candidate]) -> list[tuple[
         if fresh != keys and is_no_worse(subset, whole, DEVIATIONS, LITTLE):
             best.setdefault(fresh, placed)
     return list(best.values())
+
+
+def gain_along_motion(
+    found: Regression, larger: Sequence[Candidate], smaller: Sequence[Candidate]
+) -> Gain | None:
+    """The predictive gain of one set over another in the rows; None where these do not show every
+    candidate that only one of them has.
+    """
+    number = {_form(s.candidate): k for k, s in enumerate(found.signatures)}
+    forms = {_form(c) for c in larger}, {_form(c) for c in smaller}
+    if not (forms[0] ^ forms[1]) <= set(number):
+        return None
+    folds = _Folds(
+        reweighted(found, [found.signatures[number[f]].candidate for f in forms[0] if f in number])
+    )
+    losses = [folds.subset(sorted(number[f] for f in own if f in number)).losses for own in forms]
+    return compared(losses[0], losses[1])
+
+
+def larger_sets(found: Regression, candidates: Sequence[Candidate]) -> list[tuple[Candidate, ...]]:
+    """Sets with one candidate more than `candidates`, those first that predict the rows best; every
+    candidate in its best form. What the rows do not show of the candidates is kept.
+    """
+    number = {_form(s.candidate): k for k, s in enumerate(found.signatures)}
+    own = [number[_form(c)] for c in candidates if _form(c) in number]
+    found = reweighted(found, [found.signatures[k].candidate for k in own])
+    folds = _Folds(found)
+    brought = {s.candidate.key: k for k, s in reversed(list(enumerate(found.signatures)))}
+    have = {c.key for c in candidates}
+    sets = []
+    for k, s in enumerate(found.signatures):
+        along = [brought[key] for key in s.candidate.brings if key not in have and key in brought]
+        grown = sorted({*own, *along, k})
+        if s.candidate.key not in have and folds.is_complete(grown):
+            sets.append((folds.subset(grown).loss, [*along, k]))
+    best: dict[str, tuple[Candidate, ...]] = {}
+    for _, added in sorted(sets, key=lambda pair: pair[0]):
+        new = tuple(found.signatures[k].candidate for k in added)
+        best.setdefault(new[-1].key, (*candidates, *new))
+    return list(best.values())
+
+
+def _form(candidate: Candidate) -> tuple[str, int]:
+    return candidate.key, candidate.member
 
 
 class _Folds:

@@ -52,12 +52,17 @@ class RunRows:
 
 
 def half_width_of(
-    runs: Sequence[Run], columns: Sequence[int], noise: FloatArray, period: float
+    runs: Sequence[Run],
+    columns: Sequence[int],
+    noise: FloatArray,
+    period: float,
+    shorter: Sequence[float] = (),
 ) -> float:
     """Half width in s of the shortest window in which `noise` [na] in rad of the angles, in
-    measured `columns` [na] every `period` s, is small beside what accelerates the joints.
+    measured `columns` [na] every `period` s, is small beside what accelerates the joints; `shorter`
+    ones than the usual are tried first.
     """
-    for half_width in HALF_WIDTHS:
+    for half_width in (*shorter, *HALF_WIDTHS):
         if 2.0 * half_width / period < MOST_COARSE:
             continue
         gain = curvature_noise(period, half_width)

@@ -1,0 +1,149 @@
+"""What is left of a set when all that cannot be confirmed is taken out, or made simpler."""
+
+from collections.abc import Mapping, Sequence
+
+from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, at_bound, why_unconfirmed
+from ptp_symbolic.numeric.diagnose.findings import Step, step_of
+from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_alone
+from ptp_symbolic.numeric.diagnose.gain import Gain, gain, gain_in_innovations
+from ptp_symbolic.numeric.diagnose.groups import Rival
+from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms
+from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.trial import Trial
+from ptp_symbolic.numeric.identify.constants import MATERIAL, MOST
+from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
+from ptp_symbolic.numeric.identify.fit import Fit
+
+
+def confirmed(
+    seeker: Seeker, trial: Trial, steps: list[Step], refused: dict[str, str]
+) -> tuple[Trial, list[Step], Fit]:
+    """What is left of a trial when all that cannot be confirmed is taken out, noted in `refused`
+    with the reason; its steps, and its fit with derivatives that are not blind.
+    """
+    fit = with_finite_differences(trial.fit, seeker.task.executor)
+    while trial.candidates:
+        simpler = _off_bounds(seeker, trial, fit)
+        weakness = _weakness(seeker, trial, steps, fit) if simpler is None else None
+        if simpler is not None:
+            trial, steps = shortened(seeker, simpler)
+        elif weakness is not None:
+            step, reason = weakness
+            refused[step.candidate.key] = reason
+            trial, steps = shortened(seeker, step.without)
+        else:
+            break
+        fit = with_finite_differences(trial.fit, seeker.task.executor)
+    return trial, steps, fit
+
+
+def shortened(seeker: Seeker, trial: Trial) -> tuple[Trial, list[Step]]:
+    """A trial that lacks something now, fitted sharply, and what its candidates gain."""
+    trial = seeker.sharpened(trial)
+    return trial, [seeker.step(trial, c) for c in trial.candidates]
+
+
+def leaner_rival(seeker: Seeker, trial: Trial, alike: Sequence[Rival]) -> Trial | None:
+    """Where the trial leaves noise alone, one of those that it cannot be told from, without a
+    candidate that is of no use there, if that leaves noise alone too; None where there is none.
+    """
+    if not seeker.is_at_noise(trial):
+        return None
+    for rival in alike:
+        for candidate in rival.trial.candidates:
+            if expected_gain(rival.trial, candidate.vanishing) < MATERIAL:
+                smaller = seeker.without(rival.trial, candidate)
+                if seeker.is_at_noise(smaller) and len(smaller.candidates) < len(trial.candidates):
+                    return smaller
+    return None
+
+
+def doubtful(
+    trial: Trial, steps: Sequence[Step], named: Mapping[str, tuple[str, ...]], floor: Floor
+) -> Step | None:
+    """A declared value in whose place others may stand (`named`), where more than noise is left;
+    None if there is none. It is known, after all: that it is wrong is the answer only where nothing
+    else is.
+    """
+    if leaves_noise_alone(trial, floor):
+        return None
+    known = [s for s in steps if s.candidate.is_declared_value]
+    return next((s for s in known if named[s.candidate.key]), None)
+
+
+def simplest_alike(
+    seeker: Seeker, chosen: Trial, steps: list[Step], chosen_fit: Fit, alike: list[Rival]
+) -> tuple[Trial, list[Step], Fit, list[Rival]]:
+    """Of one effect and what cannot be told from it, the one with the fewest parameters, if
+    that is confirmed too; with its fit from `with_finite_differences`, `chosen_fit` of the first.
+    """
+    unchanged = chosen, steps, chosen_fit, alike
+    best = min(alike, key=lambda r: len(r.trial.fit.free), default=None)
+    if len(steps) != 1 or best is None or len(best.trial.fit.free) >= len(chosen.fit.free):
+        return unchanged
+    if len(best.trial.candidates) != 1:
+        return unchanged
+    (candidate,) = best.trial.candidates
+    fit = with_finite_differences(best.trial.fit, seeker.task.executor)
+    step = step_of(best.trial, candidate, steps[0].without)
+    if _weakness(seeker, best.trial, [step], fit) is not None:
+        return unchanged
+    others = [chosen, *(r.trial for r in alike if r is not best)]
+    return best.trial, [step], fit, [Rival(other, gain(best.trial, other)) for other in others]
+
+
+def _off_bounds(seeker: Seeker, trial: Trial, fit: Fit) -> Trial | None:
+    """The trial with a candidate in the fullest form that lacks a parameter which ends at its
+    bound; None where none does, or where no form lacks it.
+    """
+    for candidate in trial.candidates:
+        bound = at_bound(fit, candidate)
+        kept = {f.name for f in candidate.free if f.name != bound}
+        lacking = [f for f in forms(seeker.task, candidate) if {p.name for p in f.free} <= kept]
+        if bound is not None and lacking:
+            fullest = max(lacking, key=lambda form: len(form.free))
+            return seeker.simplified(seeker.in_form(trial, candidate, fullest))
+    return None
+
+
+def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tuple[Step, str] | None:
+    """The candidate of a trial that gains least of those that are not confirmed, and why not; None
+    where all are. What is known of the others may change once it is out.
+    """
+    quiet = leaves_noise_alone(trial, floor_of(seeker.task, trial, seeker.carried))
+    by_gain = sorted(steps, key=lambda s: s.gain.share)
+    for step in by_gain:
+        if not seeker.is_needed(step):
+            return step, _too_little(step.gain)
+        reason = why_unconfirmed(fit, step.candidate, quiet)
+        if reason is not None:
+            return step, reason
+        if not quiet:
+            doubt = _doubt_beside_a_remainder(trial, step)
+            if doubt is not None:
+                return step, doubt
+    if not answers_to_inputs(seeker.task, trial):
+        return by_gain[0], "with it the model no longer answers to its inputs"
+    return None
+
+
+def _doubt_beside_a_remainder(trial: Trial, step: Step) -> str | None:
+    """Why a step cannot be named where more than noise is left, which a wrong effect may imitate:
+    it takes away less than is left, or nothing but slow drift.
+    """
+    if step.gain.share < MOST:
+        share = f"{100.0 * step.gain.share:.0f} %"
+        return f"takes away {share} of the error, too little where more than noise is left"
+    if gain_in_innovations(trial, step.without).share < MATERIAL:
+        return "takes away slow drift alone, which other effects left out may have caused as well"
+    return None
+
+
+def _too_little(earned: Gain) -> str:
+    """Why a gain earns no name."""
+    if earned.share <= 0.0:
+        return "predicts blocks that were left out no better"
+    share = f"{100.0 * earned.share:.0f} %"
+    if earned.share < MATERIAL:
+        return f"takes away only {share} of the error"
+    return f"takes away {share} of the error, which may be chance"

@@ -1,0 +1,43 @@
+"""What grows along the measured motion beside a torque that nothing explains: logs whose motion is
+known in closed form, under gusts that no log holds.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from ptp_symbolic.numeric.diagnose.along_rows import AlongMotion, grown_along_motion
+from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
+from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.trial import fitted
+from ptp_symbolic.numeric.identify.intervals import estimates
+from tests.diagnose.spring_table import DAMPING, INERTIA, PAYLOAD, STIFFNESS, spring_table
+
+GUST = 0.05  # N m: a tenth of the largest logged torque
+
+
+def grown(folder: Path, stiffness: float) -> AlongMotion | None:
+    with spring_table(folder, stiffness, GUST) as task:
+        declared = fitted(task, (), declared_start(task), None)
+        return grown_along_motion(task, propose(task), declared)
+
+
+def test_a_spring_is_found_beside_gusts_and_the_intervals_tell_how_well(tmp_path: Path) -> None:
+    """No value is further off than two intervals, four standard deviations."""
+    found = grown(tmp_path, STIFFNESS)
+    assert found is not None
+    assert found.trial.keys == ("cable_spring@pan",)
+    assert found.gains[0].lower > 0.5
+    truth = {"J_pan": INERTIA - PAYLOAD, "b_pan": DAMPING, "k1_cable_pan": STIFFNESS}
+    intervals = {e.name: e for e in estimates(found.fit)}
+    for name, value in truth.items():
+        half = 0.5 * (intervals[name].upper - intervals[name].lower)
+        assert abs(intervals[name].value - value) < 2.0 * half, name
+        assert half < 0.05 * value, name
+    assert found.trial.values["k1_cable_pan"] == intervals["k1_cable_pan"].value
+    left = np.concatenate([e.residual for e in found.trial.fit.evaluations])
+    assert np.sqrt(np.mean(left**2)) > 20.0
+
+
+def test_gusts_alone_are_given_no_name(tmp_path: Path) -> None:
+    assert grown(tmp_path, 0.0) is None
