@@ -14,7 +14,7 @@ from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.platform import Platform
 
 FITTED = (
-    "The declared model and the named effects were fitted to the training runs by simulation. The"
+    "The declared model and the named effects were fitted to the training runs. The"
     " rivals were fitted to the torque (force of a linear joint) that the fitted declared model"
     " lacks along the measured motion of the same runs, as a function of angles, rates, their signs"
     " and inputs; how strongly they are regularised was chosen by leaving out blocks of these runs"

@@ -60,6 +60,7 @@ def written_up(
         "platform": {"name": platform.name, "title": platform.title},
         "verdict": verdict.word,
         "summary": headline(verdict, errors, sizes_of(after, intervals)),
+        "fitted_to": "torques" if verdict.is_along_motion else "outputs",
         "added": added_effects(verdict, after, intervals),
         "ranking": ranking(found, verdict, task.candidates),
         "error": errors,

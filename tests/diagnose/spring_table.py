@@ -67,13 +67,13 @@ counts_per_revolution = 65536
 """
 
 
-def log(seed: int, stiffness: float = STIFFNESS, gust: float = 0.0) -> Log:
+def log(seed: int, stiffness: float = STIFFNESS, gust: float = 0.0, lasting: int = 1) -> Log:
     """Six seconds under a torque that changes every half second, and under one that is not logged
-    and changes every sample, `gust` (rms) in N m.
+    and changes after so many samples, `gust` (rms) in N m.
     """
     rng = np.random.default_rng(seed)
     torque = np.repeat(rng.uniform(-0.5, 0.5, SAMPLES // 50), 50)
-    acting = torque + gust * rng.standard_normal(SAMPLES)
+    acting = torque + gust * np.repeat(rng.standard_normal(SAMPLES // lasting), lasting)
     flow = np.zeros((3, 3))
     flow[0, 1], flow[1] = 1.0, [-stiffness / INERTIA, -DAMPING / INERTIA, 1.0 / INERTIA]
     step = expm(PERIOD * flow)
@@ -86,14 +86,16 @@ def log(seed: int, stiffness: float = STIFFNESS, gust: float = 0.0) -> Log:
 
 
 @contextmanager
-def spring_table(folder: Path, stiffness: float = STIFFNESS, gust: float = 0.0) -> Iterator[Task]:
+def spring_table(
+    folder: Path, stiffness: float = STIFFNESS, gust: float = 0.0, lasting: int = 1
+) -> Iterator[Task]:
     """The task, its platform written to `folder`; the other arguments are those of `log`."""
     path = folder / "table.toml"
     path.write_text(PLATFORM)
     platform = read_platform(path)
     model = emission.emit(variants.with_candidates(platform))
     train, validate = (
-        prepare_runs(model, platform, [log(seed, stiffness, gust) for seed in seeds])
+        prepare_runs(model, platform, [log(seed, stiffness, gust, lasting) for seed in seeds])
         for seeds in ((1, 2), (3,))
     )
     free, known = declared.free_parameters(platform, model), declared.known_values(platform, model)

@@ -5,6 +5,7 @@ known in closed form, under gusts that no log holds.
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from ptp_symbolic.numeric.diagnose.along_rows import AlongMotion, grown_along_motion
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
@@ -16,10 +17,10 @@ from tests.diagnose.spring_table import DAMPING, INERTIA, PAYLOAD, STIFFNESS, sp
 GUST = 0.05  # N m: a tenth of the largest logged torque
 
 
-def grown(folder: Path, stiffness: float) -> AlongMotion | None:
-    with spring_table(folder, stiffness, GUST) as task:
+def grown(folder: Path, stiffness: float, lasting: int = 1) -> AlongMotion | None:
+    with spring_table(folder, stiffness, GUST, lasting) as task:
         declared = fitted(task, (), declared_start(task), None)
-        return grown_along_motion(task, propose(task), declared)
+        return grown_along_motion(task, propose(task), declared, task.train)
 
 
 def test_a_spring_is_found_beside_gusts_and_the_intervals_tell_how_well(tmp_path: Path) -> None:
@@ -27,7 +28,7 @@ def test_a_spring_is_found_beside_gusts_and_the_intervals_tell_how_well(tmp_path
     found = grown(tmp_path, STIFFNESS)
     assert found is not None
     assert found.trial.keys == ("cable_spring@pan",)
-    assert found.gains[0].lower > 0.5
+    assert found.gains["cable_spring@pan"].lower > 0.5
     truth = {"J_pan": INERTIA - PAYLOAD, "b_pan": DAMPING, "k1_cable_pan": STIFFNESS}
     intervals = {e.name: e for e in estimates(found.fit)}
     for name, value in truth.items():
@@ -39,5 +40,7 @@ def test_a_spring_is_found_beside_gusts_and_the_intervals_tell_how_well(tmp_path
     assert np.sqrt(np.mean(left**2)) > 20.0
 
 
-def test_gusts_alone_are_given_no_name(tmp_path: Path) -> None:
-    assert grown(tmp_path, 0.0) is None
+@pytest.mark.parametrize("lasting", [1, 50, 150])
+def test_gusts_alone_are_given_no_name(lasting: int, tmp_path: Path) -> None:
+    """Whether they change every sample or last 1.5 s."""
+    assert grown(tmp_path, 0.0, lasting) is None

@@ -7,7 +7,7 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose.linear import projected_off
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose
-from ptp_symbolic.numeric.diagnose.subsets import remainder
+from ptp_symbolic.numeric.diagnose.regression import remainder
 from tests.diagnose.spring_table import spring_table
 
 

@@ -6,17 +6,15 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.regression import Regression, regression, remainder
 from ptp_symbolic.numeric.diagnose.signatures import Signature
 from ptp_symbolic.numeric.diagnose.subsets import (
-    Regression,
     Subset,
     exchanges,
     gain_along_motion,
     is_no_worse,
     larger_sets,
     ranked_subsets,
-    regression,
-    remainder,
 )
 from ptp_symbolic.numeric.identify.constants import FAR, FOLDS
 from ptp_symbolic.numeric.identify.coordinates import free_parameter

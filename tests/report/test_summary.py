@@ -77,7 +77,13 @@ def _trial(*candidates: Candidate, value: float = DECLARED, left: float = 1.0) -
 
 
 def _verdict(word: str, final: Trial, **more: Any) -> Any:
-    usual = {"confusable": {}, "closest": None, "rivals": (), "refused": {}}
+    usual = {
+        "confusable": {},
+        "closest": None,
+        "rivals": (),
+        "refused": {},
+        "is_along_motion": False,
+    }
     return SimpleNamespace(word=word, final=final, compared=final, **{**usual, **more})
 
 

@@ -2,138 +2,151 @@
 
 A torque that the model lacks is integrated twice in an angle: beside a remainder, simulations see
 its slow part alone, and effects gain in them by the drift they follow. The rows of the equation
-space see it as it is. Where these show all of a set and no gear leaves its face, the set grows
-there by what gains materially and clearly on blocks left out. Its values are those of the rows with
-the shortest windows that noise allows (inverse dynamic identification: Gautier and Khalil, 1990),
-as are their intervals.
+space see it as it is, unless a gear crosses a gap. There a set grows by the effects that gain
+materially and clearly on blocks left out. Its values and their intervals are those of a fit to the
+rows with the shortest windows that noise allows (inverse dynamic identification: Gautier and
+Khalil, 1990).
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.confirm import why_unconfirmed
+from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, why_unconfirmed
 from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
-from ptp_symbolic.numeric.diagnose.findings import is_earned
-from ptp_symbolic.numeric.diagnose.gain import Gain
+from ptp_symbolic.numeric.diagnose.gain import Gain, compared
+from ptp_symbolic.numeric.diagnose.held_out import simulated_freely
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_of
-from ptp_symbolic.numeric.diagnose.subsets import (
-    Regression,
-    exchanges,
-    gain_along_motion,
-    larger_sets,
-)
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, all_free, tolerance_for
+from ptp_symbolic.numeric.diagnose.regression import Regression
+from ptp_symbolic.numeric.diagnose.subsets import exchanges, gain_along_motion, larger_sets
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, all_free
 from ptp_symbolic.numeric.identify.constants import (
-    GAIN,
+    FAR,
     LARGEST,
+    MATERIAL,
     POLISH,
-    ROUGH,
-    SHARP,
+    SHORT,
     SHORTEST_HALF_WIDTHS,
     TRIED,
 )
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
-from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised
+from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised, robust_scale
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
-from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.run import Run
+
+FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class AlongMotion:
-    """A set by the rows: `trial` is the training runs simulated with its values, `fit` that of the
-    rows, `gains` [candidates] is what each gains there, and `alike` are by key those of other
-    candidates that predict the rows as well in its place.
+    """A set that has grown along the motion: `fit` is that to the rows, `trial` the training runs
+    simulated with its values. By the key of each candidate, `gains` is what it gains in the rows,
+    and `alike` are the candidates beside which it gains nothing, and which predict as well.
     """
 
     trial: Trial
     fit: Fit
-    gains: tuple[Gain, ...]
-    alike: dict[str, tuple[str, ...]]
+    gains: Mapping[str, Gain]
+    alike: Mapping[str, tuple[str, ...]]
 
 
-def grown_along_motion(task: Task, found: Proposals, trial: Trial) -> AlongMotion | None:
-    """The set of a trial with what else gains along the measured motion; None where nothing does,
-    or where the rows do not show all of the set.
+def grown_along_motion(
+    task: Task, found: Proposals, trial: Trial, runs: Sequence[Run]
+) -> AlongMotion | None:
+    """The set of a trial with what else gains along the measured motion, simulated on the training
+    `runs`; None where nothing does, or where the rows do not show all of the set.
+
+    Declared values are not looked for: beside a remainder they stand in for much. What has grown
+    takes away a material part of the torque that the set leaves along the validation runs.
     """
     rows = found.regression
     if rows is None or len(task.model.contacts):
         return None
     if not set(trial.keys) <= {s.candidate.key for s in rows.signatures}:
         return None
-    space = equation_space(task, found.start, SHORTEST_HALF_WIDTHS)
-    if space is None:
-        return None
-    motion = _Motion(task, rows, space, found.start)
-    candidates, best = trial.candidates, None
+    motion = _Motion(task, rows, found.start)
+    candidates = trial.candidates
     while len(candidates) < len(trial.candidates) + LARGEST:
-        tried = larger_sets(rows, candidates)[:TRIED]
-        confirmed = (motion.confirmed(larger, candidates) for larger in tried)
-        grown = next((end for end in confirmed if end is not None), None)
+        effects = [
+            s for s in larger_sets(rows, candidates) if not any(c.is_declared_value for c in s)
+        ]
+        grown = next((s for s in effects[:TRIED] if motion.is_confirmed(s)), None)
         if grown is None:
             break
-        candidates, best = grown[0], grown
-    if best is None:
+        candidates = grown
+    if len(candidates) == len(trial.candidates):
         return None
-    alike = {c.key: motion.alike(candidates, c) for c in candidates}
-    return AlongMotion(_simulated(task, candidates, best[1]), best[1], best[2], alike)
+    fit = motion.fitted(candidates)
+    if not motion.predicts_better(fit, motion.fitted(trial.candidates)):
+        return None
+    final = Trial(candidates, replace(simulated_freely(task, runs, fit.values), free=fit.free))
+    if final.fit.failed or not answers_to_inputs(task, final):
+        return None
+    gains = {c.key: gain for c in candidates if (gain := motion.gain(candidates, c)) is not None}
+    return AlongMotion(final, fit, gains, motion.alike(candidates))
 
 
 @dataclass(frozen=True, eq=False)
 class _Motion:
-    """The `rows` that sets are compared in, those of `space` that they are fitted to, and all
-    parameters at the start of both.
-    """
+    """The `rows` that sets are compared in, and all parameters at the `start` of every fit."""
 
     task: Task
     rows: Regression
-    space: EquationSpace
     start: Mapping[str, float]
 
-    def confirmed(
-        self, candidates: tuple[Candidate, ...], known: Sequence[Candidate]
-    ) -> tuple[tuple[Candidate, ...], Fit, tuple[Gain, ...]] | None:
-        """A set, its fit to the rows and what its candidates gain; None unless each of them gains
-        materially and clearly, and those not `known` stand the rest of what a name asks for.
+    @cached_property
+    def space(self) -> EquationSpace | None:
+        """The rows that sets are fitted to."""
+        return equation_space(self.task, self.start, shorter=SHORTEST_HALF_WIDTHS)
+
+    def gain(self, candidates: Sequence[Candidate], member: Candidate) -> Gain | None:
+        """What a member of a set gains in the rows, with what needs it; None where they do not show
+        it.
         """
-        gains = [self.earns(candidates, candidate) for candidate in candidates]
-        earned = tuple(gain for gain in gains if gain is not None)
-        if len(earned) < len(gains):
-            return None
+        smaller = [c for c in candidates if c is not member and member.key not in c.brings]
+        return gain_along_motion(self.rows, candidates, smaller)
+
+    def earns(self, candidates: Sequence[Candidate], member: Candidate) -> bool:
+        """Whether what a member of a set gains is material, and clear over all candidates and
+        frequencies that were compared.
+        """
+        found = self.gain(candidates, member)
+        tests = len(self.task.candidates) * member.frequencies_compared
+        return found is not None and found.share >= MATERIAL and found.is_clear(tests)
+
+    def is_confirmed(self, candidates: Sequence[Candidate]) -> bool:
+        """Whether every member of a set earns its place and stands the rest of what a name asks
+        for.
+        """
+        if self.space is None or not all(self.earns(candidates, c) for c in candidates):
+            return False
         fit = self.fitted(candidates)
-        fresh = [c for c in candidates if c not in known]
-        if any(why_unconfirmed(fit, c, leaves_noise=False) for c in fresh):
-            return None
-        return candidates, fit, earned
+        return not any(why_unconfirmed(fit, c, leaves_noise=False) for c in candidates)
 
-    def earns(self, candidates: Sequence[Candidate], candidate: Candidate) -> Gain | None:
-        """What a candidate of a set gains, if that is material and clear, whatever frequencies were
-        compared; None if not.
+    def alike(self, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
+        """By the key of each member of a set, those that predict no worse in its place, and beside
+        which it earns nothing any more.
         """
-        smaller = [c for c in candidates if c is not candidate and candidate.key not in c.brings]
-        found = gain_along_motion(self.rows, candidates, smaller)
-        tests = len(self.task.candidates) * candidate.lines
-        return found if found and is_earned(found, found.chance, tests) else None
-
-    def alike(self, candidates: Sequence[Candidate], member: Candidate) -> tuple[str, ...]:
-        """Keys of those that predict no worse in the place of a member of a set, and beside which
-        that member earns nothing any more.
-        """
-        own, found = {c.key for c in candidates}, set()
+        found: dict[str, set[str]] = {c.key: set() for c in candidates}
         for other in exchanges(self.rows, candidates):
             keys = {c.key for c in other}
-            if member.key not in keys and self.earns((*other, member), member) is None:
-                found |= keys - own
-        return tuple(sorted(found))
+            for member in candidates:
+                if member.key not in keys and not self.earns((*other, member), member):
+                    found[member.key] |= keys - set(found)
+        return {key: tuple(sorted(keys)) for key, keys in found.items()}
 
     def fitted(self, candidates: Sequence[Candidate]) -> Fit:
-        """A set fitted to the rows, as a fit whose runs are those of each equation along each
-        run.
+        """A set fitted to the rows, as a fit whose runs are the rows along each run in the order of
+        time, those of all equations.
         """
         task, space = self.task, self.space
+        assert space is not None
         begun = start_of(task, self.rows, candidates, self.start)
         free = all_free(task, candidates, begun)
         values = fit_equations(space, free, begun, POLISH, task.executor)
@@ -143,22 +156,28 @@ class _Motion:
         root = np.sqrt(at.weight)
         residual = at.rows * root
         table = at.jacobian * root[:, None] * slopes(free, to_search(free, values))
-        equation, run, time = space.labels()
+        _, run, time = space.labels()
+        order = np.lexsort((time, run))
         runs, evaluations = [], []
-        for number, source in enumerate(space.runs):
-            for e in np.unique(equation):
-                own = np.flatnonzero((run == number) & (equation == e))
-                if own.size:
-                    nothing = np.zeros((own.size, 0))
-                    runs.append(replace(source, time=time[own], measured=residual[own, None]))
-                    evaluations.append(Evaluation(residual[own], table[own], nothing))
+        for number, whole in enumerate(space.runs):
+            own = order[run[order] == number]
+            runs.append(replace(whole, time=time[own], measured=residual[own, None]))
+            evaluations.append(Evaluation(residual[own], table[own], np.zeros((own.size, 0))))
         cost = float(residual @ residual)
         return Fit(task.model, tuple(runs), free, values, (), cost, tuple(evaluations))
 
-
-def _simulated(task: Task, candidates: Sequence[Candidate], fit: Fit) -> Trial:
-    """The training runs simulated with the values of a fit, nothing but their starts fitted."""
-    effort = Effort(POLISH, GAIN * ROUGH, tolerance_for(task, SHARP))
-    values, run = dict(fit.values), task.executor
-    starts = fit_parameters(task.model, task.every_sample, (), values, None, effort, run)
-    return Trial(tuple(candidates), replace(starts, free=fit.free))
+    def predicts_better(self, larger: Fit, smaller: Fit) -> bool:
+        """Whether the values of one fit leave materially less torque along the validation runs than
+        those of another.
+        """
+        space = equation_space(self.task, self.start, self.task.validate)
+        if space is None:
+            return False
+        vector = self.task.model.parameter_vector
+        rows = [space.rows(vector(dict(fit.values))) for fit in (larger, smaller)]
+        equation, run, time = space.labels()
+        scale = robust_scale(rows[0], equation)
+        _, block = np.unique(np.column_stack([run, time // SHORT]), axis=0, return_inverse=True)
+        squares = [np.minimum((r / scale) ** 2, FAR**2) for r in rows]
+        losses = [np.asarray(np.bincount(block, s), dtype=np.float64) for s in squares]
+        return compared(losses[0], losses[1]).share >= MATERIAL

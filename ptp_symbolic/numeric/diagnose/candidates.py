@@ -24,10 +24,9 @@ class Candidate:
     `free` are the parameters with the amounts at which a search begins; those in `vanishing` switch
     it off at the values given, in their units, all others shape it. `shapes` are sets of values of
     the shaping parameters from which a search begins. `locked` is a shaping frequency that a scan
-    finds, with what it is locked to ("time" or "angle"), and `lines` are the frequencies, so far
-    apart that they can be told from one another, of which that is the strongest. `brings` are keys
-    of candidates without which it has nothing to act on. `member` numbers the nested versions, the
-    simplest first.
+    finds, with what it is locked to ("time" or "angle"); the scan has compared so many that can be
+    told from one another (`frequencies_compared`). `brings` are keys of candidates without which it
+    has nothing to act on. `member` numbers the nested versions, the simplest first.
     """
 
     id: str
@@ -41,7 +40,7 @@ class Candidate:
     brings: tuple[str, ...] = ()
     member: int = 0
     member_title: str = ""
-    lines: int = 1
+    frequencies_compared: int = 1
 
     @property
     def key(self) -> str:

@@ -17,9 +17,9 @@ FloatArray = NDArray[np.float64]
 
 
 def why_unconfirmed(fit: Fit, candidate: Candidate, leaves_noise: bool) -> str | None:
-    """Why `candidate` of a trial cannot be named; None where nothing speaks against it. `fit` is
-    the trial's, from `with_finite_differences`. Where it leaves noise alone, nothing is missing
-    that the candidate could make up for.
+    """Why `candidate` of a set cannot be named; None where nothing speaks against it. `fit` is that
+    of the set, from `with_finite_differences` if it is one of simulations. Where it leaves noise
+    alone, nothing is missing that the candidate could make up for.
     """
     bound = at_bound(fit, candidate)
     if bound is not None:

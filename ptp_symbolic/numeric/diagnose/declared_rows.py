@@ -20,6 +20,7 @@ from ptp_symbolic.numeric.identify.equation_preparation import prepare_equation_
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.fit import all_values, all_values_at_start
 from ptp_symbolic.numeric.identify.requirements import nearest_possible
+from ptp_symbolic.numeric.identify.run import Run
 
 FloatArray = NDArray[np.float64]
 
@@ -30,11 +31,14 @@ def declared_start(task: Task) -> dict[str, float]:
 
 
 def equation_space(
-    task: Task, start: Mapping[str, float], shorter: Sequence[float] = ()
+    task: Task,
+    start: Mapping[str, float],
+    runs: Sequence[Run] | None = None,
+    shorter: Sequence[float] = (),
 ) -> EquationSpace | None:
-    """The equation space of the training runs, windows of `shorter` half widths in s tried first;
-    None where angles are missing, states are sampled or
-    switched, or rows are too few for the free parameters.
+    """The equation space of the whole training runs, or of other `runs`; windows of `shorter` half
+    widths in s are tried first. None where angles are missing, states are sampled or switched, or
+    rows are too few for the free parameters.
     """
     vector = task.model.parameter_vector
     varied = dict(start)
@@ -51,7 +55,12 @@ def equation_space(
             others.append(vector({**start, **dict.fromkeys(f.names, value)}))
     try:
         space = prepare_equation_space(
-            task.model, task.whole, vector(dict(start)), others, vector(varied), shorter
+            task.model,
+            task.whole if runs is None else runs,
+            vector(dict(start)),
+            others,
+            vector(varied),
+            shorter,
         )
     except InputError:
         return None

@@ -1,5 +1,7 @@
 """The validation runs: held to their own noise, and whether they bear out what was named."""
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 from scipy.stats import mannwhitneyu
 
@@ -27,6 +29,7 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
+from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import sizes
 
 
@@ -56,8 +59,13 @@ def is_quiet(after: Fit, floor: Floor, trained: Fit) -> bool:
 
 def held_out_fit(task: Task, trial: Trial) -> Fit:
     """The validation runs by the model of a trial, nothing but their start unknowns fitted."""
+    return simulated_freely(task, task.validate, trial.values)
+
+
+def simulated_freely(task: Task, runs: Sequence[Run], values: Mapping[str, float]) -> Fit:
+    """Runs simulated with `values` of all parameters, nothing but their start unknowns fitted."""
     effort = Effort(POLISH, GAIN * ROUGH, tolerance_for(task, SHARP))
-    return fit_parameters(task.model, task.validate, (), trial.values, None, effort, task.executor)
+    return fit_parameters(task.model, runs, (), dict(values), None, effort, task.executor)
 
 
 def held_out_gain(after: Fit, before: Fit) -> Gain:

@@ -17,21 +17,19 @@ from ptp_symbolic.numeric.diagnose.declared_rows import (
     first_fit,
     possible,
 )
+from ptp_symbolic.numeric.diagnose.regression import (
+    Regression,
+    block_numbers,
+    regression,
+    reweighted,
+)
 from ptp_symbolic.numeric.diagnose.signatures import (
     Signature,
     locked_signatures,
     rows_around,
     signatures,
 )
-from ptp_symbolic.numeric.diagnose.subsets import (
-    Regression,
-    Subset,
-    is_no_worse,
-    lines,
-    ranked_subsets,
-    regression,
-    reweighted,
-)
+from ptp_symbolic.numeric.diagnose.subsets import Subset, is_no_worse, lines, ranked_subsets
 from ptp_symbolic.numeric.diagnose.trial import Task, restarted
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
@@ -39,7 +37,6 @@ from ptp_symbolic.numeric.identify.constants import (
     LARGEST,
     LITTLE,
     REFINEMENTS,
-    SHORT,
     TRIED,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
@@ -83,7 +80,7 @@ def propose(task: Task) -> Proposals:
     here = {f.name: values[f.name] for f in task.free}
     found = linearised(space, task.free, values, here, task.executor, own_torque=True)
     equation, run, time = space.labels()
-    block = run * 100_000 + (time // SHORT).astype(np.int64)
+    block = block_numbers(run, time)
     around = rows_around(space, values)
     seen, unseen = signatures(space, task.candidates, around, found.weight, task.executor)
     declared, base = task.free, found.jacobian

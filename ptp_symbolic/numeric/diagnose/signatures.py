@@ -178,7 +178,7 @@ def locked_signatures(
         )
         free = tuple(line if f.name == name else f for f in candidate.free)
         shapes = tuple({**shape, name: frequency} for shape in candidate.shapes)
-        placed = replace(candidate, free=free, shapes=shapes, lines=compared)
+        placed = replace(candidate, free=free, shapes=shapes, frequencies_compared=compared)
         found.append(_signature(placed, brought(placed, by_key), rows, weight))
     return [s for s in found if s.columns.shape[1]]
 

@@ -14,7 +14,14 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared
+from ptp_symbolic.numeric.diagnose.regression import (
+    BLOCKS_OF_A_RUN,
+    Regression,
+    remainder,
+    reweighted,
+)
 from ptp_symbolic.numeric.diagnose.signatures import Signature
+from ptp_symbolic.numeric.identify.blocks import block_labels, block_length
 from ptp_symbolic.numeric.identify.constants import (
     DEVIATIONS,
     FAR,
@@ -22,79 +29,12 @@ from ptp_symbolic.numeric.identify.constants import (
     LARGEST,
     LITTLE,
     NOTHING,
-    REWEIGHTINGS,
     SEED,
     TRIED,
 )
-from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.equation_fit import robust_scale
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-
-@dataclass(frozen=True, eq=False)
-class Regression:
-    """Rows [n] to be regressed on `base` [n, nb], the columns of the `declared` parameters, and on
-    the columns of the signatures.
-
-    `scale` [n] is the standard deviation of every row, `weight` [n] its weight in the fit,
-    `equation` [n] its equation, `block` [n] the number of the block of time that it belongs to.
-    """
-
-    rows: FloatArray
-    declared: tuple[FreeParameter, ...]
-    base: FloatArray
-    signatures: tuple[Signature, ...]
-    equation: IntArray
-    block: IntArray
-    weight: FloatArray
-    scale: FloatArray
-
-
-def regression(
-    rows: FloatArray,
-    declared: Sequence[FreeParameter],
-    base: FloatArray,
-    found: Sequence[Signature],
-    equation: IntArray,
-    block: IntArray,
-    weight: FloatArray,
-) -> Regression:
-    """The regression with weights [n] from the residual of the declared model, begun at `weight`;
-    the other arguments are those of `Regression`.
-    """
-    start = Regression(
-        rows,
-        tuple(declared),
-        base,
-        tuple(found),
-        equation,
-        block,
-        weight,
-        robust_scale(rows, equation),
-    )
-    return reweighted(start, ())
-
-
-def reweighted(found: Regression, candidates: Sequence[Candidate]) -> Regression:
-    """`found` with Huber's weights and scales from the residual of a set of `candidates`."""
-    own = [s.columns for s in found.signatures if s.candidate in candidates]
-    columns = np.column_stack([found.base, *own])
-    weight, scale = found.weight, found.scale
-    for _ in range(REWEIGHTINGS):
-        left = found.rows - columns @ _amounts(columns, found.rows, weight)
-        scale = robust_scale(left, found.equation)
-        weight = np.minimum(1.0, DEVIATIONS * scale / np.maximum(np.abs(left), 1e-300)) / scale**2
-    return replace(found, weight=weight, scale=scale)
-
-
-def remainder(found: Regression, beside: Sequence[Signature] = ()) -> FloatArray:
-    """Residual rows [n] of the regression on the declared parameters and the signatures `beside`
-    them.
-    """
-    columns = np.column_stack([found.base, *(s.columns for s in beside)])
-    return found.rows - columns @ _amounts(columns, found.rows, found.weight)
 
 
 def lines(found: Regression, scan: Callable[[FloatArray], Sequence[Signature]]) -> list[Signature]:
@@ -116,13 +56,6 @@ def lines(found: Regression, scan: Callable[[FloatArray], Sequence[Signature]]) 
             if square < least.get(key, np.inf):
                 strongest[key], least[key] = line, square
     return list(strongest.values())
-
-
-def _amounts(columns: FloatArray, rows: FloatArray, weight: FloatArray) -> FloatArray:
-    root = np.sqrt(weight)
-    size = np.maximum(np.linalg.norm(columns * root[:, None], axis=0), 1e-300)
-    scaled = columns * root[:, None] / size
-    return np.linalg.lstsq(scaled, rows * root, rcond=1e-6)[0] / size
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,18 +125,23 @@ def exchanges(found: Regression, candidates: Sequence[Candidate]) -> list[tuple[
 def gain_along_motion(
     found: Regression, larger: Sequence[Candidate], smaller: Sequence[Candidate]
 ) -> Gain | None:
-    """The predictive gain of one set over another in the rows; None where these do not show every
-    candidate that only one of them has.
+    """The predictive gain of one set over another in the rows, judged on blocks as long as their
+    differences are correlated; None where the rows do not show every candidate that only one of
+    them has.
     """
-    number = {_form(s.candidate): k for k, s in enumerate(found.signatures)}
     forms = {_form(c) for c in larger}, {_form(c) for c in smaller}
+    own = [s for s in found.signatures if _form(s.candidate) in forms[0] | forms[1]]
+    number = {_form(s.candidate): k for k, s in enumerate(own)}
     if not (forms[0] ^ forms[1]) <= set(number):
         return None
-    folds = _Folds(
-        reweighted(found, [found.signatures[number[f]].candidate for f in forms[0] if f in number])
-    )
-    losses = [folds.subset(sorted(number[f] for f in own if f in number)).losses for own in forms]
-    return compared(losses[0], losses[1])
+    more = [s.candidate for s in own if _form(s.candidate) in forms[0]]
+    folds = _Folds(reweighted(replace(found, signatures=tuple(own)), more))
+    losses = [folds.subset(sorted(number[f] for f in s if f in number)).losses for s in forms]
+    ends = np.flatnonzero(np.diff(np.unique(found.block) // BLOCKS_OF_A_RUN)) + 1
+    series = np.split(losses[1] - losses[0], ends)
+    label = np.concatenate(block_labels([len(s) for s in series], block_length(series)))
+    merged = [np.asarray(np.bincount(label, x), dtype=np.float64) for x in losses]
+    return compared(merged[0], merged[1])
 
 
 def larger_sets(found: Regression, candidates: Sequence[Candidate]) -> list[tuple[Candidate, ...]]:

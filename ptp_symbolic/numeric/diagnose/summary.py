@@ -158,14 +158,13 @@ def added_effects(
 ) -> list[dict[str, Any]]:
     """The named effects of the trial `after`, with the `intervals` of their parameters."""
     units = after.fit.model.units
-    gains = {step.candidate.key: step.gain for step in verdict.members}
     return [
         {
             "effect": c.id,
             "title": cause(c, after),
             "axis": c.axis,
             "parameters": {name: _value(intervals[name], units[name]) for name in c.parameters},
-            "gain": gain_table(gains[c.key]),
+            "gain": gain_table(verdict.gains[c.key]),
             "confusable_with": list(verdict.confusable[c.key]),
             "separating_experiment": c.separating_experiment,
         }
@@ -218,7 +217,7 @@ def ranking(
     best = [t for t in ranked(trials) if np.isfinite(t.fit.cost)]
     kept: dict[tuple[str, ...], Trial] = {}
     for trial in best:
-        kept.setdefault(trial.keys, trial)
+        kept.setdefault(trial.keys, found.compared if trial.keys == found.compared.keys else trial)
     rows = [_row(search, found, trial) for trial in kept.values()]
     tried = {key for trial in kept.values() for key in trial.keys}
     for candidate in {c.key: c for c in candidates}.values():
@@ -229,13 +228,15 @@ def ranking(
 
 def _row(search: Search, found: Verdict, trial: Trial) -> dict[str, Any]:
     units = trial.fit.model.units
-    earned = gain(trial, search.declared)
+    accepted = bool(found.final.candidates) and trial.keys == found.final.keys
+    elsewhere = accepted and found.is_along_motion  # that fit is not the best one of outputs
+    earned = None if elsewhere else gain(trial, search.declared)
     error = error_of(trial.fit, units)["total"]
     axes = {c.axis for c in trial.candidates}
     return {
         "effect": " + ".join(c.id for c in trial.candidates),
         "axis": axes.pop() if len(axes) == 1 else None,
-        "gain": gain_table(earned),
+        "gain": None if earned is None else gain_table(earned),
         "train_error_after": error["rmse"]
         if error["rmse_counts"] is None
         else error["rmse_counts"],
@@ -244,7 +245,7 @@ def _row(search: Search, found: Verdict, trial: Trial) -> dict[str, Any]:
             for c in trial.candidates
             for f in c.free
         },
-        "accepted": bool(found.final.candidates) and trial.keys == found.final.keys,
+        "accepted": accepted,
         "why": _why(search, found, trial),
     }
 
@@ -263,6 +264,10 @@ def _unfitted(candidate: Candidate) -> dict[str, Any]:
 
 def _why(search: Search, found: Verdict, trial: Trial) -> str:
     if found.final.candidates and trial.keys == found.final.keys:
+        if found.is_along_motion:
+            return (
+                "every effect in it gains clearly along the measured motion, to which it is fitted"
+            )
         return "every effect in it gains clearly, and none outside would add to it"
     if any(trial.keys == rival.trial.keys for rival in found.rivals):
         return "predicts as well as the accepted set"

@@ -14,7 +14,7 @@ from ptp_symbolic.numeric.diagnose.confirmation import (
     simplest_alike,
 )
 from ptp_symbolic.numeric.diagnose.fewer_samples import fitted_to_every_sample
-from ptp_symbolic.numeric.diagnose.findings import Search, Step
+from ptp_symbolic.numeric.diagnose.findings import Search
 from ptp_symbolic.numeric.diagnose.floor import Floor, carried_noise, floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
@@ -40,14 +40,14 @@ UNEXPLAINED = "unexplained"
 class Verdict:
     """What the logs say.
 
-    `final` is the declared model with what is confirmed, fitted to every sample, or simulated with
-    the values of the rows; `estimated` is the fit that these are of, with its intervals, its
-    derivatives those of `with_finite_differences`. `compared` is the same set as the search
-    compared it with others, and `declared` the declared model fitted to every sample; `members`
-    what each of its effects gains, `confusable` the keys that may stand in the place of each;
-    `closest` the best set where nothing is confirmed. `refused` tells why candidates that gained
-    were not named. `floor` is that
-    of `final`; `before` and `after` are the validation runs by the declared and by the final model.
+    `declared` is the declared model fitted to every sample, and `final` the one with what is
+    confirmed; the values of that are those of `estimated`: the same fit with the derivatives of
+    `with_finite_differences`, or one to the torques along the motion. `compared` is its set as the
+    search compared it with others. By key, `gains` is what each of its effects gains, and
+    `confusable` are those that may stand in the place of each; `rivals` are such sets. `closest` is
+    the best set where nothing is confirmed, `refused` tells why candidates that gained were not
+    named. `floor` is that of `final`; `before` and `after` are the validation runs by the declared
+    and by the final model.
     """
 
     word: str
@@ -55,7 +55,7 @@ class Verdict:
     estimated: Fit
     compared: Trial
     declared: Trial
-    members: tuple[Step, ...]
+    gains: Mapping[str, Gain]
     confusable: Mapping[str, tuple[str, ...]]
     rivals: tuple[Rival, ...]
     closest: Trial | None
@@ -64,6 +64,11 @@ class Verdict:
     before: Fit
     after: Fit
     held_out: Gain | None
+
+    @property
+    def is_along_motion(self) -> bool:
+        """Whether the values of the final model are those of the torques along the motion."""
+        return self.estimated.runs != self.final.fit.runs
 
     @property
     def leaves_more(self) -> bool:
@@ -106,13 +111,48 @@ def decide(found: Search) -> Verdict:
     task.progress("fitting every sample, and simulating the validation runs")
     known = [found.declared, trial] if trial.candidates else [found.declared]
     declared, *rest = fitted_to_every_sample(task, known)
-    before = held_out_fit(task, declared)
-    ends = _along_motion(seeker, trial, alike)
+    sets = _along_motion(seeker, trial, declared)
     if trial.candidates:
-        ends.append(_End(trial, rest[0], None, tuple(steps), confusable(trial, alike)))
-    nothing = _End(found.declared, declared, None, (), {})
-    for end in (*ends, nothing):
-        final = end.final
+        gains = {s.candidate.key: s.gain for s in steps}
+        sets.append(_Set(trial, rest[0], None, gains, confusable(trial, alike), tuple(alike)))
+    return _judged(found, declared, sets, refused)
+
+
+@dataclass(frozen=True, eq=False)
+class _Set:
+    """A set that may be the final one, as in `Verdict`; `estimated` is None where its values are
+    those of `final`.
+    """
+
+    compared: Trial
+    final: Trial
+    estimated: Fit | None
+    gains: Mapping[str, Gain]
+    confusable: Mapping[str, tuple[str, ...]]
+    rivals: tuple[Rival, ...]
+
+
+def _along_motion(seeker: Seeker, trial: Trial, declared: Trial) -> list[_Set]:
+    """Where a trial leaves more than noise, the set that it grows to along the measured motion."""
+    task = seeker.task
+    if leaves_noise_alone(trial, floor_of(task, trial, seeker.carried)):
+        return []
+    found = grown_along_motion(task, seeker.proposals, trial, declared.fit.runs)
+    if found is None:
+        return []
+    final = found.trial
+    compared = fitted(task, final.candidates, final.values, None, executor=task.executor)
+    return [_Set(compared, final, found.fit, found.gains, found.alike, ())]
+
+
+def _judged(
+    found: Search, declared: Trial, sets: Sequence[_Set], refused: dict[str, str]
+) -> Verdict:
+    """The verdict for the first of `sets` that the validation runs bear out, or for none."""
+    task = found.task
+    before = held_out_fit(task, declared)
+    for one in (*sets, _Set(found.declared, declared, None, {}, {}, ())):
+        final = one.final
         after = held_out_fit(task, final) if final.candidates else before
         held_out = held_out_gain(after, before) if final.candidates else None
         floor, quiet = _floor_and_quiet(task, final, after)
@@ -120,56 +160,24 @@ def decide(found: Search) -> Verdict:
             break
         for key in final.keys:
             refused[key] = "takes away too little of the error of the validation runs"
-    word = word_of(final, end.confusable, quiet and leaves_noise_alone(final, floor))
-    closest = None
-    if not final.candidates and word != NOTHING_MISSING:
-        closest = ends[-1].compared if ends else _closest(found)
+    word = word_of(final, one.confusable, quiet and leaves_noise_alone(final, floor))
+    simulated = [s.compared for s in sets if s.estimated is None]
     return Verdict(
         word,
         final,
-        end.estimated or with_finite_differences(final.fit, task.executor),
-        end.compared,
+        one.estimated or with_finite_differences(final.fit, task.executor),
+        one.compared,
         declared,
-        end.members,
-        end.confusable,
-        tuple(alike) if trial.candidates and final.candidates else (),
-        closest,
+        one.gains,
+        one.confusable,
+        one.rivals,
+        next(iter(simulated), _closest(found)) if word == UNEXPLAINED else None,
         {key: why for key, why in refused.items() if key not in final.keys},
         floor,
         before,
         after,
         held_out,
     )
-
-
-@dataclass(frozen=True, eq=False)
-class _End:
-    """A set that may be the final one; `estimated` is the fit that its values are of, if that is
-    not the one of `final`, and the others are as in `Verdict`.
-    """
-
-    compared: Trial
-    final: Trial
-    estimated: Fit | None
-    members: tuple[Step, ...]
-    confusable: Mapping[str, tuple[str, ...]]
-
-
-def _along_motion(seeker: Seeker, trial: Trial, alike: Sequence[Rival]) -> list[_End]:
-    """Where a trial leaves more than noise, the set that it grows to along the measured motion."""
-    task = seeker.task
-    if leaves_noise_alone(trial, floor_of(task, trial, seeker.carried)):
-        return []
-    found = grown_along_motion(task, seeker.proposals, trial)
-    if found is None:
-        return []
-    final = found.trial
-    compared = fitted(task, final.candidates, final.values, final.fit.z, executor=task.executor)
-    pairs = zip(final.candidates, found.gains, strict=True)
-    steps = tuple(Step(c, g, g.chance, seeker.declared) for c, g in pairs)
-    named = confusable(trial, alike)
-    both = {k: tuple(sorted({*named.get(k, ()), *found.alike[k]})) for k in final.keys}
-    return [_End(compared, final, found.fit, steps, both)]
 
 
 def _floor_and_quiet(task: Task, final: Trial, after: Fit) -> tuple[Floor, bool]:
