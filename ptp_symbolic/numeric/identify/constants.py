@@ -127,5 +127,5 @@ COARSEST = 10.0  # 1; of the default tolerance: beyond events are lost; scaled
 # Sequences
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried; halvings
 HALF_WIDTHS = (0.08, 0.11, 0.16, 0.22)  # s; windows of rows that are tried; factors of root two
-SHORTEST_HALF_WIDTHS = (0.028, 0.04, 0.057)  # s; the same, of rows whose values are final
+SHORTEST_HALF_WIDTHS = (0.028, 0.04, 0.057)  # s; the same, of final values; factors of root two
 POLES = np.concatenate([[0.0], np.linspace(0.3, 0.97, 40)])  # 1; of noise that are tried; a grid
