@@ -10,14 +10,12 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.signatures import Signature
-from ptp_symbolic.numeric.identify.constants import DEVIATIONS, REWEIGHTINGS, SHORT
+from ptp_symbolic.numeric.identify.constants import BLOCKS_OF_A_RUN, DEVIATIONS, REWEIGHTINGS, SHORT
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.equation_fit import robust_scale
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-BLOCKS_OF_A_RUN = 100_000  # more than any has
 
 
 def block_numbers(run: IntArray, time: FloatArray) -> IntArray:

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared
 from ptp_symbolic.numeric.diagnose.regression import (
-    BLOCKS_OF_A_RUN,
     Regression,
     remainder,
     reweighted,
@@ -23,6 +22,7 @@ from ptp_symbolic.numeric.diagnose.regression import (
 from ptp_symbolic.numeric.diagnose.signatures import Signature
 from ptp_symbolic.numeric.identify.blocks import block_labels, block_length
 from ptp_symbolic.numeric.identify.constants import (
+    BLOCKS_OF_A_RUN,
     DEVIATIONS,
     FAR,
     FOLDS,

@@ -86,6 +86,7 @@ BINS_PER_CYCLE = 4.0  # 1; of the highest frequency of a scan: a bin dims it by 
 ATTENUATED = 2.0  # 1/window; of such a wave an average leaves 11 %; derived
 SMALL_AMOUNT = 0.01  # 1; share of a start at which rows are linear; scaled
 DECLARED_AMOUNT = 0.05  # 1; share by which a declared value is changed to see its effect; scaled
+BLOCKS_OF_A_RUN = 100_000  # blocks; that number them from run to run: more than any has; definition
 BINS = 16  # 1; of a map of what is left; scaled
 
 # Noise of a signal
