@@ -152,6 +152,9 @@ def test_without_the_library_the_extra_is_named(
     with pytest.raises(InputError, match=r"pip install 'ptp-symbolic\[bag\]'"):
         read_log(bag, platform)
     shutil.rmtree(bag)
+    monkeypatch.setitem(sys.modules, "mcap.reader", None)
+    with pytest.raises(InputError, match=r"needs mcap; run pip install 'ptp-symbolic\[bag\]'"):
+        read_log(write_json(tmp_path / "run.mcap"), platform)
 
 
 def write_json(path: Path, stamped: bool = True, broken: bool = False) -> Path:

@@ -115,7 +115,13 @@ def test_a_line_beside_a_larger_effect_is_found(hiding: float) -> None:
     column = larger[:, None] / np.linalg.norm(larger)
     known = Signature(smooth, ((larger,),), frozenset(), column)
     found = regression(
-        rows, (), np.ones((6000, 1)), [known], one, np.arange(6000) // 100, np.ones(6000)
+        rows,
+        (),
+        np.ones((6000, 1)),
+        [known],
+        one,
+        np.column_stack([one, np.arange(6000) // 100]),
+        np.ones(6000),
     )
     (line,) = lines(found, scan)
     spacing = CYCLES_APART / (2.8 / (2.0 * np.pi))

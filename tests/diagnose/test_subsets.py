@@ -1,9 +1,11 @@
 """All subsets of effects as columns of one regression: planted ones found, noise not taken."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.regression import Regression, regression, remainder
@@ -39,6 +41,11 @@ def effects(rng: np.random.Generator, keys: str) -> list[Signature]:
     return [signature(k, rng.standard_normal((ROWS, 1 + n % 2))) for n, k in enumerate(keys)]
 
 
+def in_one_run(block: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Blocks [n] of one run in the form [n, 2] that a regression has."""
+    return np.column_stack([0 * block, block])
+
+
 def rows_of(
     rng: np.random.Generator, found: Sequence[Signature], planted: dict[str, float], blocks: int
 ) -> Regression:
@@ -48,7 +55,7 @@ def rows_of(
     for s in found:
         rms = planted.get(s.candidate.key, 0.0)
         rows = rows + rms * np.sqrt(ROWS) * s.columns.sum(axis=1)
-    block = np.arange(ROWS) * blocks // ROWS
+    block = in_one_run(np.arange(ROWS) * blocks // ROWS)
     equation = np.zeros(ROWS, dtype=np.int64)
     return regression(rows, DECLARED, base, found, equation, block, np.ones(ROWS))
 
@@ -82,7 +89,7 @@ def test_what_a_subset_loses_is_what_refits_without_each_block_mispredict() -> N
         own = [s.columns for s in found.signatures if s.candidate in subset.candidates]
         table = np.column_stack([found.base, *own])
         for block in range(FOLDS):
-            here = found.block == block
+            here = found.block[:, 1] == block
             weighted = [(m * root)[~here] for m in (table, found.rows[:, None])]
             left = found.rows[here] - table[here] @ np.linalg.lstsq(*weighted)[0][:, 0]
             expected = np.sum(np.minimum((left / found.scale[here]) ** 2, FAR**2))
@@ -162,7 +169,7 @@ def test_outliers_count_less_and_the_scale_is_that_of_the_other_rows() -> None:
     rng = np.random.default_rng(57)
     base, rows = rng.standard_normal((ROWS, 2)), rng.standard_normal(ROWS)
     rows[::8] += 50.0
-    equation, block = np.zeros(ROWS, dtype=np.int64), np.arange(ROWS) // 10
+    equation, block = np.zeros(ROWS, dtype=np.int64), in_one_run(np.arange(ROWS) // 10)
     found = regression(rows, DECLARED, base, (), equation, block, np.ones(ROWS))
     assert found.scale == pytest.approx(np.ones(ROWS), rel=0.25)
     assert np.max(found.weight[::8]) < 0.06 * np.max(found.weight)
@@ -215,6 +222,20 @@ def test_the_gain_along_the_motion_is_the_share_of_the_squares_that_is_planted()
     assert gained.share == pytest.approx(0.2, abs=0.08)
     assert gained.lower < 0.2 < gained.upper
     assert lost.share < 0.0
+
+
+def test_blocks_of_a_gain_do_not_reach_from_one_run_into_the_next() -> None:
+    """The blocks of two runs in which they are numbered alike, as of one run twice as long. Taken
+    for the same they would be half as many; each run ends with a shorter block of its own.
+    """
+    rng = np.random.default_rng(65)
+    found = rows_of(rng, effects(rng, "abc"), {"a": 0.5}, BLOCKS)
+    run, own = np.divmod(found.block[:, 1], BLOCKS // 2)
+    parted = replace(found, block=np.column_stack([run, own]))
+    whole, halves = (gain_along_motion(f, named(found, "a"), []) for f in (found, parted))
+    assert whole is not None and halves is not None
+    assert halves.share == pytest.approx(whole.share, rel=1e-9)
+    assert halves.degrees > 0.75 * whole.degrees
 
 
 def test_rows_say_nothing_of_what_they_do_not_show() -> None:

@@ -6,7 +6,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose.confirmation import doubtful
+from ptp_symbolic.numeric.diagnose.confirmed_sets import doubtful
 from ptp_symbolic.numeric.diagnose.findings import Step
 from ptp_symbolic.numeric.diagnose.floor import Floor, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.held_out import held_out_gain, is_quiet, is_taken_back

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.messages import numbers_of
-from ptp_symbolic.numeric.data.ros_messages import in_a_line, without_library
+from ptp_symbolic.numeric.data.messages import in_a_line, numbers_of, without_library
 
 
 @dataclass(frozen=True)
@@ -42,7 +41,8 @@ class JsonMessages:
 def json_messages(path: Path, paths: Sequence[Path]) -> JsonMessages | None:
     """The messages in JSON of a bag whose parts are all MCAP files; None where there are none.
 
-    Raises InputError where mcap is not installed. What is damaged is left to who reads the rest.
+    Messages of ROS beside them are left out: rosbags refuses such files. Raises InputError where
+    mcap is not installed. A file that is damaged is left to rosbags, which says what is wrong.
     """
     if any(p.suffix.lower() != ".mcap" or not p.is_file() for p in paths):
         return None

@@ -1,7 +1,10 @@
-"""Messages of a bag: the numbers in one by name, and the time of its header."""
+"""Messages of a bag: the numbers in one by name, the time of its header, and what to do where they
+cannot be read.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -66,3 +69,16 @@ def _numbers(name: str, value: Any, names: Sequence[str]) -> Iterator[tuple[str,
         for key, element in fields.items():
             if key not in STAMPS or isinstance(element, int | float):
                 yield from _numbers(f"{name}/{key}", element, own)
+
+
+def without_library(path: Path, library: str) -> str:
+    """What to do where the library that reads a bag is not installed."""
+    return (
+        f"{path}: a bag needs {library}; run pip install 'ptp-symbolic[bag]', or save the log as"
+        " CSV."
+    )
+
+
+def in_a_line(error: Exception) -> str:
+    """The message of an error in one line, without the dot at its end."""
+    return " ".join(str(error).split()).rstrip(".") or type(error).__name__

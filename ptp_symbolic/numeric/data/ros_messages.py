@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.messages import numbers_of
+from ptp_symbolic.numeric.data.messages import in_a_line, numbers_of, without_library
 
 
 @dataclass(frozen=True)
@@ -52,16 +52,3 @@ class RosMessages:
             raise InputError(
                 f"{self.path}: is not a bag that can be read: {in_a_line(error)}."
             ) from error
-
-
-def without_library(path: Path, library: str) -> str:
-    """What to do where the library that reads a bag is not installed."""
-    return (
-        f"{path}: a bag needs {library}; run pip install 'ptp-symbolic[bag]', or save the log as"
-        " CSV."
-    )
-
-
-def in_a_line(error: Exception) -> str:
-    """The message of an error in one line, without the dot at its end."""
-    return " ".join(str(error).split()).rstrip(".") or type(error).__name__

@@ -21,7 +21,7 @@ from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared
 from ptp_symbolic.numeric.diagnose.held_out import simulated_freely
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_of
-from ptp_symbolic.numeric.diagnose.regression import Regression
+from ptp_symbolic.numeric.diagnose.regression import Regression, blocks_of
 from ptp_symbolic.numeric.diagnose.subsets import exchanges, gain_along_motion, larger_sets
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, all_free
 from ptp_symbolic.numeric.identify.constants import (
@@ -29,8 +29,6 @@ from ptp_symbolic.numeric.identify.constants import (
     LARGEST,
     MATERIAL,
     POLISH,
-    SHORT,
-    SHORTEST_HALF_WIDTHS,
     TRIED,
 )
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
@@ -103,7 +101,7 @@ class _Motion:
     @cached_property
     def space(self) -> EquationSpace | None:
         """The rows that sets are fitted to."""
-        return equation_space(self.task, self.start, shorter=SHORTEST_HALF_WIDTHS)
+        return equation_space(self.task, self.start, shortest=True)
 
     def gain(self, candidates: Sequence[Candidate], member: Candidate) -> Gain | None:
         """What a member of a set gains in the rows, with what needs it; None where they do not show
@@ -177,7 +175,7 @@ class _Motion:
         rows = [space.rows(vector(dict(fit.values))) for fit in (larger, smaller)]
         equation, run, time = space.labels()
         scale = robust_scale(rows[0], equation)
-        _, block = np.unique(np.column_stack([run, time // SHORT]), axis=0, return_inverse=True)
+        _, block = np.unique(blocks_of(run, time), axis=0, return_inverse=True)
         squares = [np.minimum((r / scale) ** 2, FAR**2) for r in rows]
-        losses = [np.asarray(np.bincount(block, s), dtype=np.float64) for s in squares]
+        losses = [np.asarray(np.bincount(block.reshape(-1), s), np.float64) for s in squares]
         return compared(losses[0], losses[1]).share >= MATERIAL

@@ -34,10 +34,10 @@ def equation_space(
     task: Task,
     start: Mapping[str, float],
     runs: Sequence[Run] | None = None,
-    shorter: Sequence[float] = (),
+    shortest: bool = False,
 ) -> EquationSpace | None:
-    """The equation space of the whole training runs, or of other `runs`; windows of `shorter` half
-    widths in s are tried first. None where angles are missing, states are sampled or switched, or
+    """The equation space of the whole training runs, or of other `runs`, in windows as short as
+    noise allows with `shortest`. None where angles are missing, states are sampled or switched, or
     rows are too few for the free parameters.
     """
     vector = task.model.parameter_vector
@@ -60,7 +60,7 @@ def equation_space(
             vector(dict(start)),
             others,
             vector(varied),
-            shorter,
+            shortest,
         )
     except InputError:
         return None

@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.diagnose.declared_rows import (
 )
 from ptp_symbolic.numeric.diagnose.regression import (
     Regression,
-    block_numbers,
+    blocks_of,
     regression,
     reweighted,
 )
@@ -80,7 +80,7 @@ def propose(task: Task) -> Proposals:
     here = {f.name: values[f.name] for f in task.free}
     found = linearised(space, task.free, values, here, task.executor, own_torque=True)
     equation, run, time = space.labels()
-    block = block_numbers(run, time)
+    block = blocks_of(run, time)
     around = rows_around(space, values)
     seen, unseen = signatures(space, task.candidates, around, found.weight, task.executor)
     declared, base = task.free, found.jacobian

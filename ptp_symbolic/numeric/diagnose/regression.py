@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.signatures import Signature
-from ptp_symbolic.numeric.identify.constants import BLOCKS_OF_A_RUN, DEVIATIONS, REWEIGHTINGS, SHORT
+from ptp_symbolic.numeric.identify.constants import DEVIATIONS, REWEIGHTINGS, SHORT
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.equation_fit import robust_scale
 
@@ -18,11 +18,11 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
-def block_numbers(run: IntArray, time: FloatArray) -> IntArray:
-    """The number [n] of the block of SHORT that a row is in, of its `run` [n] and `time` [n] in
-    s.
+def blocks_of(run: IntArray, time: FloatArray) -> IntArray:
+    """The block [n, 2] of SHORT that every row is in, of its `run` [n] and `time` [n] in s: the
+    run, and the number of the block in it.
     """
-    return run * BLOCKS_OF_A_RUN + (time // SHORT).astype(np.int64)
+    return np.column_stack([run, (time // SHORT).astype(np.int64)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,8 +31,7 @@ class Regression:
     the columns of the signatures.
 
     `scale` [n] is the standard deviation of every row, `weight` [n] its weight in the fit,
-    `equation` [n] its equation, `block` [n] the number of the block of time that it belongs to (see
-    `block_numbers`).
+    `equation` [n] its equation, `block` [n, 2] the block of time that it belongs to (`blocks_of`).
     """
 
     rows: FloatArray

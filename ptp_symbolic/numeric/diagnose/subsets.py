@@ -22,7 +22,6 @@ from ptp_symbolic.numeric.diagnose.regression import (
 from ptp_symbolic.numeric.diagnose.signatures import Signature
 from ptp_symbolic.numeric.identify.blocks import block_labels, block_length
 from ptp_symbolic.numeric.identify.constants import (
-    BLOCKS_OF_A_RUN,
     DEVIATIONS,
     FAR,
     FOLDS,
@@ -137,7 +136,7 @@ def gain_along_motion(
     more = [s.candidate for s in own if _form(s.candidate) in forms[0]]
     folds = _Folds(reweighted(replace(found, signatures=tuple(own)), more))
     losses = [folds.subset(sorted(number[f] for f in s if f in number)).losses for s in forms]
-    ends = np.flatnonzero(np.diff(np.unique(found.block) // BLOCKS_OF_A_RUN)) + 1
+    ends = np.flatnonzero(np.diff(np.unique(found.block, axis=0)[:, 0])) + 1
     series = np.split(losses[1] - losses[0], ends)
     label = np.concatenate(block_labels([len(s) for s in series], block_length(series)))
     merged = [np.asarray(np.bincount(label, x), dtype=np.float64) for x in losses]
@@ -182,7 +181,8 @@ class _Folds:
         sizes = [found.base.shape[1], *(s.columns.shape[1] for s in found.signatures)]
         ends = np.cumsum(sizes)
         self.own = [np.arange(b - n, b) for b, n in zip(ends, sizes, strict=True)]
-        blocks, label = np.unique(found.block, return_inverse=True)
+        blocks, label = np.unique(found.block, axis=0, return_inverse=True)
+        label = label.reshape(-1)  # NumPy 2.0 gives a column
         fold = (np.random.default_rng(SEED).permutation(len(blocks)) % FOLDS)[label]
         order = np.argsort(fold, kind="stable")
         ends = np.searchsorted(fold[order], np.arange(FOLDS + 1))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ptp_symbolic.numeric.diagnose.along_rows import grown_along_motion
-from ptp_symbolic.numeric.diagnose.confirmation import (
+from ptp_symbolic.numeric.diagnose.confirmed_sets import (
     confirmed,
     doubtful,
     leaner_rival,

@@ -86,7 +86,6 @@ BINS_PER_CYCLE = 4.0  # 1; of the highest frequency of a scan: a bin dims it by 
 ATTENUATED = 2.0  # 1/window; of such a wave an average leaves 11 %; derived
 SMALL_AMOUNT = 0.01  # 1; share of a start at which rows are linear; scaled
 DECLARED_AMOUNT = 0.05  # 1; share by which a declared value is changed to see its effect; scaled
-BLOCKS_OF_A_RUN = 100_000  # blocks; that number them from run to run: more than any has; definition
 BINS = 16  # 1; of a map of what is left; scaled
 
 # Noise of a signal
@@ -128,5 +127,4 @@ COARSEST = 10.0  # 1; of the default tolerance: beyond events are lost; scaled
 # Sequences
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried; halvings
 HALF_WIDTHS = (0.08, 0.11, 0.16, 0.22)  # s; windows of rows that are tried; factors of root two
-SHORTEST_HALF_WIDTHS = (0.028, 0.04, 0.057)  # s; the same, of final values; factors of root two
 POLES = np.concatenate([[0.0], np.linspace(0.3, 0.97, 40)])  # 1; of noise that are tried; a grid

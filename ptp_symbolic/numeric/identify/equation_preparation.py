@@ -22,13 +22,13 @@ def prepare_equation_space(
     p: FloatArray,
     others: Sequence[FloatArray],
     varied: FloatArray,
-    shorter: Sequence[float] = (),
+    shortest: bool = False,
 ) -> EquationSpace:
     """The equation space of `model` over whole `runs`.
 
     Which rows count is decided at the parameters p [np] and at `others` (see `decide_rows`);
     `varied` are parameters that differ from p in all that may be searched, to see which of them act
-    on sensors and on further states; windows of `shorter` half widths in s are tried first. Raises
+    on sensors and on further states; windows are as short as noise allows with `shortest`. Raises
     InputError for a model with sampled states, and where an axis has no angle among the signals.
     """
     layout = layout_of(model)
@@ -46,7 +46,7 @@ def prepare_equation_space(
     columns = [runs[0].signals.index(f"theta_{axis}") for axis in axes]
     noise = 1.0 / runs[0].weight[columns]
     period = float(np.median(np.concatenate([np.diff(run.time) for run in runs])))
-    half_width = half_width_of(runs, columns, noise, period, shorter)
+    half_width = half_width_of(runs, columns, noise, period, shortest)
     resting = resting_rates(runs[0].counts[columns], noise, period, 0.5 * half_width)
     frictions = set(layout.friction_axis.tolist())
     resting = np.where([a in frictions for a in range(len(axes))], resting, 0.0)

@@ -56,15 +56,16 @@ def half_width_of(
     columns: Sequence[int],
     noise: FloatArray,
     period: float,
-    shorter: Sequence[float] = (),
+    shortest: bool = False,
 ) -> float:
-    """Half width in s of the shortest window in which `noise` [na] in rad of the angles, in
-    measured `columns` [na] every `period` s, is small beside what accelerates the joints; `shorter`
-    ones than the usual are tried first.
+    """Half width in s of the shortest usual window in which `noise` [na] in rad of the angles, in
+    measured `columns` [na] every `period` s, is small beside what accelerates the joints; with
+    `shortest` it is divided by root two as long as it is.
     """
-    for half_width in (*shorter, *HALF_WIDTHS):
+
+    def is_calm(half_width: float) -> bool:
         if 2.0 * half_width / period < MOST_COARSE:
-            continue
+            return False
         gain = curvature_noise(period, half_width)
         curved = [
             weak_average(
@@ -77,9 +78,14 @@ def half_width_of(
             for run in runs
         ]
         size = np.sqrt(np.nanmean(np.concatenate(curved) ** 2, axis=0))
-        if np.all(noise * gain <= CALM * size):
-            return half_width
-    return max(HALF_WIDTHS[-1], 0.5 * MOST_COARSE * period)
+        return bool(np.all(noise * gain <= CALM * size))
+
+    half_width = next((w for w in HALF_WIDTHS if is_calm(w)), None)
+    if half_width is None:
+        return max(HALF_WIDTHS[-1], 0.5 * MOST_COARSE * period)
+    while shortest and is_calm(half_width / np.sqrt(2.0)):
+        half_width /= np.sqrt(2.0)
+    return float(half_width)
 
 
 def resting_rates(
