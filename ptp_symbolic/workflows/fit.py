@@ -12,13 +12,13 @@ from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.summary import fit_table
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
-from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import (
     Effort,
     all_values_at_start,
     fit_parameters,
 )
 from ptp_symbolic.numeric.identify.intervals import estimates
+from ptp_symbolic.numeric.identify.replays import estimable
 from ptp_symbolic.platform import Platform, platform_text
 from ptp_symbolic.workflows.preparation import look_at, task_for, workers
 from ptp_symbolic.workflows.provenance import provenance
@@ -59,7 +59,7 @@ def fit_platform(
         if task.free:
             progress("fitting")
             task, trial = fit_declared(task, propose(task))
-            trial = replace(trial, fit=with_finite_differences(trial.fit, executor))
+            trial = replace(trial, fit=estimable(trial.fit, task.input_noise, executor))
         floor = floor_of(task, trial, carried_noise(task, trial.fit))
     units = model.units
     error = {

@@ -23,6 +23,7 @@ from ptp_symbolic.numeric.identify.constants import HELD_OUT_ABOVE
 from tests.identify.straight import finished
 
 WAVE = np.where(np.arange(400) % 2, 1.0, -1.0)
+NOTHING = np.zeros((1, 1))  # left by errors of the values
 EFFECT = cast(Any, object())
 
 
@@ -39,7 +40,9 @@ def word(
     """
     trial = Trial((EFFECT,) if named else (), finished([left * WAVE] * 3))
     after = finished([held_out * WAVE] * 2)
-    quiet = is_quiet(after, floor(carried), trial.fit) and leaves_noise_alone(trial, floor())
+    quiet = is_quiet(after, floor(carried), NOTHING, trial.fit) and leaves_noise_alone(
+        trial, floor()
+    )
     return word_of(trial, {"effect": group} if named else {}, quiet)
 
 
@@ -71,7 +74,15 @@ def test_look_alikes_make_a_group_of_an_explanation_alone() -> None:
 
 
 def test_a_run_that_sticks_elsewhere_does_not_decide() -> None:
-    assert is_quiet(finished([WAVE, WAVE, 40.0 * WAVE]), floor(), finished([WAVE] * 3))
+    assert is_quiet(finished([WAVE, WAVE, 40.0 * WAVE]), floor(), NOTHING, finished([WAVE] * 3))
+
+
+def test_validation_runs_may_leave_what_errors_of_the_values_leave_there() -> None:
+    """Of three runs the median counts, each held to what its own derivatives carry."""
+    after, trained = finished([2.0 * WAVE] * 3), finished([WAVE] * 3)
+    assert not is_quiet(after, floor(), NOTHING, trained)
+    assert is_quiet(after, floor(), np.array([[3.0], [3.0], [0.0]]), trained)
+    assert not is_quiet(after, floor(), np.array([[3.0], [0.0], [0.0]]), trained)
 
 
 def noisy(windows: int, spread: float, seed: int) -> list[Any]:
@@ -85,7 +96,7 @@ def noisy(windows: int, spread: float, seed: int) -> list[Any]:
 def test_windows_that_are_alike_are_quiet(training: float, validation: float) -> None:
     """A machine that sticks elsewhere in some windows does so in both parts."""
     after, trained = finished(noisy(28, validation, 1)), finished(noisy(48, training, 2))
-    assert is_quiet(after, floor(), trained)
+    assert is_quiet(after, floor(), NOTHING, trained)
 
 
 def test_windows_half_of_which_leave_more_than_the_training_runs_are_not_quiet() -> None:
@@ -93,8 +104,8 @@ def test_windows_half_of_which_leave_more_than_the_training_runs_are_not_quiet()
     squares = np.concatenate([np.linspace(1.0, 1.2, 14), np.linspace(1.25, 9.0, 14)])
     after = finished([s * WAVE for s in squares])
     assert np.median(squares) < HELD_OUT_ABOVE
-    assert not is_quiet(after, floor(), finished(noisy(48, 1.0, 3)))
-    assert is_quiet(after, floor(), finished(noisy(3, 1.0, 3)))  # too few to tell
+    assert not is_quiet(after, floor(), NOTHING, finished(noisy(48, 1.0, 3)))
+    assert is_quiet(after, floor(), NOTHING, finished(noisy(3, 1.0, 3)))  # too few to tell
 
 
 @pytest.mark.parametrize(

@@ -15,9 +15,9 @@ from ptp_symbolic.numeric.diagnose.trial import Task, Trial, huber_loss, mean_sq
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, MANY_RUNS, POLES, TUNING
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.noise import coloured_noise, hidden_from_differences
+from ptp_symbolic.numeric.identify.replays import propagated_noise
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run_groups import sizes
-from ptp_symbolic.numeric.identify.windows import propagated_noise
 
 FloatArray = NDArray[np.float64]
 

@@ -23,11 +23,12 @@ from ptp_symbolic.numeric.diagnose.held_out import (
     held_out_gain,
     is_quiet,
     is_taken_back,
+    left_by_values,
 )
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, ranked
-from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.replays import estimable
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"
@@ -41,8 +42,8 @@ class Verdict:
     """What the logs say.
 
     `declared` is the declared model fitted to every sample, and `final` the one with what is
-    confirmed; the values of that are those of `estimated`: the same fit with the derivatives of
-    `with_finite_differences`, or one to the torques along the motion. `compared` is its set as the
+    confirmed; the values of that are those of `estimated`: the same fit with what its intervals
+    need, or one to the torques along the motion. `compared` is its set as the
     search compared it with others. By key, `gains` is what each of its effects gains, and
     `confusable` are those that may stand in the place of each; `rivals` are such sets. `closest` is
     the best set where nothing is confirmed, `refused` tells why candidates that gained were not
@@ -155,7 +156,8 @@ def _judged(
         final = one.final
         after = held_out_fit(task, final) if final.candidates else before
         held_out = held_out_gain(after, before) if final.candidates else None
-        floor, quiet = _floor_and_quiet(task, final, after)
+        estimated = one.estimated or estimable(final.fit, task.input_noise, task.executor)
+        floor, quiet = _floor_and_quiet(task, final, after, estimated)
         if held_out is None or not is_taken_back(held_out, quiet):
             break
         for key in final.keys:
@@ -165,7 +167,7 @@ def _judged(
     return Verdict(
         word,
         final,
-        one.estimated or with_finite_differences(final.fit, task.executor),
+        estimated,
         one.compared,
         declared,
         one.gains,
@@ -180,10 +182,14 @@ def _judged(
     )
 
 
-def _floor_and_quiet(task: Task, final: Trial, after: Fit) -> tuple[Floor, bool]:
-    """The floor of the final model, and whether its validation runs `after` leave no more."""
+def _floor_and_quiet(task: Task, final: Trial, after: Fit, estimated: Fit) -> tuple[Floor, bool]:
+    """The floor of the final model, and whether its validation runs `after` leave no more, but for
+    what the error of its `estimated` values leaves there.
+    """
     floor = floor_of(task, final, carried_noise(task, final.fit))
-    return floor, is_quiet(after, replace(floor, carried=carried_noise(task, after)), final.fit)
+    here = replace(floor, carried=carried_noise(task, after))
+    by_values = left_by_values(after, estimated, task.executor)
+    return floor, is_quiet(after, here, by_values, final.fit)
 
 
 def _closest(found: Search) -> Trial | None:

@@ -51,7 +51,11 @@ class Effort:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """A fit: parameter `values` (all of the model), start unknowns `z` and evaluations per run."""
+    """A fit: parameter `values` (all of the model), start unknowns `z` and evaluations per run.
+
+    `shaken` are, per run, changes [k * ny, replays] of the residual by noise of the inputs, without
+    what the start unknowns can take up; none where they were not looked for.
+    """
 
     model: Model
     runs: tuple[Run, ...]
@@ -63,6 +67,7 @@ class Fit:
     failed: str | None = None
     tolerance: Tolerance = DEFAULT_TOLERANCE
     misleading: tuple[Shift, ...] | None = None
+    shaken: tuple[FloatArray, ...] = ()
 
     def rms_counts(self) -> float:
         """Root mean square of the residual of all encoder signals, in counts (see `run_counts`)."""

@@ -3,7 +3,7 @@
 The residuals of a simulation error fit are never white: what the noise of an input leaves in an
 angle may last for a whole run. The covariance is that of a jackknife over a few long blocks of
 time, the unknown starts projected out. Intervals never get narrower than those of white noise of
-the declared size.
+the declared size beside the noise of the inputs, as replays carry it to the outputs.
 """
 
 from collections.abc import Collection, Mapping
@@ -131,13 +131,28 @@ def _covariance(fit: Fit, columns: FloatArray) -> tuple[FloatArray, FloatArray, 
     label = long_blocks([len(s) for s in series], block_length(series), columns, signals)
     residual = np.concatenate(residuals)
     inverse, lost = _inverse(columns.T @ columns)
-    white = inverse * max(1.0, float(np.mean(residual**2)))
+    white = np.diag(inverse) * max(1.0, float(np.mean(residual**2)))
+    known = white * stats.norm.ppf(0.975) ** 2 + _squared_reach_of_inputs(fit, inverse, columns)
     shifts = leave_blocks_out(residual, columns, label).shifts
     robust, degrees = jackknife_covariance(shifts), degrees_of_freedom(shifts)
     spread = np.maximum(np.diag(robust), 1e-300)
-    wider = np.diag(white) * stats.norm.ppf(0.975) ** 2 > spread * stats.t.ppf(0.975, degrees) ** 2
-    scale = np.where(wider, np.sqrt(np.diag(white) / spread), 1.0)
+    wider = known > spread * stats.t.ppf(0.975, degrees) ** 2
+    scale = np.where(wider, np.sqrt(known / spread) / stats.norm.ppf(0.975), 1.0)
     return robust * np.outer(scale, scale), np.where(wider, np.inf, degrees), lost
+
+
+def _squared_reach_of_inputs(fit: Fit, inverse: FloatArray, columns: FloatArray) -> FloatArray:
+    """Squared half width [nf] of the 95 % intervals that the noise of the inputs alone makes: every
+    replay of every run shifts the coordinates, each run independently.
+    """
+    if not fit.shaken:
+        return np.zeros(len(inverse))
+    ends = np.cumsum([len(changes) for changes in fit.shaken])
+    parts = zip(np.split(columns, ends[:-1]), fit.shaken, strict=True)
+    every = [(c.T @ changes, max(changes.shape[1], 1)) for c, changes in parts]
+    shifts = np.column_stack([inverse @ moved / np.sqrt(count) for moved, count in every]).T
+    reach = stats.t.ppf(0.975, degrees_of_freedom(shifts))
+    return np.asarray(reach**2 * np.sum(shifts**2, axis=0))
 
 
 def degrees_of_freedom(shifts: FloatArray) -> FloatArray:

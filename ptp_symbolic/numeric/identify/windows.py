@@ -24,20 +24,12 @@ from ptp_symbolic.numeric.identify.constants import (
     TUNING,
 )
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
-from ptp_symbolic.numeric.identify.intervals import project_out
-from ptp_symbolic.numeric.identify.noise import white_noise
+from ptp_symbolic.numeric.identify.replays import input_noise, propagated_noise, replayed
 from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, with_start
-from ptp_symbolic.numeric.identify.run_inputs import with_inputs
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import part_of_held
 
 FloatArray = NDArray[np.float64]
-
-
-def input_noise(run: Run, declared: Sequence[float | None]) -> FloatArray:
-    """Noise (rms) of every input [nu] in its unit: as declared, else as its samples show it."""
-    columns = zip(run.held_inputs.T, declared, strict=True)
-    return np.array([white_noise(column) if d is None else d for column, d in columns])
 
 
 def window_length(
@@ -83,7 +75,7 @@ def _drift(
 ) -> tuple[FloatArray, FloatArray]:
     """Difference in counts [k] between a run and its noisy replay, and the time since start."""
     z = run.guess
-    found = _replay(model, run, p, z, noise, rng)
+    found = replayed(model, run, p, z, noise, rng)
     if found is None:
         return np.zeros(0), np.zeros(0)
     counts = in_counts(run, found[0])
@@ -95,46 +87,6 @@ def in_counts(run: Run, residual: FloatArray) -> FloatArray:
     encoders = np.isfinite(run.counts)
     table_of = residual.reshape(run.measured.shape)
     return (table_of / run.weight / run.counts)[:, encoders] if encoders.any() else table_of
-
-
-def _replay(
-    model: Model,
-    run: Run,
-    p: FloatArray,
-    z: FloatArray,
-    noise: FloatArray,
-    rng: np.random.Generator,
-) -> tuple[FloatArray, FloatArray] | None:
-    """Change of the weighted residuals by input noise, and the Jacobian by the start of the run."""
-    shaken = noise * rng.standard_normal(run.held_inputs.shape)
-    both = [with_inputs(run, run.held_inputs + change) for change in (0.0, shaken)]
-    none = np.zeros(0, dtype=np.int64)
-    plain, other = (evaluate(model, r, p, z, none, True, Tolerance()) for r in both)
-    if plain.failed or other.failed:
-        return None
-    return other.residual - plain.residual, plain.by_start
-
-
-def propagated_noise(
-    model: Model,
-    runs: Sequence[Run],
-    z: Sequence[FloatArray],
-    p: FloatArray,
-    declared_noise: Sequence[float | None],
-) -> FloatArray:
-    """What input noise leaves in the residual of a perfect model: rms [runs, ny], in units of the
-    noise of every signal (see `Run.weight`); nan where a run cannot be simulated.
-
-    Every run is replayed with noisy inputs; what its unknown start can take up is projected out.
-    """
-    rng = np.random.default_rng(SEED)
-    squares = np.full((len(runs), runs[0].measured.shape[1]), np.nan)
-    for row, (run, start) in enumerate(zip(runs, z, strict=True)):
-        found = _replay(model, run, p, start, input_noise(run, declared_noise), rng)
-        if found is not None:
-            change = project_out(found[0][:, None], found[1])[:, 0]
-            squares[row] = np.mean(change.reshape(run.measured.shape) ** 2, axis=0)
-    return np.sqrt(squares)
 
 
 def cut_where_noise_grows(

@@ -1,0 +1,136 @@
+"""What the noise of inputs does to fits and to runs that are predicted: closed forms of a free axis
+that integrates its torque twice.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.numeric.diagnose.held_out import left_by_values
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
+from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
+from ptp_symbolic.numeric.identify.intervals import covariance_of, estimates, project_out
+from ptp_symbolic.numeric.identify.replays import estimable, with_input_noise
+from tests.identify.curves import Floats
+from tests.identify.straight import finished
+from tests.identify.test_windows import COUNT, FREE, INERTIA, MODEL, run_of
+
+SIGMA = COUNT / math.sqrt(12.0)  # rad, of rounding
+TORQUE = 0.004  # N m
+TIME = 0.01 * np.arange(301)
+INERTIA_FREE = free_parameter("J_pan", 0.02, 1e-4, 1.0)
+LINE = np.column_stack([np.ones_like(TIME), TIME])
+
+
+def accelerated(runs: int) -> Fit:
+    """Runs of an axis under constant torque, fitted."""
+    angle = 0.1 * TIME + 0.5 * TORQUE / INERTIA * TIME**2
+    every = [run_of(angle, 0.0 * TIME, np.full(len(TIME), TORQUE), 0.01) for _ in range(runs)]
+    fixed = {**MODEL.defaults, **{n: v for n, v in FREE.items() if n != "J_pan"}}
+    return fit_parameters(MODEL, every, (INERTIA_FREE,), fixed, None, Effort(20))
+
+
+def drifts(noise: float, draws: int) -> Floats:
+    """Angles [k, draws] in rad that torque noise makes, held from sample to sample, without what a
+    start can take up.
+    """
+    shaken = np.random.default_rng(3).standard_normal((len(TIME), draws)) * noise / INERTIA
+    rate = 0.01 * np.cumsum(shaken, axis=0)
+    angle = np.zeros_like(rate)
+    angle[1:] = np.cumsum(0.01 * (rate[:-1] - 0.5 * 0.01 * shaken[:-1]), axis=0)
+    return project_out(angle, LINE)
+
+
+def test_replays_change_the_residual_as_noise_of_the_input_does() -> None:
+    fit = with_input_noise(accelerated(3), (0.002, 0.0))
+    assert [c.shape for c in fit.shaken] == [(2 * len(TIME), 34)] * 3
+    pan = np.concatenate([c[0::2] for c in fit.shaken], axis=1)
+    expected = np.sqrt(np.mean(drifts(0.002, 4000) ** 2)) / SIGMA
+    assert np.sqrt(np.mean(pan**2)) == pytest.approx(expected, rel=0.2)
+    assert all(np.max(np.abs(c[1::2])) < 1e-9 for c in fit.shaken)
+
+
+def test_silent_inputs_leave_a_fit_as_it_is() -> None:
+    fit = accelerated(1)
+    assert with_input_noise(fit, (0.0, 0.0)) is fit
+
+
+def test_an_interval_is_as_wide_as_noise_of_the_input_makes_it() -> None:
+    """The shift of the inertia by a drift is that of a line through the parabola it makes."""
+    known = estimable(accelerated(3), (0.002, 0.0))
+    (told,) = estimates(known)
+    bend = project_out(0.5 * TORQUE / INERTIA**2 * TIME[:, None] ** 2, LINE)[:, 0]
+    shift = bend @ drifts(0.002, 4000) / (bend @ bend)
+    half = 1.96 * np.std(shift) / math.sqrt(3.0)
+    assert (told.upper - told.lower) / 2.0 == pytest.approx(half, rel=0.25)
+    (narrow,) = estimates(replace(known, shaken=()))
+    assert narrow.upper - narrow.lower < 0.5 * (told.upper - told.lower)
+
+
+def test_errors_of_the_values_leave_what_their_covariance_carries_there() -> None:
+    """An error of the inertia bends the predicted angle: of a parabola over T a line leaves
+    T^2 / (6 sqrt(5)) rms. Chi squared with one degree of freedom stays below 6.63 in 99 %.
+    """
+    known = estimable(accelerated(3), (0.002, 0.0))
+    after = accelerated(1)
+    after = replace(after, free=(), values=known.values)
+    covariance, degrees, _ = covariance_of(known)
+    assert np.isinf(degrees).all()
+    (told,) = estimates(known)
+    relative = math.log(told.upper / told.value) / 1.95996
+    assert relative == pytest.approx(math.sqrt(covariance[0, 0]), rel=1e-3)
+    span = TIME[-1]
+    bend = 0.5 * TORQUE / known.values["J_pan"] * span**2 / (6.0 * math.sqrt(5.0))
+    rms = bend * after.runs[0].weight[0]
+    found = left_by_values(after, known)
+    assert found[0] == pytest.approx([6.635 * (relative * rms) ** 2, 0.0], rel=0.02, abs=1e-12)
+
+
+WINDOWS, SAMPLES = 4, 300
+FOUR = tuple(free_parameter(f"p{k}", 1.0, -1e3, 1e3) for k in range(4))
+
+
+def twice_integrated(rng: np.random.Generator, draws: int) -> Floats:
+    return np.cumsum(np.cumsum(rng.standard_normal((draws, SAMPLES)), axis=1), axis=1).T / 300.0
+
+
+def windows(rng: np.random.Generator, replays: int, free: tuple[FreeParameter, ...]) -> Fit:
+    """A least squares fit of what smooth inputs make, integrated twice, to windows that noise of
+    the input bends; the truth is zero.
+    """
+    t = np.linspace(0.0, 1.0, SAMPLES)
+    start = np.column_stack([np.ones(SAMPLES), t])
+    tables = [
+        np.column_stack([np.sin((2.0 + k + 0.7 * w) * t + k) for k in range(4)]) * 10.0
+        for w in range(WINDOWS)
+    ]
+    noise = [twice_integrated(rng, 1)[:, 0] + rng.standard_normal(SAMPLES) for _ in tables]
+    bent = [project_out(n[:, None], start)[:, 0] for n in noise]
+    columns = [project_out(c, start) for c in tables]
+    found = np.linalg.lstsq(np.vstack(columns), np.concatenate(bent))[0]
+    scales = np.array([f.scale for f in free])
+    fit = finished(
+        [b - c @ found for b, c in zip(bent, columns, strict=True)],
+        [-c * scales for c in tables],
+        [start] * WINDOWS,
+        free,
+        {f.name: float(v) for f, v in zip(free, found, strict=True)},
+    )
+    shaken = [project_out(twice_integrated(rng, replays), start) for _ in tables]
+    return replace(fit, shaken=tuple(shaken))
+
+
+def test_a_few_windows_that_noise_bends_have_intervals_that_hold_the_truth() -> None:
+    """Four parameters and eight starts follow most of what the noise of the input leaves in four
+    windows, so that the residual tells too little of it.
+    """
+    rng = np.random.default_rng(5)
+    held, without = [], []
+    for _ in range(200):
+        fit = windows(rng, 25, FOUR)
+        held.append([e.lower <= 0.0 <= e.upper for e in estimates(fit)])
+        without.append([e.lower <= 0.0 <= e.upper for e in estimates(replace(fit, shaken=()))])
+    assert np.mean(without) < 0.85
+    assert 0.90 <= np.mean(held) <= 0.99
