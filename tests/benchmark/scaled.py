@@ -1,8 +1,8 @@
-"""The diagnosis with a section of its chosen constants scaled: what hangs on them?
+"""The diagnosis with chosen constants scaled: what hangs on them?
 
 The table of constants says of each where it comes from. Those that were chosen are multiplied by a
-factor, all of a section at once, before anything else of the package is imported; a number that
-stands for a ratio just above one is scaled in what it has above one.
+factor, one or all of a section at once, before anything else of the package is imported; a number
+that stands for a ratio just above one is scaled in what it has above one.
 """
 
 import re
@@ -13,7 +13,7 @@ from typing import Any
 
 LINE = re.compile(r"^([A-Z_0-9]+) = (.*?)  # (.*)$")
 SCALED = "scaled"  # first word of the source of a constant that was chosen
-RATIOS = {"ABOVE_NOISE", "HELD_OUT_ABOVE", "OVERLAP_CORRELATION"}
+RATIOS = {"ABOVE_NOISE"}
 
 
 def sections(source: str) -> dict[str, list[str]]:
@@ -43,13 +43,15 @@ def scale_of(name: str, factor: float) -> Callable[[Any], Any]:
     return lambda value: scaled(value, factor)
 
 
-def scale_section(module: ModuleType, section: str, factor: float) -> None:
-    """Set the constants of `module` anew, those of a section scaled, and all that follow from them.
+def scale_chosen(module: ModuleType, which: str, factor: float) -> None:
+    """Set the constants of `module` anew, the chosen one of this name, or those of this section,
+    scaled, and all that follow from them.
 
-    Raises KeyError for a section without chosen constants.
+    Raises KeyError for what is neither a chosen constant nor a section that has any.
     """
     source = Path(str(module.__file__)).read_text(encoding="utf-8")
-    names = sections(source)[section]
+    every = sections(source)
+    names = [which] if any(which in part for part in every.values()) else every[which]
     lines = []
     for line in source.splitlines():
         row = LINE.match(line)
@@ -60,8 +62,8 @@ def scale_section(module: ModuleType, section: str, factor: float) -> None:
 
 
 def apply(text: str) -> None:
-    """Scale the constants of the package as `text`, "section=factor", asks for."""
+    """Scale constants of the package as `text`, "section=factor" or "NAME=factor", asks for."""
     from ptp_symbolic.numeric.identify import constants
 
-    section, _, factor = text.partition("=")
-    scale_section(constants, section, float(factor))
+    which, _, factor = text.partition("=")
+    scale_chosen(constants, which, float(factor))

@@ -1,11 +1,11 @@
-"""Sections of chosen constants are scaled, with what follows from them, and nothing else is."""
+"""Chosen constants are scaled, with what follows from them, and nothing else is."""
 
 from pathlib import Path
 from types import ModuleType
 
 import pytest
 
-from tests.benchmark.scaled import scale_section, sections
+from tests.benchmark.scaled import scale_chosen, sections
 
 TABLE = """
 # Effort
@@ -34,19 +34,26 @@ def test_chosen_constants_by_section() -> None:
 
 
 def test_a_section_is_scaled_with_what_follows_from_it(table: ModuleType) -> None:
-    scale_section(table, "effort", 2.0)
+    scale_chosen(table, "effort", 2.0)
     assert (table.TRIED, table.PROPOSED, table.RUNG, table.SHARE) == (6, 12, ((8, 4),), 0.5)
     assert (table.ABOVE_NOISE, table.LEVEL) == (1.1, 0.05)
 
 
 def test_counts_stay_whole_and_ratios_above_one(table: ModuleType) -> None:
-    scale_section(table, "effort", 0.1)
+    scale_chosen(table, "effort", 0.1)
     assert (table.TRIED, table.PROPOSED, table.RUNG) == (1, 2, ((1, 1),))
-    scale_section(table, "decisions", 0.5)
+    scale_chosen(table, "decisions", 0.5)
     assert table.TRIED == 3
     assert pytest.approx(1.05, rel=1e-12) == table.ABOVE_NOISE
 
 
+def test_one_constant_is_scaled_alone(table: ModuleType) -> None:
+    scale_chosen(table, "TRIED", 2.0)
+    assert (table.TRIED, table.PROPOSED, table.RUNG, table.SHARE) == (6, 12, ((4, 2),), 0.25)
+    with pytest.raises(KeyError):
+        scale_chosen(table, "PROPOSED", 2.0)
+
+
 def test_an_unknown_section_is_refused(table: ModuleType) -> None:
     with pytest.raises(KeyError):
-        scale_section(table, "colours", 2.0)
+        scale_chosen(table, "colours", 2.0)

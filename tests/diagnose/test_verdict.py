@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.diagnose.verdict import (
     UP_TO_GROUP,
     word_of,
 )
-from ptp_symbolic.numeric.identify.constants import HELD_OUT_ABOVE
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE
 from tests.identify.straight import finished
 
 WAVE = np.where(np.arange(400) % 2, 1.0, -1.0)
@@ -50,9 +50,9 @@ def word(
     ("left", "held_out", "declared", "extended"),
     [
         (1.0, 1.0, NOTHING_MISSING, EXPLAINED),
-        (1.05, 1.2, NOTHING_MISSING, EXPLAINED),
+        (1.05, 1.08, NOTHING_MISSING, EXPLAINED),
         (1.5, 1.0, UNEXPLAINED, PARTLY),
-        (1.0, 1.5, UNEXPLAINED, PARTLY),
+        (1.0, 1.2, UNEXPLAINED, PARTLY),
     ],
 )
 def test_all_runs_must_be_at_their_floor(
@@ -101,9 +101,9 @@ def test_windows_that_are_alike_are_quiet(training: float, validation: float) ->
 
 def test_windows_half_of_which_leave_more_than_the_training_runs_are_not_quiet() -> None:
     """The median alone is within its bound, and says nothing of the other half."""
-    squares = np.concatenate([np.linspace(1.0, 1.2, 14), np.linspace(1.25, 9.0, 14)])
+    squares = np.concatenate([np.linspace(1.0, 1.05, 14), np.linspace(1.1, 9.0, 14)])
     after = finished([s * WAVE for s in squares])
-    assert np.median(squares) < HELD_OUT_ABOVE
+    assert np.median(squares) < ABOVE_NOISE
     assert not is_quiet(after, floor(), NOTHING, finished(noisy(48, 1.0, 3)))
     assert is_quiet(after, floor(), NOTHING, finished(noisy(3, 1.0, 3)))  # too few to tell
 

@@ -79,6 +79,7 @@ def neighbours() -> float:
     [
         ("FEWEST_BLOCKS", "12 %", stats.t.ppf(0.975, c.FEWEST_BLOCKS - 1) / 1.959964 - 1.0),
         ("MOST_BLOCKS", "5 %", 1.0 / np.sqrt(2.0 * (c.MOST_BLOCKS - 1))),
+        ("REPLAYS", "7 %", 1.0 / np.sqrt(2.0 * (c.REPLAYS - 1))),
         ("RESAMPLES", "0.35 %", np.sqrt(0.025 * 0.975 / c.RESAMPLES)),
         ("MANY_RUNS", "28 %", np.sqrt(np.pi / 2.0 / c.MANY_RUNS)),
         ("SEEN", "95 %", stats.norm.cdf(c.SEEN - stats.norm.ppf(0.95))),
@@ -129,3 +130,11 @@ def test_noise_reaches_so_far_once_in(name: str, once_in: int, checkout: Path) -
     assert f"{once_in:,}" in said(name, checkout)
     far = getattr(c, name)
     assert 2.0 * stats.norm.sf(far) == pytest.approx(1.0 / once_in, rel=0.05)
+
+
+def test_periodograms_that_overlap_by_half_vary_as_their_tapers_say() -> None:
+    """The mean of many varies by 1 + 2 r^2 times that of independent ones (Welch, 1967)."""
+    taper = signal.windows.hann(noise.SEGMENT, sym=False)
+    half = noise.SEGMENT // 2
+    shared = float(taper[:half] @ taper[half:]) / float(taper @ taper)
+    assert pytest.approx(1.0 + 2.0 * shared**2, rel=1e-12) == c.OVERLAP_CORRELATION

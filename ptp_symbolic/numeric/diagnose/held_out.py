@@ -18,9 +18,9 @@ from ptp_symbolic.numeric.diagnose.trial import (
     tolerance_for,
 )
 from ptp_symbolic.numeric.identify.constants import (
+    ABOVE_NOISE,
     BIGGEST,
     GAIN,
-    HELD_OUT_ABOVE,
     MANY_RUNS,
     MATERIAL,
     MOST,
@@ -84,7 +84,7 @@ def is_quiet(after: Fit, floor: Floor, by_values: FloatArray, trained: Fit) -> b
     """
     squares = mean_squares(after.evaluations, after.runs)
     size = sizes(after.runs)
-    allowed = (HELD_OUT_ABOVE * floor.most) ** 2 + by_values
+    allowed = (ABOVE_NOISE * floor.most) ** 2 + by_values
     if not np.all(weighted_median(squares / allowed, size) <= 1.0):
         return False
     own = mean_squares(trained.evaluations, trained.runs)

@@ -19,12 +19,11 @@ from ptp_symbolic.numeric.diagnose.signatures import brought
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, simulated
 from ptp_symbolic.numeric.identify.constants import (
     DECLARED_AMOUNT,
-    FARTHEST,
+    ITERATIONS,
+    LARGEST_STEP,
     MOST,
     REACH,
     RIDGE,
-    SHRINK,
-    SHRINKS,
     WIDE_STEP,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
@@ -168,7 +167,7 @@ def _column(
     amount = f.start - zero
     if candidate.is_declared_value:
         amount = min(DECLARED_AMOUNT * abs(f.start), 0.5 * (f.upper - f.start))
-    for _ in range(SHRINKS):
+    for _ in range(ITERATIONS):
         values = {**base, **dict.fromkeys(f.names, zero + amount)}
         changed = simulated(task, trial.fit, values, None)
         if not any(e.failed for e in changed):
@@ -179,9 +178,9 @@ def _column(
                 return None
             if size <= most:
                 return amount, change
-            shrink = min(SHRINK, MOST * most / size)
+            shrink = MOST * most / size
         else:
-            shrink = SHRINK
+            shrink = MOST**2
         if candidate.is_limit(f):
             amount += (1.0 - shrink) * (largest - zero - amount)
         else:
@@ -195,7 +194,7 @@ def least(here: FloatArray, declared: FloatArray, found: Columns) -> tuple[Float
     Jacobian), and the share of its square that is left.
     """
     zero = [found.candidate.vanishing[f.name] for f in found.free]
-    reach = np.full(declared.shape[1], FARTHEST)
+    reach = np.full(declared.shape[1], MOST * LARGEST_STEP)
     lower = np.concatenate([-reach, [f.lower - z for f, z in zip(found.free, zero, strict=True)]])
     upper = np.concatenate([reach, [f.upper - z for f, z in zip(found.free, zero, strict=True)]])
     table = np.column_stack([declared, found.table])

@@ -20,7 +20,7 @@ from ptp_symbolic.numeric.identify.constants import (
     DECLARED_AMOUNT,
     LEAST_CYCLES,
     SAME,
-    SMALL_AMOUNT,
+    STEP,
 )
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.row_motion import row_motion
@@ -115,7 +115,7 @@ def _signature(
             if candidate.is_declared_value:
                 whole = min(f.start * (1.0 + DECLARED_AMOUNT), 0.5 * (f.start + f.upper))
             column = np.zeros(len(weight))
-            for amount in (zero + SMALL_AMOUNT * (whole - zero), whole):
+            for amount in (zero + STEP * (whole - zero), whole):
                 changed = dict.fromkeys(f.names, amount)
                 column = (rows({**base, **shape, **changed}) - without) / (amount - zero)
                 if np.any(column):

@@ -9,7 +9,7 @@ from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_for
 from ptp_symbolic.numeric.diagnose.refits import over_windows
 from ptp_symbolic.numeric.diagnose.responses import Response
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, continued, fitted, ranked
-from ptp_symbolic.numeric.identify.constants import ITERATIONS, PARTS_OF_THE_WAY, TRIED, WIDE_STEP
+from ptp_symbolic.numeric.identify.constants import ITERATIONS, MOST, TRIED, WIDE_STEP
 
 
 def started(task: Task, declared: Trial, found: Proposals) -> list[Trial]:
@@ -40,7 +40,7 @@ def along(task: Task, proposals: Proposals, found: Response, parent: Trial) -> l
     proposal = found.proposal
     origin = parent.values | dict(found.shape)
     begun = []
-    for part in PARTS_OF_THE_WAY:
+    for part in (1.0, MOST):
         values = {n: origin[n] + part * (v - origin[n]) for n, v in proposal.values.items()}
         begun.append(fitted(task, proposal.candidates, values, parent.fit.z, 0, parent.fit))
     if found.candidate.key not in {c.key for c in proposals.unseen}:

@@ -22,15 +22,14 @@ ELSEWHERE = 0.05  # 1; share that runs or blocks other than one left out must sh
 MOST = 0.5  # 1; share that is most of a whole; definition
 SIMILAR = 0.9  # 1; canonical correlation of effects that may be one another; stated
 PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off; stated
-SMALL_PERCENT = 1.0  # %; change of a declared value that is called small; scaled
+SMALL_PERCENT = 1.0  # %; change of a declared value that is called small; stated
 ABOVE_NOISE = 1.1  # 1; rms over the floor that is still noise; scaled
 UNALIKE = 1e-3  # 1; false alarms of the test for larger validation windows; stated level
-HELD_OUT_ABOVE = 1.25  # 1; the same on validation runs, which bear the errors of the fit; scaled
 NEAR_BOUND = 1e-4  # 1; distance from a bound over the size of a value that is at it; scaled
 FEWEST_BLOCKS = 12  # 1; blocks: Student's interval is then 12 % wider than a normal one; derived
 MOST_BLOCKS = 200  # 1; blocks: the error of a standard deviation is then 5 %; derived
 RESAMPLES = 2000  # 1; draws: the 2.5 % quantile is good to 0.35 %; derived
-FOLDS = 8  # 1; parts of a cross-validation; scaled (5 to 10 are usual: Hastie et al., 2009, 7.10)
+FOLDS = 8  # 1; parts of a cross-validation; usual (5 to 10: Hastie et al., 2009, 7.10)
 DEVIATIONS = 2.0  # 1; standard deviations that hold 95 %, Huber's loss 99 % efficient; derived
 LITTLE = 0.02  # 1; change of a mean square that is none; scaled
 SEED = 20130801  # 1; of every draw, so that equal logs have equal answers; arbitrary
@@ -43,20 +42,19 @@ FAR = 4.0  # 1; standard deviations that noise seldom reaches (once in 16,000); 
 RESTING = 5.0  # 1; the same for every rate of a log (once in 1,700,000); derived
 FORGOTTEN = 0.25  # s; five time constants of drives (0.05 s), after which 0.7 % is left; derived
 NEARBY = 2.0 * FAR  # 1; standard deviations from which on all windows count alike; scaled
-MANY_RUNS = 20  # 1; windows whose median stands for all: good to 28 % of their spread; scaled
-MISLEADING = 0.25  # 1; share of a difference by which its derivative misleads; scaled
-BLIND = 0.2  # 1; share of a difference of which a derivative sees nothing; scaled
+MANY_RUNS = 20  # 1; windows whose median stands for all: good to 28 % of their spread; derived
+MISLEADING = 0.25  # 1; share of a difference by which its derivative misleads, or sees; scaled
 
 # Effort
-ITERATIONS = 4  # 1; in which a fit shows whether its start is worth more; scaled
+ITERATIONS = 4  # 1; in which a fit, or an amount, shows whether it is worth more; scaled
 CYCLES = 3  # 1; of two fits, or of weights and fits, in turn; scaled
 POLISH = CYCLES * ITERATIONS  # 1; iterations of a fit that goes to its end; derived
 TRIED = 3  # 1; alternatives that are followed; scaled
 LARGEST = 3  # effects; that a set may have, or gain after the first choice; stated
 ADDED = 4  # candidates; that are refitted when one is added; scaled
 SCREENED = 2  # sets, candidates; of those begun with few iterations that go on; scaled
-REPLAYS = 100  # runs; replayed with noisy inputs: a standard deviation is good to 7 %; derived
 REFINEMENTS = 2  # 1; Gauss-Newton steps of a proposed set; scaled
+REPLAYS = 100  # runs; replayed with noisy inputs: a standard deviation is good to 7 %; derived
 REWEIGHTINGS = 6  # 1; of rows: weights settle to a percent; scaled
 SCORINGS = 20  # 1; of a spectrum: its variance settles to a part in a thousand; derived
 SENSOR_ITERATIONS = 4  # 1; an error of 2 % of the angle is left to 2e-7 of it; derived
@@ -85,27 +83,22 @@ CYCLES_APART = 0.2  # 1/range; step of a frequency scan: a line between is dimme
 LEAST_CYCLES = 3.0  # 1/range; slower waves with harmonics fit any slow change; scaled
 BINS_PER_CYCLE = 4.0  # 1; of the highest frequency of a scan: a bin dims it by 10 %; derived
 ATTENUATED = 2.0  # 1/window; of such a wave an average leaves 11 %; derived
-SMALL_AMOUNT = 0.01  # 1; share of a start at which rows are linear; scaled
 DECLARED_AMOUNT = 0.05  # 1; share by which a declared value is changed to see its effect; scaled
-BINS = 16  # 1; of a map of what is left; scaled
+BINS = 16  # 1; of a map of what is left; definition
 
 # Noise of a signal
 ORDER = 5  # 1; differences: a motion at a tenth of the sampling rate leaves 0.6 %; derived
 PIECE = 256  # samples; over which the noise of a signal is taken; scaled
 SEGMENT = 64  # samples; of a periodogram: poles up to 0.95 are told from white noise; tested
 LOWEST = 3  # bins; below belong to the taper (2) and to the motion; derived
-OVERLAP_CORRELATION = 1.2  # 1; spread of periodograms that overlap by half (Welch, 1967); scaled
+OVERLAP_CORRELATION = 19.0 / 18.0  # 1; of variances, Hann tapers that overlap by half; derived
 
 # Steps
-STEP = 0.02  # search coordinates; of differences at the end: as far as an interval reaches; scaled
+STEP = 0.02  # search coordinates, starts; of differences, as far as intervals reach; scaled
 WIDE_STEP = 0.1  # search coordinates; of differences while searching, over a staircase; scaled
 LARGEST_STEP = 1.0  # search coordinates; of one iteration: a factor of e; scaled
 FIRST_DAMPING = 1e-3  # 1; of the diagonal; usual (Marquardt, 1963: 1e-2)
-FARTHEST = 0.5  # search coordinates; that free parameters follow a response; scaled
 REACH = 3.0  # 1; size of a response over the residual, beyond which it is not linear; scaled
-SHRINK = 0.25  # 1; of a response that reaches further, at most; scaled
-PARTS_OF_THE_WAY = (1.0, 0.5)  # 1; of a response at which a refit begins; scaled
-SHRINKS = 4  # 1; tries to make a response small enough: a straight one takes two; scaled
 
 # Numerics
 ROUNDING = 1.0 / np.sqrt(12.0)  # counts; standard deviation of rounding; derived
@@ -120,8 +113,7 @@ NOTHING = 1e-10  # 1; share of a sum of 1e5 squares, above its rounding of 2e-11
 SMALLEST_SHARE = 1e-6  # 1; of a scale from which a logarithm begins; scaled
 WIDEST = 30.0  # 1; logarithm of a factor that has no end (1e13); derived
 BIGGEST = 1e15  # 1; mean square, or derivative, of what cannot be simulated; scaled
-HALVINGS = 40  # 1; of a step to a relation between parameters: to 1e-12 of it; derived
-CORRECTIONS = 20  # 1; of a step along such a relation; scaled
+HALVINGS = 40  # 1; of a step to or along a relation of parameters: to 1e-12 of it; derived
 FINEST = 1e-4  # 1; of the default tolerance, at most that fine; scaled
 COARSEST = 10.0  # 1; of the default tolerance: beyond events are lost; scaled
 

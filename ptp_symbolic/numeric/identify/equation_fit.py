@@ -58,7 +58,8 @@ def fit_equations(
 
     A prior of one start value (or one scale) around the start of every parameter keeps those in
     place that the rows do not see; thousands of rows, which overlap, outweigh it where they do.
-    Raises InputError for `values` out of bounds.
+    Where a step leads to values at which there are no finite rows, it is not taken. Raises
+    InputError for `values` out of bounds.
     """
     equation, run, time = space.labels()
     blocks = len(np.unique(np.column_stack([equation, run, time // SHORT]), axis=0))
@@ -67,8 +68,12 @@ def fit_equations(
     centre = np.array([f.start for f in free])
     sigma = np.array([f.scale for f in free])
     lower, upper = np.array([f.lower for f in free]), np.array([f.upper for f in free])
+    before = here
     for iteration in range(iterations):
         found = linearised(space, free, values, here, executor)
+        if not (np.all(np.isfinite(found.rows)) and np.all(np.isfinite(found.jacobian))):
+            here = before
+            break
         at = np.array([here[f.name] for f in free])
         root = np.sqrt(found.weight / np.maximum(overlap, 1.0))
         matrix = np.vstack([found.jacobian * root[:, None], np.diag(1.0 / sigma)])
@@ -85,6 +90,7 @@ def fit_equations(
             / size
         )
         new = np.clip(at + step, lower, upper)
+        before = here
         here = {f.name: float(v) for f, v in zip(free, new, strict=True)}
         change = np.max(np.abs(new - at) / np.maximum(np.abs(new), 1e-3 * sigma), initial=0.0)
         if change < SAME or iteration == iterations - 1:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ptp_symbolic.numeric.identify.constants import BLIND, STEP
+from ptp_symbolic.numeric.identify.constants import MISLEADING, STEP
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.fit import Effort, Fit, problem_of, simulations_of
 
@@ -26,6 +26,6 @@ def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
     chosen = []
     for at_point, finite in zip(here, refined, strict=True):
         seen, size = (np.linalg.norm(e.by_parameter, axis=0) for e in (at_point, finite))
-        columns = np.where(seen < BLIND * size, finite.by_parameter, at_point.by_parameter)
+        columns = np.where(seen < MISLEADING * size, finite.by_parameter, at_point.by_parameter)
         chosen.append(replace(at_point, by_parameter=columns))
     return replace(fit, evaluations=tuple(chosen))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import CORRECTIONS, HALVINGS, QUOTIENT
+from ptp_symbolic.numeric.identify.constants import HALVINGS, QUOTIENT
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, limits
 from ptp_symbolic.numeric.runtime.model import Model
 
@@ -114,7 +114,7 @@ class _Relation:
         """The nearest point at which the relation holds, within the bounds; where Newton's steps
         along the gradient find none, the last one that they reach.
         """
-        for _ in range(CORRECTIONS):
+        for _ in range(HALVINGS):
             if self.holds(phi):
                 break
             by, slope = self.margin(phi), self.gradient(phi)
