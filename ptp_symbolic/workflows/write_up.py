@@ -21,6 +21,7 @@ from ptp_symbolic.numeric.diagnose.summary import (
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.diagnose.verdict import Verdict
 from ptp_symbolic.numeric.identify.intervals import estimates
+from ptp_symbolic.numeric.identify.replays import estimable
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, platform_text
 from ptp_symbolic.report.changes import render_changes
 from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
@@ -46,6 +47,9 @@ def written_up(
     """
     after = verdict.final
     intervals = {e.name: e for e in estimates(verdict.estimated)}
+    before = verdict.estimated
+    if after is not verdict.declared:
+        before = estimable(verdict.declared.fit, task.input_noise, task.executor)
     parts = {
         "train": (verdict.declared.fit, after.fit),
         "validate": (verdict.before, verdict.after),
@@ -67,7 +71,7 @@ def written_up(
         "repeatability": repeatability_table(task.whole, task.model.units),
         "residual_tests": residual_tests(verdict.after, task.model.input_names),
         "fit": {
-            "before": {"parameters": fit_table(verdict.declared, estimates(verdict.declared.fit))},
+            "before": {"parameters": fit_table(verdict.declared, estimates(before))},
             "after": {"parameters": fit_table(after, tuple(intervals.values()))},
         },
         "held_out": None if verdict.held_out is None else gain_table(verdict.held_out),

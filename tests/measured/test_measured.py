@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.io import loadmat, savemat
+from scipy.signal import butter, filtfilt
 
 from ptp_symbolic.machines.study import EMPS_FILES, PLATFORMS, emps, emps_logs, pendulum_logs
 from ptp_symbolic.platform import read_platform
@@ -83,6 +84,12 @@ def with_force(source: Path, folder: Path, law: Callable[[Floats], Floats]) -> d
     return diagnosed("emps", emps_logs(folder))
 
 
+def rate_of(position: Floats) -> Floats:
+    """Rate [k, 1] in m/s of a position sampled at 1 kHz, without what is faster than 50 Hz."""
+    smooth = filtfilt(*butter(4, 0.1), position, axis=0)
+    return np.asarray(np.gradient(smooth, 1e-3, axis=0))
+
+
 STIFFNESS, MIDDLE = 7.26, 0.123  # N/m and m: of that size over the stroke of the training file
 
 
@@ -103,3 +110,28 @@ def test_cogging_every_20_mm_put_into_the_force_is_found(measured: Path, tmp_pat
     amplitude = np.hypot(cogging["T_sin_pan"]["value"], cogging["T_cos_pan"]["value"])
     assert amplitude == pytest.approx(size, rel=0.1)
     assert cogging["n_cog_pan"]["value"] == pytest.approx(waves, rel=0.01)
+
+
+def test_friction_that_goes_with_the_position_put_into_the_force_is_found(
+    measured: Path, tmp_path: Path
+) -> None:
+    """A wave of 42 mm. It is a share of the dry friction that is declared; some of the friction of
+    the machine is beside that.
+    """
+    waves, size = 150.0, np.sqrt(2.0) * SIZE
+    found = with_force(
+        measured / "emps",
+        tmp_path,
+        lambda x: size * np.sin(waves * x + 0.4) * np.tanh(rate_of(x) / 0.002),
+    )
+    assert named(found) == sorted([*FRICTION, "position_dependent_friction"])
+    (wave,) = (
+        added["parameters"]
+        for added in found["added"]
+        if added["effect"] == "position_dependent_friction"
+    )
+    low, high = wave["n_F_pan"]["ci95"]
+    assert low < waves < high
+    share = np.hypot(wave["f_sin_pan"]["value"], wave["f_cos_pan"]["value"])
+    friction = found["fit"]["after"]["parameters"]["F_c_pan"]["value"]
+    assert share * friction == pytest.approx(size, rel=0.25)

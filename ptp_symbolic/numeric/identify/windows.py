@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.constants import (
-    ALLOWED_COUNTS,
+    ALLOWED_DRIFT,
     ALLOWED_GROWTH,
     ALLOWED_RISE,
     LEAST_START,
@@ -35,7 +35,7 @@ FloatArray = NDArray[np.float64]
 def window_length(
     model: Model, runs: Sequence[Run], p: FloatArray, declared_noise: Sequence[float | None]
 ) -> float | None:
-    """Longest window in s over which input noise stays near the rounding of the encoder, at p [np].
+    """Longest window in s over which input noise stays near the noise of the angles, at p [np].
 
     None where whole runs do. Where an error of the start grows tenfold, windows of 1 s at most.
     """
@@ -46,7 +46,7 @@ def window_length(
     rng = np.random.default_rng(SEED)
     grown = [_drift(model, run, p, input_noise(run, declared_noise), rng) for run in runs]
     durations = [float(run.time[-1] - run.time[0]) for run in runs]
-    allowed = max(ALLOWED_COUNTS, ALLOWED_RISE * _typical(grown, LENGTHS[-1]))
+    allowed = max(ALLOWED_DRIFT, ALLOWED_RISE * _typical(grown, LENGTHS[-1]))
     for length in lengths:
         if _typical(grown, length) <= allowed:
             return None if length >= max(durations) else float(length)
@@ -73,20 +73,17 @@ def _grows(model: Model, run: Run, p: FloatArray) -> bool:
 def _drift(
     model: Model, run: Run, p: FloatArray, noise: FloatArray, rng: np.random.Generator
 ) -> tuple[FloatArray, FloatArray]:
-    """Difference in counts [k] between a run and its noisy replay, and the time since start."""
+    """Difference [k] between a run and its noisy replay, over the noise of its angles (of all
+    signals where there is no encoder), and the time since start.
+    """
     z = run.guess
     found = replayed(model, run, p, z, noise, rng)
     if found is None:
         return np.zeros(0), np.zeros(0)
-    counts = in_counts(run, found[0])
-    return np.sqrt(np.mean(counts**2, axis=1)), run.time - run.time[0]
-
-
-def in_counts(run: Run, residual: FloatArray) -> FloatArray:
-    """Weighted residuals [k * ny] as counts [k, ne] of the encoder columns (all without one)."""
     encoders = np.isfinite(run.counts)
-    table_of = residual.reshape(run.measured.shape)
-    return (table_of / run.weight / run.counts)[:, encoders] if encoders.any() else table_of
+    change = found[0].reshape(run.measured.shape)
+    change = change[:, encoders] if encoders.any() else change
+    return np.sqrt(np.mean(change**2, axis=1)), run.time - run.time[0]
 
 
 def cut_where_noise_grows(
