@@ -2,13 +2,13 @@
 
     python -m tests.benchmark make  --out DIR [--half build|report] [--only REGEX]
     python -m tests.benchmark run   --out DIR [--half ...] [--only REGEX] [--jobs N]
-                                    [--scale SECTION=FACTOR]
+                                    [--scale SECTION=FACTOR | NAME=FACTOR]
     python -m tests.benchmark table --out DIR [--half ...] [--only REGEX]
     python -m tests.benchmark draw  --out DIR [--half ...] [--only REGEX] FILE.png
 
-`run` makes what is missing and leaves out what has an outcome; with --scale, chosen constants of
-a section of their table, "effort" for one, are taken times the factor. `table` also writes table.md
-and table.json into DIR.
+`run` makes what is missing and leaves out what has an outcome; with --scale, a chosen constant, or
+all of a section of their table, "effort" for one, are taken times the factor. `table` also writes
+table.md and table.json into DIR.
 """
 
 import argparse
@@ -85,7 +85,7 @@ def main() -> None:
     parser.add_argument("--half", choices=["build", "report"])
     parser.add_argument("--only", default="", metavar="REGEX", help="part of the identity")
     parser.add_argument("--jobs", type=int, default=1, help="sets at a time")
-    parser.add_argument("--scale", metavar="SECTION=FACTOR", help="of constants that were chosen")
+    parser.add_argument("--scale", metavar="WHICH=FACTOR", help="of constants that were chosen")
     parser.add_argument("--cores", default="0", help=argparse.SUPPRESS)
     arguments = parser.parse_intermixed_args()
     if arguments.command == "draw" and arguments.file is None:

@@ -162,8 +162,19 @@ def test_what_cannot_be_confirmed_is_a_hint_and_not_a_name() -> None:
     text = summary.headline(_verdict(UNEXPLAINED, _trial(), closest=closest), _errors(), {})
     assert text.startswith("Something is missing")
     assert "closest candidate, not confirmed: backlash@tilt + cogging@pan." in text
-    assert "Nothing is missing" in summary.headline(
-        _verdict(NOTHING_MISSING, _trial()), _errors(), {}
+
+
+def test_what_is_left_where_nothing_is_missing_is_noise_or_errors_of_the_values() -> None:
+    errors = _errors()
+    text = summary.headline(_verdict(NOTHING_MISSING, _trial()), errors, {})
+    assert text == "Nothing is missing: 0.500 counts rms on validation runs is the noise floor."
+    total = {"rmse_counts": 1.0, "rmse": 1.09e-3, "unit": "rad"}
+    errors["validate"]["before"] = {"total": total, "without": {"run": "waves", **total}}
+    text = summary.headline(_verdict(NOTHING_MISSING, _trial()), errors, {})
+    assert text == (
+        "Nothing is missing: noise (0.500 counts rms) and errors of the fitted values leave 1.000"
+        " counts rms on validation runs. Most of that lies in waves; the others leave 1.000 counts"
+        " rms."
     )
 
 

@@ -18,7 +18,7 @@ from ptp_symbolic.numeric.diagnose.verdict import (
     UP_TO_GROUP,
     Verdict,
 )
-from ptp_symbolic.numeric.identify.constants import SMALL_PERCENT
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, SMALL_PERCENT
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import Estimate
 from ptp_symbolic.numeric.identify.repeatability import repeatability
@@ -33,7 +33,14 @@ def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -
         _worded(errors["validate"][when]["total"]) for when in ("before", "after", "noise_floor")
     )
     if found.word == NOTHING_MISSING:
-        return f"Nothing is missing: {before} on validation runs is the noise floor."
+        rms = [errors["validate"][when]["total"]["rmse"] for when in ("before", "noise_floor")]
+        if rms[0] <= ABOVE_NOISE * rms[1]:
+            return f"Nothing is missing: {before} on validation runs is the noise floor."
+        text = (
+            f"Nothing is missing: noise ({floor}) and errors of the fitted values leave {before} on"
+        )
+        usual = _mostly_in_one_run(errors["validate"]["before"]["without"])
+        return " ".join([f"{text} validation runs.", *usual])
     if found.word in (EXPLAINED, UP_TO_GROUP, PARTLY):
         causes = " and ".join(
             f"{cause(c, found.final)}{f' ({sizes[c.key]})' if c.key in sizes else ''}"
