@@ -3,7 +3,6 @@ noise is left; on logs whose motion is known in closed form.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import pytest
 
@@ -11,7 +10,6 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.floor import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
-from ptp_symbolic.numeric.diagnose.responses import Response, responses
 from ptp_symbolic.numeric.diagnose.search import by_effects_alone, extended
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
@@ -156,37 +154,3 @@ def test_a_set_with_room_grows_on_after_candidates_that_led_the_way_were_dropped
     found, _ = extended(seeker, seeker.declared, [])
     assert len(begun) == rounds
     assert found.values["k1_cable_pan"] == pytest.approx(0.1 * rounds * STIFFNESS)
-
-
-def test_a_set_that_leaves_noise_alone_is_not_exchanged(
-    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """No other set fits better: nothing is refitted."""
-    best = trial(seeker, "cable_spring@pan")
-    assert seeker.is_at_noise(best)
-    monkeypatch.setattr("ptp_symbolic.numeric.diagnose.seeker.exchanges", None)
-    assert seeker.exchanged(best) is None
-
-
-def test_the_one_effect_that_promises_far_more_than_all_others_is_tried_first(
-    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Of two that promise as much none is; once the spring was tried, growing takes it as it is."""
-    real = responses(seeker.task, seeker.declared, seeker.task.candidates)
-    spring = next(r for r in real if r.candidate.key == "cable_spring@pan")
-    spring = replace(spring, left=0.1)
-
-    def led(*found: Response) -> tuple[Seeker, Trial | None]:
-        fresh = Seeker(seeker.task, seeker.declared, seeker.proposals, seeker.carried)
-        monkeypatch.setattr(
-            "ptp_symbolic.numeric.diagnose.seeker.responses", lambda *_: list(found)
-        )
-        return fresh, fresh.led(fresh.declared)
-
-    assert led(spring, replace(spring, left=0.19))[1] is None
-    fresh, found = led(spring, replace(spring, left=0.21))
-    assert found is not None
-    assert found.keys == ("cable_spring@pan",)
-    assert found.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
-    monkeypatch.setattr(fresh, "best_earning", None)
-    assert fresh.grown(fresh.declared) is found

@@ -9,7 +9,10 @@ from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import carried_noise
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.nested import declared_from
-from ptp_symbolic.numeric.diagnose.proposals import propose, with_lines
+from ptp_symbolic.numeric.diagnose.proposals import (
+    propose,
+    with_lines,
+)
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import started
@@ -53,11 +56,7 @@ def _from_declared(seeker: Seeker) -> Search:
             unseen = seeker.unseen(best)
             task.progress(f"refitting {len(unseen)} effects that the motion does not show")
             found += halving(task, unseen, 1)
-        if not seeker.have_answer(best, *found, *seeker.others):
-            led = seeker.led(best)
-            found += [] if led is None else [led]
         found = [t for t in ranked(found) if is_near(t, found)]
-        found = [t for t in found if seeker.have_answer(t)] or found
         best = seeker.restarted(ranked([best, *(seeker.completed(t) for t in found)])[0])
     begun, steps = seeker.pruned(best)
     best, steps = extended(seeker, begun, steps)

@@ -3,7 +3,7 @@ refits in simulation.
 """
 
 from collections.abc import Sequence
-from weakref import WeakKeyDictionary, WeakSet
+from weakref import WeakSet
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,9 @@ from ptp_symbolic.numeric.diagnose.findings import Step, is_earned, step_of
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
 from ptp_symbolic.numeric.diagnose.nested import beside_declared
-from ptp_symbolic.numeric.diagnose.proposals import Proposals
+from ptp_symbolic.numeric.diagnose.proposals import (
+    Proposals,
+)
 from ptp_symbolic.numeric.diagnose.refits import (
     expected_gain,
     forms,
@@ -22,7 +24,7 @@ from ptp_symbolic.numeric.diagnose.refits import (
     sharpened,
     to_its_end,
 )
-from ptp_symbolic.numeric.diagnose.responses import Response, responses
+from ptp_symbolic.numeric.diagnose.responses import responses
 from ptp_symbolic.numeric.diagnose.screening import screened
 from ptp_symbolic.numeric.diagnose.starts import along, from_rows, in_place
 from ptp_symbolic.numeric.diagnose.subsets import exchanges
@@ -46,6 +48,8 @@ from ptp_symbolic.numeric.identify.constants import (
     TRIED,
 )
 
+FloatArray = NDArray[np.float64]
+
 
 class Seeker:
     """A search in progress; `others` collects the trials that were not chosen, `carried` [ny] is
@@ -53,13 +57,11 @@ class Seeker:
     """
 
     def __init__(
-        self, task: Task, declared: Trial, proposals: Proposals, carried: NDArray[np.float64]
+        self, task: Task, declared: Trial, proposals: Proposals, carried: FloatArray
     ) -> None:
         self.task, self.declared, self.proposals, self.carried = task, declared, proposals, carried
         self.others: list[Trial] = []
         self._at_end: WeakSet[Trial] = WeakSet()  # their Jacobians are large
-        self._promising: WeakKeyDictionary[Trial, list[Response]] = WeakKeyDictionary()
-        self._led: WeakKeyDictionary[Trial, Trial | None] = WeakKeyDictionary()
 
     def unseen(self, trial: Trial) -> list[Trial]:
         """The trial with each candidate that the rows cannot show, begun at its response in the
@@ -186,43 +188,25 @@ class Seeker:
     def grown(self, trial: Trial) -> Trial | None:
         """The trial with one more candidate that gains clearly and materially; None if none does.
 
-        The one that `led` finds is tried before all others.
+        Where only noise is left, those are tried that the motion alone cannot show. One that
+        promises far more than all others is tried before them.
         """
         task = self.task
         self.others[:] = ranked(self.others)  # the best of every set: their Jacobians are large
-        found = self._that_promise(trial)
-        best = self.led(trial)
-        if best is not None or not found:
-            return best
+        wanted = self.proposals.unseen if self.is_at_noise(trial) else task.candidates
+        found = [r for r in responses(task, trial, wanted) if r.left < 1.0 - MATERIAL]
+        if not found:
+            return None
+        names = " + ".join(trial.keys) or "the declared model"
+        task.progress(f"adding one of {len(found)} candidates to {names}")
+        if len(found) == 1 or found[0].left < MOST * found[1].left:
+            best = self.best_earning(along(task, self.proposals, found[0], trial), trial)
+            if best is not None:
+                return best
         begun = [t for r in found[:ADDED] for t in along(task, self.proposals, r, trial)]
-        close = screened(task, self.proposals, trial.candidates, self._wanted(trial), trial.values)
+        close = screened(task, self.proposals, trial.candidates, wanted, trial.values)
         begun += [fitted(task, t.candidates, t.values, None) for t in close[:SCREENED]]
         return self.best_earning(begun, trial)
-
-    def led(self, trial: Trial) -> Trial | None:
-        """The trial with the one more candidate whose response promises far more than all others,
-        if it gains clearly and materially; None if there is none.
-        """
-        if trial not in self._led:
-            found = self._that_promise(trial)
-            alone = len(found) == 1 or (found and found[0].left < MOST * found[1].left)
-            begun = along(self.task, self.proposals, found[0], trial) if alone else []
-            self._led[trial] = self.best_earning(begun, trial)
-        return self._led[trial]
-
-    def _that_promise(self, trial: Trial) -> list[Response]:
-        """Responses of candidates that promise a material gain."""
-        if trial not in self._promising:
-            every = responses(self.task, trial, self._wanted(trial))
-            self._promising[trial] = found = [r for r in every if r.left < 1.0 - MATERIAL]
-            if found:
-                names = " + ".join(trial.keys) or "the declared model"
-                self.task.progress(f"adding one of {len(found)} candidates to {names}")
-        return self._promising[trial]
-
-    def _wanted(self, trial: Trial) -> Sequence[Candidate]:
-        """Candidates to add: where only noise is left, those that the motion cannot show."""
-        return self.proposals.unseen if self.is_at_noise(trial) else self.task.candidates
 
     def best_earning(self, begun: Sequence[Trial], trial: Trial) -> Trial | None:
         """The best of trials that are `begun`, polished, of those in which what they have more than
@@ -245,10 +229,9 @@ class Seeker:
 
     def exchanged(self, trial: Trial) -> Trial | None:
         """A set that fits better than that of the trial, with another candidate in the place of one
-        of its own; None where there is none, as where the trial leaves noise alone. Those are tried
-        that the rows find no worse.
+        of its own; None where there is none. Those are tried that the rows find no worse.
         """
-        if self.proposals.regression is None or self.is_at_noise(trial):
+        if self.proposals.regression is None:
             return None
         sets = exchanges(self.proposals.regression, trial.candidates)[:TRIED]
         begun = [
