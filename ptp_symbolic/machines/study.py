@@ -124,8 +124,9 @@ def screw_drives(folder: Path, progress: Progress) -> dict[str, Any]:
 
 
 def _diagnosis(title: str, source: str, found: Output) -> dict[str, Any]:
-    kept = ("verdict", "summary", "added", "error", "refused", "hints", "fit", "provenance")
-    return {"title": title, "source": source, **{key: found.summary[key] for key in kept}}
+    kept = ("verdict", "summary", "added", "error", "held_out", "refused", "hints", "fit")
+    own = {key: found.summary[key] for key in (*kept, "provenance")}
+    return {"title": title, "source": source, **own}
 
 
 def _written(found: Output) -> Platform:

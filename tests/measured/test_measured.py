@@ -51,6 +51,7 @@ def test_friction_of_a_screw_is_named_and_its_mass_is_the_published_one(measured
     found = emps(measured / "emps", lambda text: None)
     assert found["verdict"] == "partly_explained"
     assert named(found) == FRICTION
+    assert found["held_out"]["share"] > 0.7
     assert found["hints"]
     before, after = (
         next(r for r in found["force_error"] if r["stage"] == stage and r["held"])
@@ -102,7 +103,7 @@ def test_a_spring_put_into_the_force_is_found(measured: Path, tmp_path: Path) ->
 
 
 def test_cogging_every_20_mm_put_into_the_force_is_found(measured: Path, tmp_path: Path) -> None:
-    """Waves are counted per radian, here per metre over 2 pi."""
+    """The wave number is 2 pi over the 20 mm, in rad/m."""
     waves, size = 2.0 * np.pi / 0.02, np.sqrt(2.0) * SIZE
     found = with_force(measured / "emps", tmp_path, lambda x: size * np.sin(waves * x + 0.7))
     assert named(found) == ["cogging", *FRICTION]

@@ -181,11 +181,17 @@ def without_outliers(
     """
     squares = block_squares(residual, label, signals)
     usual = weighted_median(squares, np.bincount(label).astype(np.float64))
-    root = np.minimum(1.0, (TUNING**2 * usual / np.maximum(squares, 1e-300)) ** 0.25)
-    weight = root[label].ravel()
+    weight = huber_root(squares, usual)[label].ravel()
     residual, jacobian = weight * residual, weight[:, None] * jacobian
     step = np.asarray(-np.linalg.lstsq(jacobian, residual, rcond=SINGULAR)[0], dtype=np.float64)
     return residual + jacobian @ step, jacobian, step
+
+
+def huber_root(squares: FloatArray, usual: FloatArray | float) -> FloatArray:
+    """Root of Huber's weight of blocks with mean `squares`, of which some are `usual`: by it their
+    rows are multiplied.
+    """
+    return np.minimum(1.0, (TUNING**2 * usual / np.maximum(squares, 1e-300)) ** 0.25)
 
 
 def jackknife_covariance(shifts: FloatArray) -> FloatArray:

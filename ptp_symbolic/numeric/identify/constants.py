@@ -43,7 +43,7 @@ RESTING = 5.0  # 1; the same for every rate of a log (once in 1,700,000); derive
 FORGOTTEN = 0.25  # s; five time constants of drives (0.05 s), after which 0.7 % is left; derived
 NEARBY = 2.0 * FAR  # 1; standard deviations from which on all windows count alike; scaled
 MANY_RUNS = 20  # 1; windows whose median stands for all: good to 28 % of their spread; derived
-MISLEADING = 0.25  # 1; share of a difference by which its derivative misleads, or sees; scaled
+MISLEADING = 0.25  # 1; share of a difference: a derivative off by it, or below it, misleads; scaled
 
 # Effort
 ITERATIONS = 4  # 1; in which a fit, or an amount, shows whether it is worth more; scaled

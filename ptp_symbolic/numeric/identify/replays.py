@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import REPLAYS, SEED, TUNING
+from ptp_symbolic.numeric.identify.blocks import huber_root
+from ptp_symbolic.numeric.identify.constants import REPLAYS, SEED
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
@@ -29,6 +30,11 @@ def input_noise(run: Run, declared: Sequence[float | None]) -> FloatArray:
     return np.array([white_noise(column) if d is None else d for column, d in columns])
 
 
+def noisier(run: Run, noise: FloatArray, rng: np.random.Generator) -> Run:
+    """`run` with more `noise` (rms) [nu] on its inputs."""
+    return with_inputs(run, run.held_inputs + noise * rng.standard_normal(run.held_inputs.shape))
+
+
 def replayed(
     model: Model,
     run: Run,
@@ -40,9 +46,9 @@ def replayed(
     """Change of the weighted residuals by input noise, and the Jacobian by the start of the run;
     None where the run cannot be simulated.
     """
-    shaken = noise * rng.standard_normal(run.held_inputs.shape)
-    both = [with_inputs(run, run.held_inputs + change) for change in (0.0, shaken)]
+    held = with_inputs(run, run.held_inputs)
     none = np.zeros(0, dtype=np.int64)
+    both = (held, noisier(run, noise, rng))
     plain, other = (evaluate(model, r, p, z, none, True, Tolerance()) for r in both)
     if plain.failed or other.failed:
         return None
@@ -101,8 +107,7 @@ def with_input_noise(
         noise = input_noise(run, declared_noise)
         rng = np.random.default_rng((SEED, number))
         for _ in range(replays if np.any(noise) else 0):
-            inputs = run.held_inputs + noise * rng.standard_normal(run.held_inputs.shape)
-            noisy = with_inputs(run, inputs)
+            noisy = noisier(run, noise, rng)
             other = evaluate(fit.model, noisy, p, fit.z[number], none, False, fit.tolerance)
             if other.failed is None:
                 found.append(other.residual - e.residual)
@@ -114,8 +119,5 @@ def with_input_noise(
         return fit
     size = np.concatenate([np.full(c.shape[1], float(len(c))) for c in every])
     usual = max(float(weighted_median(square[:, None], size)[0]), 1.0)
-    shaken = tuple(
-        c * np.minimum(1.0, TUNING**2 * usual / np.maximum(np.mean(c**2, axis=0), 1e-300)) ** 0.25
-        for c in every
-    )
+    shaken = tuple(c * huber_root(np.mean(c**2, axis=0), usual) for c in every)
     return replace(fit, shaken=shaken)
