@@ -1,5 +1,7 @@
 """What an effect must stand before it is named, besides its predictive gain."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -8,25 +10,30 @@ from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stack
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
 from ptp_symbolic.numeric.identify.blocks import leave_blocks_out, without_outliers
 from ptp_symbolic.numeric.identify.constants import ELSEWHERE, FALSE_ALARM, MOST, NEAR_BOUND, SHARP
+from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.evaluate import evaluate
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import chance_of_zero
 from ptp_symbolic.numeric.identify.run_inputs import with_inputs
 
 FloatArray = NDArray[np.float64]
+Refit = Callable[[str], Fit]  # the fit without the run of that name
 
 
-def why_unconfirmed(fit: Fit, candidate: Candidate, leaves_noise: bool) -> str | None:
+def why_unconfirmed(
+    fit: Fit, candidate: Candidate, leaves_noise: bool, refit: Refit | None = None
+) -> str | None:
     """Why `candidate` of a set cannot be named; None where nothing speaks against it. `fit` is that
-    of the set, from `with_finite_differences` if it is one of simulations. Where it leaves noise
-    alone, nothing is missing that the candidate could make up for.
+    of the set, from `with_finite_differences` if it is one of simulations, `refit` that of
+    `unstable_without`. Where it leaves noise alone, nothing is missing that the candidate could
+    make up for.
     """
     bound = at_bound(fit, candidate)
     if bound is not None:
         return f"{bound} ends at its bound"
     if not leaves_noise and not is_amount_known(fit, candidate):
         return "its amount cannot be told from zero"
-    run = unstable_without(fit, candidate)
+    run = unstable_without(fit, candidate, refit)
     if run is not None:
         return f"its value does not hold when {run} is left out"
     return None
@@ -60,13 +67,14 @@ def at_bound(fit: Fit, candidate: Candidate) -> str | None:
     return None
 
 
-def unstable_without(fit: Fit, candidate: Candidate) -> str | None:
+def unstable_without(fit: Fit, candidate: Candidate, refit: Refit | None = None) -> str | None:
     """Leave-one-run-out: the first run without which less than half of the effect, or its opposite,
     would be found.
 
     The effect is what it changes in the outputs, projected off what other parameters follow; runs
     far worse than usual weigh less. Where a single run holds all that is known of it, leaving that
-    out says nothing.
+    out says nothing. What linear prediction finds so is fitted without the run where a `refit` is
+    given: breakaways are no straight line.
     """
     sources = [run.source for run in fit.runs]
     names = list(dict.fromkeys(sources))
@@ -82,15 +90,17 @@ def unstable_without(fit: Fit, candidate: Candidate) -> str | None:
     whole = effect_of(fit, candidate.vanishing, columns) + columns[:, own] @ step[own]
     effect = projected_off(whole[:, None], columns[:, others])[:, 0]
     mine = projected_off(columns[:, own], columns[:, others])
-    square = float(effect @ effect)
+    square, at = float(effect @ effect), to_search(fit.free, fit.values)
     if square == 0.0:
         return None
     for number, name in enumerate(names):
         here = label == number
         if float(effect[here] @ effect[here]) > (1.0 - ELSEWHERE) * square:
             continue
-        shifted = effect + mine @ left.shifts[number, own]
-        if float(shifted @ effect) < MOST * square:
+        shift = left.shifts[number, own]
+        if float((effect + mine @ shift) @ effect) < MOST * square and refit is not None:
+            shift = (to_search(fit.free, refit(name).values) - at)[own]
+        if float((effect + mine @ shift) @ effect) < MOST * square:
             return name
     return None
 

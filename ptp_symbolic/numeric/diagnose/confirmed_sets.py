@@ -1,13 +1,14 @@
 """What is left of a set when all that cannot be confirmed is taken out, or made simpler."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, at_bound, why_unconfirmed
 from ptp_symbolic.numeric.diagnose.findings import Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, gain_in_innovations
 from ptp_symbolic.numeric.diagnose.groups import Rival
-from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms
+from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import MATERIAL, MOST
@@ -112,10 +113,11 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
     """
     quiet = leaves_noise_alone(trial, floor_of(seeker.task, trial, seeker.carried))
     by_gain = sorted(steps, key=lambda s: s.gain.share)
+    refit = partial(without_run, seeker.task, trial)
     for step in by_gain:
         if not seeker.is_needed(step):
             return step, _too_little(step.gain)
-        reason = why_unconfirmed(fit, step.candidate, quiet)
+        reason = why_unconfirmed(fit, step.candidate, quiet, refit)
         if reason is not None:
             return step, reason
         if not quiet:

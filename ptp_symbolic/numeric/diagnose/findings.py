@@ -50,8 +50,8 @@ def step_of(trial: Trial, candidate: Candidate, without: Trial) -> Step:
 
 def is_earned(earned: Gain, p: float, tests: int) -> bool:
     """Whether a gain is material, and clear over so many `tests` by the values of its parameters
-    (see `p_value`) or by the blocks it predicts better (Bonferroni): parameters that trade for each
-    other may each be anything while their effect is beyond doubt.
+    (see `p_value`), or by how much better it predicts blocks, or by how many (Bonferroni):
+    parameters that trade for each other may each be anything while their effect is beyond doubt.
     """
-    chance = 2.0 * min(p, earned.chance)
+    chance = 3.0 * min(p, earned.chance, earned.by_rank)
     return earned.share >= MATERIAL and earned.lower > 0.0 and chance < FALSE_ALARM / max(tests, 1)

@@ -38,6 +38,7 @@ from ptp_symbolic.numeric.identify.constants import (
     WIDE_STEP,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
+from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.gap_places import gears_in_place
 from ptp_symbolic.numeric.identify.windows import cut_where_noise_grows
 
@@ -246,6 +247,15 @@ def sharpened(task: Task, trial: Trial, carried: FloatArray) -> Trial:
         return trial
     trial = continued(task, trial, POLISH, SHARP, executor=task.executor)
     return continued(task, without_misleading(trial), POLISH, SHARP, STEP, task.executor)
+
+
+def without_run(task: Task, trial: Trial, name: str) -> Fit:
+    """The trial fitted on without the run, or the windows, of a log."""
+    kept = [k for k, run in enumerate(trial.fit.runs) if run.source != name]
+    part = replace(task, train=tuple(trial.fit.runs[k] for k in kept))
+    z = [trial.fit.z[k] for k in kept]
+    run = task.executor
+    return fitted(part, trial.candidates, trial.values, z, POLISH, executor=run).fit
 
 
 def expected_gain(trial: Trial, vanishing: Mapping[str, float]) -> float:

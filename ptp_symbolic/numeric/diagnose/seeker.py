@@ -28,6 +28,7 @@ from ptp_symbolic.numeric.diagnose.responses import responses
 from ptp_symbolic.numeric.diagnose.screening import screened
 from ptp_symbolic.numeric.diagnose.starts import along, from_rows, in_place
 from ptp_symbolic.numeric.diagnose.subsets import exchanges
+from ptp_symbolic.numeric.diagnose.through_windows import through_windows
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -207,6 +208,14 @@ class Seeker:
         close = screened(task, self.proposals, trial.candidates, wanted, trial.values)
         begun += [fitted(task, t.candidates, t.values, None) for t in close[:SCREENED]]
         return self.best_earning(begun, trial)
+
+    def led_through_windows(self) -> list[Trial]:
+        """The declared model with each effect that the motion does not show, where short windows
+        lead to it.
+        """
+        wanted = {c.key: c for c in self.proposals.unseen if not c.is_declared_value}
+        led = [through_windows(self.task, self.declared, c) for c in wanted.values()]
+        return [to_its_end(self.task, t, self.carried) for t in led if t is not None]
 
     def best_earning(self, begun: Sequence[Trial], trial: Trial) -> Trial | None:
         """The best of trials that are `begun`, polished, of those in which what they have more than

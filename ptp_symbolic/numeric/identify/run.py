@@ -178,7 +178,22 @@ def with_start(
                 guess=float(np.sign(rate)),
             )
         )
+    if around is not None:
+        for state, friction in enumerate(model.module.ZERO_AT_REST):
+            if friction >= 0:
+                rate = states[model.friction_rates[friction]]
+                angle = f"theta_{rate.removeprefix('omega_').removeprefix('gear_')}"
+                if angle in run.signals:
+                    start[state] = _rest_so_far(run, run.signals.index(angle), around)
     return replace(run, start=start, unknowns=tuple(unknowns))
+
+
+def _rest_so_far(run: Run, column: int, around: Around) -> float:
+    """Time in s for which a signal has stayed within its noise before the window begins."""
+    values = around.measured[: around.first + 1, column]
+    away = np.flatnonzero(np.abs(values - values[-1]) > FAR / run.weight[column])
+    since = int(away[-1]) + 1 if away.size else 0
+    return float(around.time[around.first] - around.time[since])
 
 
 def _start_samples(run: Run) -> int:

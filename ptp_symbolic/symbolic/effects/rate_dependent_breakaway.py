@@ -17,7 +17,7 @@ PARAMETERS = (
         10.0,
         "relative growth of breakaway per e-fold of rest",
         vanishes=0.0,
-        starts=(0.1,),
+        starts=(0.4,),
     ),
     Parameter(
         "t_rest_{axis}",
