@@ -214,8 +214,9 @@ class Seeker:
         lead to it.
         """
         wanted = {c.key: c for c in self.proposals.unseen if not c.is_declared_value}
-        led = [through_windows(self.task, self.declared, c) for c in wanted.values()]
-        return [to_its_end(self.task, t, self.carried) for t in led if t is not None]
+        task, declared = self.task, self.declared
+        led = [through_windows(task, declared, c, self.carried) for c in wanted.values()]
+        return [t for t in led if t is not None]
 
     def best_earning(self, begun: Sequence[Trial], trial: Trial) -> Trial | None:
         """The best of trials that are `begun`, polished, of those in which what they have more than
