@@ -116,15 +116,19 @@ def test_what_a_few_blocks_show_beyond_doubt_is_clear() -> None:
 
 
 def test_a_gain_must_be_material_and_clear_over_all_candidates() -> None:
-    """Clear by its parameters or by its blocks, each at half of the level."""
-    p = FALSE_ALARM / 40 / 2.0
+    """Clear by its parameters, by the gain in blocks or by their ranks, each at a third of the
+    level.
+    """
+    p = FALSE_ALARM / 40 / 3.0
     threshold = float(stats.t.isf(p, 20))
-    for t, chance, earned in (
-        (0.0, 0.9 * p, True),
-        (0.0, 1.1 * p, False),
-        (1.001 * threshold, 1.0, True),
-        (0.999 * threshold, 1.0, False),
+    for t, by_rank, chance, earned in (
+        (0.0, 1.0, 0.9 * p, True),
+        (0.0, 1.0, 1.1 * p, False),
+        (1.001 * threshold, 1.0, 1.0, True),
+        (0.999 * threshold, 1.0, 1.0, False),
+        (0.0, 0.9 * p, 1.0, True),
+        (0.0, 1.1 * p, 1.0, False),
     ):
-        assert is_earned(Gain(MATERIAL, 0.01, 0.2, t, 20), chance, 40) is earned
+        assert is_earned(Gain(MATERIAL, 0.01, 0.2, t, 20, by_rank), chance, 40) is earned
     assert not is_earned(Gain(0.9 * MATERIAL, 0.01, 0.2, 9.0, 20), 0.9 * p, 40)
     assert not is_earned(Gain(MATERIAL, -0.01, 0.2, 9.0, 20), 0.9 * p, 40)

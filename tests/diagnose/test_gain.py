@@ -43,6 +43,20 @@ def test_a_third_taken_from_every_block_is_a_third_beyond_doubt() -> None:
     assert not compared(smaller, smaller).is_clear(1)
 
 
+def test_a_gain_that_lies_in_few_blocks_is_clear_by_ranks_if_many_gain_besides() -> None:
+    """Of twenty blocks that all gain, all signs are as likely otherwise: one in 2^20. Where ten
+    gain and ten lose, of the same sizes, it is one in two.
+    """
+    smaller = 1.0 + 0.1 * np.arange(1, 21)
+    smaller[-2:] = 1000.0, 2000.0
+    found = compared(np.ones(20), smaller)
+    assert found.chance > 0.05
+    assert found.by_rank == pytest.approx(0.5**20)
+    sizes = np.repeat(np.arange(1.0, 11.0), 2)
+    mixed = compared(np.full(20, 20.0), 20.0 + sizes * np.tile([1.0, -1.0], 10))
+    assert mixed.by_rank == pytest.approx(0.5, abs=0.02)
+
+
 @pytest.mark.parametrize("tests", [1, 40, 1000])
 @pytest.mark.parametrize("degrees", [1, 11, 199])
 def test_a_clear_gain_passes_a_one_sided_t_test_shared_among_all_tests(

@@ -93,12 +93,26 @@ def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
                 if as_usual
             ]
             noise = coloured_noise(series, 1.0)
-            seen = [ABOVE_NOISE * hidden_from_differences(p) for p in (noise.pole, max(POLES))]
-            rms[column] = min(noise.rms, np.hypot(1.0, seen[0]))
-            most[column] = min(noise.most, np.hypot(1.0, seen[1]))
+            rms[column] = min(noise.rms, _with_hidden(noise.pole))
+            most[column] = min(noise.most, _with_hidden(max(POLES)))
     floor = Floor(rms, most, carried)
     white = np.ones(len(rms))
     return floor if leaves_noise_alone(trial, floor) else Floor(white, white, carried)
+
+
+def most_hidden(task: Task) -> FloatArray:
+    """The largest root mean square [ny] that noise of any colour may have, over the noise that the
+    differences of the signals show; 1 where it is declared.
+    """
+    signals = task.train[0].signals
+    return np.array(
+        [1.0 if s in task.declared_noise else _with_hidden(max(POLES)) for s in signals]
+    )
+
+
+def _with_hidden(pole: float) -> float:
+    """Root mean square of white noise of 1 and of what noise with a `pole` hides beside it."""
+    return float(np.hypot(1.0, ABOVE_NOISE * hidden_from_differences(pole)))
 
 
 def leaves_white_noise(trial: Trial, carried: FloatArray) -> bool:

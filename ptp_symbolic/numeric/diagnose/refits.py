@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.floor import carried_noise, leaves_white_noise, left_over
+from ptp_symbolic.numeric.diagnose.growing_windows import growing, led_through, settled
 from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.trial import (
@@ -28,7 +29,6 @@ from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
     FAR_OFF,
     FORGOTTEN,
-    ITERATIONS,
     NEARBY,
     POLISH,
     ROUGH,
@@ -39,7 +39,6 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.gap_places import gears_in_place
 from ptp_symbolic.numeric.identify.windows import cut_where_noise_grows
 
 FloatArray = NDArray[np.float64]
@@ -47,9 +46,9 @@ FloatArray = NDArray[np.float64]
 
 def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
     """The declared model, from where windows lead from the rows' start and from the declared one,
-    and from those two themselves; where runs are windows already, from starts far off too. And the
-    task with windows for runs that multiply the noise of their inputs (see `in_windows`), which
-    would lead the fit astray.
+    and from those two themselves; where runs are windows already, from starts far off too, and from
+    where shorter ones lead. And the task with windows for runs that multiply the noise of their
+    inputs (see `in_windows`), which would lead the fit astray.
     """
     starts = [proposals.start, declared_start(task)]
     spread = far_starts(task, proposals.start) if has_rough_starts(task) else []
@@ -62,6 +61,7 @@ def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
     if not task.windows:
         far = [fitted(task, (), values, None) for values in spread]
         begun += halving(task, far, SCREENED)
+        begun.append(fitted(task, (), led_through(growing(task), (), proposals.start), None))
     best = halving(task, begun, 1) or begun[-1:]
     trial = polished(task, best[0], carried_noise(task, best[0].fit))
     part = in_windows(task, trial)
@@ -142,21 +142,6 @@ def over_windows(
             return []
         best = settled(part, begun[0], executor)
     return [fitted(task, candidates, best.values, None)] if best else []
-
-
-def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
-    """The trial fitted on until some iterations more change next to nothing, the gears put in their
-    places anew each time: a window that began on the wrong side of a gap holds the others back.
-    """
-    for _ in range(CYCLES):
-        fit = trial.fit
-        z = gears_in_place(fit.model, fit.runs, fit.values, fit.z, fit.tolerance, executor)
-        begun = replace(trial, fit=replace(fit, z=tuple(z)))
-        better = continued(task, begun, ITERATIONS, executor=executor)
-        if is_alike(better, trial):
-            break
-        trial = better
-    return trial
 
 
 def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:

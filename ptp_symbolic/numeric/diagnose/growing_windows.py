@@ -1,0 +1,66 @@
+"""Fits over ever longer windows, which lead to where whole runs, or longer windows, fit.
+
+The misfit of long runs is a staircase where friction lets go: one start of motion a sample late
+moves all that follows. A window that holds a single one tells smoothly how late it is, and longer
+ones tell the parameters apart (multiple shooting: Bock, 1983).
+"""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import replace
+
+import numpy as np
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, continued, fitted, is_alike
+from ptp_symbolic.numeric.identify.constants import (
+    CYCLES,
+    ITERATIONS,
+    LENGTHS,
+    POLISH,
+    SEARCH_PERIOD,
+    WIDE_STEP,
+)
+from ptp_symbolic.numeric.identify.gap_places import gears_in_place
+from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
+from ptp_symbolic.numeric.identify.windows import cut
+
+
+def growing(task: Task) -> list[Task]:
+    """The task over windows of the three shortest LENGTHS, the shortest first, as long as they are
+    shorter than its runs.
+    """
+    few = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in task.whole]
+    longest = max(float(run.time[-1] - run.time[0]) for run in task.train)
+    lengths = [x for x in sorted(LENGTHS)[:3] if x < longest]
+    return [replace(task, train=cut(task.model, few, x), robust_below=np.inf) for x in lengths]
+
+
+def led_through(
+    parts: Sequence[Task], candidates: Sequence[Candidate], values: Mapping[str, float]
+) -> Mapping[str, float]:
+    """Values to which windows lead a set from `values`, through one of `parts` after the other."""
+    for part in parts:
+        values = led(part, candidates, values).values
+    return values
+
+
+def led(part: Task, candidates: Sequence[Candidate], values: Mapping[str, float]) -> Trial:
+    """A set fitted to windows from `values`."""
+    trial = settled(part, fitted(part, candidates, values, None), None)
+    return continued(part, trial, POLISH, secants=WIDE_STEP)
+
+
+def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
+    """The trial fitted on until some iterations more change next to nothing, the gears put in their
+    places anew each time: a window that began on the wrong side of a gap holds the others back.
+    """
+    for _ in range(CYCLES):
+        fit = trial.fit
+        z = gears_in_place(fit.model, fit.runs, fit.values, fit.z, fit.tolerance, executor)
+        begun = replace(trial, fit=replace(fit, z=tuple(z)))
+        better = continued(task, begun, ITERATIONS, executor=executor)
+        if is_alike(better, trial):
+            break
+        trial = better
+    return trial
