@@ -1,10 +1,10 @@
-"""Friction that lets go later after a longer rest, led through ever longer windows, on logs of the
-benchmark's own integrator.
-"""
+"""Fits led through ever longer windows, on logs of the benchmark's own integrator."""
 
 import json
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,31 +15,24 @@ from ptp_symbolic.numeric.diagnose.floor import carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.through_windows import through_windows
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial
+from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.preparation import effect_keys, task_for
 from tests.benchmark.catalogue import catalogue
 from tests.benchmark.sets import generate
 
-SET = "071"  # a direct drive that hides it
 
-
-@pytest.fixture(scope="module")
-def hidden(
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Iterator[tuple[Task, Trial, dict[str, float]]]:
-    """The task, its declared model, and the parameters of the machine."""
-    folder = tmp_path_factory.mktemp("breakaway")
-    generate(next(e for e in catalogue() if e.id.startswith(SET)), folder)
-    truth = json.loads((folder / "truth.json").read_text())
+@contextmanager
+def logged(number: str, folder: Path) -> Iterator[tuple[Task, dict[str, float]]]:
+    """The task of a set of the benchmark, and the parameters of its machine."""
+    generate(next(e for e in catalogue() if e.id.startswith(number)), folder)
     platform = read_platform(folder / "platform.toml")
-    files = (log_files(sorted((folder / part).glob("*.csv"))) for part in ("train", "validate"))
-    logs = read_split_logs(*files, platform)
+    train, validate = (log_files(sorted((folder / h).glob("*.csv"))) for h in ("train", "validate"))
+    logs = read_split_logs(train, validate, platform)
     model = emission.emit(variants.with_candidates(platform))
     with ThreadPoolExecutor(2) as executor:
         task = task_for(platform, model, *logs, effect_keys(platform), executor, lambda text: None)
-        task, declared = fit_declared(task, propose(task))
-        yield task, declared, truth["parameters"]
+        yield task, json.loads((folder / "truth.json").read_text())["parameters"]
 
 
 def breakaway(values: dict[str, float], rest: float) -> float:
@@ -48,15 +41,24 @@ def breakaway(values: dict[str, float], rest: float) -> float:
     return float(values["F_s_pan"] * (1.0 + growth))
 
 
-def test_windows_lead_to_the_breakaway_of_the_machine(
-    hidden: tuple[Task, Trial, dict[str, float]],
-) -> None:
-    task, declared, truth = hidden
-    candidate = next(c for c in task.candidates if c.id == "rate_dependent_breakaway")
-    carried = carried_noise(task, declared.fit)
-    found = through_windows(task, declared, candidate, carried)
-    assert found is not None
+def test_windows_lead_to_the_breakaway_of_the_machine(tmp_path: Path) -> None:
+    """A direct drive that hides it: whole runs leave a hundred times the noise."""
+    with logged("071", tmp_path) as (task, truth):
+        task, declared = fit_declared(task, propose(task))
+        candidate = next(c for c in task.candidates if c.id == "rate_dependent_breakaway")
+        carried = carried_noise(task, declared.fit)
+        found = through_windows(task, declared, candidate, carried)
+        assert found is not None
     assert np.all(left_over(found.fit) < 0.02 * left_over(declared.fit))
     for rest in (0.1, 0.3):  # torques come in steps: after longer rests many laws do as well
         expected = breakaway(truth, rest)
         assert breakaway(found.values, rest) == pytest.approx(expected, rel=0.03)
+
+
+def test_windows_lead_the_declared_model_out_of_a_wrong_stribeck_speed(tmp_path: Path) -> None:
+    """A direct drive that lacks nothing, with start values far off, in windows of four seconds."""
+    with logged("236", tmp_path) as (task, truth):
+        _, declared = fit_declared(task, propose(task))
+    for name in ("J_pan", "F_c_pan", "F_s_pan", "v_s_pan"):
+        assert declared.values[name] == pytest.approx(truth[name], rel=0.03)
+    assert np.all(left_over(declared.fit) < 1.3)

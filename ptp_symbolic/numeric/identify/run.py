@@ -179,13 +179,21 @@ def with_start(
             )
         )
     if around is not None:
-        for state, friction in enumerate(model.module.ZERO_AT_REST):
-            if friction >= 0:
-                rate = states[model.friction_rates[friction]]
-                angle = f"theta_{rate.removeprefix('omega_').removeprefix('gear_')}"
-                if angle in run.signals:
-                    start[state] = _rest_so_far(run, run.signals.index(angle), around)
+        for state, signal in _memories_of_rest(model):
+            if signal in run.signals:
+                start[state] = _rest_so_far(run, run.signals.index(signal), around)
     return replace(run, start=start, unknowns=tuple(unknowns))
+
+
+def _memories_of_rest(model: Model) -> list[tuple[int, str]]:
+    """States that friction sets to zero as its joint comes to rest, and the angle of that."""
+    names = model.state_names
+    rates = {k: names[rate] for k, rate in enumerate(model.friction_rates)}
+    return [
+        (state, rates[friction].replace("omega_", "theta_", 1).replace("_gear_", "_", 1))
+        for state, friction in enumerate(model.module.ZERO_AT_REST)
+        if friction >= 0
+    ]
 
 
 def _rest_so_far(run: Run, column: int, around: Around) -> float:
