@@ -58,8 +58,8 @@ def _from_declared(seeker: Seeker) -> Search:
             found += halving(task, unseen, 1)
         found = [t for t in ranked(found) if is_near(t, found)]
         best = seeker.restarted(ranked([best, *(seeker.completed(t) for t in found)])[0])
-    if not seeker.is_at_noise(best):
-        best = ranked([best, *seeker.led_through_windows()])[0]
+    if not seeker.have_answer(best):
+        best = seeker.simplest([best, *seeker.led_through_windows()])
     begun, steps = seeker.pruned(best)
     best, steps = extended(seeker, begun, steps)
     end = best

@@ -218,6 +218,13 @@ class Seeker:
         led = [through_windows(task, declared, c, self.carried) for c in wanted.values()]
         return [t for t in led if t is not None]
 
+    def simplest(self, trials: Sequence[Trial]) -> Trial:
+        """The best of trials; of those that leave white noise alone the one with the fewest
+        parameters.
+        """
+        quiet = [t for t in trials if self.is_at_noise(t)]
+        return min(quiet, key=lambda t: len(t.fit.free)) if quiet else ranked(trials)[0]
+
     def best_earning(self, begun: Sequence[Trial], trial: Trial) -> Trial | None:
         """The best of trials that are `begun`, polished, of those in which what they have more than
         `trial` gains clearly and materially; None if there is none. An effect may fit best in a

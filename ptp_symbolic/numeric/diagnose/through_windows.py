@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise, most_hidden
-from ptp_symbolic.numeric.diagnose.growing_windows import growing, led, led_through
+from ptp_symbolic.numeric.diagnose.growing_windows import growing, led, led_through, settled
 from ptp_symbolic.numeric.diagnose.refits import to_its_end
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
@@ -16,13 +16,13 @@ from ptp_symbolic.numeric.diagnose.trial import (
     fitted,
     mean_squares,
     misfits,
-    ranked,
     simulated,
 )
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
     CYCLES,
     MATERIAL,
+    SCREENED,
 )
 
 FloatArray = NDArray[np.float64]
@@ -46,7 +46,7 @@ def through_windows(
             break
         values = led_through(parts, candidates, trial.values)
         again = to_its_end(task, fitted(task, candidates, values, None), carried)
-        before, trial = trial, ranked([trial, again])[0]
+        before, trial = trial, _best([trial, again])[0]
         if trial is before:
             break
     return trial
@@ -55,35 +55,62 @@ def through_windows(
 def _first_lead(
     parts: Sequence[Task], parent: Trial, candidate: Candidate, carried: FloatArray
 ) -> Mapping[str, float] | None:
-    """Values where the best shape of a candidate leads through all windows; None where it does not
-    gain materially in the longest.
+    """Values where windows lead the candidate; None where it does not gain materially in the
+    longest.
 
-    The others follow the candidate first, at the amount of its start: from where they make up for
-    it, a search does not find back.
+    It begins at the amount of its start, to which all others follow first: from where they make up
+    for it a search does not find back. And in every part at the best of several amounts, all others
+    as they are without it.
     """
-    shortest = parts[0]
+    shortest, run = parts[0], parts[0].executor
     alone = led(shortest, parent.candidates, parent.values)
-    amounts = {n: f.start for f in candidate.defining for n in f.names}
-    shapes = candidate.shapes
-    if not any(_may_be_all(shortest, alone, {**amounts, **shape}, carried) for shape in shapes):
+    starts = [{**_amounts(candidate, 1.0), **shape} for shape in candidate.shapes]
+    if not any(_may_be_all(shortest, alone, start, carried) for start in starts):
         return None
     candidates = (*parent.candidates, candidate)
 
-    def first(shape: Mapping[str, float]) -> Trial:
-        held = {**amounts, **shape}
-        part = replace(shortest, fixed={**shortest.fixed, **held})
-        others = led(part, parent.candidates, {**alone.values, **held})
+    def followed(start: Mapping[str, float]) -> Trial:
+        part = replace(shortest, fixed={**shortest.fixed, **start})
+        others = settled(
+            part, fitted(part, parent.candidates, {**alone.values, **start}, None), None
+        )
         return led(shortest, candidates, others.values)
 
-    run = shortest.executor
-    with_it = list(run.map(first, shapes))
-    for part in parts[1:]:
-        jobs = [run.submit(led, part, t.candidates, t.values) for t in (alone, *with_it)]
-        alone, *with_it = (job.result() for job in jobs)
-    best = ranked(with_it)[0]
-    cost = misfits([alone, best])
-    size = sum(r.size for r in best.fit.runs)
-    return best.values if cost[1] <= cost[0] + size * np.log(1.0 - MATERIAL) else None
+    with_it: list[Trial] = []
+    for part in parts:
+        if part is shortest:
+            jobs = [run.submit(followed, start) for start in starts]
+        else:
+            alone = led(part, parent.candidates, alone.values)
+            jobs = [run.submit(led, part, candidates, t.values) for t in with_it]
+        jobs += [run.submit(_scanned, part, alone, candidate, s) for s in candidate.shapes]
+        with_it = _best([job.result() for job in jobs])
+    cost = misfits([alone, with_it[0]])
+    size = sum(r.size for r in alone.fit.runs)
+    return with_it[0].values if cost[1] <= cost[0] + size * np.log(1.0 - MATERIAL) else None
+
+
+def _scanned(part: Task, alone: Trial, candidate: Candidate, shape: Mapping[str, float]) -> Trial:
+    """A trial with the best of several amounts of a candidate of some `shape`, fitted on."""
+    candidates = (*alone.candidates, candidate)
+    values = [{**alone.values, **_amounts(candidate, 2.0**k), **shape} for k in range(-3, 3)]
+    begun = [fitted(part, candidates, v, alone.fit.z) for v in values]
+    return led(part, candidates, _best(begun)[0].values)
+
+
+def _best(trials: Sequence[Trial]) -> list[Trial]:
+    """Of trials of one set those that go on, the best first."""
+    cost = misfits(trials)
+    return [trials[k] for k in np.argsort(cost)[:SCREENED]]
+
+
+def _amounts(candidate: Candidate, factor: float) -> dict[str, float]:
+    """What switches a candidate on, at its start times a factor."""
+    return {
+        n: float(np.clip(factor * f.start, f.lower, f.upper))
+        for f in candidate.defining
+        for n in f.names
+    }
 
 
 def _may_be_all(
