@@ -15,8 +15,8 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, continued, fitted, is_alike
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
+    GROWING,
     ITERATIONS,
-    LENGTHS,
     POLISH,
     SEARCH_PERIOD,
     WIDE_STEP,
@@ -27,12 +27,10 @@ from ptp_symbolic.numeric.identify.windows import cut
 
 
 def growing(task: Task) -> list[Task]:
-    """The task over windows of the three shortest LENGTHS, the shortest first, as long as they are
-    shorter than its runs.
-    """
+    """The task over windows of the lengths in GROWING that are shorter than its runs."""
     few = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in task.whole]
     longest = max(float(run.time[-1] - run.time[0]) for run in task.train)
-    lengths = [x for x in sorted(LENGTHS)[:3] if x < longest]
+    lengths = [x for x in GROWING if x < longest]
     return [replace(task, train=cut(task.model, few, x), robust_below=np.inf) for x in lengths]
 
 

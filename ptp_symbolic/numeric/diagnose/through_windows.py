@@ -20,6 +20,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
 )
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
+    AMOUNTS,
     CYCLES,
     MATERIAL,
     SCREENED,
@@ -93,7 +94,7 @@ def _first_lead(
 def _scanned(part: Task, alone: Trial, candidate: Candidate, shape: Mapping[str, float]) -> Trial:
     """A trial with the best of several amounts of a candidate of some `shape`, fitted on."""
     candidates = (*alone.candidates, candidate)
-    values = [{**alone.values, **_amounts(candidate, 2.0**k), **shape} for k in range(-3, 3)]
+    values = [{**alone.values, **_amounts(candidate, k), **shape} for k in AMOUNTS]
     begun = [fitted(part, candidates, v, alone.fit.z) for v in values]
     return led(part, candidates, _best(begun)[0].values)
 
