@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -17,7 +16,7 @@ from ptp_symbolic.numeric.diagnose.refits import fit_declared, to_its_end
 from ptp_symbolic.numeric.diagnose.through_windows import through_windows
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted
 from ptp_symbolic.platform import read_platform
-from ptp_symbolic.workflows.preparation import effect_keys, task_for
+from ptp_symbolic.workflows.preparation import effect_keys, task_for, workers
 from tests.benchmark.catalogue import catalogue
 from tests.benchmark.sets import generate
 
@@ -30,7 +29,7 @@ def logged(number: str, folder: Path) -> Iterator[tuple[Task, dict[str, float]]]
     train, validate = (log_files(sorted((folder / h).glob("*.csv"))) for h in ("train", "validate"))
     logs = read_split_logs(train, validate, platform)
     model = emission.emit(variants.with_candidates(platform))
-    with ThreadPoolExecutor(2) as executor:
+    with workers() as executor:
         task = task_for(platform, model, *logs, effect_keys(platform), executor, lambda text: None)
         yield task, json.loads((folder / "truth.json").read_text())["parameters"]
 

@@ -93,14 +93,17 @@ def unstable_without(fit: Fit, candidate: Candidate, refit: Refit | None = None)
     square, at = float(effect @ effect), to_search(fit.free, fit.values)
     if square == 0.0:
         return None
+
+    def holds(shift: FloatArray) -> bool:
+        return float((effect + mine @ shift[own]) @ effect) >= MOST * square
+
     for number, name in enumerate(names):
         here = label == number
         if float(effect[here] @ effect[here]) > (1.0 - ELSEWHERE) * square:
             continue
-        shift = left.shifts[number, own]
-        if float((effect + mine @ shift) @ effect) < MOST * square and refit is not None:
-            shift = (to_search(fit.free, refit(name).values) - at)[own]
-        if float((effect + mine @ shift) @ effect) < MOST * square:
+        if holds(left.shifts[number]):
+            continue
+        if refit is None or not holds(to_search(fit.free, refit(name).values) - at):
             return name
     return None
 

@@ -84,6 +84,7 @@ def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
     runs = fit.runs
     rms, most = np.ones(len(runs[0].signals)), np.ones(len(runs[0].signals))
     squares = mean_squares(fit.evaluations, runs)
+    hidden = most_hidden(task)
     usual = squares <= TUNING**2 * np.maximum(left_over(fit) ** 2, 1.0)
     for column, signal in enumerate(runs[0].signals):
         if signal not in task.declared_noise:
@@ -94,7 +95,7 @@ def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
             ]
             noise = coloured_noise(series, 1.0)
             rms[column] = min(noise.rms, _with_hidden(noise.pole))
-            most[column] = min(noise.most, _with_hidden(max(POLES)))
+            most[column] = min(noise.most, hidden[column])
     floor = Floor(rms, most, carried)
     white = np.ones(len(rms))
     return floor if leaves_noise_alone(trial, floor) else Floor(white, white, carried)

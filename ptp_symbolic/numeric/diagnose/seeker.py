@@ -13,9 +13,7 @@ from ptp_symbolic.numeric.diagnose.findings import Step, is_earned, step_of
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
 from ptp_symbolic.numeric.diagnose.nested import beside_declared
-from ptp_symbolic.numeric.diagnose.proposals import (
-    Proposals,
-)
+from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import (
     expected_gain,
     forms,

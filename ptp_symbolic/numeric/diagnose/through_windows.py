@@ -16,6 +16,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
     fitted,
     mean_squares,
     misfits,
+    ranked,
     simulated,
 )
 from ptp_symbolic.numeric.identify.constants import (
@@ -47,9 +48,9 @@ def through_windows(
             break
         values = led_through(parts, candidates, trial.values)
         again = to_its_end(task, fitted(task, candidates, values, None), carried)
-        before, trial = trial, _best([trial, again])[0]
-        if trial is before:
+        if ranked([trial, again])[0] is trial:
             break
+        trial = again
     return trial
 
 
@@ -85,7 +86,8 @@ def _first_lead(
             alone = led(part, parent.candidates, alone.values)
             jobs = [run.submit(led, part, candidates, t.values) for t in with_it]
         jobs += [run.submit(_scanned, part, alone, candidate, s) for s in candidate.shapes]
-        with_it = _best([job.result() for job in jobs])
+        found = [job.result() for job in jobs]
+        with_it = [found[k] for k in np.argsort(misfits(found))[:SCREENED]]
     cost = misfits([alone, with_it[0]])
     size = sum(r.size for r in alone.fit.runs)
     return with_it[0].values if cost[1] <= cost[0] + size * np.log(1.0 - MATERIAL) else None
@@ -96,13 +98,7 @@ def _scanned(part: Task, alone: Trial, candidate: Candidate, shape: Mapping[str,
     candidates = (*alone.candidates, candidate)
     values = [{**alone.values, **_amounts(candidate, k), **shape} for k in AMOUNTS]
     begun = [fitted(part, candidates, v, alone.fit.z) for v in values]
-    return led(part, candidates, _best(begun)[0].values)
-
-
-def _best(trials: Sequence[Trial]) -> list[Trial]:
-    """Of trials of one set those that go on, the best first."""
-    cost = misfits(trials)
-    return [trials[k] for k in np.argsort(cost)[:SCREENED]]
+    return led(part, candidates, ranked(begun)[0].values)
 
 
 def _amounts(candidate: Candidate, factor: float) -> dict[str, float]:

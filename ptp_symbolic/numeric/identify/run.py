@@ -191,7 +191,7 @@ def _memories_of_rest(model: Model) -> list[tuple[int, str]]:
     rates = {k: names[rate] for k, rate in enumerate(model.friction_rates)}
     return [
         (state, rates[friction].replace("omega_", "theta_", 1).replace("_gear_", "_", 1))
-        for state, friction in enumerate(model.module.ZERO_AT_REST)
+        for state, friction in enumerate(model.zero_at_rest)
         if friction >= 0
     ]
 
