@@ -14,7 +14,11 @@ from ptp_symbolic.numeric.diagnose.fewer_samples import is_thinned, with_every_r
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, huber_loss, mean_squares
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, MANY_RUNS, POLES, TUNING
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.noise import coloured_noise, hidden_from_differences
+from ptp_symbolic.numeric.identify.noise import (
+    coloured_noise,
+    hidden_from_differences,
+    most_in_quietest,
+)
 from ptp_symbolic.numeric.identify.replays import propagated_noise
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run_groups import sizes
@@ -76,9 +80,9 @@ def carried_noise(task: Task, fit: Fit) -> FloatArray:
 
 def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
     """The floor, with the colour of the noise as the residual of `trial` shows it, but no more than
-    the differences of the measured signals leave room for, and what the inputs `carried` [ny].
-    Where more is left than noise of that colour, it is model error that has a colour: the floor is
-    white then.
+    the differences of the measured signals and the quietest run leave room for, and what the inputs
+    `carried` [ny]. Where more is left than noise of that colour, it is model error that has a
+    colour: the floor is white then.
     """
     fit = with_every_residual(task, trial.fit)
     runs = fit.runs
@@ -88,14 +92,15 @@ def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
     usual = squares <= TUNING**2 * np.maximum(left_over(fit) ** 2, 1.0)
     for column, signal in enumerate(runs[0].signals):
         if signal not in task.declared_noise:
-            series = [
-                e.residual.reshape(run.measured.shape)[:, column]
-                for (run, e), as_usual in zip(fit.pairs(), usual[:, column], strict=True)
-                if as_usual
-            ]
-            noise = coloured_noise(series, 1.0)
-            rms[column] = min(noise.rms, _with_hidden(noise.pole))
-            most[column] = min(noise.most, hidden[column])
+            by_log: dict[str, list[FloatArray]] = {}
+            for (run, e), as_usual in zip(fit.pairs(), usual[:, column], strict=True):
+                if as_usual:
+                    residual = e.residual.reshape(run.measured.shape)[:, column]
+                    by_log.setdefault(run.source, []).append(residual)
+            noise = coloured_noise([part for parts in by_log.values() for part in parts], 1.0)
+            quiet = max(1.0, most_in_quietest(list(by_log.values())))
+            rms[column] = min(noise.rms, _with_hidden(noise.pole), quiet)
+            most[column] = min(noise.most, hidden[column], quiet)
     floor = Floor(rms, most, carried)
     white = np.ones(len(rms))
     return floor if leaves_noise_alone(trial, floor) else Floor(white, white, carried)

@@ -57,8 +57,8 @@ def through_windows(
 def _first_lead(
     parts: Sequence[Task], parent: Trial, candidate: Candidate, carried: FloatArray
 ) -> Mapping[str, float] | None:
-    """Values where windows lead the candidate; None where it does not gain materially in the
-    longest.
+    """Values where windows lead the candidate; None where it does not gain materially in windows of
+    some length.
 
     It begins at the amount of its start, to which all others follow first: from where they make up
     for it a search does not find back. And in every part at the best of several amounts, all others
@@ -88,9 +88,10 @@ def _first_lead(
         jobs += [run.submit(_scanned, part, alone, candidate, s) for s in candidate.shapes]
         found = [job.result() for job in jobs]
         with_it = [found[k] for k in np.argsort(misfits(found))[:SCREENED]]
-    cost = misfits([alone, with_it[0]])
-    size = sum(r.size for r in alone.fit.runs)
-    return with_it[0].values if cost[1] <= cost[0] + size * np.log(1.0 - MATERIAL) else None
+        cost = misfits([alone, with_it[0]])
+        if not cost[1] <= cost[0] + sum(r.size for r in alone.fit.runs) * np.log(1.0 - MATERIAL):
+            return None
+    return with_it[0].values
 
 
 def _scanned(part: Task, alone: Trial, candidate: Candidate, shape: Mapping[str, float]) -> Trial:

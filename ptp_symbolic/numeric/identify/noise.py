@@ -24,6 +24,7 @@ from ptp_symbolic.numeric.identify.constants import (
     POLES,
     SCORINGS,
     SEGMENT,
+    TEST_ALARM,
 )
 
 FloatArray = NDArray[np.float64]
@@ -82,6 +83,23 @@ def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
     allowed = likelihood >= likelihood[best] - 0.5 * float(stats.chi2.ppf(0.95, 1))
     most = max(f[1] for f, ok in zip(fits, allowed, strict=True) if ok)
     return Noise(float(np.sqrt(fits[best][1])), float(POLES[best]), float(np.sqrt(most)))
+
+
+def most_in_quietest(runs: Sequence[Sequence[FloatArray]]) -> float:
+    """The largest standard deviation, at 99 %, that noise of any colour may have which all of
+    `runs`, each in residual series [n], have in common: none of them can leave less.
+
+    Mean squares of an autoregression with pole a vary as those of n (1 - a^2) / (1 + a^2) normal
+    numbers that are independent (Bartlett, 1946); a is the largest that is tried.
+    """
+    pole, chance = float(max(POLES)), TEST_ALARM / max(len(runs), 1)
+    found = [np.inf]
+    for parts in runs:
+        values = np.concatenate(list(parts))
+        degrees = max(1.0, len(values) * (1.0 - pole**2) / (1.0 + pole**2))
+        least = float(stats.chi2.ppf(chance, degrees)) / degrees
+        found.append(float(np.mean(values**2)) / least)
+    return float(np.sqrt(min(found)))
 
 
 @dataclass(frozen=True)
