@@ -24,12 +24,13 @@ from ptp_symbolic.numeric.diagnose.refits import (
 )
 from ptp_symbolic.numeric.diagnose.responses import responses
 from ptp_symbolic.numeric.diagnose.screening import screened
-from ptp_symbolic.numeric.diagnose.starts import along, from_rows, in_place
+from ptp_symbolic.numeric.diagnose.starts import along, from_rows, in_place, taken_over
 from ptp_symbolic.numeric.diagnose.subsets import exchanges
 from ptp_symbolic.numeric.diagnose.through_windows import through_windows
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
+    continued,
     fitted,
     forms_of,
     halving,
@@ -123,9 +124,8 @@ class Seeker:
         if not kept:
             return self.declared
         names = {name for c in trial.candidates if c not in kept for name in c.names}
-        values = trial.values | {name: self.task.fixed[name] for name in names}
-        run = self.task.executor
-        smaller = fitted(self.task, kept, values, trial.fit.z, ITERATIONS, trial.fit, executor=run)
+        begun = ranked(taken_over(self.task, self.proposals, kept, trial, names))[0]
+        smaller = continued(self.task, begun, ITERATIONS, executor=self.task.executor)
         if MATERIAL <= gain(trial, smaller).share < MOST:
             smaller = self.polished(smaller)
             smaller = smaller if briefly else self.restarted(smaller)

@@ -1,15 +1,23 @@
 """Where refits by simulation begin: at what the rows or the outputs ask for, and beside it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import replace
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
+from ptp_symbolic.numeric.diagnose.declared_rows import declared_start, possible
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_for
 from ptp_symbolic.numeric.diagnose.refits import over_windows
 from ptp_symbolic.numeric.diagnose.responses import Response
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, continued, fitted, ranked
-from ptp_symbolic.numeric.identify.constants import ITERATIONS, MOST, TRIED, WIDE_STEP
+from ptp_symbolic.numeric.diagnose.trial import (
+    Task,
+    Trial,
+    all_free,
+    continued,
+    fitted,
+    ranked,
+)
+from ptp_symbolic.numeric.identify.constants import ITERATIONS, MOST, POLISH, TRIED, WIDE_STEP
+from ptp_symbolic.numeric.identify.equation_fit import fit_equations
 
 
 def started(task: Task, declared: Trial, found: Proposals) -> list[Trial]:
@@ -58,6 +66,22 @@ def from_rows(
     own = {name: start[name] for c in candidates for name in c.names}
     begun = over_windows(task, candidates, [start, declared_start(task) | own], task.executor)
     return [*begun, fitted(task, candidates, start, None)]
+
+
+def taken_over(
+    task: Task, proposals: Proposals, kept: Sequence[Candidate], trial: Trial, names: Set[str]
+) -> list[Trial]:
+    """Some candidates `kept` of a trial, without the parameters `names` of the others: as they are,
+    and where they take over in the rows what the others did there.
+    """
+    values = trial.values | {name: task.fixed[name] for name in names}
+    starts = [values]
+    if proposals.space is not None:
+        seen = {c.key for c in kept} - {c.key for c in proposals.unseen}
+        free = all_free(task, [c for c in kept if c.key in seen], values)
+        found = fit_equations(proposals.space, free, values, POLISH, task.executor)
+        starts.append(possible(task, free, {**values, **found}))
+    return [fitted(task, kept, v, trial.fit.z, 0, trial.fit) for v in starts]
 
 
 def in_place(
