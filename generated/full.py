@@ -276,7 +276,7 @@ SEARCH = (
     ("gap_pan", 0.0, (0.005, 0.02), None, None),
 )
 # Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
-# effects that it acts on, title, reference, separating experiment.
+# effects that it acts on, title, reference, separating experiment, first member leads.
 EFFECTS = (
     (
         "rigid_bodies",
@@ -287,6 +287,7 @@ EFFECTS = (
         "pan body and tilt body",
         "thesis Eq. 3.8, Table 5.1",
         "",
+        False,
     ),
     (
         "payload",
@@ -305,6 +306,7 @@ EFFECTS = (
         "payload",
         "thesis section 3.2.2, Table 5.3 with erratum 18",
         "",
+        False,
     ),
     (
         "viscous_friction",
@@ -315,6 +317,7 @@ EFFECTS = (
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+        False,
     ),
     (
         "viscous_friction",
@@ -325,6 +328,7 @@ EFFECTS = (
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+        False,
     ),
     (
         "csvs_friction",
@@ -344,6 +348,7 @@ EFFECTS = (
         "Coulomb, static, viscous and Stribeck friction",
         "thesis Eq. 2.10, 2.11 with errata 2 and 3, Eq. 4.1, exponent 2",
         "Crawl through standstill in both directions at several slow speeds.",
+        False,
     ),
     (
         "direction_dependent_friction",
@@ -366,6 +371,7 @@ EFFECTS = (
         "thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)",
         "Run the same speeds both ways at two supply polarities, or back-drive the joint "
         "without power: friction follows the motion, an offset does not.",
+        False,
     ),
     (
         "backlash",
@@ -377,6 +383,7 @@ EFFECTS = (
         "thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
         "Reverse slowly with and without a known preload torque on the joint: backlash "
         "disappears under preload, presliding does not.",
+        False,
     ),
     (
         "shaft_compliance",
@@ -387,6 +394,7 @@ EFFECTS = (
         "flexible shaft",
         "thesis Eq. 2.15 with erratum 4, Table 5.7",
         "",
+        False,
     ),
     (
         "dc_motor",
@@ -397,6 +405,7 @@ EFFECTS = (
         "geared DC motor",
         "thesis Eq. 3.10, Eq. 3.11 with erratum 8",
         "",
+        False,
     ),
     (
         "linear_actuator",
@@ -422,6 +431,7 @@ EFFECTS = (
         "linear actuator with lead screw and linkage",
         "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6",
         "",
+        False,
     ),
 )
 
@@ -4790,4 +4800,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 3947fd897a34251d878e6b4db69ebf4ed023d5a54dda5b0bf88c133059a9ae8b
+# END sha256 7723e18eaafbb4d78a0adc5eac4eb518d94a8030f5fd741b8df4b84aca140d60

@@ -68,7 +68,7 @@ PARAMETERS = (
 # period, what a frequency is locked to.
 SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
 # Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
-# effects that it acts on, title, reference, separating experiment.
+# effects that it acts on, title, reference, separating experiment, first member leads.
 EFFECTS = (
     (
         "rigid_bodies",
@@ -79,6 +79,7 @@ EFFECTS = (
         "pan body and tilt body",
         "thesis Eq. 3.8, Table 5.1",
         "",
+        False,
     ),
     (
         "viscous_friction",
@@ -89,6 +90,7 @@ EFFECTS = (
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+        False,
     ),
     (
         "viscous_friction",
@@ -99,6 +101,7 @@ EFFECTS = (
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+        False,
     ),
 )
 
@@ -397,4 +400,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 2dd7fae7bbf3f0e8861c23947a5837a4d7e43115bf6d825e5a82b762ae99f399
+# END sha256 b7843681648dd240db55d0ccea862eaf4f3ffec4a21895918c85d3486010d750

@@ -128,7 +128,7 @@ SEARCH = (
     ("gap_pan", 0.0, (0.005, 0.02), None, None),
 )
 # Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
-# effects that it acts on, title, reference, separating experiment.
+# effects that it acts on, title, reference, separating experiment, first member leads.
 EFFECTS = (
     (
         "rigid_bodies",
@@ -139,6 +139,7 @@ EFFECTS = (
         "pan body and tilt body",
         "thesis Eq. 3.8, Table 5.1",
         "",
+        False,
     ),
     (
         "viscous_friction",
@@ -149,6 +150,7 @@ EFFECTS = (
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+        False,
     ),
     (
         "csvs_friction",
@@ -168,6 +170,7 @@ EFFECTS = (
         "Coulomb, static, viscous and Stribeck friction",
         "thesis Eq. 2.10, 2.11 with errata 2 and 3, Eq. 4.1, exponent 2",
         "Crawl through standstill in both directions at several slow speeds.",
+        False,
     ),
     (
         "direction_dependent_friction",
@@ -190,6 +193,7 @@ EFFECTS = (
         "thesis Tables 4.1 and 4.2 (omega > 0, omega < 0)",
         "Run the same speeds both ways at two supply polarities, or back-drive the joint "
         "without power: friction follows the motion, an offset does not.",
+        False,
     ),
     (
         "backlash",
@@ -201,6 +205,7 @@ EFFECTS = (
         "thesis Eq. 2.16 (dead zone), Table 5.7; contact that cannot pull",
         "Reverse slowly with and without a known preload torque on the joint: backlash "
         "disappears under preload, presliding does not.",
+        False,
     ),
     (
         "shaft_compliance",
@@ -211,6 +216,7 @@ EFFECTS = (
         "flexible shaft",
         "thesis Eq. 2.15 with erratum 4, Table 5.7",
         "",
+        False,
     ),
     (
         "dc_motor",
@@ -221,6 +227,7 @@ EFFECTS = (
         "geared DC motor",
         "thesis Eq. 3.10, Eq. 3.11 with erratum 8",
         "",
+        False,
     ),
 )
 
@@ -853,4 +860,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 af71802b86e4de74f42ea141bf84fad35dd5561ee87d0f426353ddc29e583717
+# END sha256 e96f5f64ad75921fb71f4db08ea67f26fd44bcff86f811a9c7d5f695f6bf9ed4

@@ -99,7 +99,7 @@ PARAMETERS = (
 # period, what a frequency is locked to.
 SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
 # Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
-# effects that it acts on, title, reference, separating experiment.
+# effects that it acts on, title, reference, separating experiment, first member leads.
 EFFECTS = (
     (
         "rigid_bodies",
@@ -110,6 +110,7 @@ EFFECTS = (
         "pan body and tilt body",
         "thesis Eq. 3.8, Table 5.1",
         "",
+        False,
     ),
     (
         "payload",
@@ -128,6 +129,7 @@ EFFECTS = (
         "payload",
         "thesis section 3.2.2, Table 5.3 with erratum 18",
         "",
+        False,
     ),
     (
         "viscous_friction",
@@ -138,6 +140,7 @@ EFFECTS = (
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+        False,
     ),
     (
         "viscous_friction",
@@ -148,6 +151,7 @@ EFFECTS = (
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+        False,
     ),
 )
 
@@ -885,4 +889,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 1350fab574066f9a9440d508ae827680dcbc747a50bbce55905b37d25b93fc88
+# END sha256 3a74a5f480716cc0ee72403afbb5f647f9336ab00047a5a4e6b74b0c3f09925e

@@ -129,7 +129,7 @@ PARAMETERS = (
 # period, what a frequency is locked to.
 SEARCH = (("b_tilt", 0.0, (0.1,), None, None),)
 # Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
-# effects that it acts on, title, reference, separating experiment.
+# effects that it acts on, title, reference, separating experiment, first member leads.
 EFFECTS = (
     (
         "payload",
@@ -140,6 +140,7 @@ EFFECTS = (
         "payload",
         "thesis section 3.2.2, Table 5.3 with erratum 18",
         "",
+        False,
     ),
     (
         "viscous_friction",
@@ -150,6 +151,7 @@ EFFECTS = (
         "viscous friction in the joint",
         "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
         "Run at six or more steady speeds, the slowest near the Stribeck speed.",
+        False,
     ),
     (
         "linear_actuator",
@@ -175,6 +177,7 @@ EFFECTS = (
         "linear actuator with lead screw and linkage",
         "thesis Eq. 3.10, 3.12 and 3.2.3.2 with errata 9 and 10, Tables 5.5, 5.6",
         "",
+        False,
     ),
 )
 
@@ -2147,4 +2150,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 1d756c3f874ac19762db231150f217ddc0b7dbbe06a2c1dc811babba7d3a5894
+# END sha256 63d76ae97b406a9ed6b327b58366558e0d771729f9aacbf1bc009f21abd9b885

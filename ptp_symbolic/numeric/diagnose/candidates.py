@@ -26,7 +26,8 @@ class Candidate:
     the shaping parameters from which a search begins. `locked` is a shaping frequency that a scan
     finds, with what it is locked to ("time" or "angle"); the scan has compared so many that can be
     told from one another (`frequencies_compared`). `brings` are keys of candidates without which it
-    has nothing to act on. `member` numbers the nested versions, the simplest first.
+    has nothing to act on. `leading` are those parameters that can only be the larger part of it.
+    `member` numbers the nested versions, the simplest first.
     """
 
     id: str
@@ -38,6 +39,7 @@ class Candidate:
     shapes: tuple[Mapping[str, float], ...] = ({},)
     locked: tuple[str, str] | None = None
     brings: tuple[str, ...] = ()
+    leading: tuple[str, ...] = ()
     member: int = 0
     member_title: str = ""
     frequencies_compared: int = 1
@@ -94,6 +96,7 @@ def _members(
 ) -> list[Candidate]:
     members = effect.members or (("", effect.parameters, ()),)
     brings = tuple(key for key in effect.acts_on if key not in declared)
+    leading = members[0][1] if effect.first_leads else ()
     found = []
     for number, (title, names, ties) in enumerate(members):
         own = [by_name[name] for name in names]
@@ -112,6 +115,7 @@ def _members(
                 tuple(dict(zip([p.name for p in shaping], point, strict=True)) for point in grid),
                 locked,
                 brings,
+                tuple(name for name in leading if by_name[name].vanishes is not None),
                 number,
                 title,
             )

@@ -33,6 +33,8 @@ def why_unconfirmed(
         return f"{bound} ends at its bound"
     if not leaves_noise and not is_amount_known(fit, candidate):
         return "its amount cannot be told from zero"
+    if not leads(fit, candidate):
+        return "what it adds to its simplest form is larger than that"
     run = unstable_without(fit, candidate, refit)
     if run is not None:
         return f"its value does not hold when {run} is left out"
@@ -47,6 +49,15 @@ def is_amount_known(fit: Fit, candidate: Candidate) -> bool:
     known: a single axis feels a base that shakes by what goes along with it, whatever the azimuth.
     """
     return chance_of_zero(fit, candidate.vanishing, candidate.parameters) < FALSE_ALARM
+
+
+def leads(fit: Fit, candidate: Candidate) -> bool:
+    """Whether the part of a candidate that has to be the larger one is so: a disc off its centre
+    reads wrongly once per turn, and twice by the square of that.
+    """
+    amount = {n: fit.values[n] - zero for n, zero in candidate.vanishing.items()}
+    first = np.linalg.norm([amount.pop(name) for name in candidate.leading])
+    return not candidate.leading or bool(first >= np.linalg.norm(list(amount.values())))
 
 
 def at_bound(fit: Fit, candidate: Candidate) -> str | None:

@@ -8,9 +8,9 @@ from ptp_symbolic.numeric.diagnose.findings import Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, gain_in_innovations
 from ptp_symbolic.numeric.diagnose.groups import Rival
+from ptp_symbolic.numeric.diagnose.law_of_rate import goes_with_speed
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.slow_and_fast import differs_with_speed
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import MATERIAL, MOST
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
@@ -122,10 +122,10 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
         if reason is not None:
             return step, reason
         space = seeker.proposals.space
-        if space is not None and differs_with_speed(
+        if space is not None and goes_with_speed(
             seeker.task, space, trial.candidates, trial.values, step.candidate
         ):
-            return step, "is of another size where its axis is slow than where it is fast"
+            return step, "its torque goes with the speed in another way"
         if not quiet:
             doubt = _doubt_beside_a_remainder(trial, step)
             if doubt is not None:

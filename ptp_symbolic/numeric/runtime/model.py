@@ -24,7 +24,7 @@ class EffectInstance:
 
     `members` are its nested versions, the simplest first: title, parameters, and pairs of a
     parameter and the one whose value it takes. `acts_on` are keys of effects that it cannot do
-    without.
+    without; where `first_leads`, what other members add to the first can only be smaller.
     """
 
     id: str
@@ -35,6 +35,7 @@ class EffectInstance:
     title: str
     reference: str
     separating_experiment: str
+    first_leads: bool
 
     @property
     def key(self) -> str:

@@ -88,7 +88,7 @@ def _parameter_lines(equations: Equations) -> list[str]:
         named_tuple_text("SEARCH", [_search(p) for p in parameters if _is_searched(p)]),
         "# Effects: id, axis, parameters, nested members (title, parameters, tied ones),"
         " keys of the",
-        "# effects that it acts on, title, reference, separating experiment.",
+        "# effects that it acts on, title, reference, separating experiment, first member leads.",
         named_tuple_text("EFFECTS", _effects(equations)),
     ]
 
@@ -237,6 +237,7 @@ def _effects(equations: Equations) -> list[str]:
         texts = (effect.title, effect.reference, effect.separating_experiment)
         members, acted_on = _members(placed, used), f"({listed(map(repr_text, placed.acts_on))})"
         fields = [f'"{effect.id}"', axis, inner, members, acted_on, *map(long_text, texts)]
+        fields += [str(effect.first_leads)]
         rows.append("(\n" + "".join(f"        {f},\n" for f in fields) + "    )")
     return rows
 

@@ -50,9 +50,10 @@ class Effect:
     only take energy out, which tests verify. `structural`: no parameter value makes it vanish (a
     motor, a body): declared, never searched for; nor is one that is `declared_only`. `sites`: where
     on its axis it may sit, if there is a choice. `has` tells which of its parameters it has at a
-    place. `members` are nested versions of it, the simplest first and the whole last. Other `kinds`
-    share its id; this is the usual one. `linear` has the texts that are others on a linear joint,
-    where they do not follow word by word; what makes no sense there says `instead_on_linear` why.
+    place. `members` are nested versions of it, the simplest first and the whole last; where
+    `first_leads`, what the others add to the first can only be smaller. Other `kinds` share its
+    id; this is the usual one. `linear` has the texts that are others on a linear joint, where they
+    do not follow word by word; what makes no sense there says `instead_on_linear` why.
 
     Raises ValueError for a parameter whose default, starts or vanishing value lie out of its
     bounds, and for a member with parameters that are not the effect's.
@@ -74,6 +75,7 @@ class Effect:
     has: Callable[[Place, Parameter], bool] = _always
     separating_experiment: str = ""
     members: tuple[Member, ...] = ()
+    first_leads: bool = False
     kind: str | None = None
     kinds: tuple["Effect", ...] = ()
     linear: Mapping[str, str] | None = field(default=None, hash=False)

@@ -49,6 +49,7 @@ ENCODER_ECCENTRICITY = Effect(
     has=has_wave_number,
     contribute=_contribute,
     members=harmonic_members(AMPLITUDES, (NUMBER.name,)),
+    first_leads=True,
     separating_experiment="Turn slowly against a second encoder or an optical polygon: the error"
     " depends on the angle alone, at any speed and load.",
 )

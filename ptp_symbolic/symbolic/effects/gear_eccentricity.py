@@ -50,6 +50,7 @@ GEAR_ECCENTRICITY = Effect(
     contribute=_contribute,
     needs=("half_gap_{axis}",),
     members=harmonic_members(AMPLITUDES, (NUMBER.name,)),
+    first_leads=True,
     separating_experiment="Compare an encoder on the motor with the one on the joint over a full"
     " slow turn both ways; an encoder error shows without load as well.",
 )

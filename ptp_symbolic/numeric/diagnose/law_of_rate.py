@@ -1,0 +1,83 @@
+"""Whether the torque of an effect goes with the rate as its law says.
+
+What has the shape of an effect along the angle, but another law of the rate, has to be of one size
+where its axis is slow and of another where it is fast. Simulations hardly see that, for they
+integrate both; the rows of the equation space do.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.linear import projected_off
+from ptp_symbolic.numeric.diagnose.regression import blocks_of
+from ptp_symbolic.numeric.diagnose.trial import Task, all_free
+from ptp_symbolic.numeric.identify.constants import FAR, FEWEST_BLOCKS, MATERIAL
+from ptp_symbolic.numeric.identify.equation_fit import linearised
+from ptp_symbolic.numeric.identify.equation_space import EquationSpace
+from ptp_symbolic.numeric.identify.row_motion import row_motion
+
+FloatArray = NDArray[np.float64]
+
+
+def goes_with_speed(
+    task: Task,
+    space: EquationSpace,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+    member: Candidate,
+) -> bool:
+    """Whether the torque of a member of a set at `values` changes with the speed of its axis
+    clearly, and by a material share, beside what its law says already: it is multiplied by
+    a + b (speed / mean speed - 1), where all other parameters are free. Rows of one block of time
+    count as one (sandwich of clusters: Liang and Zeger, 1986). Errors of sensors are no torques.
+    """
+    names = list(task.model.parameter_names)
+    if any(space.sensing[names.index(name)] for name in member.names):
+        return False
+    free = all_free(task, candidates, values)
+    at = linearised(space, free, values, {f.name: values[f.name] for f in free}, task.executor)
+    without = space.rows(task.model.parameter_vector({**values, **member.vanishing}))
+    equation, run, time = space.labels()
+    speed = np.full(len(equation), np.nan)
+    for axis in range(len(space.layout.angle)):
+        speed[equation == axis] = np.abs(row_motion(space, axis).rate)
+    known = np.isfinite(speed)
+    _, block = np.unique(blocks_of(run, time)[known], axis=0, return_inverse=True)
+    block = block.reshape(-1)
+    if len(np.unique(block)) < FEWEST_BLOCKS:
+        return False
+    root = np.sqrt(at.weight[known])
+    rows, effect = root * at.rows[known], root * (at.rows - without)[known]
+    others = [k for k, f in enumerate(free) if f.name not in member.parameters]
+    table = root[:, None] * at.jacobian[known][:, others]
+    own = projected_off(effect[:, None], table)[:, 0]
+    if not (np.all(np.isfinite(own)) and np.any(own)):
+        return False
+    faster = speed[known] / np.average(speed[known], weights=own**2) - 1.0
+    columns = np.column_stack([effect, effect * faster, table])
+    change, covariance = _changes(rows, columns, block)
+    constant, growing = 1.0 + change[0], change[1]
+    is_clear = growing**2 > FAR**2 * covariance[1, 1]
+    parts = projected_off(columns[:, :2], table)
+    grown = growing**2 * float(parts[:, 1] @ parts[:, 1])
+    whole = parts @ np.array([constant, growing])
+    return bool(is_clear and grown > MATERIAL * float(whole @ whole))
+
+
+def _changes(
+    rows: FloatArray, columns: FloatArray, block: NDArray[np.int64]
+) -> tuple[FloatArray, FloatArray]:
+    """What has to be added of `columns` [n, k] to the `rows` [n] to leave least [k], and its
+    covariance [k, k] by `block` [n].
+    """
+    length = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    unit = columns / length
+    inverse = np.linalg.pinv(unit.T @ unit, hermitian=True)
+    change = -inverse @ (unit.T @ rows)
+    left = rows + unit @ change
+    scores = np.array([np.bincount(block, column * left) for column in unit.T])
+    covariance = inverse @ (scores @ scores.T) @ inverse
+    return change / length, covariance / np.outer(length, length)
