@@ -4,7 +4,7 @@ A body on a spring and a damper under a torque that is held from sample to sampl
 matrix exponential. The platform declares the damper, and a payload of known mass, alone.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
@@ -90,13 +90,19 @@ def spring_table(
     folder: Path, stiffness: float = STIFFNESS, gust: float = 0.0, lasting: int = 1
 ) -> Iterator[Task]:
     """The task, its platform written to `folder`; the other arguments are those of `log`."""
+    with table_of(folder, lambda seed: log(seed, stiffness, gust, lasting)) as task:
+        yield task
+
+
+@contextmanager
+def table_of(folder: Path, logged: Callable[[int], Log]) -> Iterator[Task]:
+    """The task of the platform, written to `folder`, with what is `logged` by seed."""
     path = folder / "table.toml"
     path.write_text(PLATFORM)
     platform = read_platform(path)
     model = emission.emit(variants.with_candidates(platform))
     train, validate = (
-        prepare_runs(model, platform, [log(seed, stiffness, gust, lasting) for seed in seeds])
-        for seeds in ((1, 2), (3,))
+        prepare_runs(model, platform, [logged(seed) for seed in seeds]) for seeds in ((1, 2), (3,))
     )
     free, known = declared.free_parameters(platform, model), declared.known_values(platform, model)
     noises = {signal.signal: signal.noise for signal in platform.signals}

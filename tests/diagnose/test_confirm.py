@@ -1,11 +1,18 @@
 """What an effect must stand before it is named, on fits of straight models."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.confirm import at_bound, is_amount_known, unstable_without
+from ptp_symbolic.numeric.diagnose.confirm import (
+    at_bound,
+    is_amount_known,
+    leads,
+    unstable_without,
+)
 from ptp_symbolic.numeric.diagnose.findings import is_earned
 from ptp_symbolic.numeric.diagnose.gain import Gain, p_value
 from ptp_symbolic.numeric.diagnose.trial import Trial
@@ -47,6 +54,18 @@ def test_an_effect_that_one_run_asks_for_and_others_deny_does_not_hold() -> None
 def test_an_effect_that_one_run_alone_can_show_is_let_be() -> None:
     columns = [0.0 * w for w in waves(3)] + waves(1)
     assert unstable_without(fit_of(columns, [0.0, 0.0, 0.0, 1.0]), EFFECT) is None
+
+
+@pytest.mark.parametrize(("second", "is_so"), [(0.3, True), (-1.3, False)])
+def test_the_part_that_has_to_lead_is_the_larger_one(second: float, is_so: bool) -> None:
+    """Of two amounts the first leads, which is one; where none has to, any is right."""
+    other = free_parameter("k2", 1.0, -5.0, 5.0)
+    pair = Candidate("pair", None, "", "", (SPRING, other), {"k": 0.0, "k2": 0.0}, leading=("k",))
+    (wave,) = waves(1)
+    slopes = [-np.column_stack([wave, np.roll(wave, 7)])]
+    fit = finished([0.0 * wave], slopes, None, (SPRING, other), {"k": 1.0, "k2": second})
+    assert leads(fit, pair) is is_so
+    assert leads(fit, replace(pair, leading=()))
 
 
 @pytest.mark.parametrize(("stiffness", "is_known"), [(0.01, False), (1.0, True)])

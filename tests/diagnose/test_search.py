@@ -12,6 +12,7 @@ from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.search import by_effects_alone, extended
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.starts import taken_over
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
 from ptp_symbolic.numeric.identify.constants import LARGEST
 from tests.diagnose.spring_table import STIFFNESS, spring_table
@@ -110,6 +111,20 @@ def test_what_is_left_is_fitted_no_worse_than_the_search_has_fitted_it_before(
     monkeypatch.setattr(seeker, "others", [right])
     left = seeker.without(both, wrong.candidates[0])
     assert left.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
+
+
+def test_what_stays_takes_over_in_the_rows_what_the_others_did(seeker: Seeker) -> None:
+    """Half of the spring told as a base that leans: without it the spring begins whole."""
+    task = seeker.task
+    both = trial(seeker, "cable_spring@pan", "base_tilt")
+    values = both.values | {"k1_cable_pan": 0.5 * STIFFNESS, "beta_base": 0.2}
+    halved = fitted(task, both.candidates, values, both.fit.z)
+    names = set(halved.candidates[1].names)
+    as_it_is, led = taken_over(task, seeker.proposals, halved.candidates[:1], halved, names)
+    assert as_it_is.values["k1_cable_pan"] == 0.5 * STIFFNESS
+    assert led.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.05)
+    assert led.values["beta_base"] == as_it_is.values["beta_base"] == 0.0
+    assert led.fit.cost < 0.01 * as_it_is.fit.cost
 
 
 def test_forward_selection_stops_where_it_meets_a_set_that_could_not_be_grown(

@@ -7,6 +7,7 @@ from scipy.signal import lfilter
 from ptp_symbolic.numeric.identify.noise import (
     coloured_noise,
     hidden_from_differences,
+    most_in_quietest,
     neighbour_correlation,
     white_noise,
 )
@@ -97,6 +98,21 @@ def test_runs_of_any_lengths_are_taken_together() -> None:
     (row,) = remembering(0.8, 1, 6000)
     parts = np.split(row, [500, 530, 2000, 4500])
     assert coloured_noise(parts, 1e-3).rms == pytest.approx(1.0, abs=0.25)
+
+
+@pytest.mark.parametrize("pole", [0.0, 0.8, 0.97])
+def test_noise_that_all_runs_have_is_within_what_the_quietest_allows(pole: float) -> None:
+    """Five runs of 1500 samples, in pieces: nearly always, whatever the pole; and a third of it
+    where one run is three times quieter than the others, so that what these have is no noise.
+    """
+    found = []
+    for row in remembering(pole, 60, 7500):
+        runs = [np.split(run, [100, 700]) for run in np.split(row, 5)]
+        found.append(most_in_quietest(runs))
+        quiet = [*runs[1:], [piece / 3.0 for piece in runs[0]]]
+        assert most_in_quietest(quiet) < 0.75 * found[-1]
+    assert np.mean(np.array(found) >= 1.0) >= 0.95
+    assert np.max(found) < 2.5
 
 
 def test_noise_is_at_least_what_is_known_of_it() -> None:

@@ -1,0 +1,62 @@
+"""Whether a torque goes with the rate as its law says, on logs of SciPy's integrator."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.diagnose.law_of_rate import goes_with_speed
+from ptp_symbolic.numeric.diagnose.proposals import propose, start_for
+from tests.diagnose.spring_table import (
+    COUNT,
+    DAMPING,
+    INERTIA,
+    PERIOD,
+    SAMPLES,
+    STIFFNESS,
+    table_of,
+)
+
+USUAL = 1.0  # rad/s
+Torque = Callable[[float, float], float]
+
+
+def spring(angle: float, rate: float) -> float:
+    return -STIFFNESS * angle
+
+
+def spring_by_speed(angle: float, rate: float) -> float:
+    return -STIFFNESS * angle * abs(rate) / USUAL
+
+
+def logged(hidden: Torque, seed: int) -> Log:
+    """Six seconds under a torque that changes every half second, and one that is `hidden`."""
+    rng = np.random.default_rng(seed)
+    torque = np.repeat(rng.uniform(-0.5, 0.5, SAMPLES // 50), 50)
+    time = PERIOD * np.arange(SAMPLES)
+
+    def rates(t: float, x: np.ndarray) -> list[float]:
+        acting = torque[min(int(t / PERIOD + 1e-6), SAMPLES - 1)] + hidden(x[0], x[1])
+        return [x[1], (acting - DAMPING * x[1]) / INERTIA]
+
+    found = solve_ivp(rates, (0.0, time[-1]), [0.0, 0.0], "LSODA", time, max_step=PERIOD, rtol=1e-8)
+    reading = np.rint(found.y[0] / COUNT) * COUNT
+    return Log(f"run_{seed}", time, torque[:, None], reading[:, None])
+
+
+@pytest.mark.parametrize(("hidden", "goes"), [(spring, False), (spring_by_speed, True)])
+def test_a_spring_that_is_stronger_where_it_is_fast_is_none(
+    hidden: Torque, goes: bool, tmp_path: Path
+) -> None:
+    with table_of(tmp_path, lambda seed: logged(hidden, seed)) as task:
+        proposals = propose(task)
+        (found,) = [
+            c for c in task.candidates if c.key == "cable_spring@pan" and len(c.defining) == 1
+        ]
+        values = start_for(task, proposals, (found,), proposals.start)
+        assert abs(values["k1_cable_pan"]) > 0.2 * STIFFNESS
+        assert proposals.space is not None
+        assert goes_with_speed(task, proposals.space, (found,), values, found) is goes
