@@ -35,7 +35,7 @@ def space_along(
 ) -> EquationSpace:
     """`space` over other `runs`, with the rows that count for both sets of parameter values."""
     vector = space.model.parameter_vector
-    other = replace(space, runs=tuple(runs), rows_of=(), _motions={}, _states={}, _inputs={})
+    other = replace(space, runs=tuple(runs), rows_of=())
     other.decide_rows(vector(dict(declared)), [vector(dict(named))])
     return other
 

@@ -30,9 +30,10 @@ def goes_with_speed(
     member: Candidate,
 ) -> bool:
     """Whether the torque of a member of a set at `values` changes with the speed of its axis
-    clearly, and by a material share, beside what its law says already: it is multiplied by
-    a + b (speed / mean speed - 1), where all other parameters are free. Rows of one block of time
-    count as one (sandwich of clusters: Liang and Zeger, 1986). Errors of sensors are no torques.
+    clearly, and by a material share, beside what its law says already: a multiple of it times
+    speed / mean speed - 1 is added, where all parameters are free, its own too. Rows of one block
+    of time count as one (sandwich of clusters: Liang and Zeger, 1986). Errors of sensors are no
+    torques.
     """
     names = list(task.model.parameter_names)
     if any(space.sensing[names.index(name)] for name in member.names):
@@ -51,33 +52,31 @@ def goes_with_speed(
         return False
     root = np.sqrt(at.weight[known])
     rows, effect = root * at.rows[known], root * (at.rows - without)[known]
-    others = [k for k, f in enumerate(free) if f.name not in member.parameters]
-    table = root[:, None] * at.jacobian[known][:, others]
-    own = projected_off(effect[:, None], table)[:, 0]
+    table = root[:, None] * at.jacobian[known]
+    others = table[:, [k for k, f in enumerate(free) if f.name not in member.parameters]]
+    own = projected_off(effect[:, None], others)[:, 0]
     if not (np.all(np.isfinite(own)) and np.any(own)):
         return False
-    faster = speed[known] / np.average(speed[known], weights=own**2) - 1.0
-    columns = np.column_stack([effect, effect * faster, table])
-    change, covariance = _changes(rows, columns, block)
-    constant, growing = 1.0 + change[0], change[1]
-    is_clear = growing**2 > FAR**2 * covariance[1, 1]
-    parts = projected_off(columns[:, :2], table)
-    grown = growing**2 * float(parts[:, 1] @ parts[:, 1])
-    whole = parts @ np.array([constant, growing])
-    return bool(is_clear and grown > MATERIAL * float(whole @ whole))
+    growing = effect * (speed[known] / np.average(speed[known], weights=own**2) - 1.0)
+    amount, variance = _amount(rows, growing, table, block)
+    added = amount * projected_off(growing[:, None], table)[:, 0]
+    whole = own + amount * projected_off(growing[:, None], others)[:, 0]
+    is_clear = amount**2 > FAR**2 * variance
+    return bool(is_clear and added @ added > MATERIAL * (whole @ whole))
 
 
-def _changes(
-    rows: FloatArray, columns: FloatArray, block: NDArray[np.int64]
-) -> tuple[FloatArray, FloatArray]:
-    """What has to be added of `columns` [n, k] to the `rows` [n] to leave least [k], and its
-    covariance [k, k] by `block` [n].
+def _amount(
+    rows: FloatArray, column: FloatArray, others: FloatArray, block: NDArray[np.int64]
+) -> tuple[float, float]:
+    """How much of a `column` [n] has to be added to the `rows` [n] to leave least, with any amounts
+    of the `others` [n, k], and its variance by `block` [n].
     """
-    length = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    unit = columns / length
+    table = np.column_stack([column, others])
+    length = np.maximum(np.linalg.norm(table, axis=0), 1e-300)
+    unit = table / length
     inverse = np.linalg.pinv(unit.T @ unit, hermitian=True)
     change = -inverse @ (unit.T @ rows)
     left = rows + unit @ change
-    scores = np.array([np.bincount(block, column * left) for column in unit.T])
-    covariance = inverse @ (scores @ scores.T) @ inverse
-    return change / length, covariance / np.outer(length, length)
+    scores = np.array([np.bincount(block, c * left) for c in unit.T])
+    spread = inverse[0] @ scores
+    return float(change[0] / length[0]), float(spread @ spread / length[0] ** 2)

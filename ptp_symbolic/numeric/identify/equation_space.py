@@ -9,17 +9,17 @@ and contact are set-valued.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.along_motion import (
-    further_states,
     gear_ahead,
     gear_pushes,
     torques_along,
 )
-from ptp_symbolic.numeric.identify.constants import FINITE, MOST, PARTS
+from ptp_symbolic.numeric.identify.constants import FINITE, MOST
 from ptp_symbolic.numeric.identify.equation_rows import (
     RunRows,
     every_row,
@@ -32,12 +32,12 @@ from ptp_symbolic.numeric.identify.measured_motion import (
     MeasuredMotion,
     angles_of,
     measured_motion,
+    states_along,
 )
+from ptp_symbolic.numeric.identify.recent import Recent
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.sample_averages import (
     cell_averages,
-    grid_averages,
-    part_averages,
 )
 from ptp_symbolic.numeric.identify.weak_form import averages
 from ptp_symbolic.numeric.runtime.model import Model
@@ -47,6 +47,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 Torques = tuple[FloatArray, FloatArray, FloatArray]  # see `torques_along`
+Key = tuple[int, bytes, int]  # run, what changes, whether anything is added
 
 
 @dataclass(eq=False)
@@ -70,9 +71,9 @@ class EquationSpace:
     moving: BoolArray
     acting: BoolArray
     rows_of: tuple[RunRows, ...] = ()
-    _motions: dict[tuple[int, bytes], MeasuredMotion] = field(default_factory=dict, repr=False)
-    _states: dict[tuple[int, bytes, int], FurtherStates] = field(default_factory=dict, repr=False)
-    _inputs: dict[tuple[int, bytes], FloatArray] = field(default_factory=dict, repr=False)
+    _motions: Recent[Key, MeasuredMotion] = field(default_factory=Recent, init=False, repr=False)
+    _states: Recent[Key, FurtherStates] = field(default_factory=Recent, init=False, repr=False)
+    _inputs: Recent[Key, FloatArray] = field(default_factory=Recent, init=False, repr=False)
 
     @property
     def equations(self) -> int:
@@ -155,56 +156,57 @@ class EquationSpace:
     def _given(self, number: int, p: FloatArray) -> FloatArray:
         """Inputs [g, nu] of a run, delayed and averaged over the cells of the grid."""
         delays = delays_of(self.model, p)
-        key = (number, delays.tobytes())
-        if key not in self._inputs:
-            run, grid = self.runs[number], self.rows_of[number].grid
-            every = [cell_averages(run, j, d, grid) for j, d in enumerate(delays)]
-            self._inputs[key] = np.column_stack(every)
-        return self._inputs[key]
+        run, grid = self.runs[number], self.rows_of[number].grid
+
+        def averaged() -> FloatArray:
+            return np.column_stack([cell_averages(run, j, d, grid) for j, d in enumerate(delays)])
+
+        return self._inputs.of((number, delays.tobytes(), 0), averaged, self._asked_for(delays))
 
     def _motion(self, number: int, p: FloatArray) -> MeasuredMotion:
         """The measured motion, errors of the sensors at p taken out."""
-        key = (number, p[self.sensing].tobytes())
-        if key in self._motions:
-            return self._motions[key]
         run, rows, further = self.runs[number], self.rows_of[number], len(self.layout.further)
-        angles = angles_of(self.model, self.layout, run, p, bool(self.sensing.any()))
-        self._motions[key] = measured_motion(
-            run, angles, further, self.measured, rows, self.half_width, self.rate_width
+
+        def measured() -> MeasuredMotion:
+            angles = angles_of(self.model, self.layout, run, p, bool(self.sensing.any()))
+            return measured_motion(
+                run, angles, further, self.measured, rows, self.half_width, self.rate_width
+            )
+
+        changing = p[self.sensing]
+        return self._motions.of(
+            (number, changing.tobytes(), 0), measured, self._asked_for(changing)
         )
-        return self._motions[key]
 
     def _further(
         self, number: int, p: FloatArray, along: MeasuredMotion, added: FloatArray
     ) -> FurtherStates:
         """Further states along the motion, with what is `added` [g, nu] to the inputs."""
-        run, fine, rows = self.runs[number], along.fine, self.rows_of[number]
-        grid = rows.grid
-        count = len(self.layout.further)
-        if not count:
-            return FurtherStates(
-                np.zeros((len(grid), 0)), np.zeros((len(run.time), 0)), np.zeros((0, 0, 0))
-            )
-        key = (number, p[self.moving | self.sensing].tobytes(), int(np.any(added)))
-        if key not in self._states:
-            delays = delays_of(self.model, p)
-            parts = 2 * PARTS if np.any(delays) else PARTS
-            late = np.stack([part_averages(run, j, d, parts) for j, d in enumerate(delays)], axis=2)
-            if np.any(added):
-                more = [np.interp(run.time[:-1], run.time[grid], a) for a in added.T]
-                late = late + np.column_stack(more)[:, None, :]
-            shown = np.zeros(count, dtype=np.bool_)
-            shown[[place for _, place in self.measured]] = True
-            wanted = np.zeros(len(run.time), dtype=np.bool_)
-            wanted[grid[rows.chosen]] = True
-            addresses, resting = equation_addresses(self.model), self.resting
-            found, mean, by_rate = further_states(
-                addresses, self.layout, fine, p, resting, self.acting, shown, wanted, late
-            )
-            left = fine.measured - found
-            acts = grid_averages(np.where(np.isnan(left), mean, mean + left), grid)
-            self._states[key] = FurtherStates(acts, np.nan_to_num(left), by_rate)
-        return self._states[key]
+        if not self.layout.further:
+            samples = len(self.runs[number].time)
+            none = np.zeros((len(added), 0)), np.zeros((samples, 0)), np.zeros((0, 0, 0))
+            return FurtherStates(*none)
+        changing = p[self.moving | self.sensing]
+        key = (number, changing.tobytes(), int(np.any(added)))
+        places = [place for _, place in self.measured]
+        integrated = partial(
+            states_along,
+            self.model,
+            self.layout,
+            self.runs[number],
+            self.rows_of[number],
+            along.fine,
+            p,
+            added,
+            self.resting,
+            self.acting,
+            places,
+        )
+        return self._states.of(key, integrated, self._asked_for(changing))
+
+    def _asked_for(self, changing: FloatArray) -> int:
+        """At how many places of so many `changing` parameters a Jacobian looks, in all runs."""
+        return (len(changing) + 1) * len(self.runs)
 
     def decide_rows(self, p: FloatArray, others: Sequence[FloatArray]) -> None:
         """Decide anew which rows count, and at p [np] which faces are touched.

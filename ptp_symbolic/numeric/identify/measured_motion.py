@@ -8,13 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.along_motion import Motion, angles_behind_sensors
-from ptp_symbolic.numeric.identify.constants import SENSOR_ITERATIONS
+from ptp_symbolic.numeric.identify.along_motion import (
+    Motion,
+    angles_behind_sensors,
+    further_states,
+)
+from ptp_symbolic.numeric.identify.constants import PARTS, SENSOR_ITERATIONS
 from ptp_symbolic.numeric.identify.equation_rows import RunRows
 from ptp_symbolic.numeric.identify.layout import Layout, equation_addresses
 from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.sample_averages import grid_averages, part_averages
 from ptp_symbolic.numeric.identify.weak_form import averages, local_motion, weak_average
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.delays import delays_of
 
 FloatArray = NDArray[np.float64]
 
@@ -90,3 +96,37 @@ def measured_motion(
     taken = [averages(rows.on_grid, c) for c in coarse[1:3]]
     missed = np.column_stack([e - s for e, s in zip(exact, taken, strict=True)])
     return MeasuredMotion(fine, coarse, curvature, missed)
+
+
+def states_along(
+    model: Model,
+    layout: Layout,
+    run: Run,
+    rows: RunRows,
+    fine: Motion,
+    p: FloatArray,
+    added: FloatArray,
+    resting: FloatArray,
+    acting: NDArray[np.bool_],
+    measured: Sequence[int],
+) -> FurtherStates:
+    """Further states of a run along its motion at all samples, with what is `added` [g, nu] to the
+    inputs; `measured` are their places in the layout, the rest is as in `EquationSpace`.
+    """
+    grid, delays = rows.grid, delays_of(model, p)
+    parts = 2 * PARTS if np.any(delays) else PARTS
+    late = np.stack([part_averages(run, j, d, parts) for j, d in enumerate(delays)], axis=2)
+    if np.any(added):
+        more = [np.interp(run.time[:-1], run.time[grid], a) for a in added.T]
+        late = late + np.column_stack(more)[:, None, :]
+    shown = np.zeros(len(layout.further), dtype=np.bool_)
+    shown[list(measured)] = True
+    wanted = np.zeros(len(run.time), dtype=np.bool_)
+    wanted[grid[rows.chosen]] = True
+    addresses = equation_addresses(model)
+    found, mean, by_rate = further_states(
+        addresses, layout, fine, p, resting, acting, shown, wanted, late
+    )
+    left = fine.measured - found
+    acts = grid_averages(np.where(np.isnan(left), mean, mean + left), grid)
+    return FurtherStates(acts, np.nan_to_num(left), by_rate)
