@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.diagnose.law_of_rate import goes_with_speed
+from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.proposals import propose, start_for
 from tests.diagnose.spring_table import (
     COUNT,
@@ -47,9 +47,9 @@ def logged(hidden: Torque, seed: int) -> Log:
     return Log(f"run_{seed}", time, torque[:, None], reading[:, None])
 
 
-@pytest.mark.parametrize(("hidden", "goes"), [(spring, False), (spring_by_speed, True)])
+@pytest.mark.parametrize(("hidden", "breaks"), [(spring, False), (spring_by_speed, True)])
 def test_a_spring_that_is_stronger_where_it_is_fast_is_none(
-    hidden: Torque, goes: bool, tmp_path: Path
+    hidden: Torque, breaks: bool, tmp_path: Path
 ) -> None:
     with table_of(tmp_path, lambda seed: logged(hidden, seed)) as task:
         proposals = propose(task)
@@ -59,4 +59,4 @@ def test_a_spring_that_is_stronger_where_it_is_fast_is_none(
         values = start_for(task, proposals, (found,), proposals.start)
         assert abs(values["k1_cable_pan"]) > 0.2 * STIFFNESS
         assert proposals.space is not None
-        assert goes_with_speed(task, proposals.space, (found,), values, found) is goes
+        assert breaks_its_law(task, proposals.space, (found,), values, found) is breaks

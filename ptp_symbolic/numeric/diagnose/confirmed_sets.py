@@ -8,7 +8,7 @@ from ptp_symbolic.numeric.diagnose.findings import Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, gain_in_innovations
 from ptp_symbolic.numeric.diagnose.groups import Rival
-from ptp_symbolic.numeric.diagnose.law_of_rate import goes_with_speed
+from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial
@@ -122,7 +122,7 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
         if reason is not None:
             return step, reason
         space = seeker.proposals.space
-        if space is not None and goes_with_speed(
+        if space is not None and breaks_its_law(
             seeker.task, space, trial.candidates, trial.values, step.candidate
         ):
             return step, "its torque goes with the speed in another way"

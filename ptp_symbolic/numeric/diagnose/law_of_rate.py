@@ -22,15 +22,15 @@ from ptp_symbolic.numeric.identify.row_motion import row_motion
 FloatArray = NDArray[np.float64]
 
 
-def goes_with_speed(
+def breaks_its_law(
     task: Task,
     space: EquationSpace,
     candidates: Sequence[Candidate],
     values: Mapping[str, float],
     member: Candidate,
 ) -> bool:
-    """Whether the torque of a member of a set at `values` changes with the speed of its axis
-    clearly, and by a material share, beside what its law says already: a multiple of it times
+    """Whether the torque of a member of a set at `values` changes with the speed of its axis in
+    another way than its law says, clearly, and by a material share of it: a multiple of it times
     speed / mean speed - 1 is added, where all parameters are free, its own too. Rows of one block
     of time count as one (sandwich of clusters: Liang and Zeger, 1986). Errors of sensors are no
     torques.
