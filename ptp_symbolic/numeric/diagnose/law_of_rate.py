@@ -33,10 +33,11 @@ def breaks_its_law(
     another way than its law says, clearly, and by a material share of it: a multiple of it times
     speed / mean speed - 1 is added, where all parameters are free, its own too. Rows of one block
     of time count as one (sandwich of clusters: Liang and Zeger, 1986). Errors of sensors are no
-    torques.
+    torques, and what acts on currents or temperatures comes to the joint through these, late.
     """
     names = list(task.model.parameter_names)
-    if any(space.sensing[names.index(name)] for name in member.names):
+    elsewhere = space.sensing | space.moving
+    if any(elsewhere[names.index(name)] for name in member.names):
         return False
     free = all_free(task, candidates, values)
     at = linearised(space, free, values, {f.name: values[f.name] for f in free}, task.executor)

@@ -182,7 +182,7 @@ class EquationSpace:
         self, number: int, p: FloatArray, along: MeasuredMotion, added: FloatArray
     ) -> FurtherStates:
         """Further states along the motion, with what is `added` [g, nu] to the inputs."""
-        if not self.layout.further:
+        if not len(self.layout.further):
             samples = len(self.runs[number].time)
             none = np.zeros((len(added), 0)), np.zeros((samples, 0)), np.zeros((0, 0, 0))
             return FurtherStates(*none)
