@@ -119,8 +119,7 @@ def test_what_stays_takes_over_in_the_rows_what_the_others_did(seeker: Seeker) -
     both = trial(seeker, "cable_spring@pan", "base_tilt")
     values = both.values | {"k1_cable_pan": 0.5 * STIFFNESS, "beta_base": 0.2}
     halved = fitted(task, both.candidates, values, both.fit.z)
-    names = set(halved.candidates[1].names)
-    as_it_is, led = taken_over(task, seeker.proposals, halved.candidates[:1], halved, names)
+    as_it_is, led = taken_over(task, seeker.proposals, halved.candidates[:1], halved)
     assert as_it_is.values["k1_cable_pan"] == 0.5 * STIFFNESS
     assert led.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.05)
     assert led.values["beta_base"] == as_it_is.values["beta_base"] == 0.0

@@ -21,7 +21,7 @@ from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared
 from ptp_symbolic.numeric.diagnose.held_out import simulated_freely
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_of
-from ptp_symbolic.numeric.diagnose.regression import Regression, blocks_of
+from ptp_symbolic.numeric.diagnose.regression import Regression, block_numbers
 from ptp_symbolic.numeric.diagnose.subsets import exchanges, gain_along_motion, larger_sets
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, all_free
 from ptp_symbolic.numeric.identify.constants import (
@@ -175,7 +175,7 @@ class _Motion:
         rows = [space.rows(vector(dict(fit.values))) for fit in (larger, smaller)]
         equation, run, time = space.labels()
         scale = robust_scale(rows[0], equation)
-        _, block = np.unique(blocks_of(run, time), axis=0, return_inverse=True)
+        block = block_numbers(run, time)
         squares = [np.minimum((r / scale) ** 2, FAR**2) for r in rows]
-        losses = [np.asarray(np.bincount(block.reshape(-1), s), np.float64) for s in squares]
+        losses = [np.asarray(np.bincount(block, s), np.float64) for s in squares]
         return compared(losses[0], losses[1]).share >= MATERIAL

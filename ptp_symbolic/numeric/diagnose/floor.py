@@ -21,7 +21,7 @@ from ptp_symbolic.numeric.identify.noise import (
 )
 from ptp_symbolic.numeric.identify.replays import propagated_noise
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
-from ptp_symbolic.numeric.identify.run_groups import sizes
+from ptp_symbolic.numeric.identify.run_groups import by_source, sizes
 
 FloatArray = NDArray[np.float64]
 
@@ -92,13 +92,10 @@ def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
     usual = squares <= TUNING**2 * np.maximum(left_over(fit) ** 2, 1.0)
     for column, signal in enumerate(runs[0].signals):
         if signal not in task.declared_noise:
-            by_log: dict[str, list[FloatArray]] = {}
-            for (run, e), as_usual in zip(fit.pairs(), usual[:, column], strict=True):
-                if as_usual:
-                    residual = e.residual.reshape(run.measured.shape)[:, column]
-                    by_log.setdefault(run.source, []).append(residual)
-            noise = coloured_noise([part for parts in by_log.values() for part in parts], 1.0)
-            quiet = max(1.0, most_in_quietest(list(by_log.values())))
+            series = [e.residual.reshape(r.measured.shape)[:, column] for r, e in fit.pairs()]
+            by_log = [[series[k] for k in log if usual[k, column]] for log in by_source(runs)]
+            noise = coloured_noise([part for parts in by_log for part in parts], 1.0)
+            quiet = max(1.0, most_in_quietest([parts for parts in by_log if parts]))
             rms[column] = min(noise.rms, _with_hidden(noise.pole), quiet)
             most[column] = min(noise.most, hidden[column], quiet)
     floor = Floor(rms, most, carried)

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.linear import projected_off
-from ptp_symbolic.numeric.diagnose.regression import blocks_of
+from ptp_symbolic.numeric.diagnose.regression import block_numbers
 from ptp_symbolic.numeric.diagnose.trial import Task, all_free
-from ptp_symbolic.numeric.identify.constants import FAR, FEWEST_BLOCKS, MATERIAL
+from ptp_symbolic.numeric.identify.blocks import jackknife_covariance, leave_blocks_out
+from ptp_symbolic.numeric.identify.constants import FAR, FEWEST_BLOCKS, MATERIAL, SINGULAR
 from ptp_symbolic.numeric.identify.equation_fit import linearised
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.row_motion import row_motion
@@ -31,9 +32,9 @@ def breaks_its_law(
 ) -> bool:
     """Whether the torque of a member of a set at `values` changes with the speed of its axis in
     another way than its law says, clearly, and by a material share of it: a multiple of it times
-    speed / mean speed - 1 is added, where all parameters are free, its own too. Rows of one block
-    of time count as one (sandwich of clusters: Liang and Zeger, 1986). Errors of sensors are no
-    torques, and what acts on currents or temperatures comes to the joint through these, late.
+    speed / mean speed - 1 is added, where all parameters are free, its own too. Blocks of time
+    are left out in turn to tell how clear it is. Errors of sensors are no torques, and what acts on
+    currents or temperatures comes to the joint through these, late.
     """
     names = list(task.model.parameter_names)
     elsewhere = space.sensing | space.moving
@@ -47,8 +48,7 @@ def breaks_its_law(
     for axis in range(len(space.layout.angle)):
         speed[equation == axis] = np.abs(row_motion(space, axis).rate)
     known = np.isfinite(speed)
-    _, block = np.unique(blocks_of(run, time)[known], axis=0, return_inverse=True)
-    block = block.reshape(-1)
+    block = block_numbers(run[known], time[known])
     if len(np.unique(block)) < FEWEST_BLOCKS:
         return False
     root = np.sqrt(at.weight[known])
@@ -59,25 +59,13 @@ def breaks_its_law(
     if not (np.all(np.isfinite(own)) and np.any(own)):
         return False
     growing = effect * (speed[known] / np.average(speed[known], weights=own**2) - 1.0)
-    amount, variance = _amount(rows, growing, table, block)
-    added = amount * projected_off(growing[:, None], table)[:, 0]
-    whole = own + amount * projected_off(growing[:, None], others)[:, 0]
-    is_clear = amount**2 > FAR**2 * variance
-    return bool(is_clear and added @ added > MATERIAL * (whole @ whole))
-
-
-def _amount(
-    rows: FloatArray, column: FloatArray, others: FloatArray, block: NDArray[np.int64]
-) -> tuple[float, float]:
-    """How much of a `column` [n] has to be added to the `rows` [n] to leave least, with any amounts
-    of the `others` [n, k], and its variance by `block` [n].
-    """
-    table = np.column_stack([column, others])
-    length = np.maximum(np.linalg.norm(table, axis=0), 1e-300)
-    unit = table / length
-    inverse = np.linalg.pinv(unit.T @ unit, hermitian=True)
-    change = -inverse @ (unit.T @ rows)
-    left = rows + unit @ change
-    scores = np.array([np.bincount(block, c * left) for c in unit.T])
-    spread = inverse[0] @ scores
-    return float(change[0] / length[0]), float(spread @ spread / length[0] ** 2)
+    columns = np.column_stack([growing, table])
+    columns /= np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    change = -np.linalg.lstsq(columns, rows, rcond=SINGULAR)[0]
+    left = leave_blocks_out(rows + columns @ change, columns, block)
+    variance = float(jackknife_covariance(left.shifts)[0, 0])
+    added = change[0] * columns[:, :1]
+    beside_all, beside_others = (projected_off(added, t)[:, 0] for t in (table, others))
+    whole = own + beside_others
+    is_clear = change[0] ** 2 > FAR**2 * variance
+    return bool(is_clear and beside_all @ beside_all > MATERIAL * (whole @ whole))

@@ -25,6 +25,12 @@ def blocks_of(run: IntArray, time: FloatArray) -> IntArray:
     return np.column_stack([run, (time // SHORT).astype(np.int64)])
 
 
+def block_numbers(run: IntArray, time: FloatArray) -> IntArray:
+    """The number [n] of the block of every row, as `blocks_of` tells them apart."""
+    _, number = np.unique(blocks_of(run, time), axis=0, return_inverse=True)
+    return np.asarray(number.reshape(-1), dtype=np.int64)
+
+
 @dataclass(frozen=True, eq=False)
 class Regression:
     """Rows [n] to be regressed on `base` [n, nb], the columns of the `declared` parameters, and on

@@ -123,8 +123,7 @@ class Seeker:
         )
         if not kept:
             return self.declared
-        names = {name for c in trial.candidates if c not in kept for name in c.names}
-        begun = ranked(taken_over(self.task, self.proposals, kept, trial, names))[0]
+        begun = ranked(taken_over(self.task, self.proposals, kept, trial))[0]
         smaller = continued(self.task, begun, ITERATIONS, executor=self.task.executor)
         if MATERIAL <= gain(trial, smaller).share < MOST:
             smaller = self.polished(smaller)

@@ -1,6 +1,6 @@
 """Where refits by simulation begin: at what the rows or the outputs ask for, and beside it."""
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
@@ -69,11 +69,12 @@ def from_rows(
 
 
 def taken_over(
-    task: Task, proposals: Proposals, kept: Sequence[Candidate], trial: Trial, names: Set[str]
+    task: Task, proposals: Proposals, kept: Sequence[Candidate], trial: Trial
 ) -> list[Trial]:
-    """Some candidates `kept` of a trial, without the parameters `names` of the others: as they are,
-    and where they take over in the rows what the others did there.
+    """Some candidates `kept` of a trial without the others: as they are, and where they take over
+    in the rows what the others did there.
     """
+    names = {name for c in trial.candidates if c not in kept for name in c.names}
     values = trial.values | {name: task.fixed[name] for name in names}
     starts = [values]
     if proposals.space is not None:

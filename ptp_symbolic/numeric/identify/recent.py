@@ -26,6 +26,3 @@ class Recent(Generic[Key, Kept]):
     def clear(self) -> None:
         """Keep nothing."""
         self._values.clear()
-
-    def __len__(self) -> int:
-        return len(self._values)
