@@ -7,7 +7,8 @@ from pathlib import Path
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.data import log_files, read_logs
 from ptp_symbolic.numeric.diagnose.errors import error_of
-from ptp_symbolic.numeric.diagnose.floor import carried_noise, floor_of
+from ptp_symbolic.numeric.diagnose.floor import floor_of
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.summary import fit_table

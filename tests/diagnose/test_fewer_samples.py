@@ -14,7 +14,8 @@ from ptp_symbolic.numeric.diagnose.fewer_samples import (
     with_every_residual,
     with_fewer_samples,
 )
-from ptp_symbolic.numeric.diagnose.floor import carried_noise, floor_of
+from ptp_symbolic.numeric.diagnose.floor import floor_of
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.run import Run
 from tests.diagnose.test_refits import FREE
@@ -90,6 +91,8 @@ def test_noise_is_judged_by_every_sample(task: Task, searched: Trial) -> None:
     assert [e.residual.size for e in every.evaluations] == [run.size for run in task.every_sample]
     whole = replace(task, train=task.every_sample)
     same = carried_noise(whole, replace(searched.fit, runs=task.every_sample))
-    assert np.array_equal(carried_noise(task, searched.fit), same)
+    here = carried_noise(task, searched.fit)
+    assert np.array_equal(here.usual, same.usual)
+    assert np.array_equal(here.most, same.most)
     floor = floor_of(task, searched, same)
     assert np.all(floor.noise < 1.2)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
+from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.nested import beside_declared, declared_from
 from ptp_symbolic.numeric.diagnose.refits import started_anew, strayed_from_start
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
@@ -19,7 +20,7 @@ FREE = (
     free_parameter("d_shaft_pan", 1.0, 0.0, 100.0),
 )
 NAMES = tuple(f.name for f in FREE)
-NOTHING_CARRIED = np.zeros(2)
+NOTHING_CARRIED = Carried(np.zeros(2), np.zeros(2))
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.floor import carried_noise
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.search import by_effects_alone, extended

@@ -10,7 +10,7 @@ import pytest
 
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.data import log_files, read_split_logs
-from ptp_symbolic.numeric.diagnose.floor import carried_noise, left_over
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared, to_its_end
 from ptp_symbolic.numeric.diagnose.through_windows import through_windows

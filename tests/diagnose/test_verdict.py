@@ -10,6 +10,7 @@ from ptp_symbolic.numeric.diagnose.confirmed_sets import doubtful
 from ptp_symbolic.numeric.diagnose.findings import Step
 from ptp_symbolic.numeric.diagnose.floor import Floor, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.held_out import held_out_gain, is_quiet, is_taken_back
+from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import (
     EXPLAINED,
@@ -29,7 +30,7 @@ EFFECT = cast(Any, object())
 
 def floor(carried: float = 0.0) -> Floor:
     one = np.ones(1)
-    return Floor(one, one, carried * one)
+    return Floor(one, one, Carried(carried * one, carried * one))
 
 
 def word(

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
+from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MATERIAL
@@ -40,7 +41,7 @@ class Search:
     members: tuple[Step, ...]
     others: tuple[Trial, ...]
     proposals: Proposals
-    carried: FloatArray
+    carried: Carried
 
 
 def step_of(trial: Trial, candidate: Candidate, without: Trial) -> Step:

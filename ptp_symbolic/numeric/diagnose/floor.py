@@ -10,18 +10,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.fewer_samples import is_thinned, with_every_residual
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, huber_loss, mean_squares
-from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, MANY_RUNS, POLES, TUNING
-from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.diagnose.fewer_samples import with_every_residual
+from ptp_symbolic.numeric.diagnose.left_over import Carried, left_over
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, mean_squares
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, POLES, TUNING
 from ptp_symbolic.numeric.identify.noise import (
     coloured_noise,
     hidden_from_differences,
     most_in_quietest,
 )
-from ptp_symbolic.numeric.identify.replays import propagated_noise
-from ptp_symbolic.numeric.identify.robust_loss import weighted_median
-from ptp_symbolic.numeric.identify.run_groups import by_source, sizes
+from ptp_symbolic.numeric.identify.run_groups import by_source
 
 FloatArray = NDArray[np.float64]
 
@@ -35,53 +33,23 @@ class Floor:
 
     noise: FloatArray
     largest: FloatArray
-    carried: FloatArray
+    carried: Carried
 
     @property
     def level(self) -> FloatArray:
         """Root mean square [ny] of all that a perfect model leaves."""
-        return np.hypot(self.noise, self.carried)
+        return np.hypot(self.noise, self.carried.usual)
 
     @property
     def most(self) -> FloatArray:
         """The largest root mean square [ny] that may be noise."""
-        return np.hypot(self.largest, self.carried)
+        return np.hypot(self.largest, self.carried.most)
 
 
-def left_over(fit: Fit) -> FloatArray:
-    """Robust root mean square [ny] of the residual of a fit in every signal, over its noise.
-
-    Of many windows the median of the samples counts, for one in twenty begins on the wrong side of
-    a rest; of few runs, those far worse than usual count linearly.
-    """
-    squares = mean_squares(fit.evaluations, fit.runs)
-    if not np.all(np.isfinite(squares)):
-        return np.full(squares.shape[1], np.inf)
-    size = sizes(fit.runs)
-    usual = weighted_median(squares, size)
-    if len(squares) >= MANY_RUNS:
-        return np.asarray(np.sqrt(usual))
-    bounded = huber_loss(squares, TUNING**2 * np.maximum(usual, 1.0))
-    return np.asarray(np.sqrt(size @ bounded / size.sum()))
-
-
-def carried_noise(task: Task, fit: Fit) -> FloatArray:
-    """What the noise of the inputs leaves in every signal [ny], over its noise, by the model of
-    `fit`.
-
-    The median of the samples counts, so that a replay which sticks elsewhere does not.
-    """
-    p = task.model.parameter_vector(dict(fit.values))
-    runs = task.every_sample if is_thinned(task, fit) else fit.runs
-    every = propagated_noise(task.model, runs, fit.z, p, task.input_noise)
-    size = sizes(runs)
-    return weighted_median(np.nan_to_num(every), size)
-
-
-def floor_of(task: Task, trial: Trial, carried: FloatArray) -> Floor:
+def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
     """The floor, with the colour of the noise as the residual of `trial` shows it, but no more than
     the differences of the measured signals and the quietest run leave room for, and what the inputs
-    `carried` [ny]. Where more is left than noise of that colour, it is model error that has a
+    `carried`. Where more is left than noise of that colour, it is model error that has a
     colour: the floor is white then.
     """
     fit = with_every_residual(task, trial.fit)
@@ -118,11 +86,11 @@ def _with_hidden(pole: float) -> float:
     return float(np.hypot(1.0, ABOVE_NOISE * hidden_from_differences(pole)))
 
 
-def leaves_white_noise(trial: Trial, carried: FloatArray) -> bool:
-    """Whether a trial leaves no more than rounding, white noise and what the inputs `carried` [ny]
+def leaves_white_noise(trial: Trial, carried: Carried) -> bool:
+    """Whether a trial leaves no more than rounding, white noise and what the inputs `carried`
     there; a search goes on where it does, whatever the colour of the residual.
     """
-    return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * np.hypot(1.0, carried)))
+    return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * np.hypot(1.0, carried.most)))
 
 
 def leaves_noise_alone(trial: Trial, floor: Floor) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.gain import gain
+from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.refits import polished
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, is_near, ranked
 from ptp_symbolic.numeric.identify.constants import MATERIAL
@@ -15,9 +16,9 @@ from ptp_symbolic.numeric.identify.constants import MATERIAL
 FloatArray = NDArray[np.float64]
 
 
-def beside_declared(task: Task, trial: Trial, declared: Trial, carried: FloatArray) -> Trial:
+def beside_declared(task: Task, trial: Trial, declared: Trial, carried: Carried) -> Trial:
     """A trial that fits worse than the declared model, begun anew beside that, its effects as they
-    are or at their vanishing values; `carried` [ny] as in `Search`.
+    are or at their vanishing values; `carried` as in `Search`.
     """
     own = {name: trial.values[name] for c in trial.candidates for name in c.names}
     off = {n: c.vanishing[f.name] for c in trial.candidates for f in c.defining for n in f.names}
@@ -29,7 +30,7 @@ def beside_declared(task: Task, trial: Trial, declared: Trial, carried: FloatArr
     return ranked([trial, *(polished(task, t, carried) for t in left)])[0]
 
 
-def declared_from(task: Task, trial: Trial, declared: Trial, carried: FloatArray) -> Trial | None:
+def declared_from(task: Task, trial: Trial, declared: Trial, carried: Carried) -> Trial | None:
     """The declared model fitted from where a trial ended, its effects at their vanishing values;
     None unless that is materially better than `declared`, which was in a local minimum then.
     """

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
-from ptp_symbolic.numeric.diagnose.floor import carried_noise, leaves_white_noise, left_over
+from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.growing_windows import growing, led_through, settled
+from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.trial import (
@@ -94,14 +95,18 @@ def in_windows(task: Task, declared: Trial) -> Task:
     model, noise = task.model, task.input_noise
     p = model.parameter_vector(declared.values)
     left = np.sqrt(mean_squares(declared.fit.evaluations, task.train))
-    train = cut_where_noise_grows(model, task.every_sample, declared.fit.z, left, p, noise)
+    train = cut_where_noise_grows(
+        model, task.every_sample, declared.fit.z, left, p, noise, task.executor
+    )
     if len(train) == len(task.train):
         return task
     fewer = dict(zip(task.every_sample, task.train, strict=True))
     task.progress("runs that multiply the noise of their inputs are cut into windows")
     starts = [run.guess for run in task.validate]
     any_left = np.zeros((len(starts), left.shape[1]))
-    validate = cut_where_noise_grows(model, task.validate, starts, any_left, p, noise)
+    validate = cut_where_noise_grows(
+        model, task.validate, starts, any_left, p, noise, task.executor
+    )
     kept = tuple(fewer.get(run, run) for run in train)
     return replace(task, every_sample=train, train=kept, validate=validate)
 
@@ -144,8 +149,8 @@ def over_windows(
     return [fitted(task, candidates, best.values, None)] if best else []
 
 
-def polished(task: Task, trial: Trial, carried: FloatArray) -> Trial:
-    """The trial fitted to its end, and begun anew where that is near the floor; `carried` [ny]."""
+def polished(task: Task, trial: Trial, carried: Carried) -> Trial:
+    """The trial fitted to its end, and begun anew where that is near the floor."""
     trial = to_its_end(task, trial, carried)
     if not _is_near_floor(trial):
         return trial
@@ -156,7 +161,7 @@ def _is_near_floor(trial: Trial) -> bool:
     return bool(np.all(left_over(trial.fit) <= NEARBY))
 
 
-def _in_time(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+def _in_time(task: Task, trial: Trial, carried: Carried) -> Trial:
     """The trial, or a better end past valleys in which friction lets go a sample late somewhere: a
     drive soon forgets it, so that blocks of runs tell it from the parameters, where the sum of all
     squares pays for it with parameters that are wrong everywhere (see `identify.robust_loss`).
@@ -175,7 +180,7 @@ def _in_time(task: Task, trial: Trial, carried: FloatArray) -> Trial:
     return trial
 
 
-def started_anew(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+def started_anew(task: Task, trial: Trial, carried: Carried) -> Trial:
     """The trial, or a better end from elsewhere: with starts of the runs looked for anew, and with
     declared parameters that have strayed back at their starts or as far off as a start may be.
 
@@ -212,7 +217,7 @@ def _inside(free: FreeParameter, value: float) -> float:
     return float(np.clip(value, free.lower, free.upper))
 
 
-def to_its_end(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+def to_its_end(task: Task, trial: Trial, carried: Carried) -> Trial:
     """The trial fitted with derivatives where the motion is smooth, with finite differences where
     friction makes it a staircase, in turn.
     """
@@ -226,7 +231,7 @@ def to_its_end(task: Task, trial: Trial, carried: FloatArray) -> Trial:
     return trial
 
 
-def sharpened(task: Task, trial: Trial, carried: FloatArray) -> Trial:
+def sharpened(task: Task, trial: Trial, carried: Carried) -> Trial:
     """A polished trial fitted on with sharp simulations, where little but noise is left."""
     if trial.fit.failed or not leaves_white_noise(trial, carried):
         return trial

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
 from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
-from ptp_symbolic.numeric.diagnose.floor import carried_noise
 from ptp_symbolic.numeric.diagnose.gain import gain
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
 from ptp_symbolic.numeric.diagnose.proposals import propose, with_lines
 from ptp_symbolic.numeric.diagnose.refits import fit_declared

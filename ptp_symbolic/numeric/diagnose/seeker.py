@@ -12,6 +12,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.findings import Step, is_earned, step_of
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
+from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.nested import beside_declared
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import (
@@ -52,13 +53,11 @@ FloatArray = NDArray[np.float64]
 
 
 class Seeker:
-    """A search in progress; `others` collects the trials that were not chosen, `carried` [ny] is
-    that of `Search`.
+    """A search in progress; `others` collects the trials that were not chosen, `carried` is that
+    of `Search`.
     """
 
-    def __init__(
-        self, task: Task, declared: Trial, proposals: Proposals, carried: FloatArray
-    ) -> None:
+    def __init__(self, task: Task, declared: Trial, proposals: Proposals, carried: Carried) -> None:
         self.task, self.declared, self.proposals, self.carried = task, declared, proposals, carried
         self.others: list[Trial] = []
         self._at_end: WeakSet[Trial] = WeakSet()  # their Jacobians are large

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise, most_hidden
 from ptp_symbolic.numeric.diagnose.growing_windows import growing, led, led_through, settled
+from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.refits import to_its_end
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
@@ -31,7 +32,7 @@ FloatArray = NDArray[np.float64]
 
 
 def through_windows(
-    task: Task, parent: Trial, candidate: Candidate, carried: FloatArray
+    task: Task, parent: Trial, candidate: Candidate, carried: Carried
 ) -> Trial | None:
     """The parent with a candidate, fitted to whole runs from where windows lead it, and again as
     long as that is a better place; None where it does not gain materially in windows. `carried`
@@ -55,7 +56,7 @@ def through_windows(
 
 
 def _first_lead(
-    parts: Sequence[Task], parent: Trial, candidate: Candidate, carried: FloatArray
+    parts: Sequence[Task], parent: Trial, candidate: Candidate, carried: Carried
 ) -> Mapping[str, float] | None:
     """Values where windows lead the candidate; None where it does not gain materially in windows of
     some length.
@@ -111,9 +112,7 @@ def _amounts(candidate: Candidate, factor: float) -> dict[str, float]:
     }
 
 
-def _may_be_all(
-    part: Task, alone: Trial, amounts: Mapping[str, float], carried: FloatArray
-) -> bool:
+def _may_be_all(part: Task, alone: Trial, amounts: Mapping[str, float], carried: Carried) -> bool:
     """Whether a candidate at some `amounts` changes some windows, and those that it leaves as they
     are hold no more than may be noise: else they lack something besides.
     """
@@ -123,6 +122,6 @@ def _may_be_all(
         for e, before in zip(simulated(part, fit, amounts, None), fit.evaluations, strict=True)
     ]
     left = mean_squares(fit.evaluations, fit.runs)[np.logical_not(changed)]
-    usual = np.median(left, axis=0) if len(left) else np.zeros(len(carried))
-    most = ABOVE_NOISE * np.hypot(most_hidden(part), carried)
+    usual = np.median(left, axis=0) if len(left) else np.zeros(left.shape[1])
+    most = ABOVE_NOISE * np.hypot(most_hidden(part), carried.most)
     return any(changed) and bool(np.all(np.sqrt(usual) <= most))

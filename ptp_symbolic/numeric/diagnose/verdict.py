@@ -15,7 +15,7 @@ from ptp_symbolic.numeric.diagnose.confirmed_sets import (
 )
 from ptp_symbolic.numeric.diagnose.fewer_samples import fitted_to_every_sample
 from ptp_symbolic.numeric.diagnose.findings import Search
-from ptp_symbolic.numeric.diagnose.floor import Floor, carried_noise, floor_of, leaves_noise_alone
+from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
 from ptp_symbolic.numeric.diagnose.held_out import (
@@ -25,6 +25,7 @@ from ptp_symbolic.numeric.diagnose.held_out import (
     is_taken_back,
     left_by_values,
 )
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, ranked
 from ptp_symbolic.numeric.identify.fit import Fit

@@ -56,6 +56,7 @@ ADDED = 4  # candidates; that are refitted when one is added; scaled
 SCREENED = 2  # sets, candidates; of those begun with few iterations that go on; scaled
 REFINEMENTS = 2  # 1; Gauss-Newton steps of a proposed set; scaled
 REPLAYS = 100  # runs; replayed with noisy inputs: a standard deviation is good to 7 %; derived
+TIMES = 8  # 1; replays of every run: a mean square of 4 degrees of freedom is good to 25 %; derived
 REWEIGHTINGS = 6  # 1; of rows: weights settle to a percent; scaled
 SCORINGS = 20  # 1; of a spectrum: its variance settles to a part in a thousand; derived
 SENSOR_ITERATIONS = 4  # 1; an error of 2 % of the angle is left to 2e-7 of it; derived

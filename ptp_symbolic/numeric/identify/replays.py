@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.blocks import huber_root
-from ptp_symbolic.numeric.identify.constants import REPLAYS, SEED
+from ptp_symbolic.numeric.identify.constants import REPLAYS, SEED, TIMES
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
@@ -55,26 +55,58 @@ def replayed(
     return other.residual - plain.residual, plain.by_start
 
 
+def replayed_squares(
+    model: Model,
+    runs: Sequence[Run],
+    z: Sequence[FloatArray],
+    p: FloatArray,
+    declared_noise: Sequence[float | None],
+    executor: Executor | None = None,
+) -> FloatArray:
+    """What input noise leaves in the residual of a perfect model: mean squares [times, runs, ny] of
+    some replays of every run, in units of the noise of every signal (see `Run.weight`); nan where a
+    run cannot be simulated.
+
+    Every run is replayed with noisy inputs; what its unknown start can take up is projected out.
+    """
+    none = np.zeros(0, dtype=np.int64)
+
+    def squares(number: int) -> FloatArray:
+        run, found = (
+            with_inputs(runs[number], runs[number].held_inputs),
+            np.zeros((TIMES, len(runs[number].signals))),
+        )
+        noise = input_noise(run, declared_noise)
+        if not np.any(noise):
+            return found
+        plain = evaluate(model, run, p, z[number], none, True, Tolerance())
+        rng = np.random.default_rng((SEED, number))
+        for row in found:
+            other = evaluate(
+                model, noisier(run, noise, rng), p, z[number], none, False, Tolerance()
+            )
+            if plain.failed or other.failed:
+                row[:] = np.nan
+                continue
+            change = project_out((other.residual - plain.residual)[:, None], plain.by_start)
+            row[:] = np.mean(change.reshape(run.measured.shape) ** 2, axis=0)
+        return found
+
+    every = (executor.map if executor else map)(squares, range(len(runs)))
+    return np.stack(list(every), axis=1)
+
+
 def propagated_noise(
     model: Model,
     runs: Sequence[Run],
     z: Sequence[FloatArray],
     p: FloatArray,
     declared_noise: Sequence[float | None],
+    executor: Executor | None = None,
 ) -> FloatArray:
-    """What input noise leaves in the residual of a perfect model: rms [runs, ny], in units of the
-    noise of every signal (see `Run.weight`); nan where a run cannot be simulated.
-
-    Every run is replayed with noisy inputs; what its unknown start can take up is projected out.
-    """
-    rng = np.random.default_rng(SEED)
-    squares = np.full((len(runs), runs[0].measured.shape[1]), np.nan)
-    for row, (run, start) in enumerate(zip(runs, z, strict=True)):
-        found = replayed(model, run, p, start, input_noise(run, declared_noise), rng)
-        if found is not None:
-            change = project_out(found[0][:, None], found[1])[:, 0]
-            squares[row] = np.mean(change.reshape(run.measured.shape) ** 2, axis=0)
-    return np.sqrt(squares)
+    """The same as a root mean square [runs, ny] over the replays."""
+    squares = replayed_squares(model, runs, z, p, declared_noise, executor)
+    return np.asarray(np.sqrt(np.mean(squares, axis=0)))
 
 
 def estimable(

@@ -10,9 +10,9 @@ from ptp_symbolic.numeric.identify.constants import (
     ANYWHERE,
     FAR,
     LEAST_START,
-    ROUNDING,
     START_SPAN,
 )
+from ptp_symbolic.numeric.identify.first_rate import Around, first_rate
 from ptp_symbolic.numeric.identify.rate_signals import has_angle
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
@@ -97,27 +97,17 @@ class Run:
         return starts
 
 
-@dataclass(frozen=True, eq=False)
-class Around:
-    """The whole log of a window: time [n] in s and measured [n, ny], and its `first` sample."""
-
-    time: FloatArray
-    measured: FloatArray
-    first: int
-
-
 def with_start(
     model: Model, run: Run, around: Around | None = None, *, underway: bool = False
 ) -> Run:
     """`run` with a guess of the state at its first sample, and what is unknown of it.
 
-    A local parabola over a tenth of a second gives the rate, in the middle of it where the run is a
-    window and `around` it is the rest of a log. A joint with dry friction whose rate is within its
-    noise is taken to be at rest; one that is near it may be. A moving joint is driven: its gear
-    touches the face ahead and has wound up the shaft, nobody knows by how much; or it crosses its
-    gap, at anything between standstill and twice the rate of the joint. In a window, and of one
-    that is `underway` after a gap in the log, the shaft may be wound up at rest too; and one that
-    is underway may turn back within its noise.
+    A joint with dry friction whose rate is within its noise is taken to be at rest; one that is
+    near it may be. A moving joint is driven: its gear touches the face ahead and has wound up the
+    shaft, nobody knows by how much; or it crosses its gap, at anything between standstill and twice
+    the rate of the joint. In a window (`around` it is the rest of a log), and of one that is
+    `underway` after a gap in the log, the shaft may be wound up at rest too; and one that is
+    underway may turn back within its noise.
     """
     wound = underway or around is not None
     states = list(model.state_names)
@@ -143,7 +133,8 @@ def with_start(
             start[states.index(signal)] = run.measured[0, column]
             continue
         sigma = 1.0 / run.weight[column]
-        rate, error = _first_rate(run, column, around)
+        log = around or Around(run.time, run.measured, 0)
+        rate, error = first_rate(log, column, sigma, float(run.counts[column]))
         angles = [name for name in (signal, f"theta_gear_{axis}") if name in states]
         rates = [name for name in (f"omega_{axis}", f"omega_gear_{axis}") if name in states]
         start[[states.index(name) for name in angles]] = run.measured[0, column]
@@ -214,38 +205,6 @@ def _stays(run: Run, column: int) -> bool:
     return (
         float(np.ptp(run.measured[: _start_samples(run), column])) <= 2.0 * FAR / run.weight[column]
     )
-
-
-def _first_rate(run: Run, column: int, around: Around | None) -> tuple[float, float]:
-    """Rate at the first sample, and its standard deviation: that of the noise, and what a cubic
-    tells otherwise, for motion is no parabola.
-    """
-    if around is None:
-        time, values = run.time - run.time[0], run.measured[:, column]
-        part = slice(0, max(LEAST_START, int(np.searchsorted(time, START_SPAN))))
-    else:
-        time, values = around.time - run.time[0], around.measured[:, column]
-        half = max(LEAST_START // 2, int(np.searchsorted(time, 0.5 * START_SPAN) - around.first))
-        part = slice(max(0, around.first - half), around.first + half + 1)
-    rate, noise = _rate_over(run, column, time[part], values[part], 2)
-    other, _ = _rate_over(run, column, time[part], values[part], 3)
-    return rate, float(np.hypot(noise, other - rate))
-
-
-def _rate_over(
-    run: Run, column: int, time: FloatArray, values: FloatArray, degree: int
-) -> tuple[float, float]:
-    """Rate at time zero by a polynomial, and its standard deviation: noise as if white, rounding as
-    if it were the same in half of the samples.
-    """
-    longest = float(np.max(np.abs(time)))
-    columns = np.vander(time / longest, degree + 1, increasing=True)
-    inverse = np.linalg.pinv(columns)
-    rate = float(inverse[1] @ values) / longest
-    sigma = 1.0 / run.weight[column]
-    rounding = float(np.nan_to_num(run.counts[column])) * ROUNDING
-    white = np.sqrt(max(sigma**2 - rounding**2, 0.0)) * float(np.linalg.norm(inverse[1]))
-    return rate, float(np.hypot(white, 2.0 * rounding)) / longest
 
 
 def _unknown(

@@ -7,6 +7,7 @@ axis), would be judged by that noise; it is cut into windows with starts of thei
 
 import itertools
 from collections.abc import Sequence
+from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
@@ -24,8 +25,9 @@ from ptp_symbolic.numeric.identify.constants import (
     TUNING,
 )
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
+from ptp_symbolic.numeric.identify.first_rate import Around
 from ptp_symbolic.numeric.identify.replays import input_noise, propagated_noise, replayed
-from ptp_symbolic.numeric.identify.run import WINDOW, Around, Run, with_start
+from ptp_symbolic.numeric.identify.run import WINDOW, Run, with_start
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import part_of_held
 
@@ -93,12 +95,13 @@ def cut_where_noise_grows(
     left: FloatArray,
     p: FloatArray,
     declared_noise: Sequence[float | None],
+    executor: Executor | None = None,
 ) -> tuple[Run, ...]:
     """The runs, those cut into windows in which the noise of the inputs leaves more than the noise
     of the signals and may be most of the residual `left` [runs, ny]: bounces in a gap and
     breakaways amplify it until nothing can be predicted.
     """
-    carried = propagated_noise(model, runs, z, p, declared_noise)
+    carried = propagated_noise(model, runs, z, p, declared_noise, executor)
     grows = np.any((carried > 1.0) & (left < TUNING * carried), axis=1)
     found: list[Run] = []
     for run, chaotic in zip(runs, grows, strict=True):

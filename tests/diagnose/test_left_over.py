@@ -1,0 +1,75 @@
+"""What noise of the inputs leaves of runs: closed forms of a free axis, which integrates its torque
+twice.
+"""
+
+from dataclasses import replace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise, left_over, most_of
+from tests.identify.straight import finished
+from tests.identify.test_replays import SIGMA, accelerated, drifts
+
+NOISE = 0.004  # N m
+RUNS = 3
+
+
+class _Same:
+    """An executor that does the work at once."""
+
+    map = staticmethod(map)
+
+
+def carried(runs: int) -> Carried:
+    """What NOISE of the torque leaves of so many equal runs."""
+    fit = accelerated(runs)
+    task = cast(Any, _Task(fit.model, tuple(fit.runs)))
+    return carried_noise(task, fit)
+
+
+class _Task:
+    input_noise = (NOISE, 0.0)
+    executor = _Same()
+
+    def __init__(self, model: Any, runs: tuple[Any, ...]) -> None:
+        self.model, self.every_sample, self.train, self.windows = model, runs, runs, ()
+
+
+def test_what_inputs_carry_is_the_noise_integrated_twice() -> None:
+    """Of runs that a start follows, the drift beside a straight line is left."""
+    found = carried(RUNS)
+    paths = drifts(NOISE, 3000) / SIGMA
+    each = [left_over(finished(list(paths[:, k : k + RUNS].T)))[0] for k in range(0, 3000, RUNS)]
+    assert found.usual[0] == pytest.approx(np.median(each), rel=0.25)
+    assert 0.9 < np.mean(each <= found.most[0]) <= 1.0
+    assert found.most[1] < 1e-4
+
+
+@pytest.mark.parametrize("freedom", [1, 4, 30])
+def test_the_most_of_a_mean_square_is_rarely_exceeded(freedom: int) -> None:
+    """One in fifty exceeds what eight others foretell at 99 %, for that is not known exactly."""
+    rng = np.random.default_rng(freedom)
+    bounds = [most_of(rng.chisquare(freedom, 8)) for _ in range(400)]
+    above = np.mean([stats.chi2.sf(bound, freedom) for bound in bounds])
+    assert 0.005 < above < 0.03
+    assert np.median(bounds) < 1.5 * stats.chi2.ppf(0.99, freedom)
+
+
+def test_silent_inputs_carry_nothing() -> None:
+    fit = accelerated(1)
+    task = _Task(fit.model, tuple(fit.runs))
+    task.input_noise = (0.0, 0.0)
+    assert np.all(carried_noise(cast(Any, task), fit).most < 1e-4)
+
+
+def test_many_windows_count_by_their_median_and_few_runs_by_their_mean() -> None:
+    wave = np.where(np.arange(40) % 2, 1.0, -1.0)
+    many = [wave] * 21 + [50.0 * wave] * 2
+    assert left_over(finished(many)) == pytest.approx([1.0])
+    assert left_over(finished([wave, 2.0 * wave])) == pytest.approx([np.sqrt(2.5)])
+    failed = finished([wave])
+    gone = replace(failed.evaluations[0], failed="stopped")
+    assert left_over(replace(failed, evaluations=(gone,))) == pytest.approx([np.inf])
