@@ -12,18 +12,20 @@ from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial
-from ptp_symbolic.numeric.identify.constants import MATERIAL, MOST
-from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MATERIAL, MOST
 from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.intervals import chance_by_inputs
+from ptp_symbolic.numeric.identify.replays import estimable
 
 
 def confirmed(
     seeker: Seeker, trial: Trial, steps: list[Step], refused: dict[str, str]
 ) -> tuple[Trial, list[Step], Fit]:
     """What is left of a trial when all that cannot be confirmed is taken out, noted in `refused`
-    with the reason; its steps, and its fit with derivatives that are not blind.
+    with the reason; its steps, and its fit with what intervals need (see `estimable`).
     """
-    fit = with_finite_differences(trial.fit, seeker.task.executor)
+    task = seeker.task
+    fit = estimable(trial.fit, task.input_noise, task.executor)
     while trial.candidates:
         simpler = _off_bounds(seeker, trial, fit)
         weakness = _weakness(seeker, trial, steps, fit) if simpler is None else None
@@ -35,7 +37,7 @@ def confirmed(
             trial, steps = shortened(seeker, step.without)
         else:
             break
-        fit = with_finite_differences(trial.fit, seeker.task.executor)
+        fit = estimable(trial.fit, task.input_noise, task.executor)
     return trial, steps, fit
 
 
@@ -77,7 +79,7 @@ def simplest_alike(
     seeker: Seeker, chosen: Trial, steps: list[Step], chosen_fit: Fit, alike: list[Rival]
 ) -> tuple[Trial, list[Step], Fit, list[Rival]]:
     """Of one effect and what cannot be told from it, the one with the fewest parameters, if
-    that is confirmed too; with its fit from `with_finite_differences`, `chosen_fit` of the first.
+    that is confirmed too; with its fit from `estimable`, `chosen_fit` of the first.
     """
     unchanged = chosen, steps, chosen_fit, alike
     best = min(alike, key=lambda r: len(r.trial.fit.free), default=None)
@@ -86,7 +88,8 @@ def simplest_alike(
     if len(best.trial.candidates) != 1:
         return unchanged
     (candidate,) = best.trial.candidates
-    fit = with_finite_differences(best.trial.fit, seeker.task.executor)
+    task = seeker.task
+    fit = estimable(best.trial.fit, task.input_noise, task.executor)
     step = step_of(best.trial, candidate, steps[0].without)
     if _weakness(seeker, best.trial, [step], fit) is not None:
         return unchanged
@@ -118,6 +121,10 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
     for step in by_gain:
         if not seeker.is_needed(step):
             return step, _too_little(step.gain)
+        own = step.candidate
+        by_inputs = chance_by_inputs(fit, own.vanishing, own.parameters)
+        if by_inputs >= FALSE_ALARM / len(seeker.task.candidates):
+            return step, "the noise of the inputs may have made it"
         reason = why_unconfirmed(fit, step.candidate, quiet, refit)
         if reason is not None:
             return step, reason

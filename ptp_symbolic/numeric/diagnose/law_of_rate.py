@@ -15,7 +15,7 @@ from ptp_symbolic.numeric.diagnose.linear import projected_off
 from ptp_symbolic.numeric.diagnose.regression import block_numbers
 from ptp_symbolic.numeric.diagnose.trial import Task, all_free
 from ptp_symbolic.numeric.identify.blocks import jackknife_covariance, leave_blocks_out
-from ptp_symbolic.numeric.identify.constants import FAR, FEWEST_BLOCKS, MATERIAL, SINGULAR
+from ptp_symbolic.numeric.identify.constants import FAR, FEWEST_BLOCKS, MOST, SINGULAR
 from ptp_symbolic.numeric.identify.equation_fit import linearised
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.row_motion import row_motion
@@ -31,10 +31,11 @@ def breaks_its_law(
     member: Candidate,
 ) -> bool:
     """Whether the torque of a member of a set at `values` changes with the speed of its axis in
-    another way than its law says, clearly, and by a material share of it: a multiple of it times
-    speed / mean speed - 1 is added, where all parameters are free, its own too. Blocks of time
-    are left out in turn to tell how clear it is. Errors of sensors are no torques, and what acts on
-    currents or temperatures comes to the joint through these, late.
+    another way than its law says, clearly, and by most of it: a multiple of it times
+    speed / mean speed - 1 is added, where all parameters are free, its own too. That multiple is 0
+    by its law, and 1 for what goes with the speed beside that. Blocks of time are left out in turn
+    to tell how clear it is. Errors of sensors are no torques, and what acts on currents or
+    temperatures comes to the joint through these, late.
     """
     names = list(task.model.parameter_names)
     elsewhere = space.sensing | space.moving
@@ -54,18 +55,16 @@ def breaks_its_law(
     root = np.sqrt(at.weight[known])
     rows, effect = root * at.rows[known], root * (at.rows - without)[known]
     table = root[:, None] * at.jacobian[known]
-    others = table[:, [k for k, f in enumerate(free) if f.name not in member.parameters]]
-    own = projected_off(effect[:, None], others)[:, 0]
+    mine = np.array([f.name in member.parameters for f in free])
+    own = projected_off(effect[:, None], table[:, ~mine])[:, 0]
     if not (np.all(np.isfinite(own)) and np.any(own)):
         return False
     growing = effect * (speed[known] / np.average(speed[known], weights=own**2) - 1.0)
     columns = np.column_stack([growing, table])
-    columns /= np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    change = -np.linalg.lstsq(columns, rows, rcond=SINGULAR)[0]
-    left = leave_blocks_out(rows + columns @ change, columns, block)
+    size = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    change = -np.linalg.lstsq(columns / size, rows, rcond=SINGULAR)[0]
+    left = leave_blocks_out(rows + columns / size @ change, columns / size, block)
     variance = float(jackknife_covariance(left.shifts)[0, 0])
-    added = change[0] * columns[:, :1]
-    beside_all, beside_others = (projected_off(added, t)[:, 0] for t in (table, others))
-    whole = own + beside_others
-    is_clear = change[0] ** 2 > FAR**2 * variance
-    return bool(is_clear and beside_all @ beside_all > MATERIAL * (whole @ whole))
+    change, clear = change / size, change[0] ** 2 > FAR**2 * variance
+    scaled = 1.0 + float(own @ table[:, mine] @ change[1:][mine]) / float(own @ own)
+    return bool(clear and abs(change[0]) > MOST * abs(scaled))
