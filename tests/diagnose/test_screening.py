@@ -19,7 +19,6 @@ def task(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Task]:
 
 def test_the_spring_comes_first_at_its_stiffness(task: Task) -> None:
     found = screened(task, propose(task), (), task.candidates, declared_start(task))
-    assert len(found) > 5
     assert found[0].keys == ("cable_spring@pan",)
     assert found[0].values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.02)
     assert found[0].values["J_pan"] == pytest.approx(INERTIA - PAYLOAD, rel=0.02)

@@ -13,6 +13,7 @@ from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parame
 from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
 from ptp_symbolic.numeric.identify.intervals import (
     chance_by_inputs,
+    chance_of_zero,
     covariance_of,
     estimates,
     project_out,
@@ -152,3 +153,13 @@ def test_noise_of_the_input_is_not_taken_for_values_that_differ_from_zero() -> N
     quiet = [replace(fit, shaken=tuple(0.1 * c for c in fit.shaken)) for fit in fits]
     assert np.mean([chance_by_inputs(fit, zero) < 0.05 for fit in quiet]) > 0.9
     assert chance_by_inputs(replace(fits[0], shaken=()), zero) == 0.0
+
+
+def test_a_chance_has_no_degrees_of_freedom_where_replays_tell_it() -> None:
+    """Of those are as many as one likes: what is far from zero is so all the same."""
+    rng, zero = np.random.default_rng(7), {f.name: 0.0 for f in FOUR}
+    chance = [chance_of_zero(windows(rng, 25, FOUR), zero) for _ in range(50)]
+    assert np.all(np.isfinite(chance))
+    assert np.median(chance) > 0.1
+    far = {name: -10.0 for name in zero}
+    assert chance_of_zero(windows(rng, 25, FOUR), far) < 1e-6

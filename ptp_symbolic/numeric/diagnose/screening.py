@@ -9,8 +9,8 @@ from dataclasses import replace
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_for
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, continued, fitted, ranked
-from ptp_symbolic.numeric.identify.constants import ITERATIONS
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, ranked
+from ptp_symbolic.numeric.identify.constants import ITERATIONS, TRIED
 
 
 def screened(
@@ -20,10 +20,10 @@ def screened(
     wanted: Sequence[Candidate],
     values: Mapping[str, float],
 ) -> list[Trial]:
-    """The set `kept` with each of the candidates `wanted`, and with what that brings along, fitted
-    to a few windows of the task, the best fit first. A candidate is tried in its simplest and in
+    """The set `kept` with those of the candidates `wanted`, and with what they bring along, that
+    fit a few windows of the task best, the best first. A candidate is tried in its simplest and in
     its fullest form. A fit begins where the rows start the set, or at `values` and the candidate's
-    own start, whichever is better.
+    own start, whichever is better; after every iteration half of the fits go on.
     """
     part = replace(task, train=task.few)
     have = {c.key for c in kept}
@@ -35,16 +35,16 @@ def screened(
         whole = {**values, **own, **candidate.shapes[0]}
         candidates = (*kept, *added, candidate)
         starts = [whole, start_for(task, found, candidates, whole, linear=True)]
-        first = ranked([fitted(part, candidates, start, None) for start in starts])[0]
-        return continued(part, first, ITERATIONS)
+        return ranked([fitted(part, candidates, start, None) for start in starts])[0]
 
     own: dict[str, list[Candidate]] = {}
     for c in sorted(wanted, key=lambda c: len(c.free)):
         if c.key not in have:
             own.setdefault(c.key, []).append(c)
     ends = [c for forms in own.values() for c in (forms[0], *forms[1:][-1:])]
+    trials = list(task.executor.map(begun, ends))
+    rungs = [max(len(trials) >> k, TRIED) for k in range(1, ITERATIONS + 1)]
     best: dict[tuple[str, ...], Trial] = {}
-    for trial in ranked(list(task.executor.map(begun, ends))):
-        if not trial.fit.failed:
-            best.setdefault(trial.keys, trial)
+    for trial in halving(part, trials, *rungs, iterations=1):
+        best.setdefault(trial.keys, trial)
     return list(best.values())

@@ -49,12 +49,14 @@ def _from_declared(seeker: Seeker) -> Search:
         sets = started(task, seeker.declared, seeker.proposals)
         task.progress(f"refitting {len(sets)} proposed sets")
         found = halving(task, sets, SCREENED, 1, seen=seeker.others)
+        seeker.follow(ranked([best, *found])[0])
         if not seeker.have_answer(best, *found, *seeker.others):
             unseen = seeker.unseen(best)
             task.progress(f"refitting {len(unseen)} effects that the motion does not show")
             found += halving(task, unseen, 1)
         found = [t for t in ranked(found) if is_near(t, found)]
         best = seeker.restarted(ranked([best, *(seeker.completed(t) for t in found)])[0])
+        seeker.follow(best)
     if not seeker.have_answer(best):
         best = seeker.simplest([best, *seeker.led_through_windows()])
     begun, steps = seeker.pruned(best)
@@ -107,6 +109,7 @@ def extended(
         same = pruned.keys == best.keys
         if same and ranked([best, pruned])[0] is best:
             break
+        seeker.follow(pruned)
         best, steps = pruned, fewer  # the same candidates too: a third may show them a better place
     return best, steps
 

@@ -12,7 +12,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.findings import Step, is_earned, step_of
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
-from ptp_symbolic.numeric.diagnose.left_over import Carried
+from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise
 from ptp_symbolic.numeric.diagnose.nested import beside_declared
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import (
@@ -53,9 +53,7 @@ FloatArray = NDArray[np.float64]
 
 
 class Seeker:
-    """A search in progress; `others` collects the trials that were not chosen, `carried` is that
-    of `Search`.
-    """
+    """A search in progress; `others` are trials not chosen, `carried` is that of `Search`."""
 
     def __init__(self, task: Task, declared: Trial, proposals: Proposals, carried: Carried) -> None:
         self.task, self.declared, self.proposals, self.carried = task, declared, proposals, carried
@@ -68,6 +66,11 @@ class Seeker:
         """
         found = responses(self.task, trial, self.proposals.unseen)
         return [t for r in found[:ADDED] for t in along(self.task, self.proposals, r, trial)]
+
+    def follow(self, trial: Trial) -> None:
+        """Let a trial tell what the noise of the inputs leaves: a model that rests shows none."""
+        if trial.candidates:
+            self.carried = carried_noise(self.task, trial.fit)
 
     def is_at_noise(self, trial: Trial) -> bool:
         """Whether a trial leaves white noise alone."""
@@ -254,7 +257,7 @@ class Seeker:
         found = [self.polished(t) for t in left if is_near(t, [trial])]
         self.others += [*found, *(t for t in left if not is_near(t, [trial]))]
         best = ranked([trial, *found])[0]
-        return None if best is trial else best
+        return best if best is not trial else None
 
     def simplified(self, trial: Trial) -> Trial:
         """Every candidate in the simplest of its forms that loses nothing clear and material.

@@ -84,6 +84,7 @@ def decide(found: Search) -> Verdict:
     refused: dict[str, str] = {}
     seeker = Seeker(task, found.declared, found.proposals, found.carried)
     seeker.others = list(found.others)
+    seeker.follow(found.chosen)
     trial, steps, fit = confirmed(seeker, found.chosen, list(found.members), refused)
     alike: list[Rival] = []
     while trial.candidates:

@@ -103,13 +103,14 @@ def chance_of_zero(fit: Fit, zero: Mapping[str, float], shape: Collection[str] =
 def chance_by_inputs(fit: Fit, zero: Mapping[str, float], shape: Collection[str] = ()) -> float:
     """The same where the noise of the inputs alone, as replays of `fit` show it, moves the
     parameters: what it leaves lasts for seconds, so that blocks of time may all show it. 0 without
-    such noise.
+    such noise. Where few replays shift them, as when friction lets go later, so much more is asked.
     """
     if not fit.shaken:
         return 0.0
     away, columns, first = _away_from(fit, zero, shape)
     shifts = _shifts_by_inputs(fit, _inverse(columns.T @ columns)[0], columns)[:, first:]
-    return _hotelling(away, shifts.T @ shifts, float(degrees_of_freedom(shifts).min()))
+    degrees = max(float(degrees_of_freedom(shifts).min()), float(len(away)))
+    return _hotelling(away, shifts.T @ shifts, degrees)
 
 
 def _away_from(
@@ -134,8 +135,10 @@ def _hotelling(away: FloatArray, covariance: FloatArray, degrees: float) -> floa
     if left <= 0.0:
         return 1.0
     inverse = np.linalg.pinv(covariance, rcond=NOTHING, hermitian=True)
-    statistic = float(away @ inverse @ away) * left / (k * (left + k - 1.0))
-    return float(stats.f.sf(statistic, k, left))
+    square = float(away @ inverse @ away)
+    if np.isinf(left):
+        return float(stats.chi2.sf(square, k))
+    return float(stats.f.sf(square * left / (k * (left + k - 1.0)), k, left))
 
 
 def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
