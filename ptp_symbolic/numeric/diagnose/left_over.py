@@ -72,16 +72,16 @@ def carried_noise(task: Task, fit: Fit) -> Carried:
 def most_of(squares: FloatArray) -> float:
     """The bound below which a mean square stays at 99 %, from some [n] that are like it.
 
-    It is a sum of squares of few normal numbers: the variance of its logarithm tells how many, the
-    mean of that its scale (Bartlett and Kendall, 1946), and both are known from n alone. A replay
-    that sticks elsewhere counts little in a logarithm.
+    It is a sum of squares of one normal number or more: the variance of its logarithm tells how
+    many, the mean of that its scale (Bartlett and Kendall, 1946), and both are known from n alone.
+    A replay that sticks elsewhere counts little in a logarithm.
     """
-    logarithms = np.log(squares)
-    variance = float(np.clip(np.var(logarithms, ddof=1), NOTHING, 1.0 / NOTHING))
-    low, high = NOTHING, 2.0 / NOTHING
-    half = brentq(
-        lambda log: special.polygamma(1, np.exp(log)) - variance, np.log(low), np.log(high)
-    )
-    freedom = 2.0 * np.exp(half)
+
+    def spread(log_freedom: float) -> float:
+        return float(special.polygamma(1, 0.5 * np.exp(log_freedom)))
+
+    logarithms, many = np.log(squares), np.log(1.0 / NOTHING)
+    variance = float(np.clip(np.var(logarithms, ddof=1), spread(many), spread(0.0)))
+    freedom = np.exp(brentq(lambda log: spread(log) - variance, 0.0, many))
     scale = np.exp(np.mean(logarithms) - special.digamma(0.5 * freedom)) * 0.5 * freedom
     return float(scale * stats.f.ppf(1.0 - TEST_ALARM, freedom, len(squares) * freedom))
