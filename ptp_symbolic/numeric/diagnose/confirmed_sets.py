@@ -11,7 +11,7 @@ from ptp_symbolic.numeric.diagnose.groups import Rival
 from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.trial import Trial
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MATERIAL, MOST
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import chance_by_inputs
@@ -115,15 +115,14 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
     """The candidate of a trial that gains least of those that are not confirmed, and why not; None
     where all are. What is known of the others may change once it is out.
     """
-    quiet = leaves_noise_alone(trial, floor_of(seeker.task, trial, seeker.carried))
+    floor = floor_of(seeker.task, trial, seeker.carried)
+    quiet = leaves_noise_alone(trial, floor)
     by_gain = sorted(steps, key=lambda s: s.gain.share)
     refit = partial(without_run, seeker.task, trial)
     for step in by_gain:
         if not seeker.is_needed(step):
             return step, _too_little(step.gain)
-        own = step.candidate
-        by_inputs = chance_by_inputs(fit, own.vanishing, own.parameters)
-        if by_inputs >= FALSE_ALARM / len(seeker.task.candidates):
+        if leaves_noise_alone(step.without, floor) and _is_of_inputs(seeker.task, fit, step):
             return step, "the noise of the inputs may have made it"
         reason = why_unconfirmed(fit, step.candidate, quiet, refit)
         if reason is not None:
@@ -140,6 +139,13 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
     if not answers_to_inputs(seeker.task, trial):
         return by_gain[0], "with it the model no longer answers to its inputs"
     return None
+
+
+def _is_of_inputs(task: Task, fit: Fit, step: Step) -> bool:
+    """Whether the noise of the inputs may have made what a step gains, of all that were tried."""
+    own = step.candidate
+    chance = chance_by_inputs(fit, own.vanishing, own.parameters)
+    return chance >= FALSE_ALARM / len(task.candidates)
 
 
 def _doubt_beside_a_remainder(trial: Trial, step: Step) -> str | None:
