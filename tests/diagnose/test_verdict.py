@@ -8,7 +8,11 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose.confirmed_sets import doubtful
 from ptp_symbolic.numeric.diagnose.findings import Step
-from ptp_symbolic.numeric.diagnose.floor import Floor, leaves_noise_alone
+from ptp_symbolic.numeric.diagnose.floor import (
+    Floor,
+    leaves_noise_alone,
+    leaves_noise_of_inputs,
+)
 from ptp_symbolic.numeric.diagnose.held_out import held_out_gain, is_quiet, is_taken_back
 from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.trial import Trial
@@ -67,6 +71,19 @@ def test_validation_runs_may_leave_what_their_own_inputs_carry_there() -> None:
     assert word(1.0, 2.0, named=False) == UNEXPLAINED
     assert word(1.0, 2.0, named=False, carried=np.sqrt(3.0)) == NOTHING_MISSING
     assert word(2.0, 1.0, named=False, carried=np.sqrt(3.0)) == UNEXPLAINED
+
+
+@pytest.mark.parametrize(
+    ("left", "carried", "hidden"), [(1.5, 1.2, True), (2.0, 1.2, False), (1.2, 0.8, False)]
+)
+def test_what_the_noise_of_the_inputs_leaves_is_no_lack(
+    left: float, carried: float, hidden: bool
+) -> None:
+    """The square root of 1 + 1.2^2 is 1.56; where the signals' own noise is the larger part, blocks
+    of time tell.
+    """
+    trial = Trial((), finished([left * WAVE] * 3))
+    assert leaves_noise_of_inputs(trial, floor(carried)) is hidden
 
 
 def test_look_alikes_make_a_group_of_an_explanation_alone() -> None:

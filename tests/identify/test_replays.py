@@ -12,7 +12,6 @@ from ptp_symbolic.numeric.diagnose.held_out import left_by_values
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
 from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
 from ptp_symbolic.numeric.identify.intervals import (
-    chance_by_inputs,
     chance_of_zero,
     covariance_of,
     estimates,
@@ -140,19 +139,6 @@ def test_a_few_windows_that_noise_bends_have_intervals_that_hold_the_truth() -> 
         without.append([e.lower <= 0.0 <= e.upper for e in estimates(replace(fit, shaken=()))])
     assert np.mean(without) < 0.85
     assert 0.90 <= np.mean(held) <= 0.99
-
-
-def test_noise_of_the_input_is_not_taken_for_values_that_differ_from_zero() -> None:
-    """Four values that are zero, together: at 5 % one fit in twenty finds them elsewhere; where the
-    noise is a tenth of that, nearly all.
-    """
-    rng, zero = np.random.default_rng(6), {f.name: 0.0 for f in FOUR}
-    fits = [windows(rng, 25, FOUR) for _ in range(200)]
-    chance = np.array([chance_by_inputs(fit, zero) for fit in fits])
-    assert 0.01 <= np.mean(chance < 0.05) <= 0.09
-    quiet = [replace(fit, shaken=tuple(0.1 * c for c in fit.shaken)) for fit in fits]
-    assert np.mean([chance_by_inputs(fit, zero) < 0.05 for fit in quiet]) > 0.9
-    assert chance_by_inputs(replace(fits[0], shaken=()), zero) == 0.0
 
 
 def test_a_chance_has_no_degrees_of_freedom_where_replays_tell_it() -> None:

@@ -24,7 +24,7 @@ def why_unconfirmed(
     fit: Fit, candidate: Candidate, leaves_noise: bool, refit: Refit | None = None
 ) -> str | None:
     """Why `candidate` of a set cannot be named; None where nothing speaks against it. `fit` is that
-    of the set, from `estimable` if it is one of simulations, `refit` that of
+    of the set, from `with_finite_differences` if it is one of simulations, `refit` that of
     `unstable_without`. Where it leaves noise alone, nothing is missing that the candidate could
     make up for.
     """

@@ -5,27 +5,30 @@ from functools import partial
 
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, at_bound, why_unconfirmed
 from ptp_symbolic.numeric.diagnose.findings import Step, step_of
-from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_alone
+from ptp_symbolic.numeric.diagnose.floor import (
+    Floor,
+    floor_of,
+    leaves_noise_alone,
+    leaves_noise_of_inputs,
+)
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, gain_in_innovations
 from ptp_symbolic.numeric.diagnose.groups import Rival
 from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial
-from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MATERIAL, MOST
+from ptp_symbolic.numeric.diagnose.trial import Trial
+from ptp_symbolic.numeric.identify.constants import MATERIAL, MOST
+from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.intervals import chance_by_inputs
-from ptp_symbolic.numeric.identify.replays import estimable
 
 
 def confirmed(
     seeker: Seeker, trial: Trial, steps: list[Step], refused: dict[str, str]
 ) -> tuple[Trial, list[Step], Fit]:
     """What is left of a trial when all that cannot be confirmed is taken out, noted in `refused`
-    with the reason; its steps, and its fit with what intervals need (see `estimable`).
+    with the reason; its steps, and its fit with derivatives that are not blind.
     """
-    task = seeker.task
-    fit = estimable(trial.fit, task.input_noise, task.executor)
+    fit = with_finite_differences(trial.fit, seeker.task.executor)
     while trial.candidates:
         simpler = _off_bounds(seeker, trial, fit)
         weakness = _weakness(seeker, trial, steps, fit) if simpler is None else None
@@ -37,7 +40,7 @@ def confirmed(
             trial, steps = shortened(seeker, step.without)
         else:
             break
-        fit = estimable(trial.fit, task.input_noise, task.executor)
+        fit = with_finite_differences(trial.fit, seeker.task.executor)
     return trial, steps, fit
 
 
@@ -79,7 +82,7 @@ def simplest_alike(
     seeker: Seeker, chosen: Trial, steps: list[Step], chosen_fit: Fit, alike: list[Rival]
 ) -> tuple[Trial, list[Step], Fit, list[Rival]]:
     """Of one effect and what cannot be told from it, the one with the fewest parameters, if
-    that is confirmed too; with its fit from `estimable`, `chosen_fit` of the first.
+    that is confirmed too; with its fit from `with_finite_differences`, `chosen_fit` of the first.
     """
     unchanged = chosen, steps, chosen_fit, alike
     best = min(alike, key=lambda r: len(r.trial.fit.free), default=None)
@@ -88,8 +91,7 @@ def simplest_alike(
     if len(best.trial.candidates) != 1:
         return unchanged
     (candidate,) = best.trial.candidates
-    task = seeker.task
-    fit = estimable(best.trial.fit, task.input_noise, task.executor)
+    fit = with_finite_differences(best.trial.fit, seeker.task.executor)
     step = step_of(best.trial, candidate, steps[0].without)
     if _weakness(seeker, best.trial, [step], fit) is not None:
         return unchanged
@@ -122,8 +124,8 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
     for step in by_gain:
         if not seeker.is_needed(step):
             return step, _too_little(step.gain)
-        if leaves_noise_alone(step.without, floor) and _is_of_inputs(seeker.task, fit, step):
-            return step, "the noise of the inputs may have made it"
+        if leaves_noise_of_inputs(step.without, floor):
+            return step, "the noise of the inputs leaves as much without it"
         reason = why_unconfirmed(fit, step.candidate, quiet, refit)
         if reason is not None:
             return step, reason
@@ -139,13 +141,6 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
     if not answers_to_inputs(seeker.task, trial):
         return by_gain[0], "with it the model no longer answers to its inputs"
     return None
-
-
-def _is_of_inputs(task: Task, fit: Fit, step: Step) -> bool:
-    """Whether the noise of the inputs may have made what a step gains, of all that were tried."""
-    own = step.candidate
-    chance = chance_by_inputs(fit, own.vanishing, own.parameters)
-    return chance >= FALSE_ALARM / len(task.candidates)
 
 
 def _doubt_beside_a_remainder(trial: Trial, step: Step) -> str | None:

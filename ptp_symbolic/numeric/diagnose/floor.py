@@ -96,3 +96,12 @@ def leaves_white_noise(trial: Trial, carried: Carried) -> bool:
 def leaves_noise_alone(trial: Trial, floor: Floor) -> bool:
     """Whether the residual of a trial cannot be told from noise, in any signal."""
     return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.most))
+
+
+def leaves_noise_of_inputs(trial: Trial, floor: Floor) -> bool:
+    """Whether a trial leaves what is usual where the noise of the inputs leaves more than that of
+    the signals. It lasts for seconds, so that some effect always follows a part of it, in every
+    block of time: where nothing more is left without an effect, that shows no lack.
+    """
+    most_by_inputs = np.any(floor.carried.usual > floor.noise)
+    return bool(most_by_inputs and np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.level))

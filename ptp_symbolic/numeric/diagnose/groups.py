@@ -66,7 +66,7 @@ class Similarity:
 def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
     """Sets as large as the chosen one, of which these logs do not prefer the chosen one clearly and
     materially, those that the search has begun already among them. `fit` is its fit, from
-    `estimable`.
+    `with_finite_differences`.
 
     A few iterations tell which come near the chosen set. Where that leaves more than noise, a set
     that it cannot be told from by its response is fitted to its end, however far it is till then.

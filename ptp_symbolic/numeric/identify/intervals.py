@@ -92,50 +92,18 @@ def chance_of_zero(fit: Fit, zero: Mapping[str, float], shape: Collection[str] =
     intervals. Those named in `shape` stay as they are, all others are free. 1 where the data see
     them only in combination with others, or where too few blocks tell.
     """
-    away, columns, first = _away_from(fit, zero, shape)
-    covariance, degrees, lost = _covariance(fit, columns)
-    mixed = [np.any(part**2 > SAME, axis=(0, 1)) for part in (lost[:, :first], lost[:, first:])]
-    if np.any(mixed[0] & mixed[1]):
-        return 1.0
-    return _hotelling(away, covariance[first:, first:], float(degrees[first:].min()))
-
-
-def chance_by_inputs(fit: Fit, zero: Mapping[str, float], shape: Collection[str] = ()) -> float:
-    """The same where the noise of the inputs alone, as replays of `fit` show it, moves the
-    parameters: what it leaves lasts for seconds, so that blocks of time may all show it. 0 without
-    such noise. Where few replays shift them, as when friction lets go later, so much more is asked.
-    """
-    if not fit.shaken:
-        return 0.0
-    away, columns, first = _away_from(fit, zero, shape)
-    shifts = _shifts_by_inputs(fit, _inverse(columns.T @ columns)[0], columns)[:, first:]
-    degrees = max(float(degrees_of_freedom(shifts).min()), float(len(away)))
-    return _hotelling(away, shifts.T @ shifts, degrees)
-
-
-def _away_from(
-    fit: Fit, zero: Mapping[str, float], shape: Collection[str]
-) -> tuple[FloatArray, FloatArray, int]:
-    """How far [k] the search coordinates in `zero` are from there; the derivatives of the residuals
-    by all others, but for those in `shape`, and by these; and how many the others are.
-    """
     away = to_search(fit.free, fit.values) - to_search(fit.free, {**fit.values, **zero})
     own = np.array([f.name in zero for f in fit.free])
     others = np.array([f.name not in zero and f.name not in shape for f in fit.free])
     columns = _columns(fit)
-    return away[own], np.hstack([columns[:, others], columns[:, own]]), int(others.sum())
-
-
-def _hotelling(away: FloatArray, covariance: FloatArray, degrees: float) -> float:
-    """Probability of coordinates as far `away` [k] as that, by their `covariance` [k, k] with so
-    many degrees of freedom (T^2: Hotelling, 1931); 1 where these are too few.
-    """
-    k = len(away)
-    left = degrees - k + 1.0
-    if left <= 0.0:
+    covariance, degrees, lost = _covariance(fit, np.hstack([columns[:, others], columns[:, own]]))
+    k, first = int(own.sum()), int(others.sum())
+    mixed = [np.any(part**2 > SAME, axis=(0, 1)) for part in (lost[:, :first], lost[:, first:])]
+    left = float(degrees[first:].min()) - k + 1.0
+    if np.any(mixed[0] & mixed[1]) or left <= 0.0:
         return 1.0
-    inverse = np.linalg.pinv(covariance, rcond=NOTHING, hermitian=True)
-    square = float(away @ inverse @ away)
+    inverse = np.linalg.pinv(covariance[first:, first:], rcond=NOTHING, hermitian=True)
+    square = float(away[own] @ inverse @ away[own])
     if np.isinf(left):
         return float(stats.chi2.sf(square, k))
     return float(stats.f.sf(square * left / (k * (left + k - 1.0)), k, left))
@@ -176,22 +144,17 @@ def _covariance(fit: Fit, columns: FloatArray) -> tuple[FloatArray, FloatArray, 
 
 
 def _squared_reach_of_inputs(fit: Fit, inverse: FloatArray, columns: FloatArray) -> FloatArray:
-    """Squared half width [nf] of the 95 % intervals that the noise of the inputs alone makes."""
+    """Squared half width [nf] of the 95 % intervals that the noise of the inputs alone makes: every
+    replay of every run shifts the coordinates, each run independently.
+    """
     if not fit.shaken:
         return np.zeros(len(inverse))
-    shifts = _shifts_by_inputs(fit, inverse, columns)
-    reach = stats.t.ppf(0.975, degrees_of_freedom(shifts))
-    return np.asarray(reach**2 * np.sum(shifts**2, axis=0))
-
-
-def _shifts_by_inputs(fit: Fit, inverse: FloatArray, columns: FloatArray) -> FloatArray:
-    """Shifts [replays, nf] of the coordinates, whose squares add up to their variance by the noise
-    of the inputs: every replay of every run makes one, each run independently.
-    """
     ends = np.cumsum([len(changes) for changes in fit.shaken])
     parts = zip(np.split(columns, ends[:-1]), fit.shaken, strict=True)
     every = [(c.T @ changes, max(changes.shape[1], 1)) for c, changes in parts]
-    return np.column_stack([inverse @ moved / np.sqrt(count) for moved, count in every]).T
+    shifts = np.column_stack([inverse @ moved / np.sqrt(count) for moved, count in every]).T
+    reach = stats.t.ppf(0.975, degrees_of_freedom(shifts))
+    return np.asarray(reach**2 * np.sum(shifts**2, axis=0))
 
 
 def degrees_of_freedom(shifts: FloatArray) -> FloatArray:
