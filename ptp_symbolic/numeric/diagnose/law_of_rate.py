@@ -15,7 +15,13 @@ from ptp_symbolic.numeric.diagnose.linear import projected_off
 from ptp_symbolic.numeric.diagnose.regression import block_numbers
 from ptp_symbolic.numeric.diagnose.trial import Task, all_free
 from ptp_symbolic.numeric.identify.blocks import jackknife_covariance, leave_blocks_out
-from ptp_symbolic.numeric.identify.constants import FAR, FEWEST_BLOCKS, MOST, SINGULAR
+from ptp_symbolic.numeric.identify.constants import (
+    FAR,
+    FEWEST_BLOCKS,
+    MATERIAL,
+    MOST,
+    SINGULAR,
+)
 from ptp_symbolic.numeric.identify.equation_fit import linearised
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.row_motion import row_motion
@@ -31,11 +37,11 @@ def breaks_its_law(
     member: Candidate,
 ) -> bool:
     """Whether the torque of a member of a set at `values` changes with the speed of its axis in
-    another way than its law says, clearly, and by most of it: a multiple of it times
-    speed / mean speed - 1 is added, where all parameters are free, its own too. That multiple is 0
-    by its law, and 1 for what goes with the speed beside that. Blocks of time are left out in turn
-    to tell how clear it is. Errors of sensors are no torques, and what acts on currents or
-    temperatures comes to the joint through these, late.
+    another way than its law says, clearly, and by a material share of what the rows ask for or
+    by most of its own: a multiple of it times speed / mean speed - 1 is added, where all parameters
+    are free, its own too. That multiple is 0 by its law, and 1 for what goes with the speed beside
+    that. Blocks of time are left out in turn to tell how clear it is. Errors of sensors are no
+    torques, and what acts on currents or temperatures comes to the joint through these, late.
     """
     names = list(task.model.parameter_names)
     elsewhere = space.sensing | space.moving
@@ -66,5 +72,9 @@ def breaks_its_law(
     left = leave_blocks_out(rows + columns / size @ change, columns / size, block)
     variance = float(jackknife_covariance(left.shifts)[0, 0])
     change, clear = change / size, change[0] ** 2 > FAR**2 * variance
+    added = change[0] * growing[:, None]
+    beside_all, beside_others = (projected_off(added, t)[:, 0] for t in (table, table[:, ~mine]))
+    whole = own + beside_others
+    material = beside_all @ beside_all > MATERIAL * (whole @ whole)
     scaled = 1.0 + float(own @ table[:, mine] @ change[1:][mine]) / float(own @ own)
-    return bool(clear and abs(change[0]) > MOST * abs(scaled))
+    return bool(clear and (material or abs(change[0]) > MOST * abs(scaled)))
