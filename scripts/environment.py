@@ -7,6 +7,7 @@ import importlib.util
 import os
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 from typing import NoReturn
 
@@ -87,10 +88,10 @@ def compile_packages() -> None:
     """Compile what is installed on all cores, without the packages' own tests: half of the work
     that pip would do on one. What does not compile is left for its import to complain about.
     """
-    folder = "import sysconfig; print(sysconfig.get_path('purelib'))"
-    asked = subprocess.run([str(PYTHON), "-c", folder], capture_output=True, text=True, check=True)
-    command = [str(PYTHON), "-m", "compileall", "-q", "-q", "-j", "0", "-x", r"[\\/]tests[\\/]"]
-    subprocess.run([*command, asked.stdout.strip()])
+    base = {"base": str(ENVIRONMENT), "platbase": str(ENVIRONMENT)}
+    packages = sysconfig.get_path("purelib", "venv", base)
+    options = ["-qq", "-j", "0", "-x", r"[\\/]tests[\\/]"]
+    subprocess.run([str(PYTHON), "-m", "compileall", *options, packages])
 
 
 def say(message: str) -> None:

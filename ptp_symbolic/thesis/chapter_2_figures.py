@@ -5,15 +5,12 @@ from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.simulation.run import Trajectory
 from ptp_symbolic.thesis import backlash_laws, friction_laws
 from ptp_symbolic.thesis.backlash_laws import HALF_GAP, HYSTERESIS_TIMES, IMPACT_RATE
 from ptp_symbolic.thesis.figures import GREY, Line, Panel, ThesisFigure, draw_lines, panel
 from ptp_symbolic.thesis.friction import drive_values
-
-FloatArray = NDArray[np.float64]
 
 SPEED, TORQUE, SECONDS = "rate in rad/s", "friction torque in N m", "time in s"
 # Rates in rad/s up to which the laws are drawn, and the presliding levels of Fig. 2.9.

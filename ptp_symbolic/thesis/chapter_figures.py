@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from ptp_symbolic.thesis import printed, ramp_test, rigid, tilt_drive
 from ptp_symbolic.thesis.chapter_2_figures import backlash_figures, friction_figures
@@ -17,8 +16,6 @@ from ptp_symbolic.thesis.friction import (
 )
 from ptp_symbolic.thesis.items import Kind
 from ptp_symbolic.thesis.response_figures import response_figures
-
-FloatArray = NDArray[np.float64]
 
 # End in s of the curves of the rigid platform.
 SHOWN = 10.0

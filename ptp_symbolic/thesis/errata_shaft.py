@@ -2,13 +2,11 @@
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from ptp_symbolic.thesis.friction import drive_values
 from ptp_symbolic.thesis.items import Item, erratum, plain
 from ptp_symbolic.thesis.responses import pan_drive
 
-FloatArray = NDArray[np.float64]
 INPUT_RATE, OUTPUT_RATE, DAMPING = sp.symbols("omega_1 omega_2 c", real=True)
 # The damping term as Eq. 2.15 prints it.
 PRINTED_DAMPING = DAMPING * (OUTPUT_RATE - INPUT_RATE)

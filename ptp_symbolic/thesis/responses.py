@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 import ptp_symbolic
@@ -19,8 +18,6 @@ from ptp_symbolic.thesis import printed
 from ptp_symbolic.thesis.friction import drive_values, mean_friction
 from ptp_symbolic.thesis.items import Item, Kind, unprinted
 from ptp_symbolic.thesis.printed import Friction
-
-FloatArray = NDArray[np.float64]
 
 STEP = (1.79, 12.0)
 INPUTS: Mapping[str, InputSignal] = {

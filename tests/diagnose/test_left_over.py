@@ -2,7 +2,9 @@
 twice.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
@@ -17,30 +19,24 @@ NOISE = 0.004  # N m
 RUNS = 3
 
 
-class _Same:
-    """An executor that does the work at once."""
-
-    map = staticmethod(map)
-
-
-def carried(runs: int) -> Carried:
-    """What NOISE of the torque leaves of so many equal runs."""
-    fit = accelerated(runs)
-    task = cast(Any, _Task(fit.model, tuple(fit.runs)))
-    return carried_noise(task, fit)
-
-
-class _Task:
-    input_noise = (NOISE, 0.0)
-    executor = _Same()
-
-    def __init__(self, model: Any, runs: tuple[Any, ...]) -> None:
-        self.model, self.every_sample, self.train, self.windows = model, runs, runs, ()
+def carried(noise: float) -> Carried:
+    """What `noise` of the torque (N m) leaves of so many equal runs."""
+    fit = accelerated(RUNS)
+    with ThreadPoolExecutor(1) as executor:
+        task = SimpleNamespace(
+            model=fit.model,
+            every_sample=fit.runs,
+            train=fit.runs,
+            windows=(),
+            input_noise=(noise, 0.0),
+            executor=executor,
+        )
+        return carried_noise(cast(Any, task), fit)
 
 
 def test_what_inputs_carry_is_the_noise_integrated_twice() -> None:
     """Of runs that a start follows, the drift beside a straight line is left."""
-    found = carried(RUNS)
+    found = carried(NOISE)
     paths = drifts(NOISE, 3000) / SIGMA
     each = [left_over(finished(list(paths[:, k : k + RUNS].T)))[0] for k in range(0, 3000, RUNS)]
     assert found.usual[0] == pytest.approx(np.median(each), rel=0.25)
@@ -65,10 +61,7 @@ def test_a_replay_that_sticks_elsewhere_does_not_hide_what_is_missing() -> None:
 
 
 def test_silent_inputs_carry_nothing() -> None:
-    fit = accelerated(1)
-    task = _Task(fit.model, tuple(fit.runs))
-    task.input_noise = (0.0, 0.0)
-    assert np.all(carried_noise(cast(Any, task), fit).most < 1e-4)
+    assert np.all(carried(0.0).most < 1e-4)
 
 
 def test_many_windows_count_by_their_median_and_few_runs_by_their_mean() -> None:

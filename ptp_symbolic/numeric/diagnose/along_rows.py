@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, why_unconfirmed
@@ -37,8 +36,6 @@ from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run import Run
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

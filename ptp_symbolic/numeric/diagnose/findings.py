@@ -2,17 +2,12 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
 from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MATERIAL
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +25,8 @@ class Step:
 @dataclass(frozen=True, eq=False)
 class Search:
     """What the search found: the declared model, the chosen set (the same where nothing is added),
-    what every member of it gains, all other trials, and the noise of the inputs [ny] as the
-    declared model carries it to the outputs, over their own. `task` has the candidates with a
+    what every member of it gains, all other trials, and the noise of the inputs as the best model
+    so far carries it to the outputs. `task` has the candidates with a
     frequency where a line was found, and without those that have none.
     """
 

@@ -49,8 +49,8 @@ class Floor:
 def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
     """The floor, with the colour of the noise as the residual of `trial` shows it, but no more than
     the differences of the measured signals and the quietest run leave room for, and what the inputs
-    `carried`. Where more is left than noise of that colour, it is model error that has a
-    colour: the floor is white then.
+    `carried`. Where more is left than noise of that colour, model error has a colour: the floor is
+    white then.
     """
     fit = with_every_residual(task, trial.fit)
     runs = fit.runs

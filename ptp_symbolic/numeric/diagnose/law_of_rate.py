@@ -8,7 +8,6 @@ integrate both; the rows of the equation space do.
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.linear import projected_off
@@ -25,8 +24,6 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.equation_fit import linearised
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.row_motion import row_motion
-
-FloatArray = NDArray[np.float64]
 
 
 def breaks_its_law(

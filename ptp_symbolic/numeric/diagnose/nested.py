@@ -4,16 +4,11 @@ A set fits no worse than the declared model, which it contains, and what it gain
 name where the declared model had the same chance.
 """
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.refits import polished
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, is_near, ranked
 from ptp_symbolic.numeric.identify.constants import MATERIAL
-
-FloatArray = NDArray[np.float64]
 
 
 def beside_declared(task: Task, trial: Trial, declared: Trial, carried: Carried) -> Trial:

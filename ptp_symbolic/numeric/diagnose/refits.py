@@ -5,7 +5,6 @@ from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
@@ -41,8 +40,6 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.windows import cut_where_noise_grows
-
-FloatArray = NDArray[np.float64]
 
 
 def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:

@@ -5,9 +5,6 @@ refits in simulation.
 from collections.abc import Sequence
 from weakref import WeakSet
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.findings import Step, is_earned, step_of
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
@@ -48,8 +45,6 @@ from ptp_symbolic.numeric.identify.constants import (
     SCREENED,
     TRIED,
 )
-
-FloatArray = NDArray[np.float64]
 
 
 class Seeker:

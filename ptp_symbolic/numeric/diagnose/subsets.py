@@ -33,7 +33,6 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 def lines(found: Regression, scan: Callable[[FloatArray], Sequence[Signature]]) -> list[Signature]:

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise, most_hidden
@@ -28,15 +27,13 @@ from ptp_symbolic.numeric.identify.constants import (
     SCREENED,
 )
 
-FloatArray = NDArray[np.float64]
-
 
 def through_windows(
     task: Task, parent: Trial, candidate: Candidate, carried: Carried
 ) -> Trial | None:
     """The parent with a candidate, fitted to whole runs from where windows lead it, and again as
     long as that is a better place; None where it does not gain materially in windows. `carried`
-    [ny] is that of `leaves_white_noise`.
+    is that of `leaves_white_noise`.
     """
     parts = growing(task)
     values = _first_lead(parts, parent, candidate, carried) if parts else None

@@ -5,14 +5,11 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.friction_map.choice import Comparison, choose, compare
 from ptp_symbolic.numeric.friction_map.intervals import Estimate, Profile, profile
 from ptp_symbolic.numeric.friction_map.members import COULOMB, STRIBECK, Member
 from ptp_symbolic.numeric.friction_map.points import Points
-
-FloatArray = NDArray[np.float64]
 
 SCHEMA_VERSION = 1
 LARGEST_DIFFERENCE = 0.95  # bound of the effect direction_dependent_friction

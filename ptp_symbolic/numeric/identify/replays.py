@@ -42,17 +42,19 @@ def replayed(
     z: FloatArray,
     noise: FloatArray,
     rng: np.random.Generator,
-) -> tuple[FloatArray, FloatArray] | None:
-    """Change of the weighted residuals by input noise, and the Jacobian by the start of the run;
-    None where the run cannot be simulated.
+    times: int = 1,
+) -> tuple[FloatArray, FloatArray]:
+    """Changes [k * ny, times] of the weighted residuals by input noise, each from another draw, and
+    the Jacobian by the start of the run; nan where it cannot be simulated.
     """
-    held = with_inputs(run, run.held_inputs)
     none = np.zeros(0, dtype=np.int64)
-    both = (held, noisier(run, noise, rng))
-    plain, other = (evaluate(model, r, p, z, none, True, Tolerance()) for r in both)
-    if plain.failed or other.failed:
-        return None
-    return other.residual - plain.residual, plain.by_start
+    plain = evaluate(model, with_inputs(run, run.held_inputs), p, z, none, True, Tolerance())
+    changes = np.full((run.size, times), np.nan)
+    for column in changes.T:
+        other = evaluate(model, noisier(run, noise, rng), p, z, none, False, Tolerance())
+        if not (plain.failed or other.failed):
+            column[:] = other.residual - plain.residual
+    return changes, plain.by_start
 
 
 def replayed_squares(
@@ -63,34 +65,19 @@ def replayed_squares(
     declared_noise: Sequence[float | None],
     executor: Executor | None = None,
 ) -> FloatArray:
-    """What input noise leaves in the residual of a perfect model: mean squares [times, runs, ny] of
-    some replays of every run, in units of the noise of every signal (see `Run.weight`); nan where a
-    run cannot be simulated.
-
-    Every run is replayed with noisy inputs; what its unknown start can take up is projected out.
+    """What input noise leaves in the residual of a perfect model: mean squares [TIMES, runs, ny] of
+    the replays of every run, in units of the noise of every signal (see `Run.weight`); nan where a
+    run cannot be simulated. What its unknown start can take up is projected out.
     """
-    none = np.zeros(0, dtype=np.int64)
 
     def squares(number: int) -> FloatArray:
-        run, found = (
-            with_inputs(runs[number], runs[number].held_inputs),
-            np.zeros((TIMES, len(runs[number].signals))),
-        )
+        run, rng = runs[number], np.random.default_rng((SEED, number))
         noise = input_noise(run, declared_noise)
         if not np.any(noise):
-            return found
-        plain = evaluate(model, run, p, z[number], none, True, Tolerance())
-        rng = np.random.default_rng((SEED, number))
-        for row in found:
-            other = evaluate(
-                model, noisier(run, noise, rng), p, z[number], none, False, Tolerance()
-            )
-            if plain.failed or other.failed:
-                row[:] = np.nan
-                continue
-            change = project_out((other.residual - plain.residual)[:, None], plain.by_start)
-            row[:] = np.mean(change.reshape(run.measured.shape) ** 2, axis=0)
-        return found
+            return np.zeros((TIMES, len(run.signals)))
+        changes, by_start = replayed(model, run, p, z[number], noise, rng, TIMES)
+        left = project_out(changes, by_start).reshape(*run.measured.shape, TIMES)
+        return np.asarray(np.mean(left**2, axis=0).T)
 
     every = (executor.map if executor else map)(squares, range(len(runs)))
     return np.stack(list(every), axis=1)
@@ -104,8 +91,8 @@ def propagated_noise(
     declared_noise: Sequence[float | None],
     executor: Executor | None = None,
 ) -> FloatArray:
-    """The same as a root mean square [runs, ny] over the replays but for the one that leaves most,
-    which may stick elsewhere.
+    """Root mean square [runs, ny] of what input noise leaves, over all replays of
+    `replayed_squares` but the one that leaves most, which may stick elsewhere.
     """
     squares = np.sort(replayed_squares(model, runs, z, p, declared_noise, executor), axis=0)
     return np.asarray(np.sqrt(np.mean(squares[:-1], axis=0)))

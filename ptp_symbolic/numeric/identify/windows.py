@@ -78,12 +78,10 @@ def _drift(
     """Difference [k] between a run and its noisy replay, over the noise of its angles (of all
     signals where there is no encoder), and the time since start.
     """
-    z = run.guess
-    found = replayed(model, run, p, z, noise, rng)
-    if found is None:
+    change = replayed(model, run, p, run.guess, noise, rng)[0].reshape(run.measured.shape)
+    if not np.all(np.isfinite(change)):
         return np.zeros(0), np.zeros(0)
     encoders = np.isfinite(run.counts)
-    change = found[0].reshape(run.measured.shape)
     change = change[:, encoders] if encoders.any() else change
     return np.sqrt(np.mean(change**2, axis=1)), run.time - run.time[0]
 
