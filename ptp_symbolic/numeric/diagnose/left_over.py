@@ -70,8 +70,8 @@ def carried_noise(task: Task, fit: Fit) -> Carried:
 
 
 def most_of(squares: FloatArray) -> float:
-    """The bound below which a mean square stays at 99 %, from some [n] that are like it; bounds from
-    eight, which tell the scale only roughly, were exceeded by 2 to 3 %.
+    """The bound below which a mean square stays at 99 %, from some [n] that are like it; bounds
+    from eight, which tell the scale only roughly, were exceeded by 2 to 3 %.
 
     It is a sum of squares of one normal number or more: the variance of its logarithm tells how
     many, the mean of that its scale (Bartlett and Kendall, 1946), and both are known from n alone.
