@@ -16,8 +16,8 @@ from ptp_symbolic.numeric.diagnose.trial import Task, fitted, restarted
 from ptp_symbolic.numeric.experiment.contender import Contender, from_fit, without_logs
 from ptp_symbolic.numeric.identify.constants import POLISH, ROUNDING
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.fit import all_values_at_start
 from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.simulations import all_values_at_start
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import effect_keys, look_at, task_for

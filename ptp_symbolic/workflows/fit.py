@@ -13,13 +13,10 @@ from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.summary import fit_table
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
-from ptp_symbolic.numeric.identify.fit import (
-    Effort,
-    all_values_at_start,
-    fit_parameters,
-)
+from ptp_symbolic.numeric.identify.fit import fit_parameters
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.replays import estimable
+from ptp_symbolic.numeric.identify.simulations import Effort, all_values_at_start
 from ptp_symbolic.platform import Platform, platform_text
 from ptp_symbolic.workflows.preparation import look_at, task_for, workers
 from ptp_symbolic.workflows.provenance import provenance

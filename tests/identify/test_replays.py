@@ -10,7 +10,7 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose.held_out import left_by_values
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
-from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
+from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.intervals import (
     chance_of_zero,
     covariance_of,
@@ -18,6 +18,7 @@ from ptp_symbolic.numeric.identify.intervals import (
     project_out,
 )
 from ptp_symbolic.numeric.identify.replays import estimable, with_input_noise
+from ptp_symbolic.numeric.identify.simulations import Effort
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 from tests.identify.test_windows import COUNT, FREE, INERTIA, MODEL, run_of

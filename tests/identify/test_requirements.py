@@ -12,9 +12,10 @@ from ptp_symbolic.numeric.identify.coordinates import (
     to_search,
     to_values,
 )
-from ptp_symbolic.numeric.identify.fit import Effort, all_values, fit_parameters
+from ptp_symbolic.numeric.identify.fit import fit_parameters
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.requirements import Allow, keep_possible, nearest_possible
+from ptp_symbolic.numeric.identify.simulations import Effort, all_values
 from ptp_symbolic.numeric.runtime.model import Model
 from tests.identify.pan_runs import (
     FLOOR,

@@ -18,9 +18,9 @@ from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
 from ptp_symbolic.numeric.identify.equation_fit import fit_equations, robust_scale
 from ptp_symbolic.numeric.identify.equation_preparation import prepare_equation_space
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
-from ptp_symbolic.numeric.identify.fit import all_values, all_values_at_start
 from ptp_symbolic.numeric.identify.requirements import nearest_possible
 from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.simulations import all_values, all_values_at_start
 
 FloatArray = NDArray[np.float64]
 

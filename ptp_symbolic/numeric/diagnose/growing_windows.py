@@ -10,6 +10,7 @@ from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, continued, fitted, is_alike
@@ -21,9 +22,11 @@ from ptp_symbolic.numeric.identify.constants import (
     SEARCH_PERIOD,
     WIDE_STEP,
 )
-from ptp_symbolic.numeric.identify.gap_places import gears_in_place
+from ptp_symbolic.numeric.identify.run_starts import starts_in_place
 from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
 from ptp_symbolic.numeric.identify.windows import cut
+
+FloatArray = NDArray[np.float64]
 
 
 def growing(task: Task) -> list[Task]:
@@ -54,11 +57,17 @@ def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
     places anew each time: a window that began on the wrong side of a gap holds the others back.
     """
     for _ in range(CYCLES):
-        fit = trial.fit
-        z = gears_in_place(fit.model, fit.runs, fit.values, fit.z, fit.tolerance, executor)
-        begun = replace(trial, fit=replace(fit, z=tuple(z)))
+        begun = replace(trial, fit=replace(trial.fit, z=tuple(starts_of(trial, executor))))
         better = continued(task, begun, ITERATIONS, executor=executor)
         if is_alike(better, trial):
             break
         trial = better
     return trial
+
+
+def starts_of(trial: Trial, executor: Executor | None) -> list[FloatArray]:
+    """Start unknowns, each [nz], of the runs of a trial with what is hidden at their start in place
+    (see `starts_in_place`).
+    """
+    fit = trial.fit
+    return starts_in_place(fit.model, fit.runs, fit.values, fit.z, fit.tolerance, executor)

@@ -32,11 +32,12 @@ from ptp_symbolic.numeric.identify.constants import (
     UNALIKE,
 )
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
-from ptp_symbolic.numeric.identify.fit import Effort, Fit, fit_parameters
+from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.intervals import covariance_of, project_out
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import sizes
+from ptp_symbolic.numeric.identify.simulations import Effort
 
 FloatArray = NDArray[np.float64]
 

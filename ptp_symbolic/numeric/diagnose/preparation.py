@@ -14,9 +14,10 @@ from ptp_symbolic.numeric.identify.constants import (
     SHORT,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.fit import all_values_at_start
+from ptp_symbolic.numeric.identify.linked_windows import has_linked
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
+from ptp_symbolic.numeric.identify.simulations import all_values_at_start
 from ptp_symbolic.numeric.identify.windows import cut, window_length
 from ptp_symbolic.numeric.runtime.model import Model
 
@@ -48,7 +49,7 @@ def task_of(
     if length is not None and length >= max(float(run.time[-1] - run.time[0]) for run in train):
         length = None
     few = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in train]
-    windows = tuple(_spread(cut(model, few, w), w) for w in (FORGOTTEN, SHORT))
+    windows = {x: cut(model, few, x) for x in (FORGOTTEN, SHORT)}
     pieces = cut(model, train, length)
     largest = np.max([np.max(np.abs(run.held_inputs), axis=0) for run in train], axis=0)
     found = find_candidates(model, declared, known) if declared else ()
@@ -58,8 +59,8 @@ def task_of(
         train,
         pieces,
         pieces,
-        windows if length is None else (),
-        windows[-1] if length is None else _spread(pieces, length),
+        tuple(_leading(w, x) for x, w in windows.items()) if length is None else (),
+        _spread(windows[SHORT], SHORT) if length is None else _spread(pieces, length),
         cut(model, validate, length),
         free,
         fixed,
@@ -70,6 +71,11 @@ def task_of(
         frozenset(name for name, size in noises.items() if size is not None),
         _finest_angle(train),
     )
+
+
+def _leading(windows: tuple[Run, ...], length: float) -> tuple[Run, ...]:
+    """Windows of `length` s that lead a search: all where each tells how the next one begins."""
+    return windows if has_linked(windows) else _spread(windows, length)
 
 
 def _spread(windows: tuple[Run, ...], length: float) -> tuple[Run, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
-from ptp_symbolic.numeric.diagnose.growing_windows import growing, led_through, settled
+from ptp_symbolic.numeric.diagnose.growing_windows import growing, led_through, settled, starts_of
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
@@ -39,6 +39,8 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.linked_windows import has_linked
+from ptp_symbolic.numeric.identify.run_starts import starts_in_place
 from ptp_symbolic.numeric.identify.windows import cut_where_noise_grows
 
 
@@ -63,13 +65,12 @@ def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
     best = halving(task, begun, 1) or begun[-1:]
     trial = polished(task, best[0], carried_noise(task, best[0].fit))
     part = in_windows(task, trial)
-    if part is task:
-        return task, trial
-    short = fitted(part, (), trial.values, None)
-    short = polished(part, short, carried_noise(part, short.fit))
-    if np.any(left_over(short.fit) > left_over(trial.fit)):
-        return task, trial
-    return part, short
+    if part is not task:
+        short = fitted(part, (), trial.values, None)
+        short = polished(part, short, carried_noise(part, short.fit))
+        if np.all(left_over(short.fit) <= left_over(trial.fit)):
+            task, trial = part, short
+    return validated_in_windows(task, trial), trial
 
 
 def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]]:
@@ -86,8 +87,8 @@ def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]
 
 
 def in_windows(task: Task, declared: Trial) -> Task:
-    """The task with runs cut into windows where the fitted model amplifies the noise of the inputs
-    beyond that of the outputs (see `cut_where_noise_grows`).
+    """The task with runs cut into windows where the fitted model amplifies errors until nothing can
+    be predicted (see `cut_where_noise_grows`).
     """
     model, noise = task.model, task.input_noise
     p = model.parameter_vector(declared.values)
@@ -99,13 +100,17 @@ def in_windows(task: Task, declared: Trial) -> Task:
         return task
     fewer = dict(zip(task.every_sample, task.train, strict=True))
     task.progress("runs that multiply the noise of their inputs are cut into windows")
-    starts = [run.guess for run in task.validate]
-    any_left = np.zeros((len(starts), left.shape[1]))
-    validate = cut_where_noise_grows(
-        model, task.validate, starts, any_left, p, noise, task.executor
-    )
-    kept = tuple(fewer.get(run, run) for run in train)
-    return replace(task, every_sample=train, train=kept, validate=validate)
+    return replace(task, every_sample=train, train=tuple(fewer.get(run, run) for run in train))
+
+
+def validated_in_windows(task: Task, declared: Trial) -> Task:
+    """The task with its validation runs cut where training runs would be, whatever they leave."""
+    model, values, runs = task.model, declared.values, task.validate
+    z = [run.guess for run in runs]
+    z = starts_in_place(model, runs, values, z, declared.fit.tolerance, task.executor)
+    p, left = model.parameter_vector(values), np.zeros((len(runs), len(task.train[0].signals)))
+    cut = cut_where_noise_grows(model, runs, z, left, p, task.input_noise, task.executor)
+    return replace(task, validate=cut)
 
 
 def without_misleading(trial: Trial) -> Trial:
@@ -216,9 +221,13 @@ def _inside(free: FreeParameter, value: float) -> float:
 
 def to_its_end(task: Task, trial: Trial, carried: Carried) -> Trial:
     """The trial fitted with derivatives where the motion is smooth, with finite differences where
-    friction makes it a staircase, in turn.
+    friction makes it a staircase, in turn; windows are begun anew where the one before ends.
     """
     for _ in range(CYCLES):
+        if has_linked(task.train):
+            z = starts_of(trial, task.executor)
+            begun = fitted(task, trial.candidates, trial.values, z, executor=task.executor)
+            trial = ranked([trial, begun])[0]
         smooth = continued(task, trial, POLISH, executor=task.executor)
         if leaves_white_noise(smooth, carried):
             return smooth

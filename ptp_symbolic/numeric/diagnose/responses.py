@@ -27,7 +27,7 @@ from ptp_symbolic.numeric.identify.constants import (
     WIDE_STEP,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
-from ptp_symbolic.numeric.identify.fit import all_values
+from ptp_symbolic.numeric.identify.simulations import all_values
 
 FloatArray = NDArray[np.float64]
 # By the parameters that go together, their start, and the values that shape the candidate.

@@ -86,7 +86,7 @@ LEAST_CYCLES = 3.0  # 1/range; slower waves with harmonics fit any slow change; 
 BINS_PER_CYCLE = 4.0  # 1; of the highest frequency of a scan: a bin dims it by 10 %; derived
 ATTENUATED = 2.0  # 1/window; of such a wave an average leaves 11 %; derived
 DECLARED_AMOUNT = 0.05  # 1; share by which a declared value is changed to see its effect; scaled
-BINS = 16  # 1; of a map of what is left; definition
+BINS = 16  # 1; of a map of what is left, of half a gap; definition
 
 # Noise of a signal
 ORDER = 5  # 1; differences: a motion at a tenth of the sampling rate leaves 0.6 %; derived

@@ -60,13 +60,14 @@ class Tolerance:
 class Evaluation:
     """Weighted residuals [k * ny], (measured - simulated) / sigma, and their Jacobians by
     parameters [k * ny, nc] and by the unknowns of the start [k * ny, nz]; `failed` says why a
-    simulation ended.
+    simulation ended. A simulation gives the state at its `end` [n].
     """
 
     residual: FloatArray
     by_parameter: FloatArray
     by_start: FloatArray
     failed: str | None = None
+    end: FloatArray | None = None
 
 
 def simulated_signals(run: Run, evaluation: Evaluation) -> FloatArray:
@@ -227,4 +228,5 @@ def evaluate(
         if not np.all(np.isfinite(r)):
             failed = f"{run.name}: not finite"
     split = len(columns)
-    return Evaluation(r, j[:, :split], j[:, split:].copy(), failed)
+    end = None if failed else found.x[-1].copy()
+    return Evaluation(r, j[:, :split], j[:, split:].copy(), failed, end)

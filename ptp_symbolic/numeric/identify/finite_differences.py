@@ -7,7 +7,8 @@ import numpy as np
 
 from ptp_symbolic.numeric.identify.constants import MISLEADING, STEP
 from ptp_symbolic.numeric.identify.coordinates import to_search
-from ptp_symbolic.numeric.identify.fit import Effort, Fit, problem_of, simulations_of
+from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.simulations import Effort, problem_of, simulations_of
 
 
 def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:

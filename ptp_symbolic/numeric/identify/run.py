@@ -102,12 +102,12 @@ def with_start(
 ) -> Run:
     """`run` with a guess of the state at its first sample, and what is unknown of it.
 
-    A joint with dry friction whose rate is within its noise is taken to be at rest; one that is
-    near it may be. A moving joint is driven: its gear touches the face ahead and has wound up the
-    shaft, nobody knows by how much; or it crosses its gap, at anything between standstill and twice
-    the rate of the joint. In a window (`around` it is the rest of a log), and of one that is
-    `underway` after a gap in the log, the shaft may be wound up at rest too; and one that is
-    underway may turn back within its noise.
+    A joint with dry friction whose rate is within its noise is taken to be at rest where a log
+    begins, and may be where it is near that. A moving joint is driven: its gear touches the face
+    ahead and has wound up the shaft, nobody knows by how much; or it crosses its gap, at anything
+    between standstill and twice the rate of the joint. In a window (`around` it is the rest of a
+    log), and of one that is `underway` after a gap in the log, the shaft may be wound up at rest
+    too, and the joint may move or turn back within its noise.
     """
     wound = underway or around is not None
     states = list(model.state_names)
@@ -141,11 +141,11 @@ def with_start(
         limit = 10.0 * sigma
         unknowns.append(_unknown(states, signal, angles, limit, sigma))
         may_rest = bool(friction_rates & set(rates))
-        if may_rest and not underway and _stays(run, column):
+        if may_rest and not wound and _stays(run, column):
             continue
         start[[states.index(name) for name in rates]] = rate
         spread[rates[0]] = float(np.hypot(rate, error))
-        instead = (0.0, -rate) if may_rest and abs(rate) <= 3.0 * FAR * error else ()
+        instead = (-rate, -2.0 * rate) if may_rest and abs(rate) <= 3.0 * FAR * error else ()
         unknowns.append(_unknown(states, rates[0], rates, ANYWHERE, error, instead))
     for contact, (gear, joint) in enumerate(model.module.CONTACT_ANGLES):
         tangent = np.zeros(len(states))

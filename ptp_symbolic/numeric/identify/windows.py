@@ -24,7 +24,7 @@ from ptp_symbolic.numeric.identify.constants import (
     START_SPAN,
     TUNING,
 )
-from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
+from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate, start_state
 from ptp_symbolic.numeric.identify.first_rate import Around
 from ptp_symbolic.numeric.identify.replays import input_noise, propagated_noise, replayed
 from ptp_symbolic.numeric.identify.run import WINDOW, Run, with_start
@@ -96,15 +96,33 @@ def cut_where_noise_grows(
     executor: Executor | None = None,
 ) -> tuple[Run, ...]:
     """The runs, those cut into windows in which the noise of the inputs leaves more than the noise
-    of the signals and may be most of the residual `left` [runs, ny]: bounces in a gap and
-    breakaways amplify it until nothing can be predicted.
+    of the signals and may be most of the residual `left` [runs, ny], or in which a gear rattles:
+    breakaways and bounces amplify any error until nothing can be predicted.
     """
     carried = propagated_noise(model, runs, z, p, declared_noise, executor)
     grows = np.any((carried > 1.0) & (left < TUNING * carried), axis=1)
+    grows |= [_rattles(model, run, p, start) for run, start in zip(runs, z, strict=True)]
     found: list[Run] = []
     for run, chaotic in zip(runs, grows, strict=True):
         found += split_run(model, run, SHORT) if chaotic else (run,)
     return tuple(found)
+
+
+def _rattles(model: Model, run: Run, p: FloatArray, z: FloatArray) -> bool:
+    """True when a small error of the place of a gear in its gap moves the joint `ALLOWED_GROWTH`
+    times as far within the run; a gear that rests on a face moves it once.
+    """
+    none = np.zeros(0, dtype=np.int64)
+    e = evaluate(model, run, p, z, none, True, Tolerance())
+    _, tangents = start_state(model, run, p, z, none)
+    moved = np.abs(e.by_start.reshape(*run.measured.shape, -1))
+    for index, unknown in enumerate(run.unknowns):
+        if unknown.contact is not None and unknown.column is not None:
+            gear, _ = model.module.CONTACT_ANGLES[unknown.contact]
+            most = np.max(moved[:, unknown.column, index]) / run.weight[unknown.column]
+            if most > ALLOWED_GROWTH * tangents[gear, index]:
+                return True
+    return False
 
 
 def cut(model: Model, runs: Sequence[Run], length: float | None) -> tuple[Run, ...]:
@@ -135,7 +153,8 @@ def _moving_edges(run: Run, edges: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
-    """Cut a run into windows of about `length` s, each with a start of its own.
+    """Cut a run into windows of about `length` s, each with a start of its own; the first one has
+    that of the run.
 
     Neighbours share the sample between them, so that no step from sample to sample is lost.
     """
@@ -155,5 +174,6 @@ def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
             held_inputs=np.ascontiguousarray(run.held_inputs[part]),
             measured=np.ascontiguousarray(run.measured[part]),
         )
-        windows.append(with_start(model, piece, Around(run.time, run.measured, int(a))))
+        around = Around(run.time, run.measured, int(a))
+        windows.append(with_start(model, piece, around) if number else piece)
     return tuple(windows)

@@ -1,0 +1,79 @@
+"""Windows of a log that follow one another: each begins where the simulated one before it ended."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.constants import FAR
+from ptp_symbolic.numeric.identify.evaluate import start_state
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.runtime.model import Model
+
+FloatArray = NDArray[np.float64]
+
+NO_COLUMNS = np.zeros(0, dtype=np.int64)
+
+
+def linked(runs: Sequence[Run]) -> list[list[int]]:
+    """Indices of the runs: windows that begin with the last sample of the one before, and have a
+    gap of which no sensor tells the place, together; all others alone.
+    """
+    series: list[list[int]] = []
+    for index, run in enumerate(runs):
+        if series and _follows(run, runs[series[-1][-1]]):
+            series[-1].append(index)
+        else:
+            series.append([index])
+    return series
+
+
+def has_linked(runs: Sequence[Run]) -> bool:
+    """Whether any run is a window that follows another (see `linked`)."""
+    return len(linked(runs)) < len(runs)
+
+
+def _follows(run: Run, before: Run) -> bool:
+    return (
+        run.source == before.source
+        and run.time[0] == before.time[-1]
+        and any(unknown.contact is not None for unknown in run.unknowns)
+    )
+
+
+def carried_start(model: Model, run: Run, p: FloatArray, end: FloatArray) -> FloatArray:
+    """Start unknowns [nz] of a window, at p [np], with all that is hidden as it was in the state
+    `end` [n] of the one before. What sensors show is as it was too, as far as the noise of the
+    guess allows: a joint that came to rest rests.
+    """
+    states, z = list(model.state_names), run.guess
+    for index, unknown in enumerate(run.unknowns):
+        if unknown.contact is None:
+            state = states.index(unknown.name)
+            if unknown.name.startswith("omega_gear_"):
+                joint = states.index(unknown.name.replace("omega_gear_", "omega_"))
+                z[index] = (end[state] - end[joint]) - (run.start[state] - run.start[joint])
+            else:
+                moved = float(end[state] - run.start[state])
+                z[index] = moved if abs(moved) <= FAR * unknown.sigma else 0.0
+        else:
+            z[index] = 0.0
+    for index, unknown in enumerate(run.unknowns):
+        if unknown.contact is not None:
+            z[index] = _place(model, run, p, z, index, end)
+    return z
+
+
+def _place(
+    model: Model, run: Run, p: FloatArray, z: FloatArray, index: int, end: FloatArray
+) -> float:
+    """Place in the gap of unknown `index` at which the gear is as far ahead of its joint as at the
+    `end`; the middle of a gap that has no width.
+    """
+    unknown = run.unknowns[index]
+    contact = unknown.contact or 0
+    gear, joint = model.module.CONTACT_ANGLES[contact]
+    x, s = start_state(model, run, p, z, NO_COLUMNS)
+    ahead = end[gear] - end[joint] - (x[gear] - x[joint])
+    half = s[gear, index]
+    return float(np.clip(ahead / half, unknown.lower, unknown.upper)) if half > 0.0 else 0.0

@@ -1,0 +1,157 @@
+"""The start unknowns of runs at given parameters: there no run depends on another, but for windows.
+
+What no sensor shows at the start of a window, where a gear stands in its gap and how fast it turns,
+the window before it tells: its simulation ends there. A guess from the angles around a sample finds
+the wrong side of the gap in one window of four, and parameters pay for that.
+"""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.identify.constants import (
+    ABOVE_NOISE,
+    BINS,
+    GAIN,
+    ITERATIONS,
+    ROUGH,
+)
+from ptp_symbolic.numeric.identify.evaluate import Tolerance
+from ptp_symbolic.numeric.identify.gap_places import gears_in_place, residual_of, with_gap_places
+from ptp_symbolic.numeric.identify.least_squares import Optimum, Problem, cost_of, minimise
+from ptp_symbolic.numeric.identify.linked_windows import carried_start, has_linked, linked
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.simulations import Effort, problem_of, simulations_of
+from ptp_symbolic.numeric.runtime.model import Model
+
+FloatArray = NDArray[np.float64]
+
+NOTHING_FREE = np.zeros(0)
+
+
+def starts_in_place(
+    model: Model,
+    runs: Sequence[Run],
+    values: Mapping[str, float],
+    z: Sequence[FloatArray],
+    tolerance: Tolerance,
+    executor: Executor | None,
+    *,
+    brief: bool = False,
+) -> list[FloatArray]:
+    """The start unknowns `z`, each [nz], of every run with what its sensors do not show in place
+    for the parameter `values`: the gears of a whole run in their gaps, and windows that follow one
+    another begun where the one before ended; of these the first few iterations of a fit as well,
+    one if `brief`. Raises InputError for values out of bounds.
+    """
+    if not has_linked(runs):
+        return gears_in_place(model, runs, values, z, tolerance, executor)
+    effort = Effort(1 if brief else ITERATIONS, GAIN * ROUGH, tolerance)
+    known = [[start] for start in z]
+    found = fitted_starts(model, runs, values, known, effort, executor, brief=brief)
+    return [optimum.z[0] for optimum in found]
+
+
+def fitted_starts(
+    model: Model,
+    runs: Sequence[Run],
+    values: Mapping[str, float],
+    known: Sequence[Sequence[FloatArray]],
+    effort: Effort,
+    executor: Executor | None,
+    *,
+    brief: bool = False,
+) -> list[Optimum]:
+    """The start of every run fitted by itself, from the best of those `known` of it, of its guesses
+    with the gears in place, and of the end of the window before it; and from the next, unless
+    nothing but noise is left or the search is `brief`. Raises InputError for values out of bounds.
+    """
+    search = _Starts(model, values, model.parameter_vector(dict(values)), effort, brief)
+
+    def one_after_the_other(series: Sequence[int]) -> list[Optimum]:
+        found: list[Optimum] = []
+        for k in series:
+            before = found[-1] if found else None
+            found.append(search.fitted(runs[k], known[k], before, in_series=len(series) > 1))
+        return found
+
+    order = sorted(linked(runs), key=lambda series: -sum(runs[k].size for k in series))
+    every = (executor.map if executor else map)(one_after_the_other, order)
+    by_run = {
+        k: optimum
+        for series, optima in zip(order, every, strict=True)
+        for k, optimum in zip(series, optima, strict=True)
+    }
+    return [by_run[k] for k in range(len(runs))]
+
+
+@dataclass(frozen=True, eq=False)
+class _Starts:
+    """A search for the starts of runs at the parameters `values`, as a vector `p` [np]."""
+
+    model: Model
+    values: Mapping[str, float]
+    p: FloatArray
+    effort: Effort
+    brief: bool
+
+    def fitted(
+        self,
+        run: Run,
+        known: Sequence[FloatArray],
+        before: Optimum | None,
+        *,
+        in_series: bool,
+    ) -> Optimum:
+        """The best fit of a run's start; `before` is that of the window before it. The first window
+        of a series that leaves more than noise is begun at other places in its gaps too.
+        """
+        simulations = simulations_of(self.model, [run], (), self.values, self.effort, None)
+        problem = problem_of(simulations, self.effort)
+        most = ABOVE_NOISE * run.size
+        found: list[Optimum] = []
+        if before is not None and before.evaluations[0].end is not None:
+            end = before.evaluations[0].end
+            found.append(self._from(problem, carried_start(self.model, run, self.p, end)))
+            if found[-1].cost <= most:
+                return found[-1]
+        simulated = partial(residual_of, self.model, self.p, self.effort.tolerance, run)
+        guesses = run.guesses[:1] if found and self.brief else run.guesses
+        starts = [*(with_gap_places(run, s, simulated) for s in guesses), *known]
+        if in_series and not found and not self.brief:
+            starts += _elsewhere(run, problem, starts, most)
+        starts = sorted(starts, key=partial(_cost, problem))
+        for start in starts[:1] if self.brief else starts:
+            found.append(self._from(problem, start))
+            if found[-1].cost <= most:
+                break
+        return min(found, key=lambda optimum: optimum.cost)
+
+    def _from(self, problem: Problem, start: FloatArray) -> Optimum:
+        return minimise(problem, NOTHING_FREE, [start], self.effort.iterations, self.effort.gain)
+
+
+def _cost(problem: Problem, start: FloatArray) -> float:
+    return cost_of(problem, problem.evaluate(NOTHING_FREE, [start], False), [start])
+
+
+def _elsewhere(
+    run: Run, problem: Problem, starts: Sequence[FloatArray], most: float
+) -> list[FloatArray]:
+    """The best of `starts` with the gear at the best of many places in its gap, one gap after the
+    other; nothing where it costs no more than `most`.
+    """
+    best = min(starts, key=partial(_cost, problem))
+    if _cost(problem, best) <= most:
+        return []
+    for index, unknown in enumerate(run.unknowns):
+        if unknown.contact is not None:
+            places = [best.copy() for _ in range(2 * BINS + 1)]
+            for start, place in zip(places, np.linspace(-1.0, 1.0, len(places)), strict=True):
+                start[index] = place
+            best = min([best, *places], key=partial(_cost, problem))
+    return [best]
