@@ -5,6 +5,7 @@ from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
@@ -40,8 +41,9 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.linked_windows import has_linked
-from ptp_symbolic.numeric.identify.run_starts import starts_in_place
 from ptp_symbolic.numeric.identify.windows import cut_where_noise_grows
+
+FloatArray = NDArray[np.float64]
 
 
 def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
@@ -56,7 +58,8 @@ def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
     if begun:
         part = in_windows(task, begun[0])
         if part is not task:
-            task, begun = part, [fitted(part, (), begun[0].values, None)]
+            task, led = part, fitted(part, (), begun[0].values, None)
+            begun = [settled(task, led, task.executor)]
     begun += [fitted(task, (), values, None) for values in starts]
     if not task.windows:
         far = [fitted(task, (), values, None) for values in spread]
@@ -105,11 +108,10 @@ def in_windows(task: Task, declared: Trial) -> Task:
 
 def validated_in_windows(task: Task, declared: Trial) -> Task:
     """The task with its validation runs cut where training runs would be, whatever they leave."""
-    model, values, runs = task.model, declared.values, task.validate
-    z = [run.guess for run in runs]
-    z = starts_in_place(model, runs, values, z, declared.fit.tolerance, task.executor)
-    p, left = model.parameter_vector(values), np.zeros((len(runs), len(task.train[0].signals)))
-    cut = cut_where_noise_grows(model, runs, z, left, p, task.input_noise, task.executor)
+    model, runs = task.model, task.validate
+    p, starts = model.parameter_vector(declared.values), [run.guess for run in runs]
+    left = np.zeros((len(runs), len(task.train[0].signals)))
+    cut = cut_where_noise_grows(model, runs, starts, left, p, task.input_noise, task.executor)
     return replace(task, validate=cut)
 
 
@@ -137,13 +139,18 @@ def over_windows(
     for windows in task.windows:
         part = replace(task, train=windows, robust_below=np.inf)
 
-        def begin(values: Mapping[str, float], part: Task = part) -> Trial:
-            return fitted(part, candidates, values, None, executor=executor)
+        def begin(
+            values: Mapping[str, float],
+            z: Sequence[FloatArray] | None = None,
+            part: Task = part,
+        ) -> Trial:
+            return fitted(part, candidates, values, z, executor=executor)
 
         near = starts if best is None else [best.values]
-        begun = halving(part, list(map(begin, near)), 1)
+        begun = halving(part, [begin(values) for values in near], 1)
         if best is None and not (begun and np.all(left_over(begun[0].fit) <= ABOVE_NOISE)):
-            far = halving(part, list(map(begin, spread)), ADDED, iterations=1)
+            known = begun[0].fit.z if begun else None
+            far = halving(part, [begin(values, known) for values in spread], ADDED, iterations=1)
             begun = ranked([*begun, *halving(part, far, 1)])
         if not begun:
             return []

@@ -19,6 +19,7 @@ from ptp_symbolic.numeric.identify.constants import (
     ALLOWED_RISE,
     LEAST_START,
     LENGTHS,
+    NOTHING,
     SEED,
     SHORT,
     START_SPAN,
@@ -101,27 +102,33 @@ def cut_where_noise_grows(
     """
     carried = propagated_noise(model, runs, z, p, declared_noise, executor)
     grows = np.any((carried > 1.0) & (left < TUNING * carried), axis=1)
-    grows |= [_rattles(model, run, p, start) for run, start in zip(runs, z, strict=True)]
+    grows |= [_rattles(model, run, p) for run in runs]
     found: list[Run] = []
     for run, chaotic in zip(runs, grows, strict=True):
         found += split_run(model, run, SHORT) if chaotic else (run,)
     return tuple(found)
 
 
-def _rattles(model: Model, run: Run, p: FloatArray, z: FloatArray) -> bool:
+def _rattles(model: Model, run: Run, p: FloatArray) -> bool:
     """True when a small error of the place of a gear in its gap moves the joint `ALLOWED_GROWTH`
-    times as far within the run; a gear that rests on a face moves it once.
+    times as far within the run, from most places in the gap: some by chance lead to a rest on a
+    face, after which it is moved once.
     """
-    none = np.zeros(0, dtype=np.int64)
-    e = evaluate(model, run, p, z, none, True, Tolerance())
-    _, tangents = start_state(model, run, p, z, none)
-    moved = np.abs(e.by_start.reshape(*run.measured.shape, -1))
+    none, z = np.zeros(0, dtype=np.int64), run.guess
     for index, unknown in enumerate(run.unknowns):
-        if unknown.contact is not None and unknown.column is not None:
-            gear, _ = model.module.CONTACT_ANGLES[unknown.contact]
-            most = np.max(moved[:, unknown.column, index]) / run.weight[unknown.column]
-            if most > ALLOWED_GROWTH * tangents[gear, index]:
-                return True
+        if unknown.contact is None or unknown.column is None:
+            continue
+        gear, _ = model.module.CONTACT_ANGLES[unknown.contact]
+        growth = []
+        for z[index] in (-1.0, -0.5, 0.0, 0.5, 1.0):
+            e = evaluate(model, run, p, z, none, True, Tolerance())
+            _, tangents = start_state(model, run, p, z, none)
+            moved = e.by_start.reshape(*run.measured.shape, -1)[:, unknown.column, index]
+            farthest = float(np.max(np.abs(moved))) / run.weight[unknown.column]
+            growth.append(farthest / max(tangents[gear, index], NOTHING))
+        z[index] = unknown.guess
+        if np.median(growth) > ALLOWED_GROWTH:
+            return True
     return False
 
 
