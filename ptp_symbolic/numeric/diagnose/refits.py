@@ -49,8 +49,8 @@ FloatArray = NDArray[np.float64]
 def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
     """The declared model, from where windows lead from the rows' start and from the declared one,
     and from those two themselves; where runs are windows already, from starts far off too, and from
-    where shorter ones lead. And the task with windows for runs that multiply the noise of their
-    inputs (see `in_windows`), which would lead the fit astray.
+    where shorter ones lead. And the task with windows for runs that multiply small errors (see
+    `in_windows`), which would lead the fit astray.
     """
     starts = [proposals.start, declared_start(task)]
     spread = far_starts(task, proposals.start) if has_rough_starts(task) else []
@@ -102,7 +102,7 @@ def in_windows(task: Task, declared: Trial) -> Task:
     if len(train) == len(task.train):
         return task
     fewer = dict(zip(task.every_sample, task.train, strict=True))
-    task.progress("runs that multiply the noise of their inputs are cut into windows")
+    task.progress("runs that multiply small errors are cut into windows")
     return replace(task, every_sample=train, train=tuple(fewer.get(run, run) for run in train))
 
 

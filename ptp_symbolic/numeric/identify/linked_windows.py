@@ -12,8 +12,6 @@ from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 
-NO_COLUMNS = np.zeros(0, dtype=np.int64)
-
 
 def linked(runs: Sequence[Run]) -> list[list[int]]:
     """Indices of the runs: windows that begin with the last sample of the one before, and have a
@@ -73,7 +71,7 @@ def _place(
     unknown = run.unknowns[index]
     contact = unknown.contact or 0
     gear, joint = model.module.CONTACT_ANGLES[contact]
-    x, s = start_state(model, run, p, z, NO_COLUMNS)
+    x, s = start_state(model, run, p, z, np.zeros(0, dtype=np.int64))
     ahead = end[gear] - end[joint] - (x[gear] - x[joint])
     half = s[gear, index]
     return float(np.clip(ahead / half, unknown.lower, unknown.upper)) if half > 0.0 else 0.0

@@ -30,8 +30,6 @@ from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 
-NOTHING_FREE = np.zeros(0)
-
 
 def starts_in_place(
     model: Model,
@@ -132,11 +130,11 @@ class _Starts:
         return min(found, key=lambda optimum: optimum.cost)
 
     def _from(self, problem: Problem, start: FloatArray) -> Optimum:
-        return minimise(problem, NOTHING_FREE, [start], self.effort.iterations, self.effort.gain)
+        return minimise(problem, np.zeros(0), [start], self.effort.iterations, self.effort.gain)
 
 
 def _cost(problem: Problem, start: FloatArray) -> float:
-    return cost_of(problem, problem.evaluate(NOTHING_FREE, [start], False), [start])
+    return cost_of(problem, problem.evaluate(np.zeros(0), [start], False), [start])
 
 
 def _elsewhere(
