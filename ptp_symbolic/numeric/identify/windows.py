@@ -102,7 +102,7 @@ def cut_where_noise_grows(
     """
     carried = propagated_noise(model, runs, z, p, declared_noise, executor)
     grows = np.any((carried > 1.0) & (left < TUNING * carried), axis=1)
-    grows |= [_rattles(model, run, p) for run in runs]
+    grows |= list((executor.map if executor else map)(lambda run: _rattles(model, run, p), runs))
     found: list[Run] = []
     for run, chaotic in zip(runs, grows, strict=True):
         found += split_run(model, run, SHORT) if chaotic else (run,)
