@@ -2,32 +2,35 @@
 
     python -m tests.benchmark make  --out DIR [--half build|report] [--only REGEX]
     python -m tests.benchmark run   --out DIR [--half ...] [--only REGEX] [--jobs N]
-                                    [--scale SECTION=FACTOR | NAME=FACTOR]
+                                    [--scale SECTION=FACTOR | NAME=FACTOR] [--redraw N]
     python -m tests.benchmark table --out DIR [--half ...] [--only REGEX]
     python -m tests.benchmark draw  --out DIR [--half ...] [--only REGEX] FILE.png
 
 `run` makes what is missing and leaves out what has an outcome; with --scale, a chosen constant, or
-all of a section of their table, "effort" for one, are taken times the factor. `table` also writes
-table.md and table.json into DIR.
+all of a section of their table, "effort" for one, are taken times the factor. With --redraw, the
+sets of the build half are drawn anew, surroundings and all, once for every N: what is right on the
+half may be right by chance. `table` also writes table.md and table.json into DIR.
 """
 
 import argparse
 import re
 from pathlib import Path
 
-from tests.benchmark.catalogue import catalogue
+from tests.benchmark.catalogue import catalogue, redrawn
 from tests.benchmark.entry import Entry
 from tests.benchmark.runner import diagnose_one, make_missing, progress_bar, run_all
 from tests.benchmark.table import figures, read_results, show, write_tables
 
 
 def chosen(arguments: argparse.Namespace) -> list[Entry]:
-    """Entries of the half and the pattern asked for."""
-    return [
+    """Entries of the half and the pattern asked for, drawn anew where that is."""
+    entries = [
         entry
         for entry in catalogue()
         if arguments.half in (None, entry.half) and re.search(arguments.only, entry.id)
     ]
+    number = arguments.redraw
+    return entries if number is None else [redrawn(entry, number) for entry in entries]
 
 
 def make(arguments: argparse.Namespace) -> None:
@@ -86,10 +89,13 @@ def main() -> None:
     parser.add_argument("--only", default="", metavar="REGEX", help="part of the identity")
     parser.add_argument("--jobs", type=int, default=1, help="sets at a time")
     parser.add_argument("--scale", metavar="WHICH=FACTOR", help="of constants that were chosen")
+    parser.add_argument("--redraw", type=int, metavar="N", help="the build half in other draws")
     parser.add_argument("--cores", default="0", help=argparse.SUPPRESS)
     arguments = parser.parse_intermixed_args()
     if arguments.command == "draw" and arguments.file is None:
         parser.error("draw needs the file to write")
+    if arguments.redraw is not None and arguments.half != "build":
+        parser.error("--redraw is for --half build alone: the report half is drawn once")
     COMMANDS[arguments.command](arguments)
 
 

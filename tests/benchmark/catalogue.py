@@ -22,6 +22,7 @@ from tests.benchmark.variation import (
 )
 
 FIRST_SEED = 4000
+SEEDS_APART = 10_000  # of the same entry drawn again
 HALVES = ("build", "report", "report", "build")
 COMBINED_LEVELS = (1.5, 6.0)
 UNLISTED_LEVELS = (1.5, 8.0)
@@ -126,3 +127,18 @@ def catalogue() -> tuple[Entry, ...]:
         half = HALVES[number % len(HALVES)]
         entries.append(Entry(identity, machine, kind, planted, seed, variation, half))
     return tuple(entries)
+
+
+def redrawn(entry: Entry, number: int) -> Entry:
+    """The same machine, effects and sizes in other surroundings and with another chance, for work
+    on the diagnosis: an entry of the report half would no longer be unseen.
+
+    Raises ValueError for one of the report half.
+    """
+    if entry.half != "build":
+        raise ValueError(f"{entry.id} is of the report half: it is drawn once")
+    seed = entry.seed + number * SEEDS_APART
+    far = entry.kind == "perfect" and np.random.default_rng([seed, 8]).random() < 1 / plan.FAR_EVERY
+    variation = _variation(seed, (entry.machine, entry.kind, entry.planted), far)
+    identity = f"redrawn{number}-{entry.id}"
+    return dataclasses.replace(entry, id=identity, seed=seed, variation=variation)

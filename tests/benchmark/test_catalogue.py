@@ -2,8 +2,10 @@
 
 from collections import Counter
 
+import pytest
+
 from tests.benchmark import plan
-from tests.benchmark.catalogue import catalogue
+from tests.benchmark.catalogue import catalogue, redrawn
 from tests.benchmark.effects import LISTED, WHOLE_PLATFORM
 from tests.benchmark.entry import KINDS
 from tests.benchmark.machines import MACHINES
@@ -66,6 +68,27 @@ def test_every_machine_sees_all_rates_and_a_third_of_the_perfect_ones_start_far_
             assert any(entry.variation.noise_kind == kind for entry in entries)
         for flag in ("repeat", "declared_noise", "declared_input_noise", "stalls"):
             assert any(getattr(entry.variation, flag) for entry in entries), (machine, flag)
+
+
+def test_the_build_half_is_drawn_anew_with_its_surroundings() -> None:
+    """Geared drives that start far off, of which the half holds one, are a third of them then."""
+    build = [entry for entry in ENTRIES if entry.half == "build"]
+    again = [redrawn(entry, number) for number in range(1, 13) for entry in build]
+    assert len({entry.seed for entry in (*ENTRIES, *again)}) == len(ENTRIES) + len(again)
+    assert len({entry.id for entry in again}) == len(again)
+    for entry, new in zip(build, again, strict=False):
+        assert (new.machine, new.kind, new.planted) == (entry.machine, entry.kind, entry.planted)
+    other = sum(a.variation != b.variation for a, b in zip(build, again, strict=False))
+    assert other > 0.95 * len(build)
+    geared = [e for e in again if e.kind == "perfect" and e.machine.startswith("pan_drive")]
+    share = sum(entry.variation.far for entry in geared) / len(geared)
+    assert abs(share - 1 / plan.FAR_EVERY) < 0.15
+
+
+def test_the_report_half_is_drawn_once() -> None:
+    report = next(entry for entry in ENTRIES if entry.half == "report")
+    with pytest.raises(ValueError, match="report half"):
+        redrawn(report, 1)
 
 
 def test_names_and_axes_are_those_of_the_machine() -> None:
