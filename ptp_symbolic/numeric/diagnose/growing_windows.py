@@ -48,16 +48,18 @@ def led_through(
 
 def led(part: Task, candidates: Sequence[Candidate], values: Mapping[str, float]) -> Trial:
     """A set fitted to windows from `values`."""
-    trial = settled(part, fitted(part, candidates, values, None), None)
+    trial = settled(part, fitted(part, candidates, values, None), None, brief=True)
     return continued(part, trial, POLISH, secants=WIDE_STEP)
 
 
-def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
+def settled(task: Task, trial: Trial, executor: Executor | None, *, brief: bool = False) -> Trial:
     """The trial fitted on until some iterations more change next to nothing, the gears put in their
     places anew each time: a window that began on the wrong side of a gap holds the others back.
+    `brief` is that of `starts_in_place`.
     """
     for _ in range(CYCLES):
-        begun = replace(trial, fit=replace(trial.fit, z=tuple(starts_of(trial, executor))))
+        z = starts_of(trial, executor, brief=brief)
+        begun = replace(trial, fit=replace(trial.fit, z=tuple(z)))
         better = continued(task, begun, ITERATIONS, executor=executor)
         if is_alike(better, trial):
             break
@@ -65,9 +67,9 @@ def settled(task: Task, trial: Trial, executor: Executor | None) -> Trial:
     return trial
 
 
-def starts_of(trial: Trial, executor: Executor | None) -> list[FloatArray]:
+def starts_of(trial: Trial, executor: Executor | None, *, brief: bool = False) -> list[FloatArray]:
     """Start unknowns, each [nz], of the runs of a trial with what is hidden at their start in place
     (see `starts_in_place`).
     """
-    fit = trial.fit
-    return starts_in_place(fit.model, fit.runs, fit.values, fit.z, fit.tolerance, executor)
+    fit, z = trial.fit, trial.fit.z
+    return starts_in_place(fit.model, fit.runs, fit.values, z, fit.tolerance, executor, brief=brief)

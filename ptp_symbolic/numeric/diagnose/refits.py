@@ -154,7 +154,7 @@ def over_windows(
             begun = ranked([*begun, *halving(part, far, 1)])
         if not begun:
             return []
-        best = settled(part, begun[0], executor)
+        best = settled(part, begun[0], executor, brief=bool(candidates))
     return [fitted(task, candidates, best.values, None)] if best else []
 
 

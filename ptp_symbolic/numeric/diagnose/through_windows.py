@@ -72,7 +72,7 @@ def _first_lead(
     def followed(start: Mapping[str, float]) -> Trial:
         part = replace(shortest, fixed={**shortest.fixed, **start})
         others = settled(
-            part, fitted(part, parent.candidates, {**alone.values, **start}, None), None
+            part, fitted(part, parent.candidates, {**alone.values, **start}, None), None, brief=True
         )
         return led(shortest, candidates, others.values)
 
