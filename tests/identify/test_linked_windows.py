@@ -15,7 +15,7 @@ from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate, start_st
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.linked_windows import carried_start, has_linked, linked
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.windows import cut_where_noise_grows, split_run
+from ptp_symbolic.numeric.identify.windows import cut_where_errors_grow, split_run
 from tests.identify.pan_runs import (
     FINE_STEPS,
     KNOWN,
@@ -100,7 +100,7 @@ def test_a_run_that_rattles_is_cut_and_no_other(runs: tuple[Run, ...]) -> None:
     """Without any noise of the input: it is the place in the gap whose error grows."""
     fit = judged(runs)
     nothing_left = np.zeros((len(runs), 2))
-    found = cut_where_noise_grows(MODEL, runs, fit.z, nothing_left, P, (0.0,))
+    found = cut_where_errors_grow(MODEL, runs, fit.z, nothing_left, P, (0.0,))
     assert [run.source for run in found] == [runs[0].name] * 8 + [runs[1].name, runs[2].name]
 
 

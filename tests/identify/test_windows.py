@@ -16,7 +16,7 @@ from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.identify.windows import (
     cut,
-    cut_where_noise_grows,
+    cut_where_errors_grow,
     split_run,
     window_length,
 )
@@ -150,7 +150,7 @@ def test_a_run_that_multiplies_the_noise_of_its_input_is_cut_and_no_other() -> N
         (1e-4, 1.0, 1),
     ):
         table = np.array([[left, 0.0]])
-        assert len(cut_where_noise_grows(MODEL, [run], z, table, p, (noise, 0.0))) == windows
+        assert len(cut_where_errors_grow(MODEL, [run], z, table, p, (noise, 0.0))) == windows
 
 
 def wavy(duration: float = 10.0, period: float = 0.005) -> Run:

@@ -26,8 +26,8 @@ class Step:
 class Search:
     """What the search found: the declared model, the chosen set (the same where nothing is added),
     what every member of it gains, all other trials, and the noise of the inputs as the best model
-    so far carries it to the outputs. `task` has the candidates with a
-    frequency where a line was found, and without those that have none.
+    so far carries it to the outputs. `task` has the candidates with a frequency where a line was
+    found, and without those that have none.
     """
 
     task: Task

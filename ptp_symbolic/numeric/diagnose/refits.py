@@ -41,7 +41,7 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.linked_windows import has_linked
-from ptp_symbolic.numeric.identify.windows import cut_where_noise_grows
+from ptp_symbolic.numeric.identify.windows import cut_where_errors_grow
 
 FloatArray = NDArray[np.float64]
 
@@ -73,7 +73,7 @@ def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
         short = polished(part, short, carried_noise(part, short.fit))
         if np.all(left_over(short.fit) <= left_over(trial.fit)):
             task, trial = part, short
-    return validated_in_windows(task, trial), trial
+    return validation_in_windows(task, trial), trial
 
 
 def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]]:
@@ -91,12 +91,12 @@ def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]
 
 def in_windows(task: Task, declared: Trial) -> Task:
     """The task with runs cut into windows where the fitted model amplifies errors until nothing can
-    be predicted (see `cut_where_noise_grows`).
+    be predicted (see `cut_where_errors_grow`).
     """
     model, noise = task.model, task.input_noise
     p = model.parameter_vector(declared.values)
     left = np.sqrt(mean_squares(declared.fit.evaluations, task.train))
-    train = cut_where_noise_grows(
+    train = cut_where_errors_grow(
         model, task.every_sample, declared.fit.z, left, p, noise, task.executor
     )
     if len(train) == len(task.train):
@@ -106,12 +106,12 @@ def in_windows(task: Task, declared: Trial) -> Task:
     return replace(task, every_sample=train, train=tuple(fewer.get(run, run) for run in train))
 
 
-def validated_in_windows(task: Task, declared: Trial) -> Task:
+def validation_in_windows(task: Task, declared: Trial) -> Task:
     """The task with its validation runs cut where training runs would be, whatever they leave."""
     model, runs = task.model, task.validate
     p, starts = model.parameter_vector(declared.values), [run.guess for run in runs]
     left = np.zeros((len(runs), len(task.train[0].signals)))
-    cut = cut_where_noise_grows(model, runs, starts, left, p, task.input_noise, task.executor)
+    cut = cut_where_errors_grow(model, runs, starts, left, p, task.input_noise, task.executor)
     return replace(task, validate=cut)
 
 

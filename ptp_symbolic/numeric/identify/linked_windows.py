@@ -46,32 +46,36 @@ def carried_start(model: Model, run: Run, p: FloatArray, end: FloatArray) -> Flo
     """
     states, z = list(model.state_names), run.guess
     for index, unknown in enumerate(run.unknowns):
-        if unknown.contact is None:
-            state = states.index(unknown.name)
-            if unknown.name.startswith("omega_gear_"):
-                joint = states.index(unknown.name.replace("omega_gear_", "omega_"))
-                z[index] = (end[state] - end[joint]) - (run.start[state] - run.start[joint])
-            else:
-                moved = float(end[state] - run.start[state])
-                z[index] = moved if abs(moved) <= FAR * unknown.sigma else 0.0
-        else:
-            z[index] = 0.0
-    for index, unknown in enumerate(run.unknowns):
         if unknown.contact is not None:
-            z[index] = _place(model, run, p, z, index, end)
+            z[index] = 0.0
+            z[index] = _place(model, run, p, z, index, unknown.contact, end)
+        elif unknown.name.startswith("omega_gear_"):
+            gear = states.index(unknown.name)
+            joint = states.index(unknown.name.replace("omega_gear_", "omega_"))
+            z[index] = (end[gear] - end[joint]) - (run.start[gear] - run.start[joint])
+        else:
+            state = states.index(unknown.name)
+            moved = float(end[state] - run.start[state])
+            z[index] = moved if abs(moved) <= FAR * unknown.sigma else 0.0
     return z
 
 
 def _place(
-    model: Model, run: Run, p: FloatArray, z: FloatArray, index: int, end: FloatArray
+    model: Model,
+    run: Run,
+    p: FloatArray,
+    z: FloatArray,
+    index: int,
+    contact: int,
+    end: FloatArray,
 ) -> float:
-    """Place in the gap of unknown `index` at which the gear is as far ahead of its joint as at the
-    `end`; the middle of a gap that has no width.
+    """Place in the gap of a `contact`, unknown `index` of z, at which the gear is as far ahead of
+    its joint as at the `end`; the middle of a gap that has no width. `z` has the gear in the
+    middle, and all unknowns of its joint.
     """
     unknown = run.unknowns[index]
-    contact = unknown.contact or 0
     gear, joint = model.module.CONTACT_ANGLES[contact]
-    x, s = start_state(model, run, p, z, np.zeros(0, dtype=np.int64))
-    ahead = end[gear] - end[joint] - (x[gear] - x[joint])
-    half = s[gear, index]
+    x, tangents = start_state(model, run, p, z, np.zeros(0, dtype=np.int64))
+    ahead = (end[gear] - end[joint]) - (x[gear] - x[joint])
+    half = tangents[gear, index]
     return float(np.clip(ahead / half, unknown.lower, unknown.upper)) if half > 0.0 else 0.0

@@ -120,11 +120,10 @@ class _Starts:
                 return found[-1]
         simulated = partial(residual_of, self.model, self.p, self.effort.tolerance, run)
         guesses = run.guesses[:1] if found and self.brief else run.guesses
-        starts = [*(with_gap_places(run, s, simulated) for s in guesses), *known]
-        if in_series and not found and not self.brief:
-            starts += _elsewhere(run, problem, starts, most)
-        starts = sorted(starts, key=partial(_cost, problem))
-        for start in starts[:1] if self.brief else starts:
+        starts = _by_cost(problem, [*(with_gap_places(run, s, simulated) for s in guesses), *known])
+        if in_series and not found and not self.brief and starts[0][0] > most:
+            starts = [*_elsewhere(run, problem, *starts[0]), *starts]
+        for _, start in starts[:1] if self.brief else starts:
             found.append(self._from(problem, start))
             if found[-1].cost <= most:
                 break
@@ -134,23 +133,29 @@ class _Starts:
         return minimise(problem, np.zeros(0), [start], self.effort.iterations, self.effort.gain)
 
 
-def _cost(problem: Problem, start: FloatArray) -> float:
-    return cost_of(problem, problem.evaluate(np.zeros(0), [start], False), [start])
+def _by_cost(problem: Problem, starts: Sequence[FloatArray]) -> list[tuple[float, FloatArray]]:
+    """`starts`, each [nz], with their costs, the least first."""
+
+    def cost(start: FloatArray) -> float:
+        return cost_of(problem, problem.evaluate(np.zeros(0), [start], False), [start])
+
+    return sorted(((cost(start), start) for start in starts), key=lambda pair: pair[0])
 
 
 def _elsewhere(
-    run: Run, problem: Problem, starts: Sequence[FloatArray], most: float
-) -> list[FloatArray]:
-    """The best of `starts` with the gear at the best of many places in its gap, one gap after the
-    other; nothing where it costs no more than `most`.
+    run: Run, problem: Problem, cost: float, best: FloatArray
+) -> list[tuple[float, FloatArray]]:
+    """A start with the gear at the best of many places in its gap, one gap after the other, with
+    its cost, from a start of some `cost`; none where no other place is better.
     """
-    best = min(starts, key=partial(_cost, problem))
-    if _cost(problem, best) <= most:
-        return []
+    found: list[tuple[float, FloatArray]] = []
     for index, unknown in enumerate(run.unknowns):
         if unknown.contact is not None:
             places = [best.copy() for _ in range(2 * BINS + 1)]
             for start, place in zip(places, np.linspace(-1.0, 1.0, len(places)), strict=True):
                 start[index] = place
-            best = min([best, *places], key=partial(_cost, problem))
-    return [best]
+            other = _by_cost(problem, places)[0]
+            if other[0] < cost:
+                cost, best = other
+                found = [other]
+    return found

@@ -20,6 +20,7 @@ from ptp_symbolic.numeric.identify.constants import (
     LEAST_START,
     LENGTHS,
     NOTHING,
+    PLACES,
     SEED,
     SHORT,
     START_SPAN,
@@ -87,7 +88,7 @@ def _drift(
     return np.sqrt(np.mean(change**2, axis=1)), run.time - run.time[0]
 
 
-def cut_where_noise_grows(
+def cut_where_errors_grow(
     model: Model,
     runs: Sequence[Run],
     z: Sequence[FloatArray],
@@ -120,7 +121,7 @@ def _rattles(model: Model, run: Run, p: FloatArray) -> bool:
             continue
         gear, _ = model.module.CONTACT_ANGLES[unknown.contact]
         growth = []
-        for z[index] in (-1.0, -0.5, 0.0, 0.5, 1.0):
+        for z[index] in PLACES:
             e = evaluate(model, run, p, z, none, True, Tolerance())
             _, tangents = start_state(model, run, p, z, none)
             moved = e.by_start.reshape(*run.measured.shape, -1)[:, unknown.column, index]
