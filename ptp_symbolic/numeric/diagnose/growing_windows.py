@@ -13,7 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, continued, fitted, is_alike
+from ptp_symbolic.numeric.diagnose.trial import (
+    Task,
+    Trial,
+    continued,
+    fitted,
+    is_alike,
+    mean_squares,
+)
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
     GROWING,
@@ -22,6 +29,8 @@ from ptp_symbolic.numeric.identify.constants import (
     SEARCH_PERIOD,
     WIDE_STEP,
 )
+from ptp_symbolic.numeric.identify.robust_loss import weighted_median
+from ptp_symbolic.numeric.identify.run_groups import sizes
 from ptp_symbolic.numeric.identify.run_starts import starts_in_place
 from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
 from ptp_symbolic.numeric.identify.windows import cut
@@ -72,4 +81,8 @@ def starts_of(trial: Trial, executor: Executor | None, *, brief: bool = False) -
     (see `starts_in_place`).
     """
     fit, z = trial.fit, trial.fit.z
-    return starts_in_place(fit.model, fit.runs, fit.values, z, fit.tolerance, executor, brief=brief)
+    square = mean_squares(fit.evaluations, fit.runs).mean(axis=1)
+    usual = float(weighted_median(square[:, None], sizes(fit.runs))[0])
+    return starts_in_place(
+        fit.model, fit.runs, fit.values, z, fit.tolerance, executor, brief=brief, usual=usual
+    )

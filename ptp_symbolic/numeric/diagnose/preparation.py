@@ -14,7 +14,7 @@ from ptp_symbolic.numeric.identify.constants import (
     SHORT,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.linked_windows import has_linked
+from ptp_symbolic.numeric.identify.linked_windows import has_linked, linked
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
 from ptp_symbolic.numeric.identify.simulations import all_values_at_start
@@ -74,15 +74,28 @@ def task_of(
 
 
 def _leading(windows: tuple[Run, ...], length: float) -> tuple[Run, ...]:
-    """Windows of `length` s that lead a search: all where each tells how the next one begins."""
-    return windows if has_linked(windows) else _spread(windows, length)
+    """Windows of `length` s that lead a search: spread over the logs, or where each tells how the
+    next one begins, those of SHORT all, and of shorter ones stretches of that length.
+    """
+    if not has_linked(windows):
+        return _spread(windows, length)
+    count = round(SHORT / length)
+    if count <= 1:
+        return windows
+    series = [s[k : k + count] for s in linked(windows) for k in range(0, len(s), count)]
+    return tuple(windows[k] for s in series[:: _apart(windows, length)] for k in s)
 
 
 def _spread(windows: tuple[Run, ...], length: float) -> tuple[Run, ...]:
     """Windows of `length` s spread over the logs, at least as many as tell what is usual, and more
     of shorter ones, in the same time.
     """
-    return windows[:: max(1, int(len(windows) * length / (MANY_RUNS * SHORT)))]
+    return windows[:: _apart(windows, length)]
+
+
+def _apart(windows: Sequence[Run], length: float) -> int:
+    """Every which one to take of `windows` of `length` s."""
+    return max(1, int(len(windows) * length / (MANY_RUNS * SHORT)))
 
 
 def _finest_angle(runs: Sequence[Run]) -> float:

@@ -57,9 +57,12 @@ def _from_declared(seeker: Seeker) -> Search:
         found = [t for t in ranked(found) if is_near(t, found)]
         best = seeker.restarted(ranked([best, *(seeker.completed(t) for t in found)])[0])
         seeker.follow(best)
-    if not seeker.have_answer(best):
-        best = seeker.simplest([best, *seeker.led_through_windows()])
-    begun, steps = seeker.pruned(best)
+    pruned = seeker.pruned(best) if seeker.is_at_noise(best) else None
+    if pruned is None or not seeker.have_answer(pruned[0]):
+        led = seeker.simplest([best, *seeker.led_through_windows()])
+        if pruned is None or led is not best:
+            best, pruned = led, seeker.pruned(led)
+    begun, steps = pruned
     best, steps = extended(seeker, begun, steps)
     end = best
     other = seeker.exchanged(best)

@@ -123,6 +123,6 @@ COARSEST = 10.0  # 1; of the default tolerance: beyond events are lost; scaled
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried; halvings
 GROWING = LENGTHS[:1:-1]  # s; lengths up to 2 s of windows that lead a fit; doublings
 AMOUNTS = tuple(2.0**k for k in range(-3, 3))  # 1; times its start, of an effect; doublings
-PLACES = (-1.0, -0.5, 0.0, 0.5, 1.0)  # half gaps; where a gear may stand: faces, middle; halvings
+PLACES = np.linspace(-1.0, 1.0, 9)  # half gaps; where a gear may stand: faces, eighths; halvings
 HALF_WIDTHS = (0.08, 0.11, 0.16, 0.22)  # s; windows of rows that are tried; factors of root two
 POLES = np.concatenate([[0.0], np.linspace(0.3, 0.97, 40)])  # 1; of noise that are tried; a grid

@@ -41,17 +41,18 @@ def starts_in_place(
     executor: Executor | None,
     *,
     brief: bool = False,
+    usual: float = 1.0,
 ) -> list[FloatArray]:
     """The start unknowns `z`, each [nz], of every run with what its sensors do not show in place
     for the parameter `values`: the gears of a whole run in their gaps, and windows that follow one
     another begun where the one before ended; of these the first few iterations of a fit as well,
-    one if `brief`. Raises InputError for values out of bounds.
+    one if `brief`. `usual` is that of `fitted_starts`. Raises InputError for values out of bounds.
     """
     if not has_linked(runs):
         return gears_in_place(model, runs, values, z, tolerance, executor)
     effort = Effort(1 if brief else ITERATIONS, GAIN * ROUGH, tolerance)
     known = [[start] for start in z]
-    found = fitted_starts(model, runs, values, known, effort, executor, brief=brief)
+    found = fitted_starts(model, runs, values, known, effort, executor, brief=brief, usual=usual)
     return [optimum.z[0] for optimum in found]
 
 
@@ -64,12 +65,15 @@ def fitted_starts(
     executor: Executor | None,
     *,
     brief: bool = False,
+    usual: float = 1.0,
 ) -> list[Optimum]:
     """The start of every run fitted by itself, from the best of those `known` of it, of its guesses
-    with the gears in place, and of the end of the window before it; and from the next, unless
-    nothing but noise is left or the search is `brief`. Raises InputError for values out of bounds.
+    with the gears in place, and of the end of the window before it; and from the next, unless no
+    more is left than noise or than the `usual` mean square of all runs, or the search is `brief`.
+    Raises InputError for values out of bounds.
     """
-    search = _Starts(model, values, model.parameter_vector(dict(values)), effort, brief)
+    most = ABOVE_NOISE * max(1.0, usual)
+    search = _Starts(model, values, model.parameter_vector(dict(values)), effort, most, brief)
 
     def one_after_the_other(series: Sequence[int]) -> list[Optimum]:
         found: list[Optimum] = []
@@ -90,12 +94,15 @@ def fitted_starts(
 
 @dataclass(frozen=True, eq=False)
 class _Starts:
-    """A search for the starts of runs at the parameters `values`, as a vector `p` [np]."""
+    """A search for the starts of runs at the parameters `values`, as a vector `p` [np]; `most` is
+    the mean square of a run at which no other start of it is tried.
+    """
 
     model: Model
     values: Mapping[str, float]
     p: FloatArray
     effort: Effort
+    most: float
     brief: bool
 
     def fitted(
@@ -107,11 +114,11 @@ class _Starts:
         in_series: bool,
     ) -> Optimum:
         """The best fit of a run's start; `before` is that of the window before it. The first window
-        of a series that leaves more than noise is begun at other places in its gaps too.
+        of a series that leaves more than that is begun at other places in its gaps too.
         """
         simulations = simulations_of(self.model, [run], (), self.values, self.effort, None)
         problem = problem_of(simulations, self.effort)
-        most = ABOVE_NOISE * run.size
+        most = self.most * run.size
         found: list[Optimum] = []
         if before is not None and before.evaluations[0].end is not None:
             end = before.evaluations[0].end
