@@ -1,17 +1,21 @@
 """Whole fits on runs of an independent simulator: known truths found, blind spots admitted."""
 
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scipy import stats
 
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
-from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
+from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters, run_counts
 from ptp_symbolic.numeric.identify.intervals import estimates
-from ptp_symbolic.numeric.identify.simulations import Effort
+from ptp_symbolic.numeric.identify.simulations import Effort, Simulations
 from tests.identify.pan_runs import (
     FINE_STEPS,
     FLOOR,
@@ -30,6 +34,8 @@ from tests.identify.pan_runs import (
 )
 from tests.independent.pan_drive import PanDrive
 from tests.independent.pan_logs import COUNT
+
+FloatArray = NDArray[np.float64]
 
 
 @pytest.fixture(scope="module", params=[10, 11])
@@ -89,6 +95,40 @@ def test_threads_change_nothing() -> None:
         together = fit_parameters(MODEL, made.runs, free, fixed, executor=executor)
     assert together.values == alone.values
     assert together.cost == alone.cost
+
+
+def test_the_end_of_an_earlier_fit_is_not_simulated_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A fit goes on to the same values with one simulation of every run less; from other starts of
+    the runs, or with another tolerance, it simulates all.
+    """
+    made = make_runs(PanDrive(), [crawl()[:600], sine()[:300]], 5)
+    free = starts_off({"F_c_pan": 0.24, "F_v_pan": 14.0}, 5)
+    fixed, rough = {**KNOWN, **TRUTH}, Effort(2)
+    first = fit_parameters(MODEL, made.runs, free, fixed, None, rough)
+    there = [replace(f, start=first.values[f.name], scale=2.0 * f.scale) for f in free]
+    simulated: list[int] = []
+
+    def counted(self: Simulations, *arguments: Any) -> list[Evaluation]:
+        simulated.append(1)
+        return whole(self, *arguments)
+
+    whole = Simulations.evaluate
+    monkeypatch.setattr(Simulations, "evaluate", counted)
+
+    def count(z: Sequence[FloatArray], effort: Effort, earlier: Fit | None) -> tuple[Fit, int]:
+        simulated.clear()
+        fit = fit_parameters(MODEL, made.runs, there, fixed, z, effort, earlier=earlier)
+        return fit, len(simulated)
+
+    afresh, evaluations = count(first.z, rough, None)
+    continued, fewer = count(first.z, rough, first)
+    assert fewer == evaluations - 1
+    assert continued.values == pytest.approx(afresh.values, rel=1e-9)
+    assert continued.cost == pytest.approx(afresh.cost, rel=1e-9)
+    other = [z + 1e-6 for z in first.z]
+    assert count(other, rough, first)[1] == count(other, rough, None)[1]
+    sharp = Effort(2, tolerance=Tolerance(1e-6, 1e-8))
+    assert count(first.z, sharp, first)[1] == count(first.z, sharp, None)[1]
 
 
 def test_starts_of_runs_are_found_when_only_they_are_asked_for() -> None:

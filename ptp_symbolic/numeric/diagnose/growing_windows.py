@@ -68,8 +68,7 @@ def settled(task: Task, trial: Trial, executor: Executor | None, *, brief: bool 
     """
     for _ in range(CYCLES):
         z = starts_of(trial, executor, brief=brief)
-        begun = replace(trial, fit=replace(trial.fit, z=tuple(z)))
-        better = continued(task, begun, ITERATIONS, executor=executor)
+        better = continued(task, trial, ITERATIONS, executor=executor, z=z)
         if is_alike(better, trial):
             break
         trial = better

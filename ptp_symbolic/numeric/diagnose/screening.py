@@ -23,9 +23,11 @@ def screened(
     """The set `kept` with those of the candidates `wanted`, and with what they bring along, that
     fit a few windows of the task best, the best first. A candidate is tried in its simplest and in
     its fullest form. A fit begins where the rows start the set, or at `values` and the candidate's
-    own start, whichever is better; after every iteration half of the fits go on.
+    own start, whichever is better, and the windows where they begin without it; after every
+    iteration half of the fits go on.
     """
     part = replace(task, train=task.few)
+    z = fitted(part, kept, values, None, executor=task.executor).fit.z
     have = {c.key for c in kept}
     by_key = {c.key: c for c in reversed(task.candidates)}
 
@@ -35,7 +37,7 @@ def screened(
         whole = {**values, **own, **candidate.shapes[0]}
         candidates = (*kept, *added, candidate)
         starts = [whole, start_for(task, found, candidates, whole, linear=True)]
-        return ranked([fitted(part, candidates, start, None) for start in starts])[0]
+        return ranked([fitted(part, candidates, start, z) for start in starts])[0]
 
     own: dict[str, list[Candidate]] = {}
     for c in sorted(wanted, key=lambda c: len(c.free)):

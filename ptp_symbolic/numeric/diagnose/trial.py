@@ -119,12 +119,14 @@ def fitted(
     secants: float | None = None,
     block: float = np.inf,
     executor: Executor | None = None,
+    earlier: Fit | None = None,
 ) -> Trial:
     """Fit from `values` (all parameters of the model) and the starts `z`, each [nz], of the runs.
 
     `secants` is the step of the differences that replace derivatives which mislead; those that
     misled the parent are known to mislead. `share` is that of `tolerance_for`, `block` the length
-    (s) of the blocks that a robust loss weighs; values out of bounds are projected onto them.
+    (s) of the blocks that a robust loss weighs; values out of bounds are projected onto them. An
+    `earlier` fit that ends where this one begins is not simulated again there.
     """
     free = all_free(task, candidates, values)
     names = {name for f in free for name in f.names}
@@ -133,7 +135,7 @@ def fitted(
     below = task.robust_below
     effort = Effort(iterations, GAIN * share, tolerance, secants, block=block, robust_below=below)
     known = None if secants is None else _inherited(parent, free)
-    fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known)
+    fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known, earlier)
     return Trial(tuple(candidates), fit)
 
 
@@ -164,18 +166,22 @@ def continued(
     share: float = ROUGH,
     secants: float | None = None,
     executor: Executor | None = None,
+    z: Sequence[FloatArray] | None = None,
 ) -> Trial:
-    """Fit a trial on from where it ended; a worse end is not taken."""
+    """Fit a trial on from where it ended, or there from other starts `z`, each [nz], of its runs; a
+    worse end is not taken.
+    """
     new = fitted(
         task,
         trial.candidates,
         trial.values,
-        trial.fit.z,
+        trial.fit.z if z is None else z,
         iterations,
         trial.fit,
         share,
         secants,
         executor=executor,
+        earlier=trial.fit,
     )
     if new.fit.misleading is None and trial.fit.misleading is not None:
         new = replace(new, fit=replace(new.fit, misleading=trial.fit.misleading))

@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
+from ptp_symbolic.numeric.identify.constants import NOTHING
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance
 from ptp_symbolic.numeric.identify.least_squares import minimise
 from ptp_symbolic.numeric.identify.requirements import nearest_possible
@@ -17,6 +18,7 @@ from ptp_symbolic.numeric.identify.secants import Shift
 from ptp_symbolic.numeric.identify.simulations import (
     DEFAULT_TOLERANCE,
     Effort,
+    Simulations,
     all_values,
     problem_of,
     simulations_of,
@@ -73,9 +75,11 @@ def fit_parameters(
     effort: Effort | None = None,
     executor: Executor | None = None,
     misleading: Sequence[Shift] | None = None,
+    earlier: Fit | None = None,
 ) -> Fit:
     """Fit `free` from their starts; all other parameters stay at `fixed`. Derivatives known to be
     `misleading` from an earlier fit of the same parameters are replaced from the first step on.
+    Where this fit begins at the end of an `earlier` one, that is not simulated again.
 
     With no free parameter only the start unknowns of every run are fitted, which is how validation
     runs are judged. Places in a gap are looked for where no starts `z`, each [nz], are given.
@@ -106,7 +110,10 @@ def fit_parameters(
     if z is None:
         guesses = [run.guess for run in runs]
         z = starts_in_place(model, runs, values, guesses, effort.tolerance, executor, brief=True)
-    best = minimise(problem, phi, z, effort.iterations, effort.gain, effort.rejections)
+    begun = None
+    if earlier is not None and _ends_at(earlier, simulations, values, z):
+        begun = _by_coordinates(earlier, free)
+    best = minimise(problem, phi, z, effort.iterations, effort.gain, effort.rejections, begun)
     values = {**fixed, **all_values(free, best.phi)}
     chosen = None if problem.refine is None else problem.refine.chosen
     return Fit(
@@ -121,3 +128,26 @@ def fit_parameters(
         effort.tolerance,
         None if chosen is None else tuple(chosen),
     )
+
+
+def _ends_at(
+    fit: Fit, simulations: Simulations, values: Mapping[str, float], z: Sequence[FloatArray]
+) -> bool:
+    """Whether a fit ends at the parameter `values` and the starts z, each [nz], and has simulated
+    there, by the same parameters, what `simulations` would.
+    """
+    return (
+        not fit.failed
+        and fit.tolerance == simulations.tolerance
+        and [f.name for f in fit.free] == [f.name for f in simulations.free]
+        and len(fit.runs) == len(simulations.runs)
+        and all(a is b for a, b in zip(fit.runs, simulations.runs, strict=True))
+        and all(np.array_equal(a, b) for a, b in zip(fit.z, z, strict=True))
+        and all(abs(values[n] - v) <= NOTHING * abs(v) for n, v in fit.values.items())
+    )
+
+
+def _by_coordinates(fit: Fit, free: Sequence[FreeParameter]) -> list[Evaluation]:
+    """The evaluations of a fit with Jacobians by the coordinates of `free`, its own parameters."""
+    own, new = (slopes(f, to_search(f, fit.values)) for f in (fit.free, free))
+    return [replace(e, by_parameter=e.by_parameter * (new / own)) for e in fit.evaluations]

@@ -110,16 +110,18 @@ def minimise(
     iterations: int = 30,
     gain: float = 1e-5,
     rejections: int = 5,
+    begun: Sequence[Evaluation] | None = None,
 ) -> Optimum:
     """Minimise from phi [nf] and z [nz] until two steps in a row gain less than the share `gain`,
-    or until `rejections` ever shorter steps in a row gain nothing.
+    or until `rejections` ever shorter steps in a row gain nothing. `begun` are the evaluations
+    there, with Jacobians, where they are known.
 
     Priors of phi and z are weighed by the mean square residual: strong while the model is far off,
     so that declared parameters and starts do not absorb the lack of an effect, and weak at the
     noise floor.
     """
     at = _Point(np.clip(phi, problem.lower, problem.upper), [a.copy() for a in z], [])
-    at = replace(at, evaluations=problem.evaluate(at.phi, at.z, True))
+    at = replace(at, evaluations=list(begun or problem.evaluate(at.phi, at.z, True)))
     cost = cost_of(problem, at.evaluations, at.z)
     if not np.isfinite(cost):
         why = next((e.failed for e in at.evaluations if e.failed), "not finite")
