@@ -95,10 +95,18 @@ def test_field_logs(shared: Path, log: str) -> None:
     folder = shared / "fieldlogs" / log
     declared = read_platform(PLATFORMS / f"{platform}.toml")
     found = diagnose_platform(declared, [folder / "train"], [folder / "validate"]).summary
+    assert sorted(added["effect"] for added in found["added"]) == effects
+    runs = [
+        run["rmse_counts"]
+        for part in ("train", "validate")
+        for run in found["error"][part]["after"]["by_run"].values()
+    ]
+    if log == "log-g":
+        # Its friction turns more softly than the declared law: half-second windows in which a
+        # joint turns back are left at 1.4 to 1.8 floors, all others at 1.02.
+        assert found["verdict"] == "partly_explained"
+        assert max(runs) < 0.5
+        return
     right = {"explained", "explained_up_to_group"} if effects else {"nothing_missing"}
     assert found["verdict"] in right
-    assert sorted(added["effect"] for added in found["added"]) == effects
-    if log != "log-g":
-        for part in ("train", "validate"):
-            for run in found["error"][part]["after"]["by_run"].values():
-                assert run["rmse_counts"] < 0.35
+    assert max(runs) < 0.35

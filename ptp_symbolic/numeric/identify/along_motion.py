@@ -139,7 +139,8 @@ def further_states(addresses, layout, motion, p, resting, acts, shown, wanted, l
             if friction >= 0 and m[friction] == 0.0 and previous[friction] != 0.0:
                 found[k, e] = 0.0
             x[layout.further[e]] = found[k, e]
-        previous[:] = m[:frictions]
+        for f in range(frictions):
+            previous[f] = m[f]
         _find_decays(addresses, layout, motion.time[k], x, late[k, 0], p, m, r, acts, decay)
         step = (motion.time[k + 1] - motion.time[k]) / parts
         halves[:] = 0.0
@@ -164,9 +165,9 @@ def further_states(addresses, layout, motion, p, resting, acts, shown, wanted, l
             if wanted[k] and shown[e] and decay[e] != 0.0:
                 _settle(addresses, layout, motion.time[k], x, late[k, 0], p, m, r, by_rate[k])
                 by_rate[k, e] /= -decay[e]
-    if n > 1:
-        mean[0] += 0.5 * found[0]
-        mean[n - 1] += 0.5 * found[n - 1]
+    for k in (0, n - 1):
+        for e in range(count):
+            mean[k, e] += 0.5 * found[k, e]
     return found, mean, by_rate
 
 

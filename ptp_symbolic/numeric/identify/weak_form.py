@@ -53,32 +53,34 @@ def _is_whole(time, half_width, k, low, high):
     return longest <= LARGEST_GAP * half_width
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _bounds(time, half_width, chosen):
-    """First and one past the last sample [c] of the windows of `chosen` [c]; equal where a window
-    is not whole.
-    """
-    first, end = np.zeros_like(chosen), np.zeros_like(chosen)
-    slack = 1e-9 * half_width
-    low = np.searchsorted(time, time[chosen] - half_width - slack)
-    high = np.searchsorted(time, time[chosen] + half_width + slack, side="right")
-    for row, k in enumerate(chosen):
-        if _is_whole(time, half_width, k, low[row], high[row]):
-            first[row], end[row] = low[row], high[row]
-    return first, end
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def windows(time, half_width, derivative, chosen):
+def windows(time: FloatArray, half_width: float, derivative: int, chosen: IntArray) -> Windows:
     """The windows of `half_width` s around the samples `chosen` [c] of `time` [k] in s, for the
     average of a signal, or of its first or second `derivative` (1 or 2). Weights are normalised so
     that a constant has the average 1 and a parabola its exact derivatives, however few the samples.
     """
-    first, end = _bounds(time, half_width, chosen)
+    slack = 1e-9 * half_width
+    first = np.searchsorted(time, time[chosen] - half_width - slack)
+    end = np.searchsorted(time, time[chosen] + half_width + slack, side="right")
+    _empty_broken(time, half_width, chosen, first, end)
     begin = np.cumsum(end - first) - (end - first)
     weights, wholes = np.zeros(int(np.sum(end - first))), np.zeros(len(chosen))
-    for row, k in enumerate(chosen):
-        low, high = first[row], end[row]
+    _weigh(time, half_width, derivative, chosen, first, end, begin, weights, wholes)
+    return Windows(first, end, begin, weights, wholes, chosen, derivative > 0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _empty_broken(time, half_width, chosen, first, end):
+    """Let the windows of `chosen` [c] that are not whole end where they begin."""
+    for row in range(len(chosen)):
+        if not _is_whole(time, half_width, chosen[row], first[row], end[row]):
+            end[row] = first[row]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _weigh(time, half_width, derivative, chosen, first, end, begin, weights, wholes):
+    """Fill the weights [w] of all windows, and what their averages are divided by [c]."""
+    for row in range(len(chosen)):
+        k, low, high = chosen[row], first[row], end[row]
         for j in range(low, high):
             before = time[j - 1] if j > low else time[k] - half_width
             after = time[j + 1] if j < high - 1 else time[k] + half_width
@@ -95,7 +97,6 @@ def windows(time, half_width, derivative, chosen):
                 share = 0.5 * weight * s * s * half_width * half_width
             wholes[row] += width * share
             weights[begin[row] + j - low] = width * weight
-    return Windows(first, end, begin, weights, wholes, chosen, derivative > 0)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -104,20 +105,16 @@ def averages(found, values):
     `found`; nan where a window is not whole.
     """
     columns = values.shape[1]
-    result = np.full((len(found.middle), columns), np.nan)
-    total, origin = np.zeros(columns), np.zeros(columns)
-    for row, k in enumerate(found.middle):
-        low, high = found.first[row], found.end[row]
-        if low == high:
-            continue
-        total[:] = 0.0
-        if found.relative:
-            origin[:] = values[k]
+    result = np.zeros((len(found.middle), columns))
+    for row in range(len(found.middle)):
+        low, high, k = found.first[row], found.end[row], found.middle[row]
         for j in range(low, high):
             weight = found.weight[found.begin[row] + j - low]
             for c in range(columns):
-                total[c] += weight * (values[j, c] - origin[c])
-        result[row] = total / found.whole[row]
+                origin = values[k, c] if found.relative else 0.0
+                result[row, c] += weight * (values[j, c] - origin)
+        for c in range(columns):
+            result[row, c] = result[row, c] / found.whole[row] if low < high else np.nan
     return result
 
 
@@ -132,14 +129,25 @@ def weak_average(
     return found
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def local_motion(time, values, half_width):
+def local_motion(time: FloatArray, values: FloatArray, half_width: float) -> FloatArray:
     """Value, rate and acceleration [k, 3, c] of `values` [k, c], per s and s^2, from a parabola
     through the samples within `half_width` s of each, at least five of them (local regression: Fan
     and Gijbels, 1996).
     """
+    moments = np.zeros((len(time), 5))
+    right = np.zeros((len(time), 3, values.shape[1]))
+    _fill_moments(time, values, half_width, moments, right)
+    found = np.linalg.solve(moments[:, np.add.outer(np.arange(3), np.arange(3))], right)
+    units = np.array([1.0, 1.0 / half_width, 2.0 / half_width**2])
+    return np.asarray(found * units[:, None])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _fill_moments(time, values, half_width, moments, right):
+    """Sums over the samples around each of the powers 0 to 4 of their distance over `half_width`
+    [k, 5], and of those to 2 times their `values` [k, 3, c].
+    """
     n, columns = values.shape
-    result = np.zeros((n, 3, columns))
     low, high = 0, 0
     for k in range(n):
         while time[low] < time[k] - half_width:
@@ -149,26 +157,15 @@ def local_motion(time, values, half_width):
         a, b = low, high
         while b - a < 5:
             a, b = max(a - 1, 0), min(b + 1, n)
-        moments, right = np.zeros(5), np.zeros((3, columns))
         for j in range(a, b):
             s = (time[j] - time[k]) / half_width
             power = 1.0
             for order in range(5):
-                moments[order] += power
+                moments[k, order] += power
                 if order < 3:
                     for c in range(columns):
-                        right[order, c] += power * values[j, c]
+                        right[k, order, c] += power * values[j, c]
                 power *= s
-        matrix = np.empty((3, 3))
-        for row in range(3):
-            for column in range(3):
-                matrix[row, column] = moments[row + column]
-        found = np.linalg.solve(matrix, right)
-        for c in range(columns):
-            result[k, 0, c] = found[0, c]
-            result[k, 1, c] = found[1, c] / half_width
-            result[k, 2, c] = 2.0 * found[2, c] / (half_width * half_width)
-    return result
 
 
 def curvature_noise(period: float, half_width: float) -> float:

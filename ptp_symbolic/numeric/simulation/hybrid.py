@@ -175,8 +175,10 @@ def advance_by_samples(
             return CHATTERING
 
 
-def compiled_runner(sources: int) -> Callable[..., int]:
-    """The compiled runner, stamped with the `sources` it comes from (see `source_stamp`)."""
+def compiled_runner(sources: int, sampled: bool) -> Callable[..., int]:
+    """The compiled runner for machines with samplers (`sampled`) or without, which compiles in two
+    thirds of the time; stamped with the `sources` it comes from (see `source_stamp`).
+    """
 
     @njit(
         types.int64(
@@ -228,7 +230,7 @@ def compiled_runner(sources: int) -> Callable[..., int]:
         tangents, sampling = Tangents(*tangents), Sampling(*sampling)
         propagator = Propagator(*propagator)
         record.clock[TIME], record.clock[LENGTH] = stops[0], limits[1]
-        if is_due(stops[0], sampling):
+        if sampled and is_due(stops[0], sampling):
             sample_at(equations, inputs, stops[0], x, watch.m, tangents, sampling)
         evaluate_inputs(stops[0], 1, *inputs.table, inputs.cursor, inputs.u)
         write_here(equations, inputs, stops[0], x, watch.m, tangents, record)
@@ -239,21 +241,27 @@ def compiled_runner(sources: int) -> Callable[..., int]:
                 jump_by_delay(equations, inputs, stops[index - 1], x, u[2], watch, tangents)
             if not enter(equations, inputs, stops[index - 1], x, watch, tangents, record):
                 return CHATTERING
-            status = advance_by_samples(
-                method,
-                equations,
-                inputs,
-                stops[index],
-                x,
-                limits,
-                atol,
-                step,
-                watch,
-                tangents,
-                record,
-                sampling,
-                propagator,
-            )
+            end = stops[index]
+            if sampled:
+                status = advance_by_samples(
+                    method,
+                    equations,
+                    inputs,
+                    end,
+                    x,
+                    limits,
+                    atol,
+                    step,
+                    watch,
+                    tangents,
+                    record,
+                    sampling,
+                    propagator,
+                )
+            else:
+                status = advance(
+                    method, equations, inputs, end, x, limits, atol, step, watch, tangents, record
+                )
             if status != DONE:
                 return status
             write_here(equations, inputs, stops[index], x, watch.m, tangents, record)
@@ -262,7 +270,9 @@ def compiled_runner(sources: int) -> Callable[..., int]:
     return run
 
 
-@lru_cache(maxsize=1)
-def runner() -> Callable[..., int]:
-    """The runner, compiled when it is first needed: about a minute once on a new machine."""
-    return compiled_runner(source_stamp())
+@lru_cache(maxsize=2)
+def runner(sampled: bool) -> Callable[..., int]:
+    """The runner for machines with samplers (`sampled`) or without, compiled when it is first
+    needed: about a minute once on a new machine.
+    """
+    return compiled_runner(source_stamp(), sampled)

@@ -165,7 +165,7 @@ def integrate(
     module.initial_modes(stops[0], x, u[0], p, watch.m)
     refuse_start(model, x, u[0], p, watch)
     record = new_record(times, n, s.shape[1], len(times) if ledger else 0, event_room)
-    status = hybrid.runner()(
+    status = hybrid.runner(len(model.sampler_periods) > 0)(
         METHODS[method],
         functions,
         p,
