@@ -176,8 +176,8 @@ def advance_by_samples(
 
 
 def compiled_runner(sources: int, sampled: bool) -> Callable[..., int]:
-    """The compiled runner for machines with samplers (`sampled`) or without, which compiles in two
-    thirds of the time; stamped with the `sources` it comes from (see `source_stamp`).
+    """The compiled runner for machines with samplers (`sampled`), or for those without, which takes
+    a third less time; stamped with the `sources` it comes from (see `source_stamp`).
     """
 
     @njit(
