@@ -34,7 +34,8 @@ def force_error(
     """Relative error in percent of the force that `platform` with `parameters` needs for a motion.
 
     `time` [k] in s, evenly sampled; `force` [k] in N; `position` [k] in m. A force that is `held`
-    from each sample to the next is compared with the mean of what is needed in between.
+    from each sample to the next is compared with the mean of what is needed in between; one that
+    acts late, by the effect `input_delay`, with what is needed then.
     """
     period = float(np.median(np.diff(time)))
     smooth = signal.filtfilt(*signal.butter(ORDER, 2.0 * CORNER * period), position)
@@ -42,6 +43,8 @@ def force_error(
     acceleration = np.gradient(speed, period)
     motion = Motion(smooth[:, None], speed[:, None], acceleration[:, None], time)
     needed = inverse_dynamics(platform, motion, parameters)[:, 0]
+    (axis,) = platform.axes
+    needed = np.interp(time + parameters.get(f"t_delay_{axis}", 0.0), time, needed)
     if held:
         needed = np.append(0.5 * (needed[1:] + needed[:-1]), needed[-1])
     measured, predicted = (

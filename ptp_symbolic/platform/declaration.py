@@ -109,8 +109,9 @@ class Platform:
 
     The joints of `linear_axes` slide, in m, N and kg; those of all other axes turn.
     `window` is the length in s of the windows into which a fit cuts runs, None where it finds that
-    by itself; `clock` is the column of times. `source` is the file that says so, for messages; None
-    where there is none.
+    by itself, and `material` the share of the error that an effect has to take away for a name,
+    None for the usual one; `clock` is the column of times. `source` is the file that says so, for
+    messages; None where there is none.
     """
 
     name: str
@@ -124,6 +125,7 @@ class Platform:
     clock: Clock = Clock()
     linear_axes: tuple[str, ...] = ()
     source: str | None = field(default=None, compare=False, repr=False)
+    material: float | None = None
 
 
 @contextmanager

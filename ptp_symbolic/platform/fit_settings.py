@@ -6,13 +6,24 @@ from ptp_symbolic.platform.declaration import Clock
 from ptp_symbolic.platform.units import compatible
 
 
-def window_of(given: object, where: str) -> float | None:
-    """Return the length in s of the windows of a `[fit]` table; None where it says nothing.
+def fit_settings(given: object, where: str) -> tuple[float | None, float | None]:
+    """Return what a `[fit]` table says: the length in s of its windows, and the share of the error
+    that an effect has to take away for a name; None where it says nothing.
 
-    Raises InputError for other keys and for what is no time above zero, such as "0.5 s".
+    Raises InputError for other keys, for what is no time above zero, such as "0.5 s", and for what
+    is no share.
     """
-    entry = fields.table(given, where, ("window",))
-    return fields.time(entry["window"], f"{where}.window", 0.0) if "window" in entry else None
+    entry = fields.table(given, where, ("window", "material"))
+    window = fields.time(entry["window"], f"{where}.window", 0.0) if "window" in entry else None
+    if "material" not in entry:
+        return window, None
+    share = fields.number(entry["material"], f"{where}.material")
+    if not 0.0 < share < 1.0:
+        raise InputError(
+            f"{where}.material: {share:g} is no share of the error; give a number between 0 and 1,"
+            " such as 0.05 for 5 %."
+        )
+    return window, share
 
 
 def clock_of(given: object, where: str) -> Clock:

@@ -17,7 +17,7 @@ from ptp_symbolic.platform.declaration import (
     ParameterDeclaration,
     Platform,
 )
-from ptp_symbolic.platform.fit_settings import clock_of, window_of
+from ptp_symbolic.platform.fit_settings import clock_of, fit_settings
 from ptp_symbolic.platform.signals import read_signals
 from ptp_symbolic.platform.text_file import read_text_bytes
 
@@ -54,6 +54,7 @@ def read_platform(source: str | Path) -> Platform:
         fields.required(head, "name", f"{where}: platform"), f"{where}: platform.name"
     )
     axes = _axes(head, f"{where}: platform")
+    window, material = fit_settings(document.get("fit", {}), f"{where}: fit")
     return Platform(
         name=name,
         title=fields.text(head.get("title", name), f"{where}: platform.title"),
@@ -63,7 +64,8 @@ def read_platform(source: str | Path) -> Platform:
         parameters=_parameters(document.get("parameters", {}), where),
         signals=read_signals(document.get("signals", {}), where),
         clock=clock_of(document.get("log", {}), f"{where}: log"),
-        window=window_of(document.get("fit", {}), f"{where}: fit"),
+        window=window,
+        material=material,
         linear_axes=_linear_axes(head.get("joints", {}), axes, f"{where}: platform.joints"),
         source=where,
     )

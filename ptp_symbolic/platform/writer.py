@@ -26,7 +26,10 @@ def platform_text(platform: Platform) -> str:
         "parameters": {p.name: _parameter(p) for p in platform.parameters},
         "signals": {s.signal: _signal(s) for s in platform.signals},
         "log": _given(time=platform.clock.column, time_unit=platform.clock.unit),
-        "fit": {} if platform.window is None else {"window": f"{platform.window!r} s"},
+        "fit": _given(
+            window=None if platform.window is None else f"{platform.window!r} s",
+            material=platform.material,
+        ),
     }
     return tomlkit.dumps({name: section for name, section in sections.items() if section})
 

@@ -11,6 +11,7 @@ from ptp_symbolic.models.declared import free_parameters, known_values, refuse_u
 from ptp_symbolic.numeric.data import Log, refuse_motionless, refuse_wrapped_angles, remarks
 from ptp_symbolic.numeric.diagnose.preparation import task_of
 from ptp_symbolic.numeric.diagnose.trial import Task
+from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform, effect_key, naming_file
@@ -70,6 +71,7 @@ def task_for(
         declared,
         noises,
         platform.window,
+        MATERIAL if platform.material is None else platform.material,
         executor,
         progress,
     )

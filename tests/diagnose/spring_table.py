@@ -16,6 +16,7 @@ from ptp_symbolic.models import declared, emission, variants
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose.preparation import task_of
 from ptp_symbolic.numeric.diagnose.trial import Task
+from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.preparation import effect_keys
@@ -116,6 +117,7 @@ def table_of(folder: Path, logged: Callable[[int], Log]) -> Iterator[Task]:
             effect_keys(platform),
             noises,
             None,
+            MATERIAL,
             executor,
             lambda text: None,
         )

@@ -16,7 +16,7 @@ from ptp_symbolic.numeric.diagnose.confirm import (
 from ptp_symbolic.numeric.diagnose.findings import is_earned
 from ptp_symbolic.numeric.diagnose.gain import Gain, p_value
 from ptp_symbolic.numeric.diagnose.trial import Trial
-from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MATERIAL
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.intervals import estimates
 from tests.identify.curves import Floats
@@ -148,6 +148,8 @@ def test_a_gain_must_be_material_and_clear_over_all_candidates() -> None:
         (0.0, 0.9 * p, 1.0, True),
         (0.0, 1.1 * p, 1.0, False),
     ):
-        assert is_earned(Gain(MATERIAL, 0.01, 0.2, t, 20, by_rank), chance, 40) is earned
-    assert not is_earned(Gain(0.9 * MATERIAL, 0.01, 0.2, 9.0, 20), 0.9 * p, 40)
-    assert not is_earned(Gain(MATERIAL, -0.01, 0.2, 9.0, 20), 0.9 * p, 40)
+        assert is_earned(Gain(0.1, 0.01, 0.2, t, 20, by_rank), chance, 40, 0.1) is earned
+    small = Gain(0.09, 0.01, 0.2, 9.0, 20)
+    assert is_earned(small, 0.9 * p, 40, 0.05)
+    assert not is_earned(small, 0.9 * p, 40, 0.1)
+    assert not is_earned(Gain(0.1, -0.01, 0.2, 9.0, 20), 0.9 * p, 40, 0.1)

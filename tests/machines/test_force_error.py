@@ -1,5 +1,6 @@
 """The force error against the figures that its authors publish, and of a motion that is known."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.machines.force_error import force_error
 from ptp_symbolic.machines.study import EMPS_FILES, PLATFORMS, machines
 from ptp_symbolic.numeric.data import read_log
-from ptp_symbolic.platform import read_platform
+from ptp_symbolic.platform import EffectDeclaration, read_platform
 from ptp_symbolic.report.machines import render_machines
 
 PLATFORM = read_platform(PLATFORMS / "emps.toml")
@@ -43,6 +44,19 @@ def test_a_force_that_is_held_acts_between_its_samples() -> None:
     )
     assert held < 0.15
     assert late**2 - held**2 == pytest.approx(0.628**2, rel=0.1)
+
+
+def test_a_force_that_acts_late_is_compared_with_what_is_needed_then() -> None:
+    """A sine of 2 Hz that the logged force leads by 5 ms: 6.28 % unless the model knows it."""
+    time = np.arange(0.0, 5.0, 1e-3)
+    position = 0.1 * np.sin(4.0 * np.pi * time)
+    force = -10.0 * (4.0 * np.pi) ** 2 * np.sin(4.0 * np.pi * (time + 5e-3))
+    values = {"m_pan": 100.0, "F_c_pan": 0.0, "F_s_pan": 0.0, "F_v_pan": 0.0}
+    late = EffectDeclaration("input_delay", "pan", None)
+    platform = replace(PLATFORM, effects=(*PLATFORM.effects, late))
+    for delay, percent in ((0.0, 6.28), (5e-3, 0.0)):
+        found = force_error(platform, values | {"t_delay_pan": delay}, time, force, position)
+        assert found == pytest.approx(percent, abs=0.15)
 
 
 def test_the_published_model_of_emps_has_the_published_error(shared: Path) -> None:

@@ -44,26 +44,32 @@ def test_the_published_friction_of_a_servo_is_named(measured: Path) -> None:
 
 
 def test_friction_of_a_screw_is_named_and_its_mass_is_the_published_one(measured: Path) -> None:
-    """Asymmetric viscous friction is published; that it levels off is not. Least squares of the
-    force with both leaves 2.26 % of it on the training file and 3.25 % on the other, of 2.98 and
-    3.70 % with the first alone.
+    """Asymmetric viscous friction is published, and an offset; that it levels off is not. Least
+    squares of the force with asymmetric viscous friction alone leaves 2.97 % of it on the training
+    file and 3.70 % on the other; with any curve of friction over the rate in each direction 2.14
+    and 3.27 %; where the force may act late too, 2.03 and 2.88 %, at 0.32 ms.
     """
     found = emps(measured / "emps", lambda text: None)
     assert found["verdict"] == "partly_explained"
-    assert named(found) == FRICTION
+    assert named(found) == OWN
     assert found["held_out"]["share"] > 0.7
     assert found["hints"]
     before, after = (
         next(r for r in found["force_error"] if r["stage"] == stage and r["held"])
         for stage in ("before", "after")
     )
-    assert after["train"] < 2.30  # %
-    assert after["validate"] < 3.30 < 3.80 < before["validate"]
+    assert after["train"] < 2.20  # %
+    assert after["validate"] < 2.95 < 3.70 < before["validate"]
     low, high = found["fit"]["after"]["parameters"]["m_pan"]["ci95"]
     assert low < PUBLISHED_MASS < high
 
 
-FRICTION = ["direction_dependent_friction", "shear_thinning_friction"]
+OWN = [
+    "constant_torque",
+    "direction_dependent_friction",
+    "input_delay",
+    "shear_thinning_friction",
+]
 PUBLISHED_MASS = 95.1  # kg
 FORCE = 35.1507  # N per volt
 SIZE = 0.6  # N rms
@@ -71,6 +77,13 @@ SIZE = 0.6  # N rms
 
 def named(found: dict[str, Any]) -> list[str]:
     return sorted(added["effect"] for added in found["added"])
+
+
+def beside_friction(found: dict[str, Any]) -> set[str]:
+    """What is named beside the effects of the machine as it is, of which the two largest are."""
+    names = set(named(found))
+    assert names > {"direction_dependent_friction", "shear_thinning_friction"}
+    return names - set(OWN)
 
 
 def with_force(source: Path, folder: Path, law: Callable[[Floats], Floats]) -> dict[str, Any]:
@@ -96,7 +109,7 @@ STIFFNESS, MIDDLE = 7.26, 0.123  # N/m and m: of that size over the stroke of th
 
 def test_a_spring_put_into_the_force_is_found(measured: Path, tmp_path: Path) -> None:
     found = with_force(measured / "emps", tmp_path, lambda x: STIFFNESS * (x - MIDDLE))
-    assert named(found) == ["cable_spring", *FRICTION]
+    assert beside_friction(found) == {"cable_spring"}
     spring = next(a for a in found["added"] if a["effect"] == "cable_spring")
     low, high = spring["parameters"]["k1_cable_pan"]["ci95"]
     assert low < STIFFNESS < high
@@ -106,7 +119,7 @@ def test_cogging_every_20_mm_put_into_the_force_is_found(measured: Path, tmp_pat
     """The wave number is 2 pi over the 20 mm, in rad/m."""
     waves, size = 2.0 * np.pi / 0.02, np.sqrt(2.0) * SIZE
     found = with_force(measured / "emps", tmp_path, lambda x: size * np.sin(waves * x + 0.7))
-    assert named(found) == ["cogging", *FRICTION]
+    assert beside_friction(found) == {"cogging"}
     cogging = next(a for a in found["added"] if a["effect"] == "cogging")["parameters"]
     amplitude = np.hypot(cogging["T_sin_pan"]["value"], cogging["T_cos_pan"]["value"])
     assert amplitude == pytest.approx(size, rel=0.1)
@@ -125,7 +138,7 @@ def test_friction_that_goes_with_the_position_put_into_the_force_is_found(
         tmp_path,
         lambda x: size * np.sin(waves * x + 0.4) * np.tanh(rate_of(x) / 0.002),
     )
-    assert named(found) == sorted([*FRICTION, "position_dependent_friction"])
+    assert beside_friction(found) == {"position_dependent_friction"}
     (wave,) = (
         added["parameters"]
         for added in found["added"]

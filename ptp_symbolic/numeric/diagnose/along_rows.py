@@ -2,15 +2,14 @@
 
 A torque that the model lacks is integrated twice in an angle: beside a remainder, simulations see
 its slow part alone, and effects gain in them by the drift they follow. The rows of the equation
-space see it as it is, unless a gear crosses a gap. There a set grows by the effects that gain
-materially and clearly on blocks left out. Its values and their intervals are those of a fit to the
-rows with the shortest windows that noise allows (inverse dynamic identification: Gautier and
-Khalil, 1990).
+space see it as it is, unless a gear crosses a gap. There, in rows with the shortest windows that
+noise allows, a set grows by the effects that gain materially and clearly on blocks left out: longer
+windows average away what is fast, such as a delay. Its values and their intervals are those of a
+fit to the same rows (inverse dynamic identification: Gautier and Khalil, 1990).
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -19,14 +18,13 @@ from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, why_unconfi
 from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared
 from ptp_symbolic.numeric.diagnose.held_out import simulated_freely
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_of
+from ptp_symbolic.numeric.diagnose.proposals import Proposals, in_rows_of, start_of
 from ptp_symbolic.numeric.diagnose.regression import Regression, block_numbers
 from ptp_symbolic.numeric.diagnose.subsets import exchanges, gain_along_motion, larger_sets
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, all_free
 from ptp_symbolic.numeric.identify.constants import (
     FAR,
     LARGEST,
-    MATERIAL,
     POLISH,
     TRIED,
 )
@@ -60,13 +58,16 @@ def grown_along_motion(
     Declared values are not looked for: beside a remainder they stand in for much. What has grown
     takes away a material part of the torque that the set leaves along the validation runs.
     """
-    rows = found.regression
-    if rows is None or len(task.model.contacts):
+    if found.regression is None or len(task.model.contacts):
         return None
+    space = equation_space(task, found.start, shortest=True)
+    if space is None:
+        return None
+    candidates = trial.candidates
+    rows = in_rows_of(task, space, found.start, candidates)
     if not set(trial.keys) <= {s.candidate.key for s in rows.signatures}:
         return None
-    motion = _Motion(task, rows, found.start)
-    candidates = trial.candidates
+    motion = _Motion(task, space, rows, found.start)
     while len(candidates) < len(trial.candidates) + LARGEST:
         effects = [
             s for s in larger_sets(rows, candidates) if not any(c.is_declared_value for c in s)
@@ -89,16 +90,14 @@ def grown_along_motion(
 
 @dataclass(frozen=True, eq=False)
 class _Motion:
-    """The `rows` that sets are compared in, and all parameters at the `start` of every fit."""
+    """The `space` whose rows sets are fitted to, those `rows` as a regression in which sets are
+    compared, and all parameters at the `start` of every fit.
+    """
 
     task: Task
+    space: EquationSpace
     rows: Regression
     start: Mapping[str, float]
-
-    @cached_property
-    def space(self) -> EquationSpace | None:
-        """The rows that sets are fitted to."""
-        return equation_space(self.task, self.start, shortest=True)
 
     def gain(self, candidates: Sequence[Candidate], member: Candidate) -> Gain | None:
         """What a member of a set gains in the rows, with what needs it; None where they do not show
@@ -113,13 +112,13 @@ class _Motion:
         """
         found = self.gain(candidates, member)
         tests = len(self.task.candidates) * member.frequencies_compared
-        return found is not None and found.share >= MATERIAL and found.is_clear(tests)
+        return found is not None and found.share >= self.task.material and found.is_clear(tests)
 
     def is_confirmed(self, candidates: Sequence[Candidate]) -> bool:
         """Whether every member of a set earns its place and stands the rest of what a name asks
         for.
         """
-        if self.space is None or not all(self.earns(candidates, c) for c in candidates):
+        if not all(self.earns(candidates, c) for c in candidates):
             return False
         fit = self.fitted(candidates)
         return not any(why_unconfirmed(fit, c, leaves_noise=False) for c in candidates)
@@ -141,7 +140,6 @@ class _Motion:
         time, those of all equations.
         """
         task, space = self.task, self.space
-        assert space is not None
         begun = start_of(task, self.rows, candidates, self.start)
         free = all_free(task, candidates, begun)
         values = fit_equations(space, free, begun, POLISH, task.executor)
@@ -175,4 +173,4 @@ class _Motion:
         block = block_numbers(run, time)
         squares = [np.minimum((r / scale) ** 2, FAR**2) for r in rows]
         losses = [np.asarray(np.bincount(block, s), np.float64) for s in squares]
-        return compared(losses[0], losses[1]).share >= MATERIAL
+        return compared(losses[0], losses[1]).share >= self.task.material

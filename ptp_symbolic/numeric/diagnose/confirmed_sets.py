@@ -58,7 +58,7 @@ def leaner_rival(seeker: Seeker, trial: Trial, alike: Sequence[Rival]) -> Trial 
         return None
     for rival in alike:
         for candidate in rival.trial.candidates:
-            if expected_gain(rival.trial, candidate.vanishing) < MATERIAL:
+            if expected_gain(rival.trial, candidate.vanishing) < seeker.task.material:
                 smaller = seeker.without(rival.trial, candidate)
                 if seeker.is_at_noise(smaller) and len(smaller.candidates) < len(trial.candidates):
                     return smaller
@@ -123,7 +123,7 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
     refit = partial(without_run, seeker.task, trial)
     for step in by_gain:
         if not seeker.is_needed(step):
-            return step, _too_little(step.gain)
+            return step, _too_little(step.gain, seeker.task.material)
         if leaves_noise_of_inputs(step.without, floor):
             return step, "the noise of the inputs leaves as much without it"
         reason = why_unconfirmed(fit, step.candidate, quiet, refit)
@@ -155,11 +155,11 @@ def _doubt_beside_a_remainder(trial: Trial, step: Step) -> str | None:
     return None
 
 
-def _too_little(earned: Gain) -> str:
-    """Why a gain earns no name."""
+def _too_little(earned: Gain, material: float) -> str:
+    """Why a gain earns no name, which asks for a `material` share."""
     if earned.share <= 0.0:
         return "predicts blocks that were left out no better"
     share = f"{100.0 * earned.share:.0f} %"
-    if earned.share < MATERIAL:
-        return f"takes away only {share} of the error"
+    if earned.share < material:
+        return f"takes away only {share} of the error, where {100.0 * material:g} % earn a name"
     return f"takes away {share} of the error, which may be chance"

@@ -7,7 +7,7 @@ from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
 from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
-from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MATERIAL
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,10 +44,11 @@ def step_of(trial: Trial, candidate: Candidate, without: Trial) -> Step:
     return Step(candidate, gain(trial, without), p_value(trial, candidate.vanishing), without)
 
 
-def is_earned(earned: Gain, p: float, tests: int) -> bool:
-    """Whether a gain is material, and clear over so many `tests` by the values of its parameters
-    (see `p_value`), or by how much better it predicts blocks, or by how many (Bonferroni):
-    parameters that trade for each other may each be anything while their effect is beyond doubt.
+def is_earned(earned: Gain, p: float, tests: int, material: float) -> bool:
+    """Whether a gain is at least the share `material`, and clear over so many `tests` by the values
+    of its parameters (see `p_value`), or by how much better it predicts blocks, or by how many
+    (Bonferroni): parameters that trade for each other may each be anything while their effect is
+    beyond doubt.
     """
     chance = 3.0 * min(p, earned.chance, earned.by_rank)
-    return earned.share >= MATERIAL and earned.lower > 0.0 and chance < FALSE_ALARM / max(tests, 1)
+    return earned.share >= material and earned.lower > 0.0 and chance < FALSE_ALARM / max(tests, 1)

@@ -22,7 +22,6 @@ from ptp_symbolic.numeric.identify.constants import (
     BIGGEST,
     GAIN,
     MANY_RUNS,
-    MATERIAL,
     MOST,
     POLISH,
     ROUGH,
@@ -42,12 +41,12 @@ from ptp_symbolic.numeric.identify.simulations import Effort
 FloatArray = NDArray[np.float64]
 
 
-def is_taken_back(held_out: Gain, quiet: bool) -> bool:
+def is_taken_back(held_out: Gain, quiet: bool, material: float) -> bool:
     """Whether the validation runs do not bear out what the training runs named. Where they show
     more than noise (not `quiet`), a wrong effect may imitate what is missing, so that it has to
-    take away more than it leaves, as on training runs.
+    take away more than it leaves, as on training runs; else a `material` share.
     """
-    return held_out.share < (MATERIAL if quiet else MOST)
+    return held_out.share < (material if quiet else MOST)
 
 
 def left_by_values(after: Fit, estimated: Fit, executor: Executor | None = None) -> FloatArray:

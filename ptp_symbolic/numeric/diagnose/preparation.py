@@ -31,6 +31,7 @@ def task_of(
     declared: Sequence[str],
     noises: Mapping[str, float | None],
     window: float | None,
+    material: float,
     executor: Executor,
     progress: Progress,
 ) -> Task:
@@ -39,7 +40,8 @@ def task_of(
     `known` are the known values with the most by which each may be off, `declared` the keys of the
     effects that are no candidates, `noises` the declared noise (rms) of every signal in its unit
     (None: not declared), `window` the length in s of the windows (None: as far as the noise of the
-    inputs allows, see `window_length`). Raises InputError for values out of bounds.
+    inputs allows, see `window_length`), `material` that of `Task`. Raises InputError for values out
+    of bounds.
     """
     off = vanished(model, declared) if declared else {}
     fixed = {**model.defaults, **off, **{name: value for name, (value, _) in known.items()}}
@@ -70,6 +72,7 @@ def task_of(
         noise,
         frozenset(name for name, size in noises.items() if size is not None),
         _finest_angle(train),
+        material=material,
     )
 
 

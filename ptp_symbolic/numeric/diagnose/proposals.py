@@ -40,7 +40,7 @@ from ptp_symbolic.numeric.identify.constants import (
     TRIED,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised
+from ptp_symbolic.numeric.identify.equation_fit import Linearised, fit_equations, linearised
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 
 FloatArray = NDArray[np.float64]
@@ -77,25 +77,45 @@ def propose(task: Task) -> Proposals:
     if space is None:
         return Proposals(start, (), task.candidates, False, None, None)
     values = first_fit(task, space, start)
-    here = {f.name: values[f.name] for f in task.free}
-    found = linearised(space, task.free, values, here, task.executor, own_torque=True)
-    equation, run, time = space.labels()
-    block = blocks_of(run, time)
-    around = rows_around(space, values)
-    seen, unseen = signatures(space, task.candidates, around, found.weight, task.executor)
-    declared, base = task.free, found.jacobian
-    rows = regression(found.rows, declared, base, seen, equation, block, found.weight)
+    declared, around = _declared_rows(task, space, values), rows_around(space, values)
+    seen, unseen = signatures(space, task.candidates, around, declared.weight, task.executor)
+    rows = _regressed(task, space, declared, seen)
 
     def scan(left: FloatArray) -> list[Signature]:
         return locked_signatures(space, task.candidates, around, left, rows.weight)
 
-    every = [*seen, *lines(rows, scan)]
-    rows = regression(found.rows, declared, base, every, equation, block, found.weight)
+    rows = _regressed(task, space, declared, [*seen, *lines(rows, scan)])
     preferred, chosen, rows = _best_sets(rows)
     space.rows(task.model.parameter_vector(values))
     refine = partial(_refined, task, space, rows, values)
     sets = task.executor.map(refine, [s.candidates for s in chosen])
     return Proposals(values, tuple(sets), tuple(unseen), bool(preferred.candidates), space, rows)
+
+
+def in_rows_of(
+    task: Task, space: EquationSpace, values: Mapping[str, float], beside: Sequence[Candidate]
+) -> Regression:
+    """The regression of the rows of another space at `values` (all parameters) on all candidates
+    whose frequency is known, with weights from what the set `beside` leaves.
+    """
+    declared, around = _declared_rows(task, space, values), rows_around(space, values)
+    seen, _ = signatures(space, task.candidates, around, declared.weight, task.executor)
+    return reweighted(_regressed(task, space, declared, seen), beside)
+
+
+def _declared_rows(task: Task, space: EquationSpace, values: Mapping[str, float]) -> Linearised:
+    here = {f.name: values[f.name] for f in task.free}
+    return linearised(space, task.free, values, here, task.executor, own_torque=True)
+
+
+def _regressed(
+    task: Task, space: EquationSpace, declared: Linearised, seen: Sequence[Signature]
+) -> Regression:
+    equation, run, time = space.labels()
+    block = blocks_of(run, time)
+    return regression(
+        declared.rows, task.free, declared.jacobian, seen, equation, block, declared.weight
+    )
 
 
 def _refined(

@@ -22,7 +22,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
 )
 from ptp_symbolic.numeric.identify.constants import (
     LARGEST,
-    MATERIAL,
     MOST,
     SCREENED,
 )
@@ -96,10 +95,11 @@ def extended(
     which none could be added before; and the `steps` of its candidates. A candidate that leads the
     way may be dropped once others are there: then there is room for one more.
     """
+    material = seeker.task.material
     for rounds in range(2 * LARGEST):
         if rounds >= LARGEST <= len(best.candidates):
             break
-        if end is not None and best.keys == end.keys and gain(best, end).share < MATERIAL:
+        if end is not None and best.keys == end.keys and gain(best, end).share < material:
             break
         grown = seeker.grown(best)
         if grown is None:

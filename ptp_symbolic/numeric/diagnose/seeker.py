@@ -40,7 +40,6 @@ from ptp_symbolic.numeric.identify.constants import (
     ADDED,
     ITERATIONS,
     LITTLE,
-    MATERIAL,
     MOST,
     SCREENED,
     TRIED,
@@ -122,7 +121,7 @@ class Seeker:
             return self.declared
         begun = ranked(taken_over(self.task, self.proposals, kept, trial))[0]
         smaller = continued(self.task, begun, ITERATIONS, executor=self.task.executor)
-        if MATERIAL <= gain(trial, smaller).share < MOST:
+        if self.task.material <= gain(trial, smaller).share < MOST:
             smaller = self.polished(smaller)
             smaller = smaller if briefly else self.restarted(smaller)
         same = [t for t in self.others if forms_of(t.candidates) == forms_of(kept)]
@@ -149,11 +148,11 @@ class Seeker:
         """
         if self.is_at_noise(trial):
             return self.is_needed(step)
-        return step.gain.share >= MATERIAL
+        return step.gain.share >= self.task.material
 
     def is_earned(self, earned: Gain, p: float) -> bool:
         """Whether a gain is material, and clear over all candidates that were looked at."""
-        return is_earned(earned, p, len(self.task.candidates))
+        return is_earned(earned, p, len(self.task.candidates), self.task.material)
 
     def pruned(self, trial: Trial) -> tuple[Trial, list[Step]]:
         """Take out candidates until all that is left is needed, with its gains: of those that are
@@ -162,7 +161,7 @@ class Seeker:
         set that gains little over the declared model holds no candidate that gains more.
         """
         while trial.candidates:
-            if gain(trial, self.declared).share < MATERIAL:
+            if gain(trial, self.declared).share < self.task.material:
                 return self.declared, []
             steps: list[Step] = []
             briefly = not self.is_at_noise(trial)
@@ -189,7 +188,7 @@ class Seeker:
         task = self.task
         self.others[:] = ranked(self.others)  # the best of every set: their Jacobians are large
         wanted = self.proposals.unseen if self.is_at_noise(trial) else task.candidates
-        found = [r for r in responses(task, trial, wanted) if r.left < 1.0 - MATERIAL]
+        found = [r for r in responses(task, trial, wanted) if r.left < 1.0 - task.material]
         if not found:
             return None
         names = " + ".join(trial.keys) or "the declared model"
@@ -273,7 +272,7 @@ class Seeker:
                 if foreseen > MOST:
                     continue
                 smaller = self.begun_in_form(trial, candidate, form)
-                if foreseen >= MATERIAL and gain(trial, smaller).share >= MOST:
+                if foreseen >= self.task.material and gain(trial, smaller).share >= MOST:
                     continue
                 smaller = self.polished(smaller)
                 if not self.is_earned(gain(trial, smaller), p_value(trial, lost)):

@@ -74,8 +74,9 @@ def signatures(
     weight: FloatArray,
     executor: Executor | None = None,
 ) -> tuple[list[Signature], list[Candidate]]:
-    """Signatures by the `rows` of `space` (see `rows_around`), each row counted by its `weight`
-    [n]; and candidates that change nothing along the measured motion.
+    """Signatures of candidates without a frequency, or with a known one, by the `rows` of `space`
+    (see `rows_around`), each row counted by its `weight` [n]; and candidates that change nothing
+    along the measured motion.
     """
     by_key = {c.key: c for c in reversed(candidates)}
 
@@ -83,7 +84,7 @@ def signatures(
         return _signature(candidate, brought(candidate, by_key), rows, weight)
 
     rows({})
-    wanted = [c for c in candidates if c.locked is None]
+    wanted = [c for c in candidates if c.locked is None or c.locked[0] in c.shapes[0]]
     run = executor.map if executor else map
     found = list(run(signature, wanted))
     space.forget()

@@ -23,7 +23,6 @@ from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
     AMOUNTS,
     CYCLES,
-    MATERIAL,
     SCREENED,
 )
 
@@ -87,7 +86,9 @@ def _first_lead(
         found = [job.result() for job in jobs]
         with_it = [found[k] for k in np.argsort(misfits(found))[:SCREENED]]
         cost = misfits([alone, with_it[0]])
-        if not cost[1] <= cost[0] + sum(r.size for r in alone.fit.runs) * np.log(1.0 - MATERIAL):
+        if not cost[1] <= cost[0] + sum(r.size for r in alone.fit.runs) * np.log(
+            1.0 - part.material
+        ):
             return None
     return with_it[0].values
 

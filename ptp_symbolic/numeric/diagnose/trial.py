@@ -14,6 +14,7 @@ from ptp_symbolic.numeric.identify.constants import (
     GAIN,
     ITERATIONS,
     LITTLE,
+    MATERIAL,
     NEARBY,
     ROUGH,
     TUNING,
@@ -43,7 +44,8 @@ class Task:
     declared free parameters, `fixed` the values of all others, every candidate at its vanishing
     value. `input_noise` is the declared noise (rms) of every input [nu] in its unit (None: as the
     logs show it), `declared_noise` names the outputs whose noise is declared, and `resolution` is
-    the noise of the finest angle in rad; `robust_below` is that of `robust_tuning`.
+    the noise of the finest angle in rad; `robust_below` is that of `robust_tuning`, and `material`
+    the share of what is left from which on an effect earns a name.
     """
 
     model: Model
@@ -62,6 +64,7 @@ class Task:
     declared_noise: frozenset[str]
     resolution: float
     robust_below: float = NEARBY
+    material: float = MATERIAL
 
 
 @dataclass(frozen=True, eq=False)

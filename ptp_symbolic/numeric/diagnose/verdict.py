@@ -160,7 +160,7 @@ def _judged(
         held_out = held_out_gain(after, before) if final.candidates else None
         estimated = one.estimated or estimable(final.fit, task.input_noise, task.executor)
         floor, quiet = _floor_and_quiet(task, final, after, estimated)
-        if held_out is None or not is_taken_back(held_out, quiet):
+        if held_out is None or not is_taken_back(held_out, quiet, task.material):
             break
         for key in final.keys:
             refused[key] = "takes away too little of the error of the validation runs"
