@@ -80,6 +80,7 @@ def written_up(
         "hints": hints(left),
         "black_box": None if beside is None else dict(beside),
         "windows": windows_table(task),
+        "material": task.material,
         "remarks": list(noted),
         "equations": equations,
         "provenance": dict(sources),
