@@ -86,9 +86,8 @@ def _first_lead(
         found = [job.result() for job in jobs]
         with_it = [found[k] for k in np.argsort(misfits(found))[:SCREENED]]
         cost = misfits([alone, with_it[0]])
-        if not cost[1] <= cost[0] + sum(r.size for r in alone.fit.runs) * np.log(
-            1.0 - part.material
-        ):
+        least_change = sum(r.size for r in alone.fit.runs) * np.log(1.0 - part.material)
+        if not cost[1] <= cost[0] + least_change:
             return None
     return with_it[0].values
 
