@@ -206,7 +206,7 @@ def synthetic_diagnosis(verdict: str) -> dict[str, Any]:
         "held_out": gain(0.975, 0.004) if added else None,
         "refused": {} if verdict == "nothing_missing" else REFUSED,
         "windows": None,
-        "material": 0.1,
+        "material": 0.05,
         "remarks": [],
         "hints": ["The residual repeats once per turn."] if verdict == "unexplained" else [],
         "remainder": REMAINDER if verdict in ("unexplained", "partly_explained") else None,
