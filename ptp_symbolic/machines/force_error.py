@@ -15,6 +15,7 @@ from scipy import signal
 
 from ptp_symbolic.models.inverse_dynamics import Motion, inverse_dynamics
 from ptp_symbolic.platform import Platform
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 
 FloatArray = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ def force_error(
 
     `time` [k] in s, evenly sampled; `force` [k] in N; `position` [k] in m. A force that is `held`
     from each sample to the next is compared with the mean of what is needed in between; one that
-    acts late, by the effect `input_delay`, with what is needed then.
+    acts late, where the platform has a delay, with what is needed then.
     """
     period = float(np.median(np.diff(time)))
     smooth = signal.filtfilt(*signal.butter(ORDER, 2.0 * CORNER * period), position)
@@ -43,8 +44,8 @@ def force_error(
     acceleration = np.gradient(speed, period)
     motion = Motion(smooth[:, None], speed[:, None], acceleration[:, None], time)
     needed = inverse_dynamics(platform, motion, parameters)[:, 0]
-    (axis,) = platform.axes
-    needed = np.interp(time + parameters.get(f"t_delay_{axis}", 0.0), time, needed)
+    (delay,) = assemble(platform).delays
+    needed = np.interp(time + parameters.get(str(delay), 0.0), time, needed)
     if held:
         needed = np.append(0.5 * (needed[1:] + needed[:-1]), needed[-1])
     measured, predicted = (

@@ -19,12 +19,12 @@ from ptp_symbolic.numeric.experiment.prediction import (
     predicted_spreads,
 )
 from ptp_symbolic.numeric.experiment.search import Found, search
-from ptp_symbolic.numeric.identify.constants import MATERIAL, SEEN
+from ptp_symbolic.numeric.identify.constants import SEEN
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.experiment_figure import experiment_figure
 from ptp_symbolic.workflows.experiment_rivals import Rivals, rivals_of
-from ptp_symbolic.workflows.preparation import workers
+from ptp_symbolic.workflows.preparation import material_of, workers
 from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, Progress, json_text
 
 FloatArray = NDArray[np.float64]
@@ -159,7 +159,7 @@ def _write_up(
         "for_parameters": list(request.parameters),
         "separable": min(p.run for p in pairs) >= SEEN if pairs else None,
         "separation": [pair.as_dict() for pair in pairs],
-        "share_needed": MATERIAL,
+        "share_needed": material_of(rivals.platform),
         "parameters": {c.name: predicted_spreads(c, conditions, found.wave) for c in contenders},
         "input": {
             "kind": found.family,

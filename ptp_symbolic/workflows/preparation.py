@@ -34,6 +34,11 @@ def effect_keys(platform: Platform) -> list[str]:
     return [effect_key(e.effect, e.axis) for e in platform.effects]
 
 
+def material_of(platform: Platform) -> float:
+    """The share of the error that an effect has to take away for a name."""
+    return MATERIAL if platform.material is None else platform.material
+
+
 def look_at(
     platform: Platform, train: Sequence[Log], every: Sequence[Log], progress: Progress
 ) -> tuple[str, ...]:
@@ -71,7 +76,7 @@ def task_for(
         declared,
         noises,
         platform.window,
-        MATERIAL if platform.material is None else platform.material,
+        material_of(platform),
         executor,
         progress,
     )

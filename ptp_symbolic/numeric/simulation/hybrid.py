@@ -153,7 +153,7 @@ def advance_by_samples(
 
     The explicit method shares nothing with the exponential step: each checks the other.
     """
-    plain = method == ROSENBROCK and len(sampling.due) > 0 and inputs.held
+    plain = method == ROSENBROCK and inputs.held
     plain = plain and tangents.table.shape[1] == 0 and len(record.ledger) == 0
     while True:
         target = next_stop(stop, sampling)
