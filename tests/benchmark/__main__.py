@@ -5,11 +5,13 @@
                                     [--scale SECTION=FACTOR | NAME=FACTOR] [--redraw N]
     python -m tests.benchmark table --out DIR [--half ...] [--only REGEX]
     python -m tests.benchmark draw  --out DIR [--half ...] [--only REGEX] FILE.png
+    python -m tests.benchmark constants --out DIR --half build --only REGEX [--jobs N]
 
 `run` makes what is missing and leaves out what has an outcome; with --scale, a chosen constant, or
 all of a section of their table, "effort" for one, are taken times the factor. With --redraw, the
 sets of the build half are drawn anew, surroundings and all, once for every N: what is right on the
-half may be right by chance. `table` also writes table.md and table.json into DIR.
+half may be right by chance. `table` also writes table.md and table.json into DIR. `constants` runs
+a few sets with every chosen constant halved and doubled in turn, and prints a row for each.
 """
 
 import argparse
@@ -17,6 +19,7 @@ import re
 from pathlib import Path
 
 from tests.benchmark.catalogue import catalogue, redrawn
+from tests.benchmark.constant_rows import halved_and_doubled
 from tests.benchmark.entry import Entry
 from tests.benchmark.runner import diagnose_one, make_missing, progress_bar, run_all
 from tests.benchmark.table import figures, read_results, show, write_tables
@@ -59,6 +62,12 @@ def tabulate(arguments: argparse.Namespace) -> None:
     write_tables(data, arguments.out, title, stem)
 
 
+def constants(arguments: argparse.Namespace) -> None:
+    """Print what hangs on every chosen constant."""
+    for line in halved_and_doubled(chosen(arguments), arguments.out, arguments.jobs):
+        print(line, flush=True)
+
+
 def draw(arguments: argparse.Namespace) -> None:
     """Draw power and confusion of the sets that have an outcome."""
     from tests.benchmark.draw import draw_all
@@ -72,7 +81,14 @@ def one(arguments: argparse.Namespace) -> None:
     diagnose_one(arguments.out, cores, arguments.scale)
 
 
-COMMANDS = {"make": make, "run": run, "table": tabulate, "draw": draw, "diagnose-one": one}
+COMMANDS = {
+    "make": make,
+    "run": run,
+    "table": tabulate,
+    "draw": draw,
+    "constants": constants,
+    "diagnose-one": one,
+}
 
 
 def main() -> None:

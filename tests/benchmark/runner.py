@@ -146,22 +146,28 @@ def progress_bar() -> Progress:
 
 def run_all(entries: Sequence[Entry], out: Path, jobs: int, scale: str | None = None) -> None:
     """Diagnose the entries without an outcome, `jobs` at a time; prints a line per set."""
-    todo = [entry for entry in entries if not (out / entry.id / "outcome.json").exists()]
+    run_under([(entry, out, scale) for entry in entries], jobs)
+
+
+def run_under(wanted: Sequence[tuple[Entry, Path, str | None]], jobs: int) -> None:
+    """The same with a folder and a scaling of constants for each."""
+    todo = [one for one in wanted if not (one[1] / one[0].id / "outcome.json").exists()]
     cores = sorted(os.sched_getaffinity(0))
     jobs = min(jobs, len(cores))
     shares: queue.SimpleQueue[list[int]] = queue.SimpleQueue()
     for number in range(jobs):
         shares.put(cores[number::jobs])
 
-    def work(entry: Entry) -> dict[str, Any]:
+    def work(entry: Entry, out: Path, scale: str | None) -> str:
         share = shares.get()
         try:
-            return run_one(entry, out, share, scale)
+            line = line_of(run_one(entry, out, share, scale))
+            return line if scale is None else f"{scale}: {line}"
         finally:
             shares.put(share)
 
     with progress_bar() as progress, ThreadPoolExecutor(jobs) as pool:
         task = progress.add_task("diagnose", total=len(todo))
-        for done in as_completed([pool.submit(work, entry) for entry in todo]):
-            print(line_of(done.result()), flush=True)
+        for done in as_completed([pool.submit(work, *one) for one in todo]):
+            print(done.result(), flush=True)
             progress.advance(task)

@@ -1,19 +1,16 @@
 """The diagnosis with chosen constants scaled: what hangs on them?
 
 The table of constants says of each where it comes from. Those that were chosen are multiplied by a
-factor, one or all of a section at once, before anything else of the package is imported; a number
-that stands for a ratio just above one is scaled in what it has above one.
+factor, one or all of a section at once, before anything else of the package is imported.
 """
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 LINE = re.compile(r"^([A-Z_0-9]+) = (.*?)  # (.*)$")
 SCALED = "scaled"  # first word of the source of a constant that was chosen
-RATIOS = {"ABOVE_NOISE"}
 
 
 def sections(source: str) -> dict[str, list[str]]:
@@ -36,13 +33,6 @@ def scaled(value: Any, factor: float) -> Any:
     return max(1, round(value * factor)) if isinstance(value, int) else value * factor
 
 
-def scale_of(name: str, factor: float) -> Callable[[Any], Any]:
-    """What a constant becomes."""
-    if name in RATIOS:
-        return lambda value: 1.0 + scaled(value - 1.0, factor)
-    return lambda value: scaled(value, factor)
-
-
 def scale_chosen(module: ModuleType, which: str, factor: float) -> None:
     """Set the constants of `module` anew, the chosen one of this name, or those of this section,
     scaled, and all that follow from them.
@@ -56,9 +46,9 @@ def scale_chosen(module: ModuleType, which: str, factor: float) -> None:
     for line in source.splitlines():
         row = LINE.match(line)
         if row and row[1] in names:
-            line = f"{row[1]} = _scale_of({row[1]!r}, {factor})({row[2]})"
+            line = f"{row[1]} = _scaled({row[2]}, {factor})"
         lines.append(line)
-    exec("\n".join(lines), module.__dict__ | {"_scale_of": scale_of}, module.__dict__)
+    exec("\n".join(lines), module.__dict__ | {"_scaled": scaled}, module.__dict__)
 
 
 def apply(text: str) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ptp_symbolic.numeric.diagnose import regression as regression_module
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.regression import Regression, regression, remainder
 from ptp_symbolic.numeric.diagnose.signatures import Signature
@@ -18,7 +19,7 @@ from ptp_symbolic.numeric.diagnose.subsets import (
     larger_sets,
     ranked_subsets,
 )
-from ptp_symbolic.numeric.identify.constants import FAR, FOLDS
+from ptp_symbolic.numeric.identify.constants import FAR, FOLDS, REWEIGHTINGS
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 
@@ -162,9 +163,12 @@ def test_the_remainder_is_what_the_declared_columns_cannot_take_up() -> None:
     assert found.base.T @ (found.weight * remainder(found)) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_outliers_count_less_and_the_scale_is_that_of_the_other_rows() -> None:
+def test_outliers_count_less_and_the_scale_is_that_of_the_other_rows(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Every eighth row is off by 50 standard deviations, as contacts are that were not masked: the
-    median of absolute values, of noise and outliers together, moves up by a quarter at most.
+    median of absolute values, of noise and outliers together, moves up by a quarter at most. The
+    weights are settled.
     """
     rng = np.random.default_rng(57)
     base, rows = rng.standard_normal((ROWS, 2)), rng.standard_normal(ROWS)
@@ -173,6 +177,9 @@ def test_outliers_count_less_and_the_scale_is_that_of_the_other_rows() -> None:
     found = regression(rows, DECLARED, base, (), equation, block, np.ones(ROWS))
     assert found.scale == pytest.approx(np.ones(ROWS), rel=0.25)
     assert np.max(found.weight[::8]) < 0.06 * np.max(found.weight)
+    monkeypatch.setattr(regression_module, "REWEIGHTINGS", 20 * REWEIGHTINGS)
+    settled = regression(rows, DECLARED, base, (), equation, block, np.ones(ROWS))
+    assert found.weight == pytest.approx(settled.weight, rel=0.01)
 
 
 def test_a_candidate_that_rows_cannot_tell_from_a_member_is_tried_in_its_place() -> None:

@@ -1,6 +1,7 @@
 """What the table of constants says of them, worked out anew."""
 
 import re
+from math import comb
 from pathlib import Path
 
 import numpy as np
@@ -74,6 +75,15 @@ def neighbours() -> float:
     return float(both / integrate.quad(lambda s: bell(s) ** 2, -1.0, 1.0)[0])
 
 
+def rms_off() -> float:
+    """Relative standard deviation of the rms of the differences of white noise in a piece."""
+    whole = [
+        comb(2 * c.ORDER, c.ORDER + k) / comb(2 * c.ORDER, c.ORDER) for k in range(c.ORDER + 1)
+    ]
+    together = 1.0 + 2.0 * sum(rho**2 for rho in whole[1:])
+    return float(np.sqrt(2.0 * together / c.PIECE) / 2.0)
+
+
 @pytest.mark.parametrize(
     ("name", "quoted", "value"),
     [
@@ -91,6 +101,10 @@ def neighbours() -> float:
         ("CYCLES_APART", "3 %", 1.0 - np.sinc(c.CYCLES_APART / 2.0) ** 2),
         ("BINS_PER_CYCLE", "10 %", 1.0 - np.sinc(1.0 / c.BINS_PER_CYCLE)),
         ("ROWS_PER_WINDOW", "0.86", neighbours()),
+        ("PIECE", "8 %", rms_off()),
+        ("DRAWS", "64", 1.0 / 0.5 ** (2 * c.DRAWS)),
+        ("BIGGEST", "4.5e15", 1.0 / np.finfo(float).eps),
+        ("FINEST", "1.5e-8", np.sqrt(np.finfo(float).eps)),
         ("ORDER", "0.6 %", (2.0 * np.sin(0.1 * np.pi)) ** c.ORDER / np.sqrt(252.0)),
         ("SENSOR_ITERATIONS", "2e-7", 0.02**c.SENSOR_ITERATIONS),
         ("HALVINGS", "1e-12", 0.5**c.HALVINGS),

@@ -9,7 +9,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
 from ptp_symbolic.numeric.identify.blocks import leave_blocks_out, without_outliers
-from ptp_symbolic.numeric.identify.constants import ELSEWHERE, FALSE_ALARM, MOST, NEAR_BOUND, SHARP
+from ptp_symbolic.numeric.identify.constants import ELSEWHERE, FALSE_ALARM, MOST, SAME, SHARP
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.evaluate import evaluate
 from ptp_symbolic.numeric.identify.fit import Fit
@@ -71,7 +71,7 @@ def at_bound(fit: Fit, candidate: Candidate) -> str | None:
         f, value = own[begun.name], fit.values[begun.name]
         if f.period is not None:
             continue
-        near = NEAR_BOUND * max(abs(f.start), abs(value))
+        near = SAME * max(abs(f.start), abs(value))
         ends = [end for end in (f.lower, f.upper) if abs(value - end) <= near]
         if ends and abs(value - candidate.vanishing.get(f.name, np.inf)) > near:
             return f.name

@@ -26,7 +26,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
 )
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
-    ADDED,
     CYCLES,
     FAR_OFF,
     FORGOTTEN,
@@ -36,6 +35,7 @@ from ptp_symbolic.numeric.identify.constants import (
     SCREENED,
     SHARP,
     STEP,
+    TRIED,
     WIDE_STEP,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
@@ -150,7 +150,7 @@ def over_windows(
         begun = halving(part, [begin(values) for values in near], 1)
         if best is None and not (begun and np.all(left_over(begun[0].fit) <= ABOVE_NOISE)):
             known = begun[0].fit.z if begun else None
-            far = halving(part, [begin(values, known) for values in spread], ADDED, iterations=1)
+            far = halving(part, [begin(values, known) for values in spread], TRIED, iterations=1)
             begun = ranked([*begun, *halving(part, far, 1)])
         if not begun:
             return []

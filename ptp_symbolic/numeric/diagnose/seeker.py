@@ -37,7 +37,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
     ranked,
 )
 from ptp_symbolic.numeric.identify.constants import (
-    ADDED,
     ITERATIONS,
     LITTLE,
     MOST,
@@ -59,7 +58,7 @@ class Seeker:
         outputs and part of the way there.
         """
         found = responses(self.task, trial, self.proposals.unseen)
-        return [t for r in found[:ADDED] for t in along(self.task, self.proposals, r, trial)]
+        return [t for r in found[:TRIED] for t in along(self.task, self.proposals, r, trial)]
 
     def follow(self, trial: Trial) -> None:
         """Let a trial tell what the noise of the inputs leaves: a model that rests shows none."""
@@ -197,7 +196,7 @@ class Seeker:
             best = self.best_earning(along(task, self.proposals, found[0], trial), trial)
             if best is not None:
                 return best
-        begun = [t for r in found[:ADDED] for t in along(task, self.proposals, r, trial)]
+        begun = [t for r in found[:TRIED] for t in along(task, self.proposals, r, trial)]
         close = screened(task, self.proposals, trial.candidates, wanted, trial.values)
         begun += [fitted(task, t.candidates, t.values, None) for t in close[:SCREENED]]
         return self.best_earning(begun, trial)

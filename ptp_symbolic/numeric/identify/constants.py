@@ -19,22 +19,20 @@ FALSE_ALARM = 0.05  # 1; chance of naming anything where nothing is missing; sta
 TEST_ALARM = 0.01  # 1; false alarms of one residual test; usual 99 % band (Ljung, 1999, 16.6)
 LAGS = 25  # samples; lags of the residual tests; usual (Ljung, 1999, 16.6)
 MATERIAL = 0.1  # 1; share of the predictive loss below which nothing earns a name; stated size
-ELSEWHERE = 0.05  # 1; share that runs or blocks other than one left out must show; scaled
 MOST = 0.5  # 1; share that is most of a whole; definition
+ELSEWHERE = MOST * MATERIAL  # 1; share that blocks other than one must show; derived
 SIMILAR = 0.9  # 1; canonical correlation of effects that may be one another; stated
 PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off; stated
 SMALL_PERCENT = 1.0  # %; change of a declared value that is called small; stated
-ABOVE_NOISE = 1.1  # 1; rms over the floor that is still noise; scaled
+ABOVE_NOISE = 1.0 + MATERIAL  # 1; rms over the floor that is still noise; derived
 UNALIKE = 1e-3  # 1; false alarms of the test for larger validation windows; stated level
-NEAR_BOUND = 1e-4  # 1; distance from a bound over the size of a value that is at it; scaled
 FEWEST_BLOCKS = 12  # 1; blocks: Student's interval is then 12 % wider than a normal one; derived
 MOST_BLOCKS = 200  # 1; blocks: the error of a standard deviation is then 5 %; derived
 RESAMPLES = 2000  # 1; draws: the 2.5 % quantile is good to 0.35 %; derived
 FOLDS = 8  # 1; parts of a cross-validation; usual (5 to 10: Hastie et al., 2009, 7.10)
 DEVIATIONS = 2.0  # 1; standard deviations that hold 95 %, Huber's loss 99 % efficient; derived
-LITTLE = 0.02  # 1; change of a mean square that is none; scaled
 SEED = 20130801  # 1; of every draw, so that equal logs have equal answers; arbitrary
-DRAWS = 3  # 1; random states at which a dependence is looked for; scaled
+DRAWS = 3  # 1; pairs of states: what half of them show is missed once in 64; derived
 
 # Robustness
 TUNING = 2.5  # 1; sizes of the usual block beyond which a block counts less; scaled
@@ -52,17 +50,17 @@ CYCLES = 3  # 1; of two fits, or of weights and fits, in turn; scaled
 POLISH = CYCLES * ITERATIONS  # 1; iterations of a fit that goes to its end; derived
 TRIED = 3  # 1; alternatives that are followed; scaled
 LARGEST = 3  # effects; that a set may have, or gain after the first choice; stated
-ADDED = 4  # candidates; that are refitted when one is added; scaled
 SCREENED = 2  # sets, candidates; of those begun with few iterations that go on; scaled
 REFINEMENTS = 2  # 1; Gauss-Newton steps of a proposed set; scaled
 REPLAYS = 100  # runs; replayed with noisy inputs: a standard deviation is good to 7 %; derived
 TIMES = 8  # 1; replays of every run: a mean square of 4 degrees of freedom is good to 25 %; derived
-REWEIGHTINGS = 6  # 1; of rows: weights settle to a percent; scaled
+REWEIGHTINGS = 6  # 1; of rows: weights settle to a percent; derived
 SCORINGS = 20  # 1; of a spectrum: its variance settles to a part in a thousand; derived
 SENSOR_ITERATIONS = 4  # 1; an error of 2 % of the angle is left to 2e-7 of it; derived
 GAIN = 0.1  # 1; of the error of simulations: two gains in a row below end a fit; scaled
 ROUGH = 1e-2  # 1; error of simulations over the noise, while searching; scaled
 SHARP = 0.1 * ROUGH  # 1; the same, at last; derived
+LITTLE = 2.0 * ROUGH  # 1; change of a mean square that such errors can make; derived
 
 # Windows and rows
 SHORT = 1.0  # s; window beside the time constants of drives (0.05 s); scaled
@@ -90,7 +88,7 @@ BINS = 16  # 1; of a map of what is left, of half a gap; definition
 
 # Noise of a signal
 ORDER = 5  # 1; differences: a motion at a tenth of the sampling rate leaves 0.6 %; derived
-PIECE = 256  # samples; over which the noise of a signal is taken; scaled
+PIECE = 256  # samples; over which the noise of a signal is taken, good to 8 %; derived
 SEGMENT = 64  # samples; of a periodogram: poles up to 0.95 are told from white noise; tested
 LOWEST = 3  # bins; below belong to the taper (2) and to the motion; derived
 OVERLAP_CORRELATION = 19.0 / 18.0  # 1; of variances, Hann tapers that overlap by half; derived
@@ -114,9 +112,9 @@ SINGULAR = 1e-8  # 1; singular value of equal directions: root of rounding, 1.5e
 NOTHING = 1e-10  # 1; share of a sum of 1e5 squares, above its rounding of 2e-11; derived
 SMALLEST_SHARE = 1e-6  # 1; of a scale from which a logarithm begins; scaled
 WIDEST = 30.0  # 1; logarithm of a factor that has no end (1e13); derived
-BIGGEST = 1e15  # 1; mean square, or derivative, of what cannot be simulated; scaled
+BIGGEST = 1e15  # 1; mean square of what cannot be simulated: below 1/rounding, 4.5e15; derived
 HALVINGS = 40  # 1; of a step to or along a relation of parameters: to 1e-12 of it; derived
-FINEST = 1e-4  # 1; of the default tolerance, at most that fine; scaled
+FINEST = 1e-4  # 1; of the default tolerance: 1e-8, root of rounding 1.5e-8; derived
 COARSEST = 10.0  # 1; of the default tolerance: beyond events are lost; scaled
 
 # Sequences
