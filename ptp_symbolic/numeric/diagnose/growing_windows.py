@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.leading_windows import leading
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -38,12 +39,15 @@ from ptp_symbolic.numeric.identify.windows import cut
 FloatArray = NDArray[np.float64]
 
 
-def growing(task: Task) -> list[Task]:
-    """The task over windows of the lengths in GROWING that are shorter than its runs."""
-    few = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in task.whole]
+def growing(task: Task, *, few: bool = False) -> list[Task]:
+    """The task over windows of the lengths in GROWING that are shorter than its runs; over all of
+    them, or a `few` that tell what is usual, in pairs where one tells how the other begins.
+    """
+    runs = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in task.whole]
     longest = max(float(run.time[-1] - run.time[0]) for run in task.train)
-    lengths = [x for x in GROWING if x < longest]
-    return [replace(task, train=cut(task.model, few, x), robust_below=np.inf) for x in lengths]
+    every = {x: cut(task.model, runs, x) for x in GROWING if x < longest}
+    windows = [leading(w, x, 2.0 * x) if few else w for x, w in every.items()]
+    return [replace(task, train=w, robust_below=np.inf) for w in windows]
 
 
 def led_through(

@@ -6,15 +6,14 @@ from concurrent.futures import Executor
 import numpy as np
 
 from ptp_symbolic.numeric.diagnose.candidates import find_candidates, vanished, within_reach
+from ptp_symbolic.numeric.diagnose.leading_windows import leading, spread_over
 from ptp_symbolic.numeric.diagnose.trial import Progress, Task
 from ptp_symbolic.numeric.identify.constants import (
     FORGOTTEN,
-    MANY_RUNS,
     SEARCH_PERIOD,
     SHORT,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.linked_windows import has_linked, linked
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
 from ptp_symbolic.numeric.identify.simulations import all_values_at_start
@@ -61,8 +60,8 @@ def task_of(
         train,
         pieces,
         pieces,
-        tuple(_leading(w, x) for x, w in windows.items()) if length is None else (),
-        _spread(windows[SHORT], SHORT) if length is None else _spread(pieces, length),
+        tuple(leading(w, x, SHORT) for x, w in windows.items()) if length is None else (),
+        spread_over(windows[SHORT], SHORT) if length is None else spread_over(pieces, length),
         cut(model, validate, length),
         free,
         fixed,
@@ -74,31 +73,6 @@ def task_of(
         _finest_angle(train),
         material=material,
     )
-
-
-def _leading(windows: tuple[Run, ...], length: float) -> tuple[Run, ...]:
-    """Windows of `length` s that lead a search: spread over the logs, or where each tells how the
-    next one begins, those of SHORT all, and of shorter ones stretches of that length.
-    """
-    if not has_linked(windows):
-        return _spread(windows, length)
-    count = round(SHORT / length)
-    if count <= 1:
-        return windows
-    series = [s[k : k + count] for s in linked(windows) for k in range(0, len(s), count)]
-    return tuple(windows[k] for s in series[:: _apart(windows, length)] for k in s)
-
-
-def _spread(windows: tuple[Run, ...], length: float) -> tuple[Run, ...]:
-    """Windows of `length` s spread over the logs, at least as many as tell what is usual, and more
-    of shorter ones, in the same time.
-    """
-    return windows[:: _apart(windows, length)]
-
-
-def _apart(windows: Sequence[Run], length: float) -> int:
-    """Every which one to take of `windows` of `length` s."""
-    return max(1, int(len(windows) * length / (MANY_RUNS * SHORT)))
 
 
 def _finest_angle(runs: Sequence[Run]) -> float:

@@ -31,15 +31,15 @@ def through_windows(
     task: Task, parent: Trial, candidate: Candidate, carried: Carried
 ) -> Trial | None:
     """The parent with a candidate, fitted to whole runs from where windows lead it, and again as
-    long as that is a better place; None where it does not gain materially in windows. `carried`
-    is that of `leaves_white_noise`.
+    long as that is a better place; None where it does not gain materially in a few windows.
+    `carried` is that of `leaves_white_noise`.
     """
-    parts = growing(task)
-    values = _first_lead(parts, parent, candidate, carried) if parts else None
+    few = growing(task, few=True)
+    values = _first_lead(few, parent, candidate, carried) if few else None
     if values is None:
         return None
     candidates = (*parent.candidates, candidate)
-    trial = to_its_end(task, fitted(task, candidates, values, None), carried)
+    trial, parts = to_its_end(task, fitted(task, candidates, values, None), carried), growing(task)
     for _ in range(CYCLES):
         if leaves_white_noise(trial, carried):
             break
@@ -54,8 +54,8 @@ def through_windows(
 def _first_lead(
     parts: Sequence[Task], parent: Trial, candidate: Candidate, carried: Carried
 ) -> Mapping[str, float] | None:
-    """Values where windows lead the candidate; None where it does not gain materially in windows of
-    some length.
+    """Values where windows lead the candidate; None where it does not gain materially in the
+    longest: each begins by itself, so that short ones leave little of an effect that acts late.
 
     It begins at the amount of its start, to which all others follow first: from where they make up
     for it a search does not find back. And in every part at the best of several amounts, all others
@@ -85,11 +85,9 @@ def _first_lead(
         jobs += [run.submit(_scanned, part, alone, candidate, s) for s in candidate.shapes]
         found = [job.result() for job in jobs]
         with_it = [found[k] for k in np.argsort(misfits(found))[:SCREENED]]
-        cost = misfits([alone, with_it[0]])
-        least_change = sum(r.size for r in alone.fit.runs) * np.log(1.0 - part.material)
-        if not cost[1] <= cost[0] + least_change:
-            return None
-    return with_it[0].values
+    cost = misfits([alone, with_it[0]])
+    least_change = sum(r.size for r in alone.fit.runs) * np.log(1.0 - parts[-1].material)
+    return with_it[0].values if cost[1] <= cost[0] + least_change else None
 
 
 def _scanned(part: Task, alone: Trial, candidate: Candidate, shape: Mapping[str, float]) -> Trial:
