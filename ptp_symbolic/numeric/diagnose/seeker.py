@@ -110,8 +110,8 @@ class Seeker:
         """The trial refitted without one of its candidates, and without what needs it; or what is
         left where the search has come to before, if that is a better place: a candidate gains no
         more than what it adds to the best fit without it. One that gains next to nothing after a
-        few iterations gains no more at their end: that fit is not brought there. `briefly` it is
-        not begun anew either.
+        few iterations gains no more at their end, and one that gains nearly all still does: these
+        fits are not brought there. `briefly` it is not begun anew either.
         """
         kept = tuple(
             c for c in trial.candidates if c is not candidate and candidate.key not in c.brings
@@ -120,7 +120,7 @@ class Seeker:
             return self.declared
         begun = ranked(taken_over(self.task, self.proposals, kept, trial))[0]
         smaller = continued(self.task, begun, ITERATIONS, executor=self.task.executor)
-        if self.task.material <= gain(trial, smaller).share < MOST:
+        if self.is_decided_at_end_of(smaller, trial):
             smaller = self.polished(smaller)
             smaller = smaller if briefly else self.restarted(smaller)
         same = [t for t in self.others if forms_of(t.candidates) == forms_of(kept)]
@@ -131,6 +131,13 @@ class Seeker:
             smaller = beside_declared(self.task, smaller, self.declared, self.carried)
         self.others.append(smaller)
         return smaller
+
+    def is_decided_at_end_of(self, smaller: Trial, trial: Trial) -> bool:
+        """Whether the trial gains over a `smaller` set materially as yet, but not most of what that
+        leaves, or most of the little that it leaves unexplained: a fit short of its end may.
+        """
+        gained, explained = gain(trial, smaller).share, gain(smaller, self.declared).share
+        return gained >= self.task.material and (gained < MOST or explained >= MOST)
 
     def step(self, trial: Trial, candidate: Candidate, *, briefly: bool = False) -> Step:
         """What a candidate gains; `briefly` is that of `without`."""
