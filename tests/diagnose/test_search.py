@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
@@ -14,7 +15,7 @@ from ptp_symbolic.numeric.diagnose.search import by_effects_alone, extended
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import taken_over
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
-from ptp_symbolic.numeric.identify.constants import LARGEST
+from ptp_symbolic.numeric.identify.constants import LARGEST, MOST
 from tests.diagnose.spring_table import STIFFNESS, spring_table
 
 
@@ -111,6 +112,20 @@ def test_what_is_left_is_fitted_no_worse_than_the_search_has_fitted_it_before(
     monkeypatch.setattr(seeker, "others", [right])
     left = seeker.without(both, wrong.candidates[0])
     assert left.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
+
+
+@pytest.mark.parametrize(("part", "open_yet"), [(0.01, False), (0.96, True), (1.0, False)])
+def test_what_a_fit_short_of_its_end_leaves_decides_nothing(
+    seeker: Seeker, part: float, open_yet: bool
+) -> None:
+    """A spring of part of the stiffness: of a hundredth of it no fit to the end is asked, for that
+    leaves nearly all; with 96 % the rest may be the fit's; at its end nothing is gained.
+    """
+    right = trial(seeker, "cable_spring@pan")
+    values = right.values | {"k1_cable_pan": part * right.values["k1_cable_pan"]}
+    smaller = fitted(seeker.task, right.candidates, values, right.fit.z)
+    assert gain(right, smaller).share >= (MOST if part < 1.0 else 0.0)
+    assert seeker.is_decided_at_end_of(smaller, right) is open_yet
 
 
 def test_what_stays_takes_over_in_the_rows_what_the_others_did(seeker: Seeker) -> None:
