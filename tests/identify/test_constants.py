@@ -11,6 +11,7 @@ from scipy import integrate, signal, stats
 from ptp_symbolic.numeric.identify import constants as c
 from ptp_symbolic.numeric.identify import noise
 from ptp_symbolic.numeric.identify.weak_form import weak_average
+from tests.benchmark.scaled import sections
 
 
 def said(name: str, checkout: Path) -> str:
@@ -19,6 +20,12 @@ def said(name: str, checkout: Path) -> str:
     found = re.search(rf"^{name} = [^#\n]*#(.*)$", text, re.MULTILINE)
     assert found is not None
     return found[1]
+
+
+def test_at_most_thirty_are_chosen(checkout: Path) -> None:
+    """All others are derived, stated, usual, or what the quantity is by definition."""
+    source = (checkout / "ptp_symbolic/numeric/identify/constants.py").read_text(encoding="utf-8")
+    assert 0 < sum(len(names) for names in sections(source).values()) <= 30
 
 
 def bell(s: float) -> float:
