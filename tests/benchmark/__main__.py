@@ -110,6 +110,8 @@ def main() -> None:
     arguments = parser.parse_intermixed_args()
     if arguments.command == "draw" and arguments.file is None:
         parser.error("draw needs the file to write")
+    if arguments.command == "constants" and arguments.half != "build":
+        parser.error("constants is for --half build alone: nothing is chosen on the report half")
     if arguments.redraw is not None and arguments.half != "build":
         parser.error("--redraw is for --half build alone: the report half is drawn once")
     COMMANDS[arguments.command](arguments)

@@ -62,4 +62,5 @@ def test_a_window_is_not_begun_anew_that_leaves_what_is_usual(
     assert usual > 2.0
     assert calls[usual] < 0.9 * calls[1.0]
     satisfied = some <= ABOVE_NOISE * usual
+    assert 0 < np.sum(satisfied) < len(windows)
     assert some[~satisfied] == pytest.approx(every[~satisfied], rel=0.1)

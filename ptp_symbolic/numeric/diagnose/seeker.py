@@ -136,8 +136,8 @@ class Seeker:
         """Whether the trial gains over a `smaller` set materially as yet, but not most of what that
         leaves, or most of the little that it leaves unexplained: a fit short of its end may.
         """
-        gained, explained = gain(trial, smaller).share, gain(smaller, self.declared).share
-        return gained >= self.task.material and (gained < MOST or explained >= MOST)
+        share, least = gain(trial, smaller).share, self.task.material
+        return share >= least and (share < MOST or gain(smaller, self.declared).share >= MOST)
 
     def step(self, trial: Trial, candidate: Candidate, *, briefly: bool = False) -> Step:
         """What a candidate gains; `briefly` is that of `without`."""

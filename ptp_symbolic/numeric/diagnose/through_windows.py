@@ -39,7 +39,8 @@ def through_windows(
     if values is None:
         return None
     candidates = (*parent.candidates, candidate)
-    trial, parts = to_its_end(task, fitted(task, candidates, values, None), carried), growing(task)
+    trial = to_its_end(task, fitted(task, candidates, values, None), carried)
+    parts = growing(task)
     for _ in range(CYCLES):
         if leaves_white_noise(trial, carried):
             break
@@ -86,7 +87,7 @@ def _first_lead(
         found = [job.result() for job in jobs]
         with_it = [found[k] for k in np.argsort(misfits(found))[:SCREENED]]
     cost = misfits([alone, with_it[0]])
-    least_change = sum(r.size for r in alone.fit.runs) * np.log(1.0 - parts[-1].material)
+    least_change = sum(r.size for r in alone.fit.runs) * np.log(1.0 - shortest.material)
     return with_it[0].values if cost[1] <= cost[0] + least_change else None
 
 
