@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -81,6 +82,8 @@ def test_a_declared_model_that_was_stuck_goes_where_a_set_leads_it(task: Task) -
     found = declared_from(task, elsewhere, stuck, NOTHING_CARRIED)
     assert found is not None and leaves_white_noise(found, NOTHING_CARRIED)
     assert declared_from(task, stuck, found, NOTHING_CARRIED) is None
+    strict = replace(task, material=1.0)
+    assert declared_from(strict, elsewhere, stuck, NOTHING_CARRIED) is None
 
 
 def test_a_set_that_is_stuck_goes_where_the_declared_model_leads_it(task: Task) -> None:

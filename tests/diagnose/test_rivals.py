@@ -16,16 +16,22 @@ def trial(size: float) -> Trial:
     return Trial((), finished([size * noise for noise in NOISE]))
 
 
-def overtaken_by(*sizes: float) -> Trial | None:
+def overtaken_by(*sizes: float, material: float = 0.1) -> Trial | None:
     chosen = trial(1.0)
     others = [trial(size) for size in sizes]
-    return overtaking(chosen, [Rival(other, gain(chosen, other)) for other in others])
+    return overtaking(chosen, [Rival(other, gain(chosen, other)) for other in others], material)
 
 
 @pytest.mark.parametrize("size", [1.4, 1.0, 0.96])
 def test_what_predicts_no_better_than_by_a_tenth_takes_no_place(size: float) -> None:
     """0.96 squared leaves 92 % of the loss."""
     assert overtaken_by(size) is None
+
+
+def test_how_much_better_is_what_the_platform_calls_material() -> None:
+    """0.7 squared leaves 49 % of the loss."""
+    assert overtaken_by(0.7, material=0.45) is not None
+    assert overtaken_by(0.7, material=0.55) is None
 
 
 def test_the_best_of_those_that_predict_better_takes_the_place() -> None:
@@ -41,5 +47,5 @@ def test_among_many_rivals_a_gain_must_be_clearer(rivals: int, is_clear: bool) -
     residuals = [noise.copy() for noise in NOISE]
     residuals[2][:300] = 0.0
     other = Trial((), finished(residuals))
-    found = overtaking(chosen, [Rival(other, gain(chosen, other))] * rivals)
+    found = overtaking(chosen, [Rival(other, gain(chosen, other))] * rivals, 0.1)
     assert found is (other if is_clear else None)

@@ -17,7 +17,7 @@ from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial
-from ptp_symbolic.numeric.identify.constants import MATERIAL, MOST
+from ptp_symbolic.numeric.identify.constants import MOST
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
 
@@ -135,7 +135,7 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
         ):
             return step, "its torque goes with the speed in another way"
         if not quiet:
-            doubt = _doubt_beside_a_remainder(trial, step)
+            doubt = _doubt_beside_a_remainder(trial, step, seeker.task.material)
             if doubt is not None:
                 return step, doubt
     if not answers_to_inputs(seeker.task, trial):
@@ -143,14 +143,14 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
     return None
 
 
-def _doubt_beside_a_remainder(trial: Trial, step: Step) -> str | None:
+def _doubt_beside_a_remainder(trial: Trial, step: Step, material: float) -> str | None:
     """Why a step cannot be named where more than noise is left, which a wrong effect may imitate:
-    it takes away less than is left, or nothing but slow drift.
+    it takes away less than is left, or no `material` share but of slow drift.
     """
     if step.gain.share < MOST:
         share = f"{100.0 * step.gain.share:.0f} %"
         return f"takes away {share} of the error, too little where more than noise is left"
-    if gain_in_innovations(trial, step.without).share < MATERIAL:
+    if gain_in_innovations(trial, step.without).share < material:
         return "takes away slow drift alone, which other effects left out may have caused as well"
     return None
 

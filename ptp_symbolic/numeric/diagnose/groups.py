@@ -35,7 +35,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
     ranked,
 )
 from ptp_symbolic.numeric.identify.constants import (
-    MATERIAL,
     MOST,
     REACH,
     SIMILAR,
@@ -104,22 +103,26 @@ def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
     for trial in best.values():
         if trial.keys in resembling:
             found.append(started_anew(task, seeker.polished(trial), seeker.carried))
-        elif gain(chosen, trial).share < 1.0 - MATERIAL:
+        elif gain(chosen, trial).share < 1.0 - task.material:
             found.append(seeker.polished(trial))
     compared = [Rival(trial, gain(chosen, trial)) for trial in found]
-    return [r for r in compared if not is_clearly_more(r.gain, len(compared))]
+    tests, material = len(compared), task.material
+    return [r for r in compared if not is_clearly_more(r.gain, tests, material)]
 
 
-def is_clearly_more(earned: Gain, tests: int) -> bool:
-    """Whether one set predicts materially better than another, clearly so over so many `tests`."""
-    return earned.share >= MATERIAL and earned.is_clear(tests)
-
-
-def overtaking(chosen: Trial, found: Sequence[Rival]) -> Trial | None:
-    """The best of the rivals that predict clearly and materially better than the chosen set; None
-    if none does.
+def is_clearly_more(earned: Gain, tests: int, material: float) -> bool:
+    """Whether one set predicts better than another by a `material` share, clearly so over so many
+    `tests`.
     """
-    better = [r.trial for r in found if is_clearly_more(gain(r.trial, chosen), len(found))]
+    return earned.share >= material and earned.is_clear(tests)
+
+
+def overtaking(chosen: Trial, found: Sequence[Rival], material: float) -> Trial | None:
+    """The best of the rivals that predict clearly better than the chosen set and by a `material`
+    share; None if none does.
+    """
+    tests = len(found)
+    better = [r.trial for r in found if is_clearly_more(gain(r.trial, chosen), tests, material)]
     return ranked(better)[0] if better else None
 
 

@@ -8,7 +8,6 @@ from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.refits import polished
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, is_near, ranked
-from ptp_symbolic.numeric.identify.constants import MATERIAL
 
 
 def beside_declared(task: Task, trial: Trial, declared: Trial, carried: Carried) -> Trial:
@@ -33,4 +32,4 @@ def declared_from(task: Task, trial: Trial, declared: Trial, carried: Carried) -
     left = halving(task, [fitted(task, (), trial.values | off, trial.fit.z)], 1)
     again = [polished(task, t, carried) for t in left if is_near(t, [declared])]
     best = ranked([declared, *again])[0]
-    return best if gain(best, declared).share >= MATERIAL else None
+    return best if gain(best, declared).share >= task.material else None

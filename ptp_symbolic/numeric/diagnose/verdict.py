@@ -89,7 +89,7 @@ def decide(found: Search) -> Verdict:
     alike: list[Rival] = []
     while trial.candidates:
         alike = rivals(seeker, trial, fit)
-        better = overtaking(trial, alike)
+        better = overtaking(trial, alike, seeker.task.material)
         if better is not None:
             seeker.others.append(trial)
             trial, steps, fit = confirmed(
