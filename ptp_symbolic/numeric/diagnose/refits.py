@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.cut_runs import in_windows, validation_in_windows
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.growing_windows import growing, led_through, settled, starts_of
@@ -21,7 +22,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
     fitted,
     halving,
     is_alike,
-    mean_squares,
     ranked,
 )
 from ptp_symbolic.numeric.identify.constants import (
@@ -41,7 +41,6 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.linked_windows import has_linked
-from ptp_symbolic.numeric.identify.windows import cut_where_errors_grow
 
 FloatArray = NDArray[np.float64]
 
@@ -87,32 +86,6 @@ def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]
         for factor in (FAR_OFF, 1.0 / FAR_OFF)
         if f.start > 0.0
     ]
-
-
-def in_windows(task: Task, declared: Trial) -> Task:
-    """The task with runs cut into windows where the fitted model amplifies errors until nothing can
-    be predicted (see `cut_where_errors_grow`).
-    """
-    model, noise = task.model, task.input_noise
-    p = model.parameter_vector(declared.values)
-    left = np.sqrt(mean_squares(declared.fit.evaluations, task.train))
-    train = cut_where_errors_grow(
-        model, task.every_sample, declared.fit.z, left, p, noise, task.executor
-    )
-    if len(train) == len(task.train):
-        return task
-    fewer = dict(zip(task.every_sample, task.train, strict=True))
-    task.progress("runs that multiply small errors are cut into windows")
-    return replace(task, every_sample=train, train=tuple(fewer.get(run, run) for run in train))
-
-
-def validation_in_windows(task: Task, declared: Trial) -> Task:
-    """The task with its validation runs cut where training runs would be, whatever they leave."""
-    model, runs = task.model, task.validate
-    p, starts = model.parameter_vector(declared.values), [run.guess for run in runs]
-    left = np.zeros((len(runs), len(task.train[0].signals)))
-    cut = cut_where_errors_grow(model, runs, starts, left, p, task.input_noise, task.executor)
-    return replace(task, validate=cut)
 
 
 def without_misleading(trial: Trial) -> Trial:

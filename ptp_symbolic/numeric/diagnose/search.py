@@ -4,18 +4,20 @@ completed, pruned and grown until every candidate in it is needed and none outsi
 
 from dataclasses import replace
 
+from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of
 from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
 from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
 from ptp_symbolic.numeric.diagnose.proposals import propose, with_lines
-from ptp_symbolic.numeric.diagnose.refits import fit_declared
+from ptp_symbolic.numeric.diagnose.refits import fit_declared, polished
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import started
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
+    fitted,
     halving,
     is_near,
     ranked,
@@ -41,7 +43,8 @@ def search(task: Task) -> Search:
 
 def _from_declared(seeker: Seeker) -> Search:
     """Propose, refit, complete, prune, grow, simplify; where the chosen set leads the declared
-    model to a better place, from the beginning, or with new gains if it leaves only noise.
+    model to a better place, from the beginning, or with new gains if it leaves only noise; where
+    what it adds multiplies small errors, from the beginning in windows.
     """
     task, best = seeker.task, seeker.declared
     if seeker.proposals.asked_for or not seeker.is_at_noise(best):
@@ -62,7 +65,12 @@ def _from_declared(seeker: Seeker) -> Search:
         if pruned is None or led is not best:
             best, pruned = led, seeker.pruned(led)
     begun, steps = pruned
-    best, steps = extended(seeker, begun, steps)
+    cut = _in_windows(seeker, begun)
+    if cut is None:
+        best, steps = extended(seeker, begun, steps)
+        cut = _in_windows(seeker, best)
+    if cut is not None:
+        return _from_declared(cut)
     end = best
     other = seeker.exchanged(best)
     if other is not None:
@@ -86,6 +94,21 @@ def _from_declared(seeker: Seeker) -> Search:
     members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
     others = tuple(seeker.others)
     return Search(task, seeker.declared, best, members, others, seeker.proposals, seeker.carried)
+
+
+def _in_windows(seeker: Seeker, best: Trial) -> Seeker | None:
+    """A search that begins in windows where the best of another asks for them (`in_windows_of`);
+    None where it leaves only noise, or runs can be followed to their end.
+    """
+    if not best.candidates or seeker.is_at_noise(best):
+        return None
+    part = in_windows_of(seeker.task, best)
+    if part is seeker.task:
+        return None
+    part = with_fewer_samples(part, best.values)
+    begun = fitted(part, (), seeker.declared.values, None)
+    declared = polished(part, begun, carried_noise(part, begun.fit))
+    return Seeker(part, declared, seeker.proposals, carried_noise(part, declared.fit))
 
 
 def extended(

@@ -43,7 +43,7 @@ def window_length(
 
     None where whole runs do. Where an error of the start grows tenfold, windows of 1 s at most.
     """
-    if any(_grows(model, run, p) for run in runs):
+    if any(multiplies_errors(model, run, p, run.guess) for run in runs):
         lengths: tuple[float, ...] = tuple(x for x in LENGTHS if x <= SHORT)
     else:
         lengths = (np.inf, *LENGTHS)
@@ -63,10 +63,12 @@ def _typical(grown: Sequence[tuple[FloatArray, FloatArray]], length: float) -> f
     return float(np.sqrt(np.median(inside))) if inside else np.inf
 
 
-def _grows(model: Model, run: Run, p: FloatArray) -> bool:
-    """True when a small error of a starting angle grows by `ALLOWED_GROWTH` within the run."""
+def multiplies_errors(model: Model, run: Run, p: FloatArray, z: FloatArray) -> bool:
+    """True when a small error of a starting angle grows by `ALLOWED_GROWTH` within the run, at p
+    [np] from the start z [nz].
+    """
     none = np.zeros(0, dtype=np.int64)
-    e = evaluate(model, run, p, run.guess, none, True, Tolerance())
+    e = evaluate(model, run, p, z, none, True, Tolerance())
     angles = [i for i, u in enumerate(run.unknowns) if u.name.startswith("theta")]
     if e.failed:
         return True

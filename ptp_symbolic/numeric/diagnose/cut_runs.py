@@ -1,0 +1,77 @@
+"""Runs that nothing predicts to their end: cut into windows with starts of their own."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, mean_squares
+from ptp_symbolic.numeric.identify.constants import SHORT
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.windows import (
+    cut_where_errors_grow,
+    multiplies_errors,
+    split_run,
+)
+
+FloatArray = NDArray[np.float64]
+
+
+def in_windows(task: Task, declared: Trial) -> Task:
+    """The task with runs cut into windows where the fitted model amplifies errors until nothing can
+    be predicted (see `cut_where_errors_grow`).
+    """
+    model, noise = task.model, task.input_noise
+    p = model.parameter_vector(declared.values)
+    left = np.sqrt(mean_squares(declared.fit.evaluations, task.train))
+    train = cut_where_errors_grow(
+        model, task.every_sample, declared.fit.z, left, p, noise, task.executor
+    )
+    if len(train) == len(task.train):
+        return task
+    fewer = dict(zip(task.every_sample, task.train, strict=True))
+    task.progress("runs that multiply small errors are cut into windows")
+    return replace(task, every_sample=train, train=tuple(fewer.get(run, run) for run in train))
+
+
+def validation_in_windows(task: Task, declared: Trial) -> Task:
+    """The task with its validation runs cut where training runs would be, whatever they leave."""
+    model, runs = task.model, task.validate
+    p, starts = model.parameter_vector(declared.values), [run.guess for run in runs]
+    left = np.zeros((len(runs), len(task.train[0].signals)))
+    cut = cut_where_errors_grow(model, runs, starts, left, p, task.input_noise, task.executor)
+    return replace(task, validate=cut)
+
+
+def in_windows_of(task: Task, trial: Trial) -> Task:
+    """The task with training and validation runs cut into windows where the model of a trial
+    multiplies an error of the start tenfold (see `window_length`, which asks the same of the
+    declared model): a machine that cogs, or leans, runs on from the edge of a valley into one or
+    the other, and its fit has an end for each of them.
+    """
+    p = task.model.parameter_vector(trial.values)
+
+    def windows_of(run: Run, z: FloatArray) -> tuple[Run, ...]:
+        return split_run(task.model, run, SHORT) if multiplies(run, z) else (run,)
+
+    def multiplies(run: Run, z: FloatArray) -> bool:
+        return multiplies_errors(task.model, run, p, z)
+
+    def cut(runs: Sequence[Run], z: Sequence[FloatArray]) -> list[tuple[Run, ...]]:
+        return list(task.executor.map(windows_of, runs, z))
+
+    train = cut(task.every_sample, trial.fit.z)
+    if all(len(parts) == 1 for parts in train):
+        return task
+    task.progress("runs that multiply small errors are cut into windows")
+    fewer = [
+        (run,) if len(parts) == 1 else parts for run, parts in zip(task.train, train, strict=True)
+    ]
+    validate = cut(task.validate, [run.guess for run in task.validate])
+    return replace(
+        task,
+        every_sample=tuple(w for parts in train for w in parts),
+        train=tuple(w for parts in fewer for w in parts),
+        validate=tuple(w for parts in validate for w in parts),
+    )
