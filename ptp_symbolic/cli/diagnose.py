@@ -120,12 +120,7 @@ def _print_fit(summary: Mapping[str, Any]) -> None:
     _print_parameters(summary["parameters"])
     if not summary["parameters"]:
         click.echo("Nothing is free; give a parameter 'start' in place of 'value' to fit it.")
-    if summary["windows"] is not None:
-        count, seconds = summary["windows"]["count"], summary["windows"]["seconds"]
-        click.echo(
-            f"The runs were cut into {count} windows of {seconds:.2g} s, each with a start of its"
-            " own: over longer ones errors of the start and of the inputs would rule."
-        )
+    _print_windows(summary)
     error = summary["error"]
     key, unit = error_measure([error["after"]["total"]])
     after, floor = (error[w]["total"][key] for w in ("after", "noise_floor"))
@@ -163,12 +158,23 @@ def _print_diagnosis(summary: Mapping[str, Any]) -> None:
     if doubtful:
         click.echo("Declared parameters that these logs do not settle:")
         _print_parameters(doubtful)
+    _print_windows(summary)
     if summary["refused"]:
         click.echo("Gained something, but were not named:")
     for key, why in summary["refused"].items():
         click.echo(f"  {key}: {why}")
     _print_errors(summary)
     _print_rivals(summary)
+
+
+def _print_windows(summary: Mapping[str, Any]) -> None:
+    if summary["windows"] is None:
+        return
+    count, seconds = summary["windows"]["count"], summary["windows"]["seconds"]
+    click.echo(
+        f"Runs were cut into {count} windows of {seconds:.2g} s, each with a start of its own: over"
+        " longer ones errors of the start and of the inputs would rule."
+    )
 
 
 def _print_rivals(summary: Mapping[str, Any]) -> None:

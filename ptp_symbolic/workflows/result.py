@@ -53,8 +53,6 @@ def read_diagnosis(
 
 
 def windows_table(task: Task) -> dict[str, Any] | None:
-    """How many windows the runs were cut into, and how long they are; None for whole runs."""
-    if len(task.train) == len(task.whole):
-        return None
-    length = sum(float(run.time[-1] - run.time[0]) for run in task.train) / len(task.train)
-    return {"count": len(task.train), "seconds": length}
+    """How many windows runs were cut into, and how long they are; None where all runs are whole."""
+    lengths = [float(run.time[-1] - run.time[0]) for run in task.train if run.name != run.source]
+    return {"count": len(lengths), "seconds": sum(lengths) / len(lengths)} if lengths else None

@@ -79,7 +79,7 @@ def written_up(
         "remainder": left,
         "hints": hints(left),
         "black_box": None if beside is None else dict(beside),
-        "windows": windows_table(task),
+        "windows": windows_table(found.task),
         "material": task.material,
         "remarks": list(noted),
         "equations": equations,

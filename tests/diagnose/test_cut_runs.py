@@ -8,6 +8,7 @@ import pytest
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
+from ptp_symbolic.workflows.result import windows_table
 from tests.identify.test_windows import COUNT, FREE, MODEL, pendulum
 
 PAYLOAD = {"m_payload": 5.0, "c_x_payload": 0.001}
@@ -51,6 +52,7 @@ def test_runs_in_which_a_set_multiplies_errors_are_cut_and_no_other(task: Task) 
     assert part.every_sample == part.train
     assert part.validate[0] is down
     assert len(part.validate) == 3
+    assert windows_table(part) == {"count": 2, "seconds": pytest.approx(up.time[-1] / 2)}
 
 
 def test_a_set_that_multiplies_none_leaves_the_runs_as_they_are(task: Task) -> None:
