@@ -89,6 +89,7 @@ def diagnosis(counts: float | None, angle: float) -> dict[str, Any]:
         "refused": {},
         "remarks": [],
         "black_box": None,
+        "windows": None,
         "fit": {"after": {"parameters": {}}},
         "error": {"definition": "root mean square", "train": part, "validate": part},
     }

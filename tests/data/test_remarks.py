@@ -17,7 +17,7 @@ VOLTAGE = 6.0 * np.sin(3.0 * TIME)
 
 def log(angle: np.ndarray, voltage: np.ndarray = VOLTAGE, time: np.ndarray = TIME) -> Log:
     names = [s.signal for s in PLATFORM.signals if s.role == "output"]
-    columns = [angle if name == "theta_pan" else 0.1 * np.cos(3.0 * TIME) for name in names]
+    columns = [angle if name == "theta_pan" else 0.1 * np.cos(3.0 * time) for name in names]
     return Log("run", time, voltage[:, None], np.column_stack(columns))
 
 
@@ -73,6 +73,10 @@ def test_pauses_and_jitter_are_noted() -> None:
     paused = TIME + np.where(TIME > 1.0, 0.4, 0.0)
     (text,) = remarks([log(MOVING, time=paused)], PLATFORM)
     assert "no samples from 1 s to 1.405 s" in text
+    gone = [100, 101, 250]
+    lacking = np.delete(TIME, gone)
+    (text,) = remarks([log(np.delete(MOVING, gone), np.delete(VOLTAGE, gone), lacking)], PLATFORM)
+    assert "samples are missing at 2 places, for up to 0.015 s" in text
     shaken = TIME + 0.002 * np.random.default_rng(1).uniform(-1.0, 1.0, 400)
     (text,) = remarks([log(MOVING, time=shaken)], PLATFORM)
     assert "sampling period varies" in text

@@ -8,8 +8,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.diagnose.along_rows import grown_along_motion
+from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.proposals import propose, start_for
+from ptp_symbolic.numeric.diagnose.trial import fitted
 from tests.diagnose.spring_table import (
     COUNT,
     DAMPING,
@@ -21,6 +24,7 @@ from tests.diagnose.spring_table import (
 )
 
 USUAL = 1.0  # rad/s
+DRAG = 0.05  # N m s^2/rad^2
 Torque = Callable[[float, float], float]
 
 
@@ -30,6 +34,14 @@ def spring(angle: float, rate: float) -> float:
 
 def spring_by_speed(angle: float, rate: float) -> float:
     return -STIFFNESS * angle * abs(rate) / USUAL
+
+
+def drag(angle: float, rate: float) -> float:
+    return -DRAG * rate * abs(rate)
+
+
+def drag_by_speed(angle: float, rate: float) -> float:
+    return -DRAG * rate**3 / USUAL
 
 
 def logged(hidden: Torque, seed: int) -> Log:
@@ -60,3 +72,16 @@ def test_a_spring_that_is_stronger_where_it_is_fast_is_none(
         assert abs(values["k1_cable_pan"]) > 0.2 * STIFFNESS
         assert proposals.space is not None
         assert breaks_its_law(task, proposals.space, (found,), values, found) is breaks
+
+
+@pytest.mark.parametrize(
+    ("hidden", "named"), [(drag, ("quadratic_drag@pan",)), (drag_by_speed, None)]
+)
+def test_a_torque_cubic_in_the_rate_is_no_drag_along_the_motion_either(
+    hidden: Torque, named: tuple[str, ...] | None, tmp_path: Path
+) -> None:
+    """Beside a second friction, a drag would make up for it in the rows."""
+    with table_of(tmp_path, lambda seed: logged(hidden, seed)) as task:
+        declared = fitted(task, (), declared_start(task), None)
+        grown = grown_along_motion(task, propose(task), declared, task.train)
+        assert (grown and grown.trial.keys) == named

@@ -6,6 +6,7 @@ from scipy.signal import lfilter
 
 from ptp_symbolic.numeric.identify.noise import (
     coloured_noise,
+    differences,
     hidden_from_differences,
     most_in_quietest,
     neighbour_correlation,
@@ -14,7 +15,14 @@ from ptp_symbolic.numeric.identify.noise import (
 from tests.identify.curves import Floats
 
 TIME = np.arange(4000)
-MOTION = np.sin(0.05 * TIME) + 0.3 * np.sin(0.21 * TIME + 1.0)
+
+
+def motion(time: Floats) -> Floats:
+    """A smooth motion, its fastest part at a thirtieth of the sampling rate."""
+    return np.sin(0.05 * time) + 0.3 * np.sin(0.21 * time + 1.0)
+
+
+MOTION = motion(TIME)
 
 
 def remembering(pole: float, series: int, n: int) -> Floats:
@@ -47,6 +55,31 @@ def test_rounding_of_a_motion_is_white_noise_of_its_own_size() -> None:
 
 def test_a_motion_at_a_tenth_of_the_sampling_rate_leaves_less_than_a_hundredth() -> None:
     assert white_noise(np.sin(0.2 * np.pi * TIME)) < 0.01 * np.sqrt(0.5)
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.1, 0.4])
+@pytest.mark.parametrize("sigma", [1e-4, 1e-2])
+def test_a_motion_is_not_seen_in_the_jitter_of_its_samples(sigma: float, jitter: float) -> None:
+    """Nor where every tenth sample is missing. Taken for even, 10 % of jitter would show 64 times
+    the smaller noise.
+    """
+    rng = np.random.default_rng(26)
+    kept = rng.random(4000) < 0.9
+    time = (TIME + rng.uniform(-jitter, jitter, 4000))[kept]
+    signal = motion(time) + sigma * rng.standard_normal(len(time))
+    assert white_noise(signal, 0.005 * time) == pytest.approx(sigma, rel=0.1)
+    assert white_noise(signal) > 1.1 * sigma
+
+
+def test_divided_differences_are_those_of_even_samples_and_leave_nothing_of_a_polynomial() -> None:
+    rng = np.random.default_rng(27)
+    signal = rng.standard_normal(300)
+    even = differences(signal, 0.01 * np.arange(300))
+    assert np.abs(even) == pytest.approx(np.abs(differences(signal)), rel=1e-6, abs=1e-9)
+    time = np.cumsum(rng.uniform(0.2, 1.8, 300))
+    quartic = np.polynomial.Polynomial([1.0, -2.0, 0.5, 0.3, -0.1])
+    assert differences(quartic(time - 150.0), time) == pytest.approx(0.0, abs=1e-4)
+    assert np.sum(differences(signal, time) ** 2) / 295 == pytest.approx(1.0, rel=0.3)
 
 
 def test_jumps_and_rough_passages_are_not_noise() -> None:

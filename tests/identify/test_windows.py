@@ -52,13 +52,16 @@ FREE = {
 NONE = np.zeros(0, dtype=np.int64)
 
 
-def run_of(pan: Floats, tilt: Floats, torque: Floats, period: float) -> Run:
-    """A run with angles [k] in rad, rounded, and pan torque [k] in N m."""
+def run_of(
+    pan: Floats, tilt: Floats, torque: Floats, period: float, time: Floats | None = None
+) -> Run:
+    """A run with angles [k] in rad, rounded, and pan torque [k] in N m, sampled with a `period`, or
+    at `time` [k], in s.
+    """
+    time = period * np.arange(len(pan)) if time is None else time
     angles = np.rint(np.column_stack([pan, tilt]) / COUNT) * COUNT
     inputs = np.column_stack([torque, np.zeros(len(pan))])
-    (run,) = prepare_runs(
-        MODEL, PLATFORM, [Log("run", period * np.arange(len(pan)), inputs, angles)]
-    )
+    (run,) = prepare_runs(MODEL, PLATFORM, [Log("run", time, inputs, angles)])
     return run
 
 

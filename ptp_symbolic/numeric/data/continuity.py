@@ -9,11 +9,15 @@ from numpy.typing import NDArray
 from ptp_symbolic.platform import SignalDeclaration
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.intp]
 
 TURN = 2.0 * np.pi  # rad
 COUNTER_BITS = (12, 14, 15, 16, 24, 32)  # of registers that count an encoder
 LONG_PAUSE = 10.0  # sampling periods between two samples: what happens meanwhile is unknown
 FEWEST = 10  # samples in a part between gaps
+MEDIAN_TO_SIGMA = 1.4826  # of normal numbers: standard deviation over median deviation
+LOST = 0.5  # sampling periods later than usual, halfway to the next: a sample is missing
+JITTERS = 4.0  # standard deviations of the sampling period that jitter seldom reaches
 LONGEST_STEP = 0.5 * np.pi  # rad from one sample to the next: beyond it a wrap is ambiguous
 
 
@@ -54,7 +58,22 @@ def uninterrupted(time: FloatArray) -> list[slice]:
     where every part is as short.
     """
     step = np.diff(time)
-    gaps = np.flatnonzero(step > LONG_PAUSE * np.median(step)) + 1
+    return parted(time, np.flatnonzero(step > LONG_PAUSE * np.median(step)) + 1)
+
+
+def after_lost(time: FloatArray) -> IntArray:
+    """Samples before which others are missing in `time` [n] in s: they come later than usual by
+    more than jitter may explain, which is taken from the median deviation of the sampling period.
+    """
+    step = np.diff(time) / np.median(np.diff(time))
+    jitter = MEDIAN_TO_SIGMA * np.median(np.abs(step - 1.0))
+    return np.flatnonzero(step > 1.0 + max(LOST, JITTERS * jitter)) + 1
+
+
+def parted(time: FloatArray, gaps: IntArray) -> list[slice]:
+    """Parts of `time` [n] that begin at `gaps`, without those of a few samples; all of it where
+    every part is as short.
+    """
     edges = [0, *gaps, len(time)]
     parts = [slice(int(a), int(b)) for a, b in pairwise(edges) if b - a >= FEWEST]
     return parts or [slice(0, len(time))]

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.continuity import LONG_PAUSE, Wraps
+from ptp_symbolic.numeric.data.continuity import LONG_PAUSE, Wraps, after_lost
 from ptp_symbolic.numeric.data.log import Log
 from ptp_symbolic.platform import Platform, SignalDeclaration
 
@@ -138,7 +138,16 @@ def _clock_remarks(log: Log) -> list[str]:
             f"{log.name}: no samples from {log.time[row]:.6g} s to {log.time[row + 1]:.6g} s;"
             " the parts before and after it are fitted as runs of their own."
         )
-    usual = step[step <= LONG_PAUSE * period]
+    gaps = after_lost(log.time)
+    lost = step[gaps - 1]
+    lost = lost[lost <= LONG_PAUSE * period]
+    if lost.size:
+        places = f"at {lost.size} places" if lost.size > 1 else "at one place"
+        found.append(
+            f"{log.name}: samples are missing {places}, for up to {lost.max():.3g} s; a new window"
+            " begins there if it matters when an input changed meanwhile, else it held."
+        )
+    usual = np.delete(step, gaps - 1)
     jitter = float(np.std(usual)) / period
     if jitter > JITTER:
         found.append(f"{log.name}: the sampling period varies by {100 * jitter:.0f} % rms.")

@@ -18,6 +18,7 @@ from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, why_unconfi
 from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared
 from ptp_symbolic.numeric.diagnose.held_out import simulated_freely
+from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, in_rows_of, start_of
 from ptp_symbolic.numeric.diagnose.regression import Regression, block_numbers
 from ptp_symbolic.numeric.diagnose.subsets import exchanges, gain_along_motion, larger_sets
@@ -121,7 +122,11 @@ class _Motion:
         if not all(self.earns(candidates, c) for c in candidates):
             return False
         fit = self.fitted(candidates)
-        return not any(why_unconfirmed(fit, c, leaves_noise=False) for c in candidates)
+        return not any(
+            why_unconfirmed(fit, c, leaves_noise=False)
+            or breaks_its_law(self.task, self.space, candidates, fit.values, c)
+            for c in candidates
+        )
 
     def alike(self, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
         """By the key of each member of a set, those that predict no worse in its place, and beside

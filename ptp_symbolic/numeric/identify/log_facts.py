@@ -62,19 +62,19 @@ def facts_of(run: Run, units: Mapping[str, str]) -> LogFacts:
     period = float(np.median(periods))
     inputs = [name for name in units if name not in run.signals]
     signals = [
-        _signal(name, "input", column)
+        _signal(name, "input", run.time, column)
         for name, column in zip(inputs, run.held_inputs.T, strict=True)
     ]
     span = max(LEAST_START, int(np.ceil(START_SPAN / period)))
     for name, column, weight in zip(run.signals, run.measured.T, run.weight, strict=True):
         if units[name] not in ("rad", "m"):
-            signals.append(_signal(name, "output", column))
+            signals.append(_signal(name, "output", run.time, column))
             continue
         reach = maximum_filter1d(column, span) - minimum_filter1d(column, span)
         resting = float(np.mean(reach <= 2.0 * FAR / weight))
         moved = np.abs(column[span:] - column[:-span]) / (run.time[span:] - run.time[:-span])
         fastest = float(np.max(moved)) if len(moved) else None
-        signals.append(_signal(name, "output", column, resting, fastest))
+        signals.append(_signal(name, "output", run.time, column, resting, fastest))
     return LogFacts(
         run.name,
         len(run.time),
@@ -89,6 +89,7 @@ def facts_of(run: Run, units: Mapping[str, str]) -> LogFacts:
 def _signal(
     name: str,
     role: str,
+    time: FloatArray,
     column: FloatArray,
     resting: float | None = None,
     fastest: float | None = None,
@@ -97,6 +98,6 @@ def _signal(
     ends = float(np.mean((column == low) | (column == high))) if high > low else 1.0
     levels = np.unique(column)
     step = float(np.median(np.diff(levels))) if 1 < len(levels) <= len(column) // 2 else None
-    noise = white_noise(column)
-    colour = neighbour_correlation(column) if role == "output" else None
+    noise = white_noise(column, time)
+    colour = neighbour_correlation(column, time) if role == "output" else None
     return SignalFacts(name, role, low, high, noise, step, ends, colour, resting, fastest)

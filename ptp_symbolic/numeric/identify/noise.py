@@ -12,6 +12,7 @@ from functools import lru_cache
 from math import comb
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy import optimize, stats
 
@@ -30,18 +31,35 @@ from ptp_symbolic.numeric.identify.constants import (
 FloatArray = NDArray[np.float64]
 
 
-def white_noise(signal: FloatArray) -> float:
+def white_noise(signal: FloatArray, time: FloatArray | None = None) -> float:
     """Standard deviation of the white noise of a smooth `signal` [n], also of its rounding, in its
-    unit.
+    unit; sampled evenly, or at `time` [n].
 
     Squared differences of order 5, without those that are clipped; zero where the signal is too
     short.
     """
     if len(signal) < 4 * ORDER:
         return 0.0
-    square = np.diff(signal, ORDER) ** 2 / float(comb(2 * ORDER, ORDER))
+    square = differences(signal, time) ** 2
     pieces = np.array_split(square, max(1, len(square) // PIECE))
     return float(np.sqrt(np.median([_clipped_mean(piece) for piece in pieces])))
+
+
+def differences(signal: FloatArray, time: FloatArray | None = None) -> FloatArray:
+    """Differences [n - ORDER] of order ORDER of a `signal` [n], scaled so that they hold as much of
+    white noise as the signal does.
+
+    Of samples at uneven `time` [n] they are divided differences: these too leave nothing of any
+    polynomial of lower order (Newton's form of interpolation), where a motion would else be seen in
+    the jitter of the samples.
+    """
+    if time is None:
+        return np.diff(signal, ORDER) / np.sqrt(float(comb(2 * ORDER, ORDER)))
+    points = sliding_window_view(time / np.median(np.diff(time)), ORDER + 1)
+    apart = points[:, :, None] - points[:, None, :] + np.eye(ORDER + 1)
+    weights = 1.0 / np.prod(apart, axis=2)
+    weights /= np.linalg.norm(weights, axis=1)[:, None]
+    return np.sum(weights * sliding_window_view(signal, ORDER + 1), axis=1)
 
 
 def _clipped_mean(square: FloatArray) -> float:
@@ -111,14 +129,15 @@ class Correlation:
     most: float
 
 
-def neighbour_correlation(signal: FloatArray) -> Correlation | None:
-    """How the noise of a smooth `signal` [n], evenly sampled, is correlated from sample to sample,
-    were it an autoregression: by what its differences hold above a quarter of the sampling rate.
+def neighbour_correlation(signal: FloatArray, time: FloatArray | None = None) -> Correlation | None:
+    """How the noise of a smooth `signal` [n], sampled evenly or nearly so at `time` [n], is
+    correlated from sample to sample, were it an autoregression: by what its differences hold above
+    a quarter of the sampling rate.
 
     Whittle's likelihood of the median periodogram, which a few kinks of the motion do not change.
     Stretches that do not change at all are left out; None where too few others remain.
     """
-    parts = [part for part in _segments(np.diff(signal, ORDER)) if np.any(part)]
+    parts = [part for part in _segments(differences(signal, time)) if np.any(part)]
     if len(parts) < 2 * LOWEST:
         return None
     upper = slice(SEGMENT // 4, -LOWEST)  # at half the rate the taper mixes a bin with its mirror

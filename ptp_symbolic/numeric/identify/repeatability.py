@@ -51,7 +51,7 @@ def _alike(a: Run, b: Run) -> bool:
     if np.max(np.abs((a.time - a.time[0]) - (b.time - b.time[0]))) > 0.5 * period:
         return False
     for one, other in zip(a.held_inputs.T, b.held_inputs.T, strict=True):
-        noise = ABOVE_NOISE * np.hypot(white_noise(one), white_noise(other))
+        noise = ABOVE_NOISE * np.hypot(white_noise(one, a.time), white_noise(other, b.time))
         apart = float(np.sqrt(np.mean((one - other) ** 2)))
         if apart > min(noise, MATERIAL * float(np.std(one))) + NOTHING * np.max(np.abs(one)):
             return False

@@ -27,7 +27,7 @@ FloatArray = NDArray[np.float64]
 def input_noise(run: Run, declared: Sequence[float | None]) -> FloatArray:
     """Noise (rms) of every input [nu] in its unit: as declared, else as its samples show it."""
     columns = zip(run.held_inputs.T, declared, strict=True)
-    return np.array([white_noise(column) if d is None else d for column, d in columns])
+    return np.array([white_noise(c, run.time) if d is None else d for c, d in columns])
 
 
 def noisier(run: Run, noise: FloatArray, rng: np.random.Generator) -> Run:

@@ -44,7 +44,7 @@ def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple
     counts = np.array([np.nan if s.count is None else s.count for s in outputs])
     sigma = np.array(
         [
-            _sigma(s, q, [log.outputs[:, k] for log in logs])
+            _sigma(s, q, [white_noise(log.outputs[:, k], log.time) for log in logs])
             for k, (s, q) in enumerate(zip(outputs, counts, strict=True))
         ]
     )
@@ -99,12 +99,12 @@ def _prepare(
     return with_start(model, run, underway=underway)
 
 
-def _sigma(signal: SignalDeclaration, count: float, measured: Sequence[FloatArray]) -> float:
-    """Standard deviation of a signal: rounding, and the declared noise or else that in the logs."""
+def _sigma(signal: SignalDeclaration, count: float, in_logs: Sequence[float]) -> float:
+    """Standard deviation of a signal: rounding, and the declared noise or else that `in_logs`."""
     rounding = 0.0 if np.isnan(count) else count * ROUNDING
     noise = signal.noise
     if noise is None and rounding > 0.0:
-        seen = float(np.median([white_noise(column) for column in measured]))
+        seen = float(np.median(in_logs))
         noise = float(np.sqrt(max(seen**2 - rounding**2, 0.0)))
     sigma = float(np.hypot(rounding, noise or 0.0))
     if sigma == 0.0:
