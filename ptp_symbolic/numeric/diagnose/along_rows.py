@@ -8,7 +8,7 @@ windows average away what is fast, such as a delay. Its values and their interva
 fit to the same rows (inverse dynamic identification: Gautier and Khalil, 1990).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,7 +18,6 @@ from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, why_unconfi
 from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared
 from ptp_symbolic.numeric.diagnose.held_out import simulated_freely
-from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, in_rows_of, start_of
 from ptp_symbolic.numeric.diagnose.regression import Regression, block_numbers
 from ptp_symbolic.numeric.diagnose.subsets import exchanges, gain_along_motion, larger_sets
@@ -51,13 +50,18 @@ class AlongMotion:
 
 
 def grown_along_motion(
-    task: Task, found: Proposals, trial: Trial, runs: Sequence[Run]
+    task: Task,
+    found: Proposals,
+    trial: Trial,
+    runs: Sequence[Run],
+    barred: Collection[str] = (),
 ) -> AlongMotion | None:
     """The set of a trial with what else gains along the measured motion, simulated on the training
     `runs`; None where nothing does, or where the rows do not show all of the set.
 
-    Declared values are not looked for: beside a remainder they stand in for much. What has grown
-    takes away a material part of the torque that the set leaves along the validation runs.
+    Declared values are not looked for: beside a remainder they stand in for much. Nor are those
+    whose keys are `barred`: rows have shown already that what acts is not of their law. What has
+    grown takes away a material part of the torque that the set leaves along the validation runs.
     """
     if found.regression is None or len(task.model.contacts):
         return None
@@ -71,7 +75,9 @@ def grown_along_motion(
     motion = _Motion(task, space, rows, found.start)
     while len(candidates) < len(trial.candidates) + LARGEST:
         effects = [
-            s for s in larger_sets(rows, candidates) if not any(c.is_declared_value for c in s)
+            s
+            for s in larger_sets(rows, candidates)
+            if not any(c.is_declared_value or c.key in barred for c in s)
         ]
         grown = next((s for s in effects[:TRIED] if motion.is_confirmed(s)), None)
         if grown is None:
@@ -122,11 +128,7 @@ class _Motion:
         if not all(self.earns(candidates, c) for c in candidates):
             return False
         fit = self.fitted(candidates)
-        return not any(
-            why_unconfirmed(fit, c, leaves_noise=False)
-            or breaks_its_law(self.task, self.space, candidates, fit.values, c)
-            for c in candidates
-        )
+        return not any(why_unconfirmed(fit, c, leaves_noise=False) for c in candidates)
 
     def alike(self, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
         """By the key of each member of a set, those that predict no worse in its place, and beside

@@ -21,6 +21,8 @@ from ptp_symbolic.numeric.identify.constants import MOST
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
 
+OTHER_LAW = "its torque goes with the speed in another way"  # why a candidate is refused
+
 
 def confirmed(
     seeker: Seeker, trial: Trial, steps: list[Step], refused: dict[str, str]
@@ -133,7 +135,7 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
         if space is not None and breaks_its_law(
             seeker.task, space, trial.candidates, trial.values, step.candidate
         ):
-            return step, "its torque goes with the speed in another way"
+            return step, OTHER_LAW
         if not quiet:
             doubt = _doubt_beside_a_remainder(trial, step, seeker.task.material)
             if doubt is not None:

@@ -7,6 +7,7 @@ import numpy as np
 
 from ptp_symbolic.numeric.diagnose.along_rows import grown_along_motion
 from ptp_symbolic.numeric.diagnose.confirmed_sets import (
+    OTHER_LAW,
     confirmed,
     doubtful,
     leaner_rival,
@@ -114,7 +115,8 @@ def decide(found: Search) -> Verdict:
     task.progress("fitting every sample, and simulating the validation runs")
     known = [found.declared, trial] if trial.candidates else [found.declared]
     declared, *rest = fitted_to_every_sample(task, known)
-    sets = _along_motion(seeker, trial, declared)
+    barred = [key for key, why in refused.items() if why == OTHER_LAW]
+    sets = _along_motion(seeker, trial, declared, barred)
     if trial.candidates:
         gains = {s.candidate.key: s.gain for s in steps}
         sets.append(_Set(trial, rest[0], None, gains, confusable(trial, alike), tuple(alike)))
@@ -135,12 +137,16 @@ class _Set:
     rivals: tuple[Rival, ...]
 
 
-def _along_motion(seeker: Seeker, trial: Trial, declared: Trial) -> list[_Set]:
-    """Where a trial leaves more than noise, the set that it grows to along the measured motion."""
+def _along_motion(
+    seeker: Seeker, trial: Trial, declared: Trial, barred: Sequence[str]
+) -> list[_Set]:
+    """Where a trial leaves more than noise, the set that it grows to along the measured motion, by
+    candidates whose keys are not `barred`.
+    """
     task = seeker.task
     if leaves_noise_alone(trial, floor_of(task, trial, seeker.carried)):
         return []
-    found = grown_along_motion(task, seeker.proposals, trial, declared.fit.runs)
+    found = grown_along_motion(task, seeker.proposals, trial, declared.fit.runs, barred)
     if found is None:
         return []
     final = found.trial
