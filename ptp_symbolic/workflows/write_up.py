@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.diagnose.curves import curves_of
 from ptp_symbolic.numeric.diagnose.findings import Search
@@ -56,6 +57,7 @@ def written_up(
     }
     errors = error_table(parts, verdict.floor)
     extended = _extended(platform, after)
+    module, doubts = _module_of(extended)
     named = [c for c in after.candidates if not c.is_declared_value]
     equations = [e for c in named for e in effect_equations(extended, c.id, c.axis)]
     left = remainder(found.proposals.space, after.values) if verdict.leaves_more else None
@@ -81,7 +83,7 @@ def written_up(
         "black_box": None if beside is None else dict(beside),
         "windows": windows_table(found.task),
         "material": task.material,
-        "remarks": list(noted),
+        "remarks": [*noted, *doubts],
         "equations": equations,
         "provenance": dict(sources),
     }
@@ -89,7 +91,7 @@ def written_up(
     curves = curves_of(parts)
     files: dict[str, str | bytes] = {"platform.toml": platform_text(extended)}
     files["equations.tex"] = equations_tex(equations)
-    files[f"{extended.name}.py"] = emission.module_of(extended)
+    files |= module
     marked = {name for candidate in after.candidates for name in candidate.parameters}
     machine = drawn(extended, assemble(extended), marked)
     files["report.html"] = render_diagnosis(summary, curves, machine)
@@ -97,6 +99,16 @@ def written_up(
     files |= changes.result()  # pdflatex runs beside the drawing
     files["diagnosis.json"] = json_text(summary)
     return Output(summary, files)
+
+
+def _module_of(extended: Platform) -> tuple[dict[str, str], list[str]]:
+    """The module of an extended platform, as a file; or why such a machine cannot exist, though its
+    logs look like it: a value that was declared may be wrong too.
+    """
+    try:
+        return {f"{extended.name}.py": emission.module_of(extended)}, []
+    except InputError as error:
+        return {}, [f"The declared and the found values exclude each other. {error}"]
 
 
 def equations_tex(equations: list[dict[str, Any]]) -> str:

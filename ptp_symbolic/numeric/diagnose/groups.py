@@ -21,7 +21,7 @@ from ptp_symbolic.numeric.diagnose.linear import (
     stacked,
 )
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
-from ptp_symbolic.numeric.diagnose.refits import started_anew
+from ptp_symbolic.numeric.diagnose.refits import is_near_floor, started_anew
 from ptp_symbolic.numeric.diagnose.responses import Columns, least, response_columns
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.signatures import Signature
@@ -67,11 +67,13 @@ def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
     materially, those that the search has begun already among them. `fit` is its fit, from
     `with_finite_differences`.
 
-    A few iterations tell which come near the chosen set. Where that leaves more than noise, a set
-    that it cannot be told from by its response is fitted to its end, however far it is till then.
+    A few iterations tell which come near the chosen set. A set that it cannot be told from by its
+    response is fitted to its end where they come near the floor, and where the chosen one leaves
+    more than noise, however far it is till then.
     """
     task = seeker.task
-    tried = {t.keys for t in seeker.others}
+    near = [t for t in ranked(seeker.others) if _comes_near(t, chosen)]
+    tried = {t.keys for t in near}
     begun: list[Trial] = []
     resembling: set[tuple[str, ...]] = set()
     for member in chosen.candidates:
@@ -86,28 +88,34 @@ def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
             instead = (*kept, candidate)
             if keys_of(instead) not in tried:
                 begun += in_place(task, seeker.proposals, instead, chosen)
-        if not seeker.is_at_noise(chosen):
-            resembling |= {keys_of((*kept, s.candidate)) for s in similar}
+        resembling |= {keys_of((*kept, s.candidate)) for s in similar}
     if begun:
         task.progress(f"refitting {len(begun)} sets that resemble the chosen one")
-    trials = halving(task, begun, len(begun))
-    for other in ranked(seeker.others):
-        same_size = len(other.candidates) == len(chosen.candidates)
-        fresh = same_size and other.keys != chosen.keys and np.isfinite(other.fit.cost)
-        if fresh and gain(chosen, other).share < MOST:
-            trials.append(other)
+    trials = [*halving(task, begun, len(begun)), *near]
     best: dict[tuple[str, ...], Trial] = {}
     for trial in ranked(trials):
         best.setdefault(trial.keys, trial)
     found = []
     for trial in best.values():
-        if trial.keys in resembling:
+        resembles = trial.keys in resembling
+        if resembles and not seeker.is_at_noise(chosen):
             found.append(started_anew(task, seeker.polished(trial), seeker.carried))
-        elif gain(chosen, trial).share < 1.0 - task.material:
+        elif gain(chosen, trial).share < 1.0 - task.material or (
+            resembles and is_near_floor(trial)
+        ):
             found.append(seeker.polished(trial))
     compared = [Rival(trial, gain(chosen, trial)) for trial in found]
     tests, material = len(compared), task.material
     return [r for r in compared if not is_clearly_more(r.gain, tests, material)]
+
+
+def _comes_near(other: Trial, chosen: Trial) -> bool:
+    """Whether another set as large as the chosen one predicts nearly as well, as far as it was
+    fitted.
+    """
+    if len(other.candidates) != len(chosen.candidates) or other.keys == chosen.keys:
+        return False
+    return bool(np.isfinite(other.fit.cost)) and gain(chosen, other).share < MOST
 
 
 def is_clearly_more(earned: Gain, tests: int, material: float) -> bool:

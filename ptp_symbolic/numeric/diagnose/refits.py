@@ -134,12 +134,13 @@ def over_windows(
 def polished(task: Task, trial: Trial, carried: Carried) -> Trial:
     """The trial fitted to its end, and begun anew where that is near the floor."""
     trial = to_its_end(task, trial, carried)
-    if not _is_near_floor(trial):
+    if not is_near_floor(trial):
         return trial
     return started_anew(task, _in_time(task, trial, carried), carried)
 
 
-def _is_near_floor(trial: Trial) -> bool:
+def is_near_floor(trial: Trial) -> bool:
+    """Whether a trial leaves at most NEARBY times the noise of every signal."""
     return bool(np.all(left_over(trial.fit) <= NEARBY))
 
 
