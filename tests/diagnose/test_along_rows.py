@@ -9,8 +9,12 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose.along_rows import AlongMotion, grown_along_motion
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.refits import fit_declared
+from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import fitted
+from ptp_symbolic.numeric.diagnose.verdict import _near_floor, _Set
 from ptp_symbolic.numeric.identify.intervals import estimates
 from tests.diagnose.spring_table import DAMPING, INERTIA, PAYLOAD, STIFFNESS, spring_table
 
@@ -44,3 +48,26 @@ def test_a_spring_is_found_beside_gusts_and_the_intervals_tell_how_well(tmp_path
 def test_gusts_alone_are_given_no_name(lasting: int, tmp_path: Path) -> None:
     """Whether they change every sample or last 1.5 s."""
     assert grown(tmp_path, 0.0, lasting) is None
+
+
+@pytest.mark.parametrize(("gust", "near"), [(0.0, True), (GUST, False)])
+def test_a_set_that_reaches_the_floor_of_the_outputs_is_fitted_to_these(
+    gust: float, near: bool, tmp_path: Path
+) -> None:
+    """Begun 3 % off in all values; the gusts leave 20 counts whatever they are."""
+    with spring_table(tmp_path, STIFFNESS, gust) as task:
+        proposals = propose(task)
+        task, declared = fit_declared(task, proposals)
+        seeker = Seeker(task, declared, proposals, carried_noise(task, declared.fit))
+        (spring,) = [
+            c for c in task.candidates if c.key == "cable_spring@pan" and len(c.defining) == 1
+        ]
+        truth = {"J_pan": INERTIA - PAYLOAD, "b_pan": DAMPING, "k1_cable_pan": STIFFNESS}
+        values = declared.values | {name: 1.03 * value for name, value in truth.items()}
+        along = fitted(task, (spring,), values, None)
+        found = _near_floor(seeker, [_Set(along, along, along.fit, {}, {}, ())])
+        assert (found is not None) is near
+        if found is not None:
+            for name, value in truth.items():
+                assert found.values[name] == pytest.approx(value, rel=1e-3), name
+    assert _near_floor(seeker, []) is None

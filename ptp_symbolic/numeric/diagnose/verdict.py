@@ -15,7 +15,7 @@ from ptp_symbolic.numeric.diagnose.confirmed_sets import (
     simplest_alike,
 )
 from ptp_symbolic.numeric.diagnose.fewer_samples import fitted_to_every_sample
-from ptp_symbolic.numeric.diagnose.findings import Search
+from ptp_symbolic.numeric.diagnose.findings import Search, Step
 from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
@@ -27,8 +27,9 @@ from ptp_symbolic.numeric.diagnose.held_out import (
     left_by_values,
 )
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.refits import is_near_floor
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, ranked
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, ranked
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.replays import estimable
 
@@ -86,7 +87,36 @@ def decide(found: Search) -> Verdict:
     seeker = Seeker(task, found.declared, found.proposals, found.carried)
     seeker.others = list(found.others)
     seeker.follow(found.chosen)
-    trial, steps, fit = confirmed(seeker, found.chosen, list(found.members), refused)
+    trial, steps, alike = _settled(seeker, found.chosen, list(found.members), refused)
+    task.progress("fitting every sample, and simulating the validation runs")
+    declared, *final = _to_every_sample(found, trial)
+    barred = [key for key, why in refused.items() if why == OTHER_LAW]
+    sets = _along_motion(seeker, trial, declared, barred)
+    led = _near_floor(seeker, sets)
+    if led is not None:
+        trial, steps, alike = _settled(seeker, *shortened(seeker, led), refused)
+        declared, *final = _to_every_sample(found, trial)
+        sets = []
+    if trial.candidates:
+        gains = {s.candidate.key: s.gain for s in steps}
+        sets.append(_Set(trial, final[0], None, gains, confusable(trial, alike), tuple(alike)))
+    return _judged(found, declared, sets, refused)
+
+
+def _to_every_sample(found: Search, trial: Trial) -> list[Trial]:
+    """The declared model, and a trial with candidates, fitted to every sample."""
+    known = [found.declared, trial] if trial.candidates else [found.declared]
+    return fitted_to_every_sample(found.task, known)
+
+
+def _settled(
+    seeker: Seeker, chosen: Trial, members: list[Step], refused: dict[str, str]
+) -> tuple[Trial, list[Step], list[Rival]]:
+    """What is confirmed of a chosen set, or of one that predicts better or is simpler and predicts
+    as well; its steps, and the sets that it cannot be told from. What is not, is noted in `refused`
+    with the reason.
+    """
+    trial, steps, fit = confirmed(seeker, chosen, members, refused)
     alike: list[Rival] = []
     while trial.candidates:
         alike = rivals(seeker, trial, fit)
@@ -105,22 +135,14 @@ def decide(found: Search) -> Verdict:
             alike = []
             continue
         trial, steps, fit, alike = simplest_alike(seeker, trial, steps, fit, alike)
-        floor = floor_of(task, trial, seeker.carried)
+        floor = floor_of(seeker.task, trial, seeker.carried)
         step = doubtful(trial, steps, confusable(trial, alike), floor)
         if step is None:
             break
         refused[step.candidate.key] = "others predict as well, and more than noise is left"
         trial, steps, fit = confirmed(seeker, *shortened(seeker, step.without), refused)
         alike = []
-    task.progress("fitting every sample, and simulating the validation runs")
-    known = [found.declared, trial] if trial.candidates else [found.declared]
-    declared, *rest = fitted_to_every_sample(task, known)
-    barred = [key for key, why in refused.items() if why == OTHER_LAW]
-    sets = _along_motion(seeker, trial, declared, barred)
-    if trial.candidates:
-        gains = {s.candidate.key: s.gain for s in steps}
-        sets.append(_Set(trial, rest[0], None, gains, confusable(trial, alike), tuple(alike)))
-    return _judged(found, declared, sets, refused)
+    return trial, steps, alike
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,6 +174,16 @@ def _along_motion(
     final = found.trial
     compared = fitted(task, final.candidates, final.values, None, executor=task.executor)
     return [_Set(compared, final, found.fit, found.gains, found.alike, ())]
+
+
+def _near_floor(seeker: Seeker, sets: Sequence[_Set]) -> Trial | None:
+    """A set found along the motion, fitted to the outputs from there, where those come near their
+    floor: no remainder hides it in them then, they know its values better, and judge it as any
+    other. None where they do not.
+    """
+    begun = [fitted(seeker.task, s.final.candidates, s.final.values, None) for s in sets]
+    near = [t for t in halving(seeker.task, begun, 1) if is_near_floor(t)]
+    return seeker.polished(near[0]) if near else None
 
 
 def _judged(
