@@ -8,6 +8,7 @@ from scipy.io import savemat
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import read_log, remarks
+from ptp_symbolic.numeric.data.array_table import read_mat
 from ptp_symbolic.platform import Platform, platform_text, read_platform
 
 ROWS = 20
@@ -88,8 +89,23 @@ def test_matlab_of_both_kinds(tmp_path: Path, platform: Platform) -> None:
     with h5py.File(tmp_path / "new.mat", "w", userblock_size=512) as file:
         for name, column in COLUMNS.items():
             file[name] = column[None, :]
-    for name in ("run.mat", "new.mat"):
+    savemat(tmp_path / "structure.mat", {"log": COLUMNS, "gain": 3.0})
+    with h5py.File(tmp_path / "group.mat", "w", userblock_size=512) as file:
+        for name, column in COLUMNS.items():
+            file[f"log/{name}"] = column[None, :]
+    for name in ("run.mat", "new.mat", "structure.mat", "group.mat"):
         assert_same(tmp_path / name, platform)
+
+
+def test_fields_that_share_a_name_keep_that_of_their_structure(
+    tmp_path: Path, platform: Platform
+) -> None:
+    savemat(tmp_path / "two.mat", {"first": COLUMNS, "second": COLUMNS})
+    names = [name for name, _ in read_mat(tmp_path / "two.mat").headings]
+    assert names == ["t", "volt", "angle", "second.t", "second.volt", "second.angle"]
+    savemat(tmp_path / "none.mat", {"note": "empty"})
+    with pytest.raises(InputError, match="the file holds no column of numbers"):
+        read_log(tmp_path / "none.mat", platform)
 
 
 def test_parquet(tmp_path: Path, platform: Platform) -> None:
@@ -134,6 +150,10 @@ def test_times_in_ms_that_are_declared_as_s_are_refused_with_the_cure(
     path = tmp_path / "run.csv"
     path.write_text(text)
     with pytest.raises(InputError, match=r"one sample every 5 s.*write 'time \[ms\]'"):
+        read_log(path, platform)
+    fast = [f"{k},0.0,{a:.9f}" for k, a in enumerate(DEGREES)]
+    path.write_text("time [s],volt [V],angle [deg]\n" + "\n".join(fast) + "\n")
+    with pytest.raises(InputError, match=r"one sample every 1 s.*write 'time \[ms\]'"):
         read_log(path, platform)
     path.write_text(text.replace("time [s]", "time [ms]"))
     assert_same(path, platform)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numba import njit
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.fit import fit_platform
 
@@ -120,3 +121,5 @@ def test_the_length_of_windows_can_be_given(tmp_path: Path) -> None:
     assert found["windows"]["seconds"] == pytest.approx(0.5, rel=0.01)
     assert found["parameters"]["J_pan"]["value"] == pytest.approx(TRUTH["J_pan"], rel=2e-3)
     assert fitted(tmp_path, 100, True, '[fit]\nwindow = "1 min"\n')["windows"] is None
+    with pytest.raises(InputError, match=r"fewer than 10 samples .* 0.01 s; give at least 0.1 s"):
+        fitted(tmp_path, 100, True, '[fit]\nwindow = "50 ms"\n')

@@ -46,7 +46,8 @@ class ArrayTable(Table):
 def read_mat(path: Path) -> ArrayTable:
     """Read the numeric vectors of a MATLAB file, version 5 to 7 by SciPy, 7.3 by h5py.
 
-    A name such as `pan_angle` has no unit; the platform file gives it. Raises InputError for a file
+    A name such as `pan_angle` has no unit; the platform file gives it. Fields of a structure are
+    vectors too, by their own name. Raises InputError for a file
     that is missing, damaged, over 1 GB, or of version 7.3 where h5py is not installed.
     """
     _refuse_size(path)
@@ -57,10 +58,10 @@ def read_mat(path: Path) -> ArrayTable:
     from scipy.io import loadmat
 
     try:
-        found = loadmat(path)
+        found = loadmat(path, simplify_cells=True)
     except Exception as error:  # SciPy raises whatever a damaged byte leads to
         raise InputError(f"{path}: is not a MATLAB file that can be read: {error}.") from error
-    return _table(path, {k: v for k, v in found.items() if not k.startswith("__")})
+    return _table(path, _flat({k: v for k, v in found.items() if not k.startswith("__")}))
 
 
 def read_parquet(path: Path) -> ArrayTable:
@@ -87,7 +88,28 @@ def _hdf5_vectors(path: Path) -> dict[str, NDArray[Any]]:
     except ImportError as error:
         raise _lacking(path, "MATLAB 7.3", "h5py", "matlab") from error
     with h5py.File(path, "r") as file:
-        return {name: item[()] for name, item in file.items() if isinstance(item, h5py.Dataset)}
+        return _flat(_groups(file))
+
+
+def _groups(group: Any) -> dict[str, Any]:
+    """What an HDF5 group holds, groups of it as mappings."""
+    return {
+        name: _groups(item) if hasattr(item, "keys") else item[()]
+        for name, item in group.items()
+        if not name.startswith("#")
+    }
+
+
+def _flat(found: Mapping[str, Any]) -> dict[str, Any]:
+    """Fields of structures beside what stands alone: by their own name where no other has it, else
+    with that of the structure before it.
+    """
+    flat: dict[str, Any] = {n: v for n, v in found.items() if not isinstance(v, Mapping)}
+    for structure, fields in found.items():
+        if isinstance(fields, Mapping):
+            for name, value in _flat(fields).items():
+                flat[f"{structure}.{name}" if name in flat else name] = value
+    return flat
 
 
 def _table(path: Path, found: Mapping[str, Any]) -> ArrayTable:

@@ -17,7 +17,7 @@ from ptp_symbolic.numeric.data.table import Table
 from ptp_symbolic.platform import Clock, Platform, SignalDeclaration, naming_file
 
 MIN_ROWS = 10
-LONGEST_PERIOD = 1.0  # s between samples; no machine here is that slow
+SLOWEST = 5.0  # Hz; samples at most as often show no drive that lets go
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,7 +172,8 @@ def _read_table(
     second = unit_factor(f"{table.head}: column 'time'", "time", "time", "s", clock[1])
     if second != 1.0:
         time *= second
-    _refuse_slow(table, time)
+    if any(s.role == "output" for s in signals):
+        _refuse_slow(table, time)
     return time, calibrated(numbers[:, 1:], signals, factors)
 
 
@@ -184,6 +185,8 @@ def _refuse_short(path: Path, rows: NDArray[np.float64]) -> None:
 
 
 def _listing(table: Table) -> str:
+    if not table.headings:
+        return "the file holds no column of numbers"
     columns = [name if unit is None else f"{name} [{unit}]" for name, unit in table.headings]
     text = ", ".join(columns)
     return "the header has " + (text if len(text) <= 300 else text[:297] + "...")
@@ -191,10 +194,10 @@ def _listing(table: Table) -> str:
 
 def _refuse_slow(table: Table, time: NDArray[np.float64]) -> None:
     period = float(np.median(np.diff(time)))
-    if period > LONGEST_PERIOD:
+    if SLOWEST * period >= 1.0:
         raise InputError(
-            f"{table.head}: one sample every {period:.6g} s; at most {LONGEST_PERIOD:g} s are"
-            " allowed: if the times are in ms, write 'time [ms]'."
+            f"{table.head}: one sample every {period:.6g} s, and more than {SLOWEST:g} per second"
+            " are needed: if the times are in ms, write 'time [ms]', else log faster."
         )
 
 

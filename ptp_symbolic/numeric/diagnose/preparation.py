@@ -5,11 +5,13 @@ from concurrent.futures import Executor
 
 import numpy as np
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.diagnose.candidates import find_candidates, vanished, within_reach
 from ptp_symbolic.numeric.diagnose.leading_windows import leading, spread_over
 from ptp_symbolic.numeric.diagnose.trial import Progress, Task
 from ptp_symbolic.numeric.identify.constants import (
     FORGOTTEN,
+    LEAST_START,
     SEARCH_PERIOD,
     SHORT,
 )
@@ -41,8 +43,10 @@ def task_of(
     effects that are no candidates, `noises` the declared noise (rms) of every signal in its unit
     (None: not declared), `window` the length in s of the windows (None: as far as the noise of the
     inputs allows, see `window_length`), `material` that of `Task`. Raises InputError for values out
-    of bounds.
+    of bounds, and for windows of too few samples.
     """
+    if window is not None:
+        _refuse_short(window, train)
     off = vanished(model, declared) if declared else {}
     fixed = {**model.defaults, **off, **{name: value for name, (value, _) in known.items()}}
     start = model.parameter_vector({**fixed, **all_values_at_start(free)})
@@ -75,6 +79,17 @@ def task_of(
         _finest_angle(train),
         material=material,
     )
+
+
+def _refuse_short(window: float, runs: Sequence[Run]) -> None:
+    """Raise InputError for windows in s in which no run has the samples of two starts."""
+    period = min(float(np.median(np.diff(run.time))) for run in runs)
+    least = 2 * LEAST_START
+    if window < least * period:
+        raise InputError(
+            f"fit.window: {window:g} s holds fewer than {least} samples of these logs, one every"
+            f" {period:.3g} s; give at least {least * period:.3g} s."
+        )
 
 
 def _finest_angle(runs: Sequence[Run]) -> float:
