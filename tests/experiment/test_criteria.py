@@ -14,6 +14,7 @@ from ptp_symbolic.numeric.experiment.machine import Scenario, logged, play
 from ptp_symbolic.numeric.identify.fit import fit_parameters
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.identify.simulations import Effort
+from tests.diagnose.spring_table import PERIOD
 from tests.experiment.table_contender import (
     AMPLITUDE,
     INERTIA,
@@ -164,6 +165,30 @@ def test_a_run_is_scaled_back_until_it_keeps_its_limits(tmp_path: Path) -> None:
     rate = np.abs(np.gradient(closed, run.t)).max()
     assert 0.9 * 0.05 < rate <= 0.05
     assert np.abs(np.gradient(motion(freely.inputs[:, 0]), run.t)).max() > 0.1
+
+
+def test_a_machine_that_runs_on_after_the_end_keeps_its_stroke(tmp_path: Path) -> None:
+    """A push that ends with the run: without a spring the table runs on by rate x inertia /
+    damping, 0.7 times the rate in s.
+    """
+    platform, model = table(tmp_path)
+    loose = contender(model, "loose", ("b_pan",), k1_cable_pan=0.0)
+    run = conditions(platform, 2.0)
+    allowed = {**run.limits, "theta_pan": Limit("theta_pan", -0.5, 0.5)}
+    played = play(loose, replace(run, limits=allowed), np.ones((len(run.t), 1)))
+    assert played is not None
+    fastest, lag = played.inputs[0, 0] / VALUES["b_pan"], INERTIA / VALUES["b_pan"]
+    last, end = run.t[-1], run.t[-1] + PERIOD
+
+    def pushed(time: float) -> tuple[float, float]:
+        rate = fastest * (1.0 - np.exp(-time / lag))
+        return fastest * time - lag * rate, rate
+
+    assert played.outputs[-1, 0] == pytest.approx(pushed(last)[0], rel=1e-3)
+    angle, rate = pushed(end)
+    stops = angle + lag * rate * (1.0 - np.exp(-(last - PERIOD) / lag))
+    assert 0.45 < stops <= 0.5
+    assert played.reached["theta_pan"][1] == pytest.approx(stops, rel=1e-3)
 
 
 def test_a_machine_follows_its_own_run(tmp_path: Path) -> None:

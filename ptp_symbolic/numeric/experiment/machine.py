@@ -27,6 +27,7 @@ DIGITS = 4  # of an input, below its limit
 TRIES = 8  # to bring an input within the limits
 UNSURE = 1e-3  # of the range of an input whose noise is not declared; rms
 INSIDE = 0.98  # of the limit at which such an input is aimed
+COASTING = 40  # samples after the run, for as long as it took: the machine does not stop at its end
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,10 +77,10 @@ def play(
     machine: Contender, conditions: Conditions, wave: FloatArray, place: float = 0.0
 ) -> Played | None:
     """Play `wave` [k, nu], of which -1 and 1 are the limits of the inputs, scaled back until
-    everything stays within its limits; None where no try does. The run begins at `place` in every
-    gap.
+    everything stays within its limits, and does so for as long again with inputs at rest; None
+    where no try does. The run begins at `place` in every gap.
     """
-    begin, scale = _start(machine, conditions, place), 1.0
+    begin, scale, count = _start(machine, conditions, place), 1.0, len(conditions.t)
     for _ in range(TRIES):
         inputs = inputs_of(machine.model, conditions, scale * wave)
         signals = _signals(machine, conditions, inputs, begin)
@@ -88,7 +89,7 @@ def play(
             continue
         worst, _ = excess(conditions.limits, signals)
         if worst <= 1.0:
-            outputs = [signals[name] for name in machine.model.output_names]
+            outputs = [signals[name][:count] for name in machine.model.output_names]
             limited = {name: signals[name] for name in conditions.limits}
             reached = {n: (float(v.min()), float(v.max())) for n, v in limited.items()}
             start = np.array(list(begin.values()))
@@ -143,10 +144,13 @@ def _start(machine: Contender, conditions: Conditions, place: float) -> dict[str
 def _signals(
     machine: Contender, conditions: Conditions, u: FloatArray, begin: Mapping[str, float]
 ) -> dict[str, FloatArray] | None:
-    """Inputs, states and outputs by name, each [k], from the states `begin`; None where it cannot
-    be simulated.
+    """Inputs, states and outputs by name, each [k + COASTING], from the states `begin`, the last of
+    them after the run; None where it cannot be simulated.
     """
-    model, t = machine.model, conditions.t
+    model = machine.model
+    t, period = conditions.t, conditions.t[1] - conditions.t[0]  # the last input is held as long
+    t = np.concatenate([t, t[-1] + np.linspace(period, t[-1] - t[0], COASTING)])
+    u = np.vstack([u, inputs_of(model, conditions, np.zeros((COASTING, u.shape[1])))])
     held = {n: table(t, c, "hold") for n, c in zip(model.input_names, u.T, strict=True)}
     try:
         found = simulate(
