@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_needs_it
 from ptp_symbolic.numeric.diagnose.confirm import (
     at_bound,
     is_amount_known,
     leads,
     unstable_without,
+    why_unconfirmed,
 )
 from ptp_symbolic.numeric.diagnose.findings import is_earned
 from ptp_symbolic.numeric.diagnose.gain import Gain, p_value
@@ -92,6 +93,21 @@ def test_parameters_that_trade_for_each_other_have_an_amount_together() -> None:
     fit = finished(residuals, slopes, None, (SPRING, second), {"k": found[0], "k2": found[1]})
     assert not any(e.identified for e in estimates(fit))
     assert is_amount_known(fit, pair)
+
+
+def test_an_effect_of_no_amount_through_which_another_acts_is_known_with_that() -> None:
+    """Friction that goes with the load alone needs the law that it makes larger."""
+    through = free_parameter("F", 1.0, 0.0, 5.0)
+    law = Candidate("law", None, "", "", (through,), {"F": 0.0})
+    load = Candidate("load", None, "", "", (SPRING,), {"k": 0.0}, brings=("law",))
+    columns = [np.column_stack([w, np.roll(w, 50)]) for w in waves(4)]
+    noise = [np.random.default_rng(8).standard_normal(len(c)) for c in columns]
+    slopes = [-c * np.array([SPRING.scale, through.scale]) for c in columns]
+    fit = finished(noise, slopes, None, (SPRING, through), {"k": 1.0, "F": 0.0})
+    assert not is_amount_known(fit, law)
+    assert why_unconfirmed(fit, law, False) is not None
+    assert why_unconfirmed(fit, with_what_needs_it(law, (law, load)), False) is None
+    assert with_what_needs_it(load, (law, load)) == load
 
 
 def test_an_amount_is_known_whatever_its_shape() -> None:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_needs_it
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, why_unconfirmed
 from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared
@@ -128,7 +128,8 @@ class _Motion:
         if not all(self.earns(candidates, c) for c in candidates):
             return False
         fit = self.fitted(candidates)
-        return not any(why_unconfirmed(fit, c, leaves_noise=False) for c in candidates)
+        members = [with_what_needs_it(c, candidates) for c in candidates]
+        return not any(why_unconfirmed(fit, c, leaves_noise=False) for c in members)
 
     def alike(self, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
         """By the key of each member of a set, those that predict no worse in its place, and beside

@@ -74,6 +74,16 @@ class Candidate:
         return self.vanishing.get(f.name) == f.upper
 
 
+def with_what_needs_it(candidate: Candidate, candidates: Sequence[Candidate]) -> Candidate:
+    """A candidate with the parameters of those that act through it: taken out of a set, it takes
+    them along, and of itself it may be next to nothing (friction that goes with the load alone).
+    """
+    needing = [c for c in candidates if candidate.key in c.brings]
+    free = tuple(f for c in (candidate, *needing) for f in c.free)
+    vanishing = {n: v for c in (candidate, *needing) for n, v in c.vanishing.items()}
+    return replace(candidate, free=free, vanishing=vanishing)
+
+
 def find_candidates(
     model: Model, declared: Sequence[str], known: Mapping[str, tuple[float, float | None]]
 ) -> tuple[Candidate, ...]:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from functools import partial
 
+from ptp_symbolic.numeric.diagnose.candidates import with_what_needs_it
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, at_bound, why_unconfirmed
 from ptp_symbolic.numeric.diagnose.findings import Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import (
@@ -128,7 +129,8 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
             return step, _too_little(step.gain, seeker.task.material)
         if leaves_noise_of_inputs(step.without, floor):
             return step, "the noise of the inputs leaves as much without it"
-        reason = why_unconfirmed(fit, step.candidate, quiet, refit)
+        member = with_what_needs_it(step.candidate, trial.candidates)
+        reason = why_unconfirmed(fit, member, quiet, refit)
         if reason is not None:
             return step, reason
         space = seeker.proposals.space
