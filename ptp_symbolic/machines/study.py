@@ -10,7 +10,7 @@ from typing import Any
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.machines.force_error import force_error
-from ptp_symbolic.machines.friction_ladder import ladder
+from ptp_symbolic.machines.friction_ladder import ladder, mean_error
 from ptp_symbolic.numeric.data import read_log
 from ptp_symbolic.numeric.friction_map.points import Columns, read_points
 from ptp_symbolic.numeric.friction_map.summary import friction_map
@@ -88,8 +88,7 @@ def emps(folder: Path, progress: Progress) -> dict[str, Any]:
     after = _written(found)
     rows = []
     for stage, machine in (("before", platform), ("after", after)):
-        fitted = found.summary["fit"][stage]["parameters"]
-        values = {name: row["value"] for name, row in fitted.items()}
+        values = _values(found, stage)
         for held in (False, True):
             errors = [_force_error(machine, values, log, held) for (log,) in logs]
             rows.append({"stage": stage, "held": held, "train": errors[0], "validate": errors[1]})
@@ -102,8 +101,13 @@ def servo_pendulum(folder: Path, progress: Progress) -> dict[str, Any]:
     progress("servo pendulum")
     logs = pendulum_logs(folder)
     found = diagnose_platform(platform, *logs, progress)
+    errors = []
+    for stage, machine in (("before", platform), ("after", _written(found))):
+        train, validate = (mean_error(machine, _values(found, stage), part) for part in logs)
+        errors.append({"stage": stage, "train": train, "validate": validate})
     rungs = ladder(platform, *logs, progress)
-    return {**_diagnosis("Pendulum on a geared servo", PENDULUM, found), "ladder": rungs}
+    own = {"position_error": errors, "ladder": rungs}
+    return {**_diagnosis("Pendulum on a geared servo", PENDULUM, found), **own}
 
 
 def screw_drives(folder: Path, progress: Progress) -> dict[str, Any]:
@@ -124,9 +128,15 @@ def screw_drives(folder: Path, progress: Progress) -> dict[str, Any]:
 
 
 def _diagnosis(title: str, source: str, found: Output) -> dict[str, Any]:
-    kept = ("verdict", "summary", "added", "error", "held_out", "refused", "hints", "fit")
-    own = {key: found.summary[key] for key in (*kept, "provenance")}
+    kept = ("verdict", "summary", "added", "error", "held_out", "ranking", "refused", "hints")
+    own = {key: found.summary[key] for key in (*kept, "fit", "provenance")}
     return {"title": title, "source": source, **own}
+
+
+def _values(found: Output, stage: str) -> dict[str, float]:
+    """The fitted values of a diagnosis, "before" or "after" what was missing was added."""
+    fitted = found.summary["fit"][stage]["parameters"]
+    return {name: row["value"] for name, row in fitted.items()}
 
 
 def _written(found: Output) -> Platform:

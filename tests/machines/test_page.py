@@ -1,0 +1,51 @@
+"""The page of real machines: what was accepted, what was rejected and with which figures."""
+
+from typing import Any
+
+from ptp_symbolic.report.machines import render_machines
+
+RANKING = [
+    {
+        "effect": "backlash",
+        "gain": {"share": 0.8, "ci95": [0.7, 0.9]},
+        "accepted": True,
+        "why": "",
+    },
+    {
+        "effect": "cogging",
+        "gain": {"share": 0.31, "ci95": [0.1, 0.5]},
+        "accepted": False,
+        "why": "its amount cannot be told from zero",
+    },
+    {"effect": "cable_spring", "gain": None, "accepted": False, "why": "compared in rows"},
+]
+
+
+def machine() -> dict[str, Any]:
+    total = {"total": {"rmse_counts": 12.5, "rmse": 1e-3, "unit": "rad"}}
+    log = {"part": "validate", "file": "held_out.csv", "samples": 400, "rate": 200.0}
+    return {
+        "title": "A servo",
+        "source": "A laboratory, 2020",
+        "verdict": "explained",
+        "summary": "Missing: backlash",
+        "error": {p: dict.fromkeys(("before", "after", "noise_floor"), total) for p in PARTS},
+        "ranking": RANKING,
+        "position_error": [{"stage": "before", "train": 0.143, "validate": 0.157}],
+        "fit": {"after": {"parameters": {}}},
+        "refused": {},
+        "hints": [],
+        "provenance": {"logs": [{**log, "sha256": "0f3e"}]},
+    }
+
+
+PARTS = ("train", "validate")
+
+
+def test_candidates_errors_and_files_of_a_machine_are_on_its_page() -> None:
+    page = render_machines({"version": "1", "date": "today", "machines": [machine()]})
+    assert "80.0 % (70.0 to 90.0)" in page and "accepted" in page
+    assert "31.0 % (10.0 to 50.0)" in page and "its amount cannot be told from zero" in page
+    assert "where other sets did better: cable_spring." in page
+    assert "training 143, validation 157" in page
+    assert "held_out.csv" in page and "0f3e" in page
