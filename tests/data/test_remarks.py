@@ -64,6 +64,10 @@ def test_an_encoder_that_is_set_anew_is_noted_with_time_and_size() -> None:
     jumped = MOVING + np.where(TIME >= 0.5, 900.0 * COUNT, 0.0)
     (text,) = remarks([log(jumped)], PLATFORM)
     assert "'pan_angle' jumps by 90" in text and "at 0.5 s" in text and "set anew" in text
+    spiked = MOVING.copy()
+    spiked[120] += 1.0
+    (text,) = remarks([log(spiked)], PLATFORM)
+    assert "at 0.6 s and 1 more times; a new window begins there" in text
     bouncing = np.round(np.abs(np.sin(2.0 * TIME)) / COUNT) * COUNT
     starting = np.where(TIME < 1.0, 0.0, np.round((TIME - 1.0) / COUNT) * COUNT)
     assert remarks([log(bouncing), log(starting)], PLATFORM) == ()

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.continuity import LONG_PAUSE, Wraps, after_lost
+from ptp_symbolic.numeric.data.continuity import LONG_PAUSE, Wraps, after_lost, jumps
 from ptp_symbolic.numeric.data.log import Log
 from ptp_symbolic.platform import Platform, SignalDeclaration
 
@@ -102,9 +102,19 @@ def _at_ends(values: FloatArray) -> float:
 
 
 def _jump_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]:
-    """Lone steps of an encoder that stay: it was set anew, at an index mark, or lost counts."""
+    """Jumps of an encoder, after which a new window begins; else lone steps that stay: it was set
+    anew, at an index mark, or lost counts.
+    """
     if signal.count is None:
         return []
+    cut = jumps(log.outputs[:, column], log.time, signal.count)
+    if cut.size:
+        size = abs(log.outputs[cut[0], column] - log.outputs[cut[0] - 1, column]) / signal.count
+        more = f" and {cut.size - 1} more times" if cut.size > 1 else ""
+        return [
+            f"{log.name}: '{signal.column}' jumps by {size:.6g} counts at {log.time[cut[0]]:.6g} s"
+            f"{more}; a new window begins there. Was the encoder set anew, at an index?"
+        ]
     step, period = np.abs(np.diff(log.outputs[:, column])), np.diff(log.time)
     rate = np.maximum(step, signal.count) / period
     beside = np.r_[np.ones(BESIDE), 0.0, np.ones(BESIDE)] > 0.0

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.data.continuity import uninterrupted
+from ptp_symbolic.numeric.data.continuity import jumps, parted, pauses
 from ptp_symbolic.numeric.identify.constants import ROUNDING
 from ptp_symbolic.numeric.identify.noise import white_noise
 from ptp_symbolic.numeric.identify.rate_signals import refuse_unseen_angles
@@ -51,13 +51,20 @@ def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple
     return tuple(
         _prepare(model, outputs, piece, order, counts, sigma, underway=number > 0)
         for log in logs
-        for number, piece in enumerate(_pieces(log))
+        for number, piece in enumerate(_pieces(log, counts))
     )
 
 
-def _pieces(log: Log) -> list[Log]:
-    """The parts of a log between its gaps, named as windows of it."""
-    parts = uninterrupted(log.time)
+def _pieces(log: Log, counts: FloatArray) -> list[Log]:
+    """The parts of a log between its gaps, and the jumps of its encoders, named as windows of it.
+    `counts` [ny] are the resolutions of the encoders.
+    """
+    jumped = [
+        jumps(column, log.time, count)
+        for column, count in zip(log.outputs.T, counts, strict=True)
+        if np.isfinite(count)
+    ]
+    parts = parted(log.time, np.unique(np.concatenate([pauses(log.time), *jumped])))
     if len(parts) == 1:
         return [log]
     return [

@@ -1,0 +1,56 @@
+"""Jumps of an encoder: told from a motion, from impacts and from breakaways."""
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.numeric.data.continuity import jumps, parted
+
+PERIOD = 0.01
+TIME = PERIOD * np.arange(800)
+COUNT = 2.0 * np.pi / 65536
+WAVE = np.sin(2.0 * TIME)
+
+
+def rounded(angle: np.ndarray) -> np.ndarray:
+    return np.rint(angle / COUNT) * COUNT
+
+
+@pytest.mark.parametrize("degrees", [7.0, -7.0, 90.0])
+@pytest.mark.parametrize("at", [300, 471])
+def test_an_encoder_that_is_set_anew_jumps_in_motion_too(degrees: float, at: int) -> None:
+    """At 2 rad/s a sample is a degree apart from the next; at 471 the motion turns back."""
+    jumped = rounded(WAVE + np.where(np.arange(800) >= at, np.radians(degrees), 0.0))
+    assert list(jumps(jumped, TIME, COUNT)) == [at]
+
+
+def test_a_single_wrong_sample_is_left_out() -> None:
+    wrong = rounded(WAVE)
+    wrong[300] += 0.7
+    found = jumps(wrong, TIME, COUNT)
+    assert list(found) == [300, 301]
+    assert parted(TIME, found) == [slice(0, 300), slice(301, 800)]
+
+
+def slipping() -> np.ndarray:
+    """Rest, and a slip of 3 degrees within a sample every second."""
+    return np.radians(3.0) * np.floor(TIME)
+
+
+@pytest.mark.parametrize(
+    "angle",
+    [
+        WAVE,
+        np.abs(WAVE),
+        np.maximum(TIME - 1.0, 0.0),
+        slipping(),
+        np.where(TIME < 4.0, 0.0, np.radians(0.1)),
+    ],
+    ids=["motion", "impact", "breakaway", "slips", "little"],
+)
+def test_what_a_machine_does_is_no_jump(angle: np.ndarray) -> None:
+    assert jumps(rounded(angle), TIME, COUNT).size == 0
+
+
+def test_samples_that_are_missing_are_no_jump() -> None:
+    kept = np.delete(np.arange(800), [300, 301, 302])
+    assert jumps(rounded(WAVE[kept]), TIME[kept], COUNT).size == 0
