@@ -12,9 +12,13 @@ from ptp_symbolic.models import emission, variants
 from ptp_symbolic.models.declared import free_parameters, known_values, refuse_unknown_signals
 from ptp_symbolic.numeric.data import read_logs
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, find_candidates, vanished
-from ptp_symbolic.numeric.diagnose.trial import Task, fitted, restarted
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose, with_lines
+from ptp_symbolic.numeric.diagnose.refits import fit_declared, polished
+from ptp_symbolic.numeric.diagnose.starts import from_rows
+from ptp_symbolic.numeric.diagnose.trial import Task, fitted, halving, restarted
 from ptp_symbolic.numeric.experiment.contender import Contender, from_fit, without_logs
-from ptp_symbolic.numeric.identify.constants import POLISH, ROUNDING
+from ptp_symbolic.numeric.identify.constants import ROUNDING
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.simulations import all_values_at_start
@@ -43,13 +47,16 @@ class Rivals:
 
 @dataclass(frozen=True, eq=False)
 class _Known:
-    """What is declared, and the logs so far as a task (None: no logs)."""
+    """What is declared, and the logs so far as a task, with what their motion proposes (None: no
+    logs).
+    """
 
     model: Model
     free: tuple[FreeParameter, ...]
     values: Mapping[str, float]
     candidates: tuple[Candidate, ...]
     task: Task | None
+    proposals: Proposals | None
 
 
 def rivals_of(
@@ -62,7 +69,7 @@ def rivals_of(
     progress: Progress,
 ) -> Rivals:
     """The sets of effects `between`, keys joined by ``+``, or the declared model alone, fitted to
-    `logs` if there are any. A search begins at the values in `known`.
+    `logs` if there are any: from the values in `known`, and from where the measured motion leads.
 
     Raises InputError for unknown names and logs that do not fit.
     """
@@ -76,6 +83,7 @@ def rivals_of(
         noted = look_at(platform, read, read, progress)
         task = task_for(platform, model, read, read, declared, executor, progress)
     here = _declared(platform, model, declared, task)
+    task = here.task
     for name in parameters:
         if name not in {f.name for f in here.free}:
             raise unknown("free parameter", name, [f.name for f in here.free])
@@ -101,14 +109,16 @@ def _declared(
     platform: Platform, model: Model, declared: Sequence[str], task: Task | None
 ) -> _Known:
     if task is not None:
-        values = {**task.fixed, **all_values_at_start(task.free)}
-        return _Known(model, task.free, values, task.candidates, task)
+        proposals = propose(task)
+        task = replace(task, candidates=with_lines(task.candidates, proposals))
+        task, trial = fit_declared(task, proposals)
+        return _Known(model, task.free, trial.values, task.candidates, task, proposals)
     refuse_unknown_signals(platform, model)
     free, known = free_parameters(platform, model), known_values(platform, model)
     off = vanished(model, declared) if declared else {}
     fixed = {**model.defaults, **off, **{name: value for name, (value, _) in known.items()}}
     candidates = find_candidates(model, declared, known) if declared else ()
-    return _Known(model, free, {**fixed, **all_values_at_start(free)}, candidates, None)
+    return _Known(model, free, {**fixed, **all_values_at_start(free)}, candidates, None, None)
 
 
 def _effects(here: _Known, keys: str) -> tuple[Candidate, ...]:
@@ -142,9 +152,13 @@ def _contender(
     for f in free:
         if f.name in known:
             values.update(dict.fromkeys(f.names, known[f.name]))
-    if here.task is None:
+    if here.task is None or here.proposals is None:
         return without_logs(label, here.model, [restarted(f, values[f.name]) for f in free], values)
-    trial = fitted(here.task, effects, values, None, POLISH, executor=executor)
+    begun = fitted(here.task, effects, values, None, executor=executor)
+    rows = from_rows(here.task, here.proposals, effects, values) if effects else []
+    (trial,) = halving(here.task, [begun, *rows], 1) or [begun]
+    if trial.fit.failed is None:
+        trial = polished(here.task, trial, carried_noise(here.task, trial.fit))
     if trial.fit.failed is not None:
         raise InputError(
             f"The model {label} does not simulate the logs ({trial.fit.failed}); change its start"
