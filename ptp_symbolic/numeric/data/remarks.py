@@ -154,8 +154,8 @@ def _clock_remarks(log: Log) -> list[str]:
     if lost.size:
         places = f"at {lost.size} places" if lost.size > 1 else "at one place"
         found.append(
-            f"{log.name}: samples are missing {places}, for up to {lost.max():.3g} s; a new window"
-            " begins there if it matters when an input changed meanwhile, else it held."
+            f"{log.name}: samples are missing {places}, for up to {lost.max():.3g} s; inputs"
+            " are held meanwhile, unless the logs fit far better where a new window begins there."
         )
     usual = np.delete(step, gaps - 1)
     jitter = float(np.std(usual)) / period

@@ -6,8 +6,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.numeric.diagnose.left_over import left_over
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, mean_squares
-from ptp_symbolic.numeric.identify.constants import SHORT
+from ptp_symbolic.numeric.identify.constants import MOST, SHORT
+from ptp_symbolic.numeric.identify.lost_samples import parted_at_lost_samples
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.windows import (
     cut_where_errors_grow,
@@ -44,6 +46,35 @@ def validation_in_windows(task: Task, declared: Trial) -> Task:
     return replace(task, validate=cut)
 
 
+def parted_task(task: Task, trial: Trial) -> Task:
+    """The task with training and validation runs parted where samples are missing, and the signals
+    depend on what the inputs did meanwhile (see `parted_at_lost_samples`), at the values of a
+    trial.
+    """
+    p = task.model.parameter_vector(trial.values)
+
+    def parts_of(run: Run) -> tuple[Run, ...]:
+        return parted_at_lost_samples(task.model, [run], p)
+
+    train = list(task.executor.map(parts_of, task.every_sample))
+    if all(len(parts) == 1 for parts in train):
+        return task
+    task.progress("runs are parted where samples are missing")
+    fewer = [
+        (run,) if len(parts) == 1 else parts for run, parts in zip(task.train, train, strict=True)
+    ]
+    validate = list(task.executor.map(parts_of, task.validate))
+    return _with(task, train, fewer, validate)
+
+
+def takes_away_most(short: Trial, trial: Trial) -> bool:
+    """Whether a trial in windows leaves less than half of the mean square of one over whole runs:
+    where it does not, something else is missing, which windows hide.
+    """
+    left, whole = (float(np.sum(left_over(t.fit) ** 2)) for t in (short, trial))
+    return left <= (1.0 - MOST) * whole
+
+
 def in_windows_of(task: Task, trial: Trial) -> Task:
     """The task with training and validation runs cut into windows where the model of a trial
     multiplies an error of the start tenfold (see `window_length`, which asks the same of the
@@ -69,9 +100,19 @@ def in_windows_of(task: Task, trial: Trial) -> Task:
         (run,) if len(parts) == 1 else parts for run, parts in zip(task.train, train, strict=True)
     ]
     validate = cut(task.validate, [run.guess for run in task.validate])
+    return _with(task, train, fewer, validate)
+
+
+def _with(
+    task: Task,
+    every_sample: Sequence[Sequence[Run]],
+    train: Sequence[Sequence[Run]],
+    validate: Sequence[Sequence[Run]],
+) -> Task:
+    """The task with runs in parts."""
     return replace(
         task,
-        every_sample=tuple(w for parts in train for w in parts),
-        train=tuple(w for parts in fewer for w in parts),
-        validate=tuple(w for parts in validate for w in parts),
+        every_sample=tuple(part for parts in every_sample for part in parts),
+        train=tuple(part for parts in train for part in parts),
+        validate=tuple(part for parts in validate for part in parts),
     )

@@ -16,7 +16,6 @@ from ptp_symbolic.numeric.identify.constants import (
     SHORT,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.lost_samples import parted_at_lost_samples
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
 from ptp_symbolic.numeric.identify.simulations import all_values_at_start
@@ -51,7 +50,6 @@ def task_of(
     fixed = {**model.defaults, **off, **{name: value for name, (value, _) in known.items()}}
     start = model.parameter_vector({**fixed, **all_values_at_start(free)})
     noise = tuple(noises[name] for name in model.input_names)
-    train, validate = (parted_at_lost_samples(model, runs, start) for runs in (train, validate))
     length = window_length(model, train, start, noise) if window is None else window
     if length is not None and length >= max(float(run.time[-1] - run.time[0]) for run in train):
         length = None

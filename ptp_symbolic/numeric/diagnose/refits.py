@@ -8,7 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.cut_runs import in_windows, validation_in_windows
+from ptp_symbolic.numeric.diagnose.cut_runs import (
+    in_windows,
+    parted_task,
+    takes_away_most,
+    validation_in_windows,
+)
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.growing_windows import growing, led_through, settled, starts_of
@@ -66,6 +71,12 @@ def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
         begun.append(fitted(task, (), led_through(growing(task), (), proposals.start), None))
     best = halving(task, begun, 1) or begun[-1:]
     trial = polished(task, best[0], carried_noise(task, best[0].fit))
+    part = parted_task(task, trial)
+    if part is not task:
+        short = fitted(part, (), trial.values, None)
+        short = polished(part, short, carried_noise(part, short.fit))
+        if takes_away_most(short, trial):
+            task, trial = part, short
     part = in_windows(task, trial)
     if part is not task:
         short = fitted(part, (), trial.values, None)

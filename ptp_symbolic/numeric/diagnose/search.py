@@ -4,13 +4,11 @@ completed, pruned and grown until every candidate in it is needed and none outsi
 
 from dataclasses import replace
 
-import numpy as np
-
-from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of
+from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of, parted_task, takes_away_most
 from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
 from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.gain import gain
-from ptp_symbolic.numeric.diagnose.left_over import carried_noise, left_over
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
 from ptp_symbolic.numeric.diagnose.proposals import propose, with_lines
 from ptp_symbolic.numeric.diagnose.refits import fit_declared, polished
@@ -99,24 +97,25 @@ def _from_declared(seeker: Seeker) -> Search:
 
 
 def _in_windows(seeker: Seeker, best: Trial) -> Seeker | None:
-    """A search that begins in windows where the best of another asks for them (`in_windows_of`);
-    None where it leaves only noise, where runs can be followed to their end, and where most of what
-    is left stays in windows too: something else is missing then.
+    """A search that begins in windows where the best of another asks for them (`parted_task`,
+    `in_windows_of`); None where it leaves only noise, where runs can be followed to their end, and
+    where most of what is left stays in windows too: something else is missing then.
     """
     if not best.candidates or seeker.is_at_noise(best):
         return None
-    part = in_windows_of(seeker.task, best)
-    if part is seeker.task:
-        return None
-    part = with_fewer_samples(part, best.values)
-    short = fitted(part, best.candidates, best.values, None)
-    short = polished(part, short, carried_noise(part, short.fit))
-    left, whole = (float(np.sum(left_over(t.fit) ** 2)) for t in (short, best))
-    if left > (1.0 - MOST) * whole:
-        return None
-    begun = fitted(part, (), seeker.declared.values, None)
-    declared = polished(part, begun, carried_noise(part, begun.fit))
-    return Seeker(part, declared, seeker.proposals, carried_noise(part, declared.fit))
+    for cut in (parted_task, in_windows_of):
+        part = cut(seeker.task, best)
+        if part is seeker.task:
+            continue
+        part = with_fewer_samples(part, best.values)
+        short = fitted(part, best.candidates, best.values, None)
+        short = polished(part, short, carried_noise(part, short.fit))
+        if not takes_away_most(short, best):
+            continue
+        begun = fitted(part, (), seeker.declared.values, None)
+        declared = polished(part, begun, carried_noise(part, begun.fit))
+        return Seeker(part, declared, seeker.proposals, carried_noise(part, declared.fit))
+    return None
 
 
 def extended(
