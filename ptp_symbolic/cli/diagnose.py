@@ -172,8 +172,8 @@ def _print_windows(summary: Mapping[str, Any]) -> None:
         return
     count, seconds = summary["windows"]["count"], summary["windows"]["seconds"]
     click.echo(
-        f"Runs were cut into {count} windows of {seconds:.2g} s, each with a start of its own: over"
-        " longer ones errors of the start and of the inputs would rule."
+        f"Runs were cut into {count} windows of {seconds:.2g} s, each with a start of its own:"
+        " samples are missing between them, or errors of the start and of the inputs would rule."
     )
 
 

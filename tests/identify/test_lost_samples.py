@@ -30,7 +30,7 @@ def moved(torque: Floats) -> Run:
 def test_where_a_torque_changed_meanwhile_a_new_part_begins() -> None:
     """Held 30 ms too long, half a newton metre is 0.75 rad/s more at 0.02 kg m^2."""
     run = moved(np.where(TIME < 2.0, 0.5, -0.5))
-    first, second = parted_at_lost_samples(MODEL, [run], P)
+    first, second = parted_at_lost_samples(MODEL, run, P)
     assert (first.source, second.source) == (run.source, run.source)
     assert (first.time[-1], second.time[0]) == pytest.approx((1.99, 2.03))
     assert len(first.time) + len(second.time) == len(run.time)
@@ -42,15 +42,15 @@ def test_where_a_torque_changed_meanwhile_a_new_part_begins() -> None:
 
 def test_where_the_torque_stays_the_run_stays_whole() -> None:
     run = moved(np.where(TIME < 1.0, 0.5, -0.5))
-    assert parted_at_lost_samples(MODEL, [run], P) == (run,)
+    assert parted_at_lost_samples(MODEL, run, P) == (run,)
 
 
 def test_a_change_that_moves_no_signal_by_its_noise_leaves_the_run_whole() -> None:
     """A thousandth of the torque is 0.5 counts a second later; noise of 20 counts hides it."""
     run = moved(np.where(TIME < 2.0, 5e-4, -5e-4))
     coarse = replace(run, weight=run.weight / 20.0)
-    assert parted_at_lost_samples(MODEL, [coarse], P) == (coarse,)
-    assert len(parted_at_lost_samples(MODEL, [run], P)) == 2
+    assert parted_at_lost_samples(MODEL, coarse, P) == (coarse,)
+    assert len(parted_at_lost_samples(MODEL, run, P)) == 2
 
 
 @pytest.mark.parametrize(("jitter", "lost"), [(0.0, 1), (0.05, 1), (0.05, 3)])

@@ -7,7 +7,14 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.continuity import LONG_PAUSE, Wraps, after_lost, jumps
+from ptp_symbolic.numeric.data.continuity import (
+    BESIDE,
+    LONE,
+    LONG_PAUSE,
+    Wraps,
+    after_lost,
+    jumps,
+)
 from ptp_symbolic.numeric.data.log import Log
 from ptp_symbolic.platform import Platform, SignalDeclaration
 
@@ -17,8 +24,6 @@ HALF_TURN = np.pi  # rad: no platform turns further from one sample to the next
 FEW_COUNTS = 3.0  # of an encoder: an angle that stays within them did not move
 SATURATED = 0.5  # share of the samples at the largest or smallest value of a signal that changes
 FEW_LEVELS = 5  # of a signal that is switched
-BESIDE = 5  # samples before and after a step
-LONE = 20.0  # times the rates beside it: what no machine does within a sample
 JITTER = 0.2  # of the sampling period, rms
 
 

@@ -1,6 +1,6 @@
 """Runs that nothing predicts to their end: cut into windows with starts of their own."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +19,8 @@ from ptp_symbolic.numeric.identify.windows import (
 
 FloatArray = NDArray[np.float64]
 
+CUT = "runs that multiply small errors are cut into windows"
+
 
 def in_windows(task: Task, declared: Trial) -> Task:
     """The task with runs cut into windows where the fitted model amplifies errors until nothing can
@@ -33,7 +35,7 @@ def in_windows(task: Task, declared: Trial) -> Task:
     if len(train) == len(task.train):
         return task
     fewer = dict(zip(task.every_sample, task.train, strict=True))
-    task.progress("runs that multiply small errors are cut into windows")
+    task.progress(CUT)
     return replace(task, every_sample=train, train=tuple(fewer.get(run, run) for run in train))
 
 
@@ -53,18 +55,10 @@ def parted_task(task: Task, trial: Trial) -> Task:
     """
     p = task.model.parameter_vector(trial.values)
 
-    def parts_of(run: Run) -> tuple[Run, ...]:
-        return parted_at_lost_samples(task.model, [run], p)
+    def parts_of(run: Run, z: FloatArray) -> tuple[Run, ...]:
+        return parted_at_lost_samples(task.model, run, p)
 
-    train = list(task.executor.map(parts_of, task.every_sample))
-    if all(len(parts) == 1 for parts in train):
-        return task
-    task.progress("runs are parted where samples are missing")
-    fewer = [
-        (run,) if len(parts) == 1 else parts for run, parts in zip(task.train, train, strict=True)
-    ]
-    validate = list(task.executor.map(parts_of, task.validate))
-    return _with(task, train, fewer, validate)
+    return _in_parts(task, trial, parts_of, "runs are parted where samples are missing")
 
 
 def takes_away_most(short: Trial, trial: Trial) -> bool:
@@ -84,35 +78,33 @@ def in_windows_of(task: Task, trial: Trial) -> Task:
     p = task.model.parameter_vector(trial.values)
 
     def windows_of(run: Run, z: FloatArray) -> tuple[Run, ...]:
-        return split_run(task.model, run, SHORT) if multiplies(run, z) else (run,)
+        multiplies = multiplies_errors(task.model, run, p, z)
+        return split_run(task.model, run, SHORT) if multiplies else (run,)
 
-    def multiplies(run: Run, z: FloatArray) -> bool:
-        return multiplies_errors(task.model, run, p, z)
-
-    def cut(runs: Sequence[Run], z: Sequence[FloatArray]) -> list[tuple[Run, ...]]:
-        return list(task.executor.map(windows_of, runs, z))
-
-    train = cut(task.every_sample, trial.fit.z)
-    if all(len(parts) == 1 for parts in train):
-        return task
-    task.progress("runs that multiply small errors are cut into windows")
-    fewer = [
-        (run,) if len(parts) == 1 else parts for run, parts in zip(task.train, train, strict=True)
-    ]
-    validate = cut(task.validate, [run.guess for run in task.validate])
-    return _with(task, train, fewer, validate)
+    return _in_parts(task, trial, windows_of, CUT)
 
 
-def _with(
+def _in_parts(
     task: Task,
-    every_sample: Sequence[Sequence[Run]],
-    train: Sequence[Sequence[Run]],
-    validate: Sequence[Sequence[Run]],
+    trial: Trial,
+    parts_of: Callable[[Run, FloatArray], tuple[Run, ...]],
+    said: str,
 ) -> Task:
-    """The task with runs in parts."""
+    """The task with the parts of every run, by the run and its start; as it is where all training
+    runs stay whole, else that is `said`.
+    """
+    every = list(task.executor.map(parts_of, task.every_sample, trial.fit.z))
+    if all(len(parts) == 1 for parts in every):
+        return task
+    task.progress(said)
+    fewer = [
+        (run,) if len(parts) == 1 else parts for run, parts in zip(task.train, every, strict=True)
+    ]
+    starts = [run.guess for run in task.validate]
+    validate = task.executor.map(parts_of, task.validate, starts)
     return replace(
         task,
-        every_sample=tuple(part for parts in every_sample for part in parts),
-        train=tuple(part for parts in train for part in parts),
+        every_sample=tuple(part for parts in every for part in parts),
+        train=tuple(part for parts in fewer for part in parts),
         validate=tuple(part for parts in validate for part in parts),
     )

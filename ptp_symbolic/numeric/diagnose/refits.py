@@ -73,17 +73,21 @@ def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
     trial = polished(task, best[0], carried_noise(task, best[0].fit))
     part = parted_task(task, trial)
     if part is not task:
-        short = fitted(part, (), trial.values, None)
-        short = polished(part, short, carried_noise(part, short.fit))
+        short = refitted_in(part, trial)
         if takes_away_most(short, trial):
             task, trial = part, short
     part = in_windows(task, trial)
     if part is not task:
-        short = fitted(part, (), trial.values, None)
-        short = polished(part, short, carried_noise(part, short.fit))
+        short = refitted_in(part, trial)
         if np.all(left_over(short.fit) <= left_over(trial.fit)):
             task, trial = part, short
     return validation_in_windows(task, trial), trial
+
+
+def refitted_in(part: Task, trial: Trial) -> Trial:
+    """A trial fitted to its end to runs in parts, whose starts are begun at their guesses."""
+    begun = fitted(part, trial.candidates, trial.values, None)
+    return polished(part, begun, carried_noise(part, begun.fit))
 
 
 def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]]:

@@ -11,13 +11,12 @@ from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
 from ptp_symbolic.numeric.diagnose.proposals import propose, with_lines
-from ptp_symbolic.numeric.diagnose.refits import fit_declared, polished
+from ptp_symbolic.numeric.diagnose.refits import fit_declared, refitted_in
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import started
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
-    fitted,
     halving,
     is_near,
     ranked,
@@ -108,12 +107,9 @@ def _in_windows(seeker: Seeker, best: Trial) -> Seeker | None:
         if part is seeker.task:
             continue
         part = with_fewer_samples(part, best.values)
-        short = fitted(part, best.candidates, best.values, None)
-        short = polished(part, short, carried_noise(part, short.fit))
-        if not takes_away_most(short, best):
+        if not takes_away_most(refitted_in(part, best), best):
             continue
-        begun = fitted(part, (), seeker.declared.values, None)
-        declared = polished(part, begun, carried_noise(part, begun.fit))
+        declared = refitted_in(part, seeker.declared)
         return Seeker(part, declared, seeker.proposals, carried_noise(part, declared.fit))
     return None
 

@@ -1,6 +1,5 @@
 """Runs of which samples are missing: where it matters what the inputs did meanwhile, a new part."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,40 +7,27 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.data.continuity import IntArray, after_lost, parted
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
-from ptp_symbolic.numeric.identify.run import WINDOW, Run, with_start
+from ptp_symbolic.numeric.identify.run import Run, with_start
+from ptp_symbolic.numeric.identify.windows import piece_of
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.inputs import held_values, part_of_held, stack, table
+from ptp_symbolic.numeric.simulation.signals.inputs import held_values, stack, table
 
 FloatArray = NDArray[np.float64]
 
 
-def parted_at_lost_samples(model: Model, runs: Sequence[Run], p: FloatArray) -> tuple[Run, ...]:
-    """The runs, those in parts whose signals depend on what the inputs did while samples were
+def parted_at_lost_samples(model: Model, run: Run, p: FloatArray) -> tuple[Run, ...]:
+    """The run, or its parts where the signals depend on what the inputs did while samples were
     missing, at p [np]: held until the next sample, or changed right after the last one, they would
     move some signal by more than its noise.
     """
-    return tuple(part for run in runs for part in _parts(model, run, p))
-
-
-def _parts(model: Model, run: Run, p: FloatArray) -> list[Run]:
     gaps = after_lost(run.time)
     parts = parted(run.time, gaps) if gaps.size else []
     if len(parts) < 2 or not _matters(model, run, p, gaps):
-        return [run]
-    return [_part(model, run, part, number) for number, part in enumerate(parts, start=1)]
-
-
-def _part(model: Model, run: Run, part: slice, number: int) -> Run:
-    time = run.time[part]
-    piece = replace(
-        run,
-        name=f"{run.name}{WINDOW}{number}",
-        time=np.ascontiguousarray(time),
-        inputs=part_of_held(run.inputs, time[0], time[-1]),
-        held_inputs=np.ascontiguousarray(run.held_inputs[part]),
-        measured=np.ascontiguousarray(run.measured[part]),
+        return (run,)
+    return tuple(
+        with_start(model, piece_of(run, part, number), underway=part.start > 0)
+        for number, part in enumerate(parts, start=1)
     )
-    return with_start(model, piece, underway=part.start > 0)
 
 
 def _matters(model: Model, run: Run, p: FloatArray, gaps: IntArray) -> bool:

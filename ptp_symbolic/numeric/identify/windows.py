@@ -175,15 +175,22 @@ def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
     edges = _moving_edges(run, np.linspace(0, len(run.time) - 1, pieces + 1).astype(int))
     windows = []
     for number, (a, b) in enumerate(itertools.pairwise(edges)):
-        part = slice(a, b + 1)
-        piece = replace(
-            run,
-            name=f"{run.name}{WINDOW}{number + 1}",
-            time=np.ascontiguousarray(run.time[part]),
-            inputs=part_of_held(run.inputs, run.time[a], run.time[b]),
-            held_inputs=np.ascontiguousarray(run.held_inputs[part]),
-            measured=np.ascontiguousarray(run.measured[part]),
-        )
+        piece = piece_of(run, slice(a, b + 1), number + 1)
         around = Around(run.time, run.measured, int(a))
         windows.append(with_start(model, piece, around) if number else piece)
     return tuple(windows)
+
+
+def piece_of(run: Run, part: slice, number: int) -> Run:
+    """A `part` of the samples of a run as the window of that `number`, with the start of the run as
+    yet.
+    """
+    time = np.ascontiguousarray(run.time[part])
+    return replace(
+        run,
+        name=f"{run.name}{WINDOW}{number}",
+        time=time,
+        inputs=part_of_held(run.inputs, time[0], time[-1]),
+        held_inputs=np.ascontiguousarray(run.held_inputs[part]),
+        measured=np.ascontiguousarray(run.measured[part]),
+    )
