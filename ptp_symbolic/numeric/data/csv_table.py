@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data.dialect import LONGEST_LINE, plain_text
+from ptp_symbolic.numeric.data.stamps import seconds_of
 from ptp_symbolic.numeric.data.table import MOST_ROWS, Table, checked_headings, heading
+from ptp_symbolic.platform import Clock
 from ptp_symbolic.platform.fields import shown
 from ptp_symbolic.platform.text_file import read_text_bytes
 
@@ -41,8 +43,18 @@ class CsvTable(Table):
         """Where row `number`, counted from zero, stands."""
         return f"{self.path}:{self.first_line + number}"
 
+    def clock(self, declared: Clock) -> tuple[int, str | None] | None:
+        """Index and unit of the column of times, seconds where it holds stamps; None where there is
+        none.
+        """
+        found = super().clock(declared)
+        cells = self.body.partition(NEW_LINE)[0].decode().split(",")
+        if found is None or found[0] >= len(cells) or seconds_of(cells[found[0]]) is None:
+            return found
+        return found[0], "s"
+
     def numbers(self, columns: Sequence[int]) -> NDArray[np.float64]:
-        """The given columns as [n, len(columns)].
+        """The given columns as [n, len(columns)]; the first may hold stamps (see `seconds_of`).
 
         Raises InputError with the line for a row with too few or too many cells and for a cell of
         these columns that is empty or not a finite decimal number, and for more than ten million
@@ -129,7 +141,10 @@ def _parse_rows(
                 f"{where}: has {len(cells)} cells where the header has {width}; the row is "
                 "truncated or a comma is wrong."
             )
-        rows.append([_number(cells[k], table.headings[k][0], where) for k in columns])
+        stamp = seconds_of(cells[columns[0]])
+        first = columns if stamp is None else columns[1:]
+        numbers = [_number(cells[k], table.headings[k][0], where) for k in first]
+        rows.append(numbers if stamp is None else [stamp, *numbers])
     return np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
 
 

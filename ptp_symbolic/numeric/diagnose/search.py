@@ -4,6 +4,7 @@ completed, pruned and grown until every candidate in it is needed and none outsi
 
 from dataclasses import replace
 
+from ptp_symbolic.numeric.diagnose.confirmed_sets import steps_for_names
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of, parted_task, takes_away_most
 from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
 from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
@@ -14,6 +15,7 @@ from ptp_symbolic.numeric.diagnose.proposals import propose, with_lines
 from ptp_symbolic.numeric.diagnose.refits import fit_declared, refitted_in
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import started
+from ptp_symbolic.numeric.diagnose.through_windows import each_through_windows
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -60,7 +62,8 @@ def _from_declared(seeker: Seeker) -> Search:
         seeker.follow(best)
     pruned = seeker.pruned(best) if seeker.is_at_noise(best) else None
     if pruned is None or not seeker.have_answer(pruned[0]):
-        led = seeker.simplest([best, *seeker.led_through_windows()])
+        each = each_through_windows(task, seeker.declared, seeker.proposals.unseen, seeker.carried)
+        led = seeker.simplest([best, *each])
         if pruned is None or led is not best:
             best, pruned = led, seeker.pruned(led)
     begun, steps = pruned
@@ -88,10 +91,10 @@ def _from_declared(seeker: Seeker) -> Search:
     best = seeker.sharpened(seeker.simplified(best))
     if seeker.is_at_noise(best):
         without = {s.candidate.key: s.without for s in steps}
+        steps = [step_of(best, c, without[c.key]) for c in best.candidates]
     else:  # the search was brief
-        without = {c.key: seeker.without(best, c) for c in best.candidates}
-    members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
-    others = tuple(seeker.others)
+        steps = steps_for_names(seeker, best, steps)
+    members, others = tuple(steps), tuple(seeker.others)
     return Search(task, seeker.declared, best, members, others, seeker.proposals, seeker.carried)
 
 
@@ -135,11 +138,13 @@ def extended(
         if gain(grown, best).share >= MOST:  # one that gains less has been begun anew before
             full = seeker.restarted(full)
         pruned, fewer = seeker.pruned(full)
-        same = pruned.keys == best.keys
+        same, before = pruned.keys == best.keys, best
         if same and ranked([best, pruned])[0] is best:
             break
         seeker.follow(pruned)
         best, steps = pruned, fewer  # the same candidates too: a third may show them a better place
+        if same and gain(best, before).share < MOST:  # what the others were compared with, mostly
+            break
     return best, steps
 
 

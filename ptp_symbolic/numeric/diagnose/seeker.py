@@ -1,6 +1,4 @@
-"""The moves of a search: sets are completed, pruned, grown, exchanged and made simpler, each by
-refits in simulation.
-"""
+"""The moves of a search: sets are completed, pruned, grown, exchanged, made simpler by refits."""
 
 from collections.abc import Sequence
 from weakref import WeakSet
@@ -24,7 +22,6 @@ from ptp_symbolic.numeric.diagnose.responses import responses
 from ptp_symbolic.numeric.diagnose.screening import screened
 from ptp_symbolic.numeric.diagnose.starts import along, from_rows, in_place, taken_over
 from ptp_symbolic.numeric.diagnose.subsets import exchanges
-from ptp_symbolic.numeric.diagnose.through_windows import through_windows
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -52,6 +49,7 @@ class Seeker:
         self.task, self.declared, self.proposals, self.carried = task, declared, proposals, carried
         self.others: list[Trial] = []
         self._at_end: WeakSet[Trial] = WeakSet()  # their Jacobians are large
+        self._anew: dict[tuple[tuple[str, int], ...], Trial] = {}
 
     def unseen(self, trial: Trial) -> list[Trial]:
         """The trial with each candidate that the rows cannot show, begun at its response in the
@@ -88,14 +86,21 @@ class Seeker:
 
     def restarted(self, trial: Trial) -> Trial:
         """A polished trial, or a better end from where the rows start its set, and from there over
-        short windows: friction makes the misfit of whole runs a staircase.
+        short windows: friction makes the misfit of whole runs a staircase. A set that was begun so
+        is not again, unless it begins with values that the rows do not show.
         """
         if not trial.candidates or self.is_at_noise(trial):
             return trial
+        known = self._anew.get(forms_of(trial.candidates))
+        unseen = {c.key for c in self.proposals.unseen}
+        if known is not None and (known is trial or unseen.isdisjoint(trial.keys)):
+            return ranked([trial, known])[0]
         begun = from_rows(self.task, self.proposals, trial.candidates, trial.values)
         left = halving(self.task, begun, 1)
         fresh = [t for t in left if is_near(t, [trial]) and not is_alike(t, trial)]
-        return ranked([trial, *(self.polished(t) for t in fresh)])[0]
+        best = ranked([trial, *(self.polished(t) for t in fresh)])[0]
+        self._anew[forms_of(best.candidates)] = best
+        return best
 
     def completed(self, trial: Trial) -> Trial:
         """The trial polished, each of its candidates in its fullest form: an effect is allowed all
@@ -207,15 +212,6 @@ class Seeker:
         close = screened(task, self.proposals, trial.candidates, wanted, trial.values)
         begun += [fitted(task, t.candidates, t.values, None) for t in close[:SCREENED]]
         return self.best_earning(begun, trial)
-
-    def led_through_windows(self) -> list[Trial]:
-        """The declared model with each effect that the motion does not show, where short windows
-        lead to it.
-        """
-        wanted = {c.key: c for c in self.proposals.unseen if not c.is_declared_value}
-        task, declared = self.task, self.declared
-        led = [through_windows(task, declared, c, self.carried) for c in wanted.values()]
-        return [t for t in led if t is not None]
 
     def simplest(self, trials: Sequence[Trial]) -> Trial:
         """The best of trials; of those that leave white noise alone the one with the fewest

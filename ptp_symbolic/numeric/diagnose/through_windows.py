@@ -27,6 +27,17 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 
 
+def each_through_windows(
+    task: Task, parent: Trial, candidates: Sequence[Candidate], carried: Carried
+) -> list[Trial]:
+    """The parent with each of `candidates` but declared values, where windows lead to it (see
+    `through_windows`).
+    """
+    wanted = {c.key: c for c in candidates if not c.is_declared_value}
+    led = [through_windows(task, parent, c, carried) for c in wanted.values()]
+    return [t for t in led if t is not None]
+
+
 def through_windows(
     task: Task, parent: Trial, candidate: Candidate, carried: Carried
 ) -> Trial | None:
