@@ -9,6 +9,7 @@ from ptp_symbolic.numeric.diagnose.curves import curves_of
 from ptp_symbolic.numeric.diagnose.findings import Search
 from ptp_symbolic.numeric.diagnose.remainder import hints, remainder
 from ptp_symbolic.numeric.diagnose.residual_tests import residual_tests
+from ptp_symbolic.numeric.diagnose.sizes import sizes_of
 from ptp_symbolic.numeric.diagnose.summary import (
     added_effects,
     error_table,
@@ -17,7 +18,6 @@ from ptp_symbolic.numeric.diagnose.summary import (
     headline,
     ranking,
     repeatability_table,
-    sizes_of,
 )
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.diagnose.verdict import Verdict

@@ -13,6 +13,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.curves import curves_of
 from ptp_symbolic.numeric.diagnose.errors import error_of
 from ptp_symbolic.numeric.diagnose.residual_tests import residual_tests
+from ptp_symbolic.numeric.diagnose.sizes import sizes_of
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
@@ -125,10 +126,27 @@ def test_the_size_is_that_of_the_parameter_clearest_of_zero_in_degrees() -> None
         "theta_tilt": Estimate("theta_tilt", 0.2, 0.1, 0.3, False, True),
         "theta_pan": Estimate("theta_pan", 0.1, 0.095, 0.105, False, True),
     }
-    sizes = summary.sizes_of(_trial(candidate), intervals)
+    sizes = sizes_of(_trial(candidate), intervals)
     assert sizes == {"x": "theta_pan = 5.73 deg"}
     text = summary.headline(_verdict(EXPLAINED, _trial(candidate)), _errors(), sizes)
     assert text.startswith("Missing: a cause (theta_pan = 5.73 deg); validation error")
+
+
+def test_the_size_of_a_wave_is_its_amplitude_with_its_cycles() -> None:
+    """sqrt(0.3^2 + 0.4^2) = 0.5; the second harmonic is five times as clear in the other case."""
+    names = ("T_sin_pan", "T_cos_pan", "T_sin2_pan", "T_cos2_pan", "n_cog_pan")
+    free = tuple(free_parameter(name, 0.1, -99.0, 99.0) for name in names)
+    off = dict.fromkeys(names[:4], 0.0)
+    candidate = Candidate("x", "pan", "a cause", "", free, off, locked=("n_cog_pan", "angle"))
+    trial = _trial(candidate)
+    trial.fit.model.units = {**trial.fit.model.units, **dict.fromkeys(names, "N m"), names[4]: "1"}
+    widths = {False: (0.01, 0.02, 0.1, 0.1, 1.0), True: (0.1, 0.1, 0.01, 0.01, 1.0)}
+    for second, words in ((False, "amplitude = 0.5 N m"), (True, "amplitude of harmonic 2 = 0.13")):
+        values = zip(names, (0.3, -0.4, 0.05, 0.12, 24.0), widths[second], strict=True)
+        intervals = {n: Estimate(n, v, v - w, v + w, False, True) for n, v, w in values}
+        found = sizes_of(trial, intervals)["x@pan"]
+        assert found.startswith(words)
+        assert found.endswith(", n_cog_pan = 24")
 
 
 def test_the_headline_says_where_one_window_holds_most_of_the_error() -> None:

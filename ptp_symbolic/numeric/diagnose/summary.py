@@ -179,29 +179,6 @@ def added_effects(
     ]
 
 
-def sizes_of(after: Trial, intervals: Mapping[str, Estimate]) -> dict[str, str]:
-    """How large every named effect of the trial `after` is, by its key: of the parameters that
-    switch it on the one that is clearest of zero, angles in degrees.
-    """
-    units, found = after.fit.model.units, {}
-    for c in after.candidates:
-        if c.is_declared_value or not c.defining:
-            continue
-        free = max(c.defining, key=lambda f: _clear_of_zero(intervals[f.name], c.vanishing[f.name]))
-        value, unit = intervals[free.name].value, units[free.name]
-        if unit in ("rad", "rad/s"):
-            value, unit = float(np.degrees(value)), unit.replace("rad", "deg")
-        found[c.key] = f"{free.name} = {value:.3g} {unit}".removesuffix(" 1")
-    return found
-
-
-def _clear_of_zero(estimate: Estimate, vanishing: float) -> float:
-    """Distance of a value from the one that switches its effect off, in widths of its interval."""
-    width = estimate.upper - estimate.lower
-    known = np.isfinite(width) and width > 0.0
-    return abs(estimate.value - vanishing) / width if known else 0.0
-
-
 def _value(estimate: Estimate, unit: str) -> dict[str, Any]:
     interval = [estimate.lower, estimate.upper]
     return {"value": estimate.value, "ci95": interval, "unit": unit}
