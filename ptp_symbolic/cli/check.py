@@ -1,7 +1,6 @@
 """`ptp-symbolic check`: what logs hold, and what they can show, before anything is fitted."""
 
 import json
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -112,7 +111,10 @@ def _print_visible(summary: Mapping[str, Any]) -> None:
     table = Table("", "parameter", "smallest", box=None)
     rows = sorted(summary["visible"], key=lambda r: (r["effect"] is not None, r["effect"] or ""))
     for row in rows:
-        smallest = math.inf if row["smallest"] is None else row["smallest"]
-        size = f"{smallest:.2g} {row['unit']}" if math.isfinite(smallest) else "cannot be seen"
+        size = "cannot be seen"
+        if row["smallest"] is not None:
+            size = f"{row['smallest']:.2g} {row['unit']}"
+        elif row["largest"] is not None:
+            size = f"a limit of {row['largest']:.3g} {row['unit']} or less"
         table.add_row(row["effect"] or "declared", row["parameter"], size)
     Console().print(table)

@@ -60,9 +60,11 @@ def check_logs(
 
 def _row(visible: Visible, model: Model, start: Mapping[str, float]) -> dict[str, Any]:
     unit = next(p.unit for p in model.parameters if p.name == visible.parameter)
-    smallest = visible.smallest if math.isfinite(visible.smallest) else None
-    value = start[visible.parameter]
-    return {**asdict(visible), "smallest": smallest, "unit": unit, "start": value}
+    shown = {
+        name: amount if amount is not None and math.isfinite(amount) else None
+        for name, amount in (("smallest", visible.smallest), ("largest", visible.largest))
+    }
+    return {**asdict(visible), **shown, "unit": unit, "start": start[visible.parameter]}
 
 
 def _shown(run: Run, facts: LogFacts, units: Mapping[str, str]) -> list[Shown]:

@@ -8,7 +8,7 @@ from scipy import stats
 from scipy.linalg import expm
 
 from ptp_symbolic.numeric.diagnose.trial import fitted
-from ptp_symbolic.numeric.diagnose.visibility import visible_amounts
+from ptp_symbolic.numeric.diagnose.visibility import largest_limit, visible_amounts
 from ptp_symbolic.numeric.identify.simulations import all_values_at_start
 from tests.diagnose.spring_table import COUNT, PAYLOAD, PERIOD, spring_table
 from tests.identify.curves import Floats
@@ -73,3 +73,15 @@ def test_a_constant_torque_and_free_parameters_against_closed_forms(tmp_path: Pa
         assert found[None, name] == pytest.approx(smallest(own, others), rel=0.02), name
     torque = smallest(column("tau0"), list(declared.values()))
     assert found["constant_torque@pan", "tau0_pan"] == pytest.approx(torque, rel=0.02)
+
+
+def test_the_largest_limit_that_shows_cuts_off_what_stands_out_of_the_noise() -> None:
+    """A signal up to 24 V, cut at 21 V, leaves 100 standard deviations: 3.29 at 24 - 0.0329 * 3;
+    the response is given per volt below 1000, where the limit vanishes. One that leaves one
+    standard deviation shows at 24 - 3.29 * 3, one a tenth of that not at all.
+    """
+    for size, limit in ((100.0, 23.9013), (1.0, 14.13), (0.1, np.nan)):
+        smallest = 3.29 * (1000.0 - 21.0) / size
+        found = largest_limit(24.0, 21.0, 1000.0, smallest)
+        assert found == pytest.approx(limit, abs=1e-9, nan_ok=True)
+    assert np.isnan(largest_limit(24.0, np.nan, 1000.0, np.inf))

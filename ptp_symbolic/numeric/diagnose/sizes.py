@@ -9,9 +9,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.intervals import Estimate
 
-_PART = re.compile(
-    r"(\w+_)(sin|cos)(\d?)(_\w+)"
-)  # a part of a wave of `harmonics`
+_PART = re.compile(r"(\w+_)(sin|cos)(\d?)(_\w+)")  # a part of a wave of `harmonics`
 
 
 def sizes_of(after: Trial, intervals: Mapping[str, Estimate]) -> dict[str, str]:

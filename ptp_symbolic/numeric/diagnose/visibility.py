@@ -14,7 +14,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.linear import projected_off, stacked
 from ptp_symbolic.numeric.diagnose.responses import response_columns
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
-from ptp_symbolic.numeric.identify.constants import NOTHING, REACH, SEEN
+from ptp_symbolic.numeric.identify.constants import NOTHING, REACH, SEEN, WIDE_STEP
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
 
 FloatArray = NDArray[np.float64]
@@ -23,12 +23,14 @@ FloatArray = NDArray[np.float64]
 @dataclass(frozen=True)
 class Visible:
     """A parameter, the `effect` that it switches on (None: declared and free), and the smallest
-    amount in its unit that the logs show; infinite where they show none.
+    amount in its unit that the logs show; infinite where they show none. Of a limit, such as a
+    largest voltage, it is the `largest` that shows, and NaN where none does.
     """
 
     effect: str | None
     parameter: str
     smallest: float
+    largest: float | None = None
 
 
 def visible_amounts(task: Task, start: Trial) -> list[Visible]:
@@ -50,16 +52,29 @@ def visible_amounts(task: Task, start: Trial) -> list[Visible]:
     def amounts(candidate: Candidate) -> list[Visible]:
         columns = response_columns(task, start, candidate, candidate.shapes[0], most)
         seen = {} if columns is None else dict(zip(columns.free, columns.table.T, strict=True))
-        return [
-            Visible(
-                candidate.key, f.name, _smallest(seen[f], declared) if f in seen else float("inf")
-            )
-            for f in candidate.defining
-        ]
+        rows = []
+        for f in candidate.defining:
+            smallest = _smallest(seen[f], declared) if f in seen else float("inf")
+            largest = None
+            if candidate.is_limit(f):
+                at = np.nan if columns is None else columns.limits.get(f.name, np.nan)
+                largest = largest_limit(f.start * np.exp(WIDE_STEP), at, f.upper, smallest)
+                smallest = float("inf")
+            rows.append(Visible(candidate.key, f.name, smallest, largest))
+        return rows
 
     for rows in task.executor.map(amounts, simplest.values()):
         found += rows
     return found
+
+
+def largest_limit(met: float, at: float, upper: float, smallest: float) -> float:
+    """The largest limit that shows, of a signal that reaches `met`: the response to a limit `at`
+    some value stands out of the noise at the amount `smallest`, were it counted from `upper`; it
+    grows with what is cut off, met - at. NaN where no limit above zero shows.
+    """
+    cut = (met - at) * smallest / (upper - at)
+    return float(met - cut) if cut < met else float("nan")
 
 
 def _smallest(column: FloatArray, others: FloatArray) -> float:
