@@ -7,6 +7,7 @@ from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.black_box.learners import require_library
 from ptp_symbolic.numeric.data import log_files, read_split_logs
 from ptp_symbolic.numeric.diagnose.search import search
+from ptp_symbolic.numeric.diagnose.turned_inputs import turned_inputs
 from ptp_symbolic.numeric.diagnose.verdict import decide
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.against_black_box import against_black_box
@@ -45,6 +46,8 @@ def diagnose_platform(
         )
         found = search(task)
         verdict = decide(found)
+        if verdict.leaves_more:
+            noted = (*noted, *turned_inputs(found.task, found.declared))
         beside = None
         if rivals:
             beside = against_black_box(platform, task, found, verdict, validate_logs)

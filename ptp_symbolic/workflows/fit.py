@@ -13,6 +13,7 @@ from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.summary import fit_table
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
+from ptp_symbolic.numeric.diagnose.turned_inputs import turned_inputs
 from ptp_symbolic.numeric.identify.fit import fit_parameters
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.replays import estimable
@@ -57,6 +58,7 @@ def fit_platform(
         if task.free:
             progress("fitting")
             task, trial = fit_declared(task, propose(task))
+            noted = (*noted, *turned_inputs(task, trial))
             trial = replace(trial, fit=estimable(trial.fit, task.input_noise, executor))
         floor = floor_of(task, trial, carried_noise(task, trial.fit))
     units = model.units
