@@ -11,6 +11,7 @@ from typing import Any
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.machines.force_error import force_error
 from ptp_symbolic.machines.friction_ladder import ladder, mean_error
+from ptp_symbolic.machines.injected import INJECTED, Injected, write_injected
 from ptp_symbolic.numeric.data import read_log
 from ptp_symbolic.numeric.friction_map.points import Columns, read_points
 from ptp_symbolic.numeric.friction_map.summary import friction_map
@@ -28,6 +29,10 @@ EMPS = (
     " Workshop, 2019. A carriage on a ball screw in closed loop: force in, position out. Published:"
     " mass 95.1 kg; relative force error 4.08 % on the training and 5.98 % on the validation file"
     " with symmetric friction and an offset."
+)
+PUT_IN = (
+    "Forces of 0.6 N rms, added to the measured force of both files: the same motion of a machine"
+    " that has them. The diagnosis of the machine as it is, above, names none of them."
 )
 PENDULUM = (
     "M. Duclusaud, G. Passault, V. Padois and O. Ly, Extended Friction Models for the Physics"
@@ -50,6 +55,7 @@ def machines(data: Path, progress: Progress = lambda text: None) -> dict[str, An
         study(data / folder, progress)
         for folder, study in (
             ("emps", emps),
+            ("emps", forces_put_in),
             ("servo_pendulum", servo_pendulum),
             ("screw_drives", screw_drives),
         )
@@ -93,6 +99,42 @@ def emps(folder: Path, progress: Progress) -> dict[str, Any]:
             errors = [_force_error(machine, values, log, held) for (log,) in logs]
             rows.append({"stage": stage, "held": held, "train": errors[0], "validate": errors[1]})
     return {**_diagnosis("Positioning system (EMPS)", EMPS, found), "force_error": rows}
+
+
+def forces_put_in(folder: Path, progress: Progress) -> dict[str, Any]:
+    """The positioning system with forces put into its measured force: what is named, beside what
+    the machine has as it is, and of which size.
+    """
+    rows = [force_put_in(force, folder, progress) for force in INJECTED]
+    return {"title": "Forces put into the positioning system", "source": PUT_IN, "put_in": rows}
+
+
+def force_put_in(force: Injected, folder: Path, progress: Progress) -> dict[str, Any]:
+    """The positioning system with one force put in."""
+    progress(f"positioning system with {force.title}")
+    with tempfile.TemporaryDirectory() as scratch:
+        for name in EMPS_FILES:
+            write_injected(force, folder / name, Path(scratch) / name)
+        logs = emps_logs(Path(scratch))
+        found = diagnose_platform(read_platform(PLATFORMS / "emps.toml"), *logs, progress)
+    named = [added["effect"] for added in found.summary["added"]]
+    row = {
+        "title": force.title,
+        "effect": force.effect,
+        "verdict": found.summary["verdict"],
+        "named": named,
+        "size": {"unit": force.unit, "put_in": force.size, "found": None},
+        "wave": None,
+        "error": found.summary["error"],
+        "parameters": found.summary["fit"]["after"]["parameters"],
+    }
+    if force.effect in named:
+        values = _values(found, "after")
+        row["size"]["found"] = force.found(values)
+        if force.wave is not None:
+            name, wave = force.wave
+            row["wave"] = {"unit": "rad/m", "put_in": wave, "found": values[name]}
+    return row
 
 
 def servo_pendulum(folder: Path, progress: Progress) -> dict[str, Any]:

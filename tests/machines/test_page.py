@@ -49,3 +49,22 @@ def test_candidates_errors_and_files_of_a_machine_are_on_its_page() -> None:
     assert "where other sets did better: cable_spring." in page
     assert "training 143, validation 157" in page
     assert "held_out.csv" in page and "0f3e" in page
+
+
+def test_a_force_put_in_is_on_the_page_with_what_was_found_of_it() -> None:
+    total = {"total": {"rmse_counts": None, "rmse": 2.5e-4, "unit": "m"}}
+    row = {
+        "title": "cogging every 20 mm",
+        "effect": "cogging",
+        "named": ["cogging", "input_delay"],
+        "size": {"unit": "N", "put_in": 0.8485, "found": 0.8312},
+        "wave": {"unit": "rad/m", "put_in": 314.16, "found": 314.05},
+        "error": {"validate": dict.fromkeys(("before", "after"), total)},
+    }
+    missed = {**row, "title": "a spring", "named": [], "wave": None}
+    missed["size"] = {**row["size"], "found": None}
+    put_in = {"title": "Forces", "source": "", "put_in": [row, missed]}
+    page = render_machines({"version": "1", "date": "today", "machines": [put_in]})
+    assert "<b>cogging</b>, input_delay" in page
+    assert "0.849 N" in page and "0.831" in page and "314.2" in page
+    assert "not named" in page and "0.000250 m" in page
