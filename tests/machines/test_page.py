@@ -17,7 +17,13 @@ RANKING = [
         "accepted": False,
         "why": "its amount cannot be told from zero",
     },
-    {"effect": "cable_spring", "gain": None, "accepted": False, "why": "compared in rows"},
+    {
+        "effect": "cable_spring",
+        "gain": None,
+        "gain_along_motion": {"share": 0.123, "ci95": [0.1, 0.2]},
+        "accepted": False,
+        "why": "compared in rows",
+    },
 ]
 
 
@@ -46,7 +52,7 @@ def test_candidates_errors_and_files_of_a_machine_are_on_its_page() -> None:
     page = render_machines({"version": "1", "date": "today", "machines": [machine()]})
     assert "80.0 % (70.0 to 90.0)" in page and "accepted" in page
     assert "31.0 % (10.0 to 50.0)" in page and "its amount cannot be told from zero" in page
-    assert "where other sets did better: cable_spring." in page
+    assert "by itself): cable_spring (12.3 %)." in page
     assert "training 143, validation 157" in page
     assert "held_out.csv" in page and "0f3e" in page
 

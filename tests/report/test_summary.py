@@ -18,6 +18,7 @@ from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.intervals import Estimate
+from tests.diagnose.test_subsets import BLOCKS, ROWS, rows_of, signature
 from tests.identify.straight import run_of
 
 DECLARED = 6.5e-4
@@ -211,15 +212,29 @@ def test_a_declared_parameter_has_a_start_and_that_of_an_effect_has_none() -> No
 
 
 def test_the_ranking_has_every_fitted_set_by_its_error_and_the_others_after_it() -> None:
-    first, second, third = _candidate("cogging", "pan"), _candidate("backlash"), _candidate("drag")
+    """By itself along the motion, drag takes 0.25 of 1.25 of the squares, to 0.08; what the rows
+    do not show has no figure.
+    """
+    first, second = _candidate("cogging", "pan"), _candidate("backlash")
     best, worse = _trial(first, left=0.5), _trial(first, second, left=0.8)
-    search: Any = SimpleNamespace(declared=_trial(left=3.0), chosen=best, others=(worse, best))
+    rng = np.random.default_rng(62)
+    idle = [signature(key, rng.standard_normal((ROWS, 1))) for key in ("drag", "spring")]
+    rows_along = rows_of(rng, idle, {"drag": 0.5}, BLOCKS)
+    search: Any = SimpleNamespace(
+        declared=_trial(left=3.0),
+        chosen=best,
+        others=(worse, best),
+        proposals=SimpleNamespace(regression=rows_along),
+    )
     refused = {"backlash": "takes away only 3 % of the error"}
     found = _verdict(EXPLAINED, best, refused=refused)
-    rows = summary.ranking(search, found, (first, second, third))
-    assert [row["effect"] for row in rows] == ["cogging", "cogging + backlash", "drag"]
-    assert [row["train_error_after"] for row in rows] == pytest.approx([0.5, 0.8, None])
-    assert [row["accepted"] for row in rows] == [True, False, False]
+    others = (idle[0].candidate, _candidate("hidden"))
+    rows = summary.ranking(search, found, (first, second, *others))
+    assert [row["effect"] for row in rows] == ["cogging", "cogging + backlash", "drag", "hidden"]
+    assert [row["train_error_after"] for row in rows] == pytest.approx([0.5, 0.8, None, None])
+    assert [row["accepted"] for row in rows] == [True, False, False, False]
+    assert rows[2]["gain_along_motion"]["share"] == pytest.approx(0.2, abs=0.08)
+    assert rows[3]["gain_along_motion"] is None
     assert rows[0]["axis"] == "pan"
     assert rows[1]["why"] == "backlash takes away only 3 % of the error"
     share = rows[0]["gain"]["share"]

@@ -10,6 +10,7 @@ from ptp_symbolic.numeric.diagnose.errors import DEFINITION, error_of
 from ptp_symbolic.numeric.diagnose.findings import Search
 from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
+from ptp_symbolic.numeric.diagnose.subsets import gain_along_motion
 from ptp_symbolic.numeric.diagnose.trial import Trial, ranked
 from ptp_symbolic.numeric.diagnose.verdict import (
     EXPLAINED,
@@ -204,10 +205,11 @@ def ranking(
         kept.setdefault(trial.keys, found.compared if trial.keys == found.compared.keys else trial)
     rows = [_row(search, found, trial) for trial in kept.values()]
     tried = {key for trial in kept.values() for key in trial.keys}
-    for candidate in {c.key: c for c in candidates}.values():
+    forms: dict[str, list[Candidate]] = {}
+    for candidate in candidates:
         if candidate.key not in tried:
-            rows.append(_unfitted(candidate))
-    return rows
+            forms.setdefault(candidate.key, []).append(candidate)
+    return rows + [_unfitted(search, own) for own in forms.values()]
 
 
 def _row(search: Search, found: Verdict, trial: Trial) -> dict[str, Any]:
@@ -234,11 +236,18 @@ def _row(search: Search, found: Verdict, trial: Trial) -> dict[str, Any]:
     }
 
 
-def _unfitted(candidate: Candidate) -> dict[str, Any]:
+def _unfitted(search: Search, forms: Sequence[Candidate]) -> dict[str, Any]:
+    """A candidate that was not simulated, and what the best of its `forms` by itself gains over the
+    declared model along the motion.
+    """
+    rows = search.proposals.regression
+    found = [] if rows is None else [gain_along_motion(rows, (form,), ()) for form in forms]
+    best = max((g for g in found if g is not None), key=lambda g: g.share, default=None)
     return {
-        "effect": candidate.id,
-        "axis": candidate.axis,
+        "effect": forms[0].id,
+        "axis": forms[0].axis,
         "gain": None,
+        "gain_along_motion": None if best is None else gain_table(best),
         "train_error_after": None,
         "parameters": {},
         "accepted": False,
