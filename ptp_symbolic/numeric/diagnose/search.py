@@ -162,11 +162,7 @@ def by_effects_alone(
     known = [c for c in best.candidates if c.is_declared_value]
     if quiet and (not known or len(best.candidates) == 1):
         return best, steps
-    effects = tuple(c for c in seeker.task.candidates if not c.is_declared_value)
-    alone = Seeker(
-        replace(seeker.task, candidates=effects), seeker.declared, seeker.proposals, seeker.carried
-    )
-    alone.others = seeker.others
+    alone = seeker.among(tuple(c for c in seeker.task.candidates if not c.is_declared_value))
     other, fewer = extended(alone, seeker.declared, [], end)
     no_larger = seeker.is_at_noise(other) and len(other.fit.free) <= len(best.fit.free)
     if ranked([best, other])[0] is best and not (quiet and no_larger):

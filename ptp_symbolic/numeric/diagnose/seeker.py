@@ -1,6 +1,7 @@
 """The moves of a search: sets are completed, pruned, grown, exchanged, made simpler by refits."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from weakref import WeakSet
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
@@ -50,6 +51,13 @@ class Seeker:
         self.others: list[Trial] = []
         self._at_end: WeakSet[Trial] = WeakSet()  # their Jacobians are large
         self._anew: dict[tuple[tuple[str, int], ...], Trial] = {}
+
+    def among(self, candidates: tuple[Candidate, ...]) -> "Seeker":
+        """The search among other candidates, which knows what was tried so far."""
+        task = replace(self.task, candidates=candidates)
+        other = Seeker(task, self.declared, self.proposals, self.carried)
+        other.others, other._at_end, other._anew = self.others, self._at_end, self._anew
+        return other
 
     def unseen(self, trial: Trial) -> list[Trial]:
         """The trial with each candidate that the rows cannot show, begun at its response in the
@@ -154,8 +162,7 @@ class Seeker:
 
     def is_kept(self, trial: Trial, step: Step) -> bool:
         """Whether a candidate stays in the set while the search goes on. Where more than noise is
-        left, a material gain is enough: what else is missing is in every block, and hides whether
-        the gain is clear. Only a name asks for that.
+        left, which hides whether a gain is clear, a material one is enough; a name asks for both.
         """
         if self.is_at_noise(trial):
             return self.is_needed(step)
@@ -214,16 +221,14 @@ class Seeker:
         return self.best_earning(begun, trial)
 
     def simplest(self, trials: Sequence[Trial]) -> Trial:
-        """The best of trials; of those that leave white noise alone the one with the fewest
-        parameters.
-        """
+        """The best of trials; of those that leave white noise alone that of fewest parameters."""
         quiet = [t for t in trials if self.is_at_noise(t)]
         return min(quiet, key=lambda t: len(t.fit.free)) if quiet else ranked(trials)[0]
 
     def best_earning(self, begun: Sequence[Trial], trial: Trial) -> Trial | None:
-        """The best of trials that are `begun`, polished, of those in which what they have more than
-        `trial` gains clearly and materially; None if there is none. An effect may fit best in a
-        form whose parameters trade for each other, and be clear in a simpler one.
+        """The best of trials `begun`, polished, in which what they have more than `trial` gains
+        clearly and materially; None if there is none. A simpler form may be clear where one that
+        fits better, with parameters that trade for each other, is not.
         """
         left = halving(self.task, begun, SCREENED, seen=self.others)
         found = ranked([to_its_end(self.task, t, self.carried) for t in left if is_near(t, left)])
@@ -240,8 +245,8 @@ class Seeker:
         return None
 
     def exchanged(self, trial: Trial) -> Trial | None:
-        """A set that fits better than that of the trial, with another candidate in the place of one
-        of its own; None where there is none. Those are tried that the rows find no worse.
+        """A set that fits better, with another candidate in the place of one of its own, of those
+        that the rows find no worse; None where there is none.
         """
         if self.proposals.regression is None:
             return None
