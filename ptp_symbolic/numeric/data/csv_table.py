@@ -48,7 +48,8 @@ class CsvTable(Table):
         none.
         """
         found = super().clock(declared)
-        cells = self.body.partition(NEW_LINE)[0].decode().split(",")
+        end = self.body.find(NEW_LINE)
+        cells = self.body[: end if end >= 0 else len(self.body)].decode().split(",")
         if found is None or found[0] >= len(cells) or seconds_of(cells[found[0]]) is None:
             return found
         return found[0], "s"

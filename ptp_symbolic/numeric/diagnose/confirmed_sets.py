@@ -69,6 +69,7 @@ def steps_for_names(seeker: Seeker, trial: Trial, briefly: Sequence[Step]) -> li
             without = seeker.without(trial, candidate, briefly=True)
         if gain(trial, without).share >= MOST and seeker.is_decided_at_end_of(without, trial):
             without = seeker.restarted(seeker.polished(without))
+            seeker.others.append(without)
         steps.append(step_of(trial, candidate, without))
     return steps
 

@@ -138,13 +138,11 @@ def extended(
         if gain(grown, best).share >= MOST:  # one that gains less has been begun anew before
             full = seeker.restarted(full)
         pruned, fewer = seeker.pruned(full)
-        same, before = pruned.keys == best.keys, best
+        same = pruned.keys == best.keys
         if same and ranked([best, pruned])[0] is best:
             break
         seeker.follow(pruned)
         best, steps = pruned, fewer  # the same candidates too: a third may show them a better place
-        if same and gain(best, before).share < MOST:  # what the others were compared with, mostly
-            break
     return best, steps
 
 
