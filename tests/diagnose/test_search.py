@@ -18,6 +18,7 @@ from ptp_symbolic.numeric.diagnose.search import by_effects_alone, extended
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import from_rows, taken_over
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
+from ptp_symbolic.numeric.diagnose.tried import worth_keeping
 from ptp_symbolic.numeric.identify.constants import LARGEST, MOST
 from tests.diagnose.spring_table import STIFFNESS, spring_table
 
@@ -254,3 +255,19 @@ def test_what_earns_no_name_is_not_refitted_to_its_end_where_more_than_noise_is_
     steps = steps_for_names(fake, SimpleNamespace(candidates=members), ())
     assert [s.candidate.key for s in steps] == ["a", "b"]
     assert refitted == thorough
+
+
+def test_trials_far_behind_are_kept_with_half_the_memory_and_gain_what_they_gained(
+    seeker: Seeker,
+) -> None:
+    """Of a set twice the better stays; a spring of a tenth of the stiffness is far behind."""
+    best, far = trial(seeker, "cable_spring@pan"), trial(seeker, "constant_torque@pan")
+    weak = best.values | {"k1_cable_pan": 0.1 * STIFFNESS}
+    poor = fitted(seeker.task, best.candidates, weak, best.fit.z)
+    kept = worth_keeping([poor, far, best], best)
+    assert kept[0] is best and [t.keys for t in kept] == [best.keys, far.keys]
+    sizes = [sum(e.by_parameter.nbytes for e in t.fit.evaluations) for t in (far, kept[1])]
+    assert sizes[1] == 0.5 * sizes[0]
+    before, after = (gain(t, seeker.declared) for t in (far, kept[1]))
+    assert after.share == pytest.approx(before.share, abs=1e-4)
+    assert worth_keeping(kept, best) == kept

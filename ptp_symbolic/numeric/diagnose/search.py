@@ -23,6 +23,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
     is_near,
     ranked,
 )
+from ptp_symbolic.numeric.diagnose.tried import worth_keeping
 from ptp_symbolic.numeric.identify.constants import (
     LARGEST,
     MOST,
@@ -130,6 +131,7 @@ def extended(
             break
         if end is not None and best.keys == end.keys and gain(best, end).share < material:
             break
+        seeker.others[:] = worth_keeping(seeker.others, best)
         grown = seeker.grown(best)
         if grown is None:
             break

@@ -204,7 +204,6 @@ class Seeker:
         promises far more than all others is tried before them.
         """
         task = self.task
-        self.others[:] = ranked(self.others)  # the best of every set: their Jacobians are large
         wanted = self.proposals.unseen if self.is_at_noise(trial) else task.candidates
         found = [r for r in responses(task, trial, wanted) if r.left < 1.0 - task.material]
         if not found:

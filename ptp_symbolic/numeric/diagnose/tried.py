@@ -1,0 +1,29 @@
+"""Trials that a search keeps for comparison: a hundred of them, whose Jacobians are large."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ptp_symbolic.numeric.diagnose.trial import Trial, is_near, ranked
+
+
+def worth_keeping(trials: Sequence[Trial], best: Trial) -> list[Trial]:
+    """The best trial of every set. Of those that are far behind `best` (see `is_near`) only tables
+    still ask what they gain: single precision is enough for their Jacobians.
+    """
+    return [t if is_near(t, [best]) else _lighter(t) for t in ranked(trials)]
+
+
+def _lighter(trial: Trial) -> Trial:
+    if all(e.by_parameter.dtype == np.float32 for e in trial.fit.evaluations):
+        return trial
+    evaluations = tuple(
+        replace(
+            e,
+            by_parameter=e.by_parameter.astype(np.float32),
+            by_start=e.by_start.astype(np.float32),
+        )
+        for e in trial.fit.evaluations
+    )
+    return replace(trial, fit=replace(trial.fit, evaluations=evaluations))
