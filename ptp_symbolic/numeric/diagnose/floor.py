@@ -23,6 +23,8 @@ from ptp_symbolic.numeric.identify.run_groups import by_source
 
 FloatArray = NDArray[np.float64]
 
+_HARDLY = float(np.sqrt(ABOVE_NOISE**2 - 1.0))  # noise of inputs that leaves white noise as it is
+
 
 @dataclass(frozen=True, eq=False)
 class Floor:
@@ -49,8 +51,8 @@ class Floor:
 def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
     """The floor, with the colour of the noise as the residual of `trial` shows it, but no more than
     the differences of the measured signals and the quietest run leave room for, and what the inputs
-    `carried`. Where more is left than noise of that colour, model error has a colour: the floor is
-    white then.
+    `carried`. Where more is left than noise of that colour, or what is left varies as no noise does
+    (and not by that of the inputs), model error has a colour: the floor is white then.
     """
     fit = with_every_residual(task, trial.fit)
     runs = fit.runs
@@ -63,6 +65,8 @@ def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
             series = [e.residual.reshape(r.measured.shape)[:, column] for r, e in fit.pairs()]
             by_log = [[series[k] for k in log if usual[k, column]] for log in by_source(runs)]
             noise = coloured_noise([part for parts in by_log for part in parts], 1.0)
+            if not noise.steady and carried.most[column] <= _HARDLY:
+                continue
             quiet = max(1.0, most_in_quietest([parts for parts in by_log if parts]))
             rms[column] = min(noise.rms, _with_hidden(noise.pole), quiet)
             most[column] = min(noise.most, hidden[column], quiet)

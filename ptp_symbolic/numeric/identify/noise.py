@@ -27,6 +27,7 @@ from ptp_symbolic.numeric.identify.constants import (
     SEGMENT,
     TEST_ALARM,
 )
+from ptp_symbolic.numeric.identify.steady_noise import is_steady
 
 FloatArray = NDArray[np.float64]
 
@@ -76,12 +77,15 @@ def _clipped_mean(square: FloatArray) -> float:
 @dataclass(frozen=True)
 class Noise:
     """Noise with the standard deviation `rms` of which a part is an autoregression with `pole` at
-    one sample; `most` is the largest standard deviation that the spectrum allows at 95 %.
+    one sample; `most` is the largest standard deviation that the spectrum allows at 95 %. It is not
+    `steady` where the series scatters more from stretch to stretch than any such noise (see
+    `steady_noise`).
     """
 
     rms: float
     pole: float
     most: float
+    steady: bool = True
 
 
 def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
@@ -100,7 +104,12 @@ def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
     best = int(np.argmax(likelihood))
     allowed = likelihood >= likelihood[best] - 0.5 * float(stats.chi2.ppf(0.95, 1))
     most = max(f[1] for f, ok in zip(fits, allowed, strict=True) if ok)
-    return Noise(float(np.sqrt(fits[best][1])), float(POLES[best]), float(np.sqrt(most)))
+    steady = any(
+        is_steady(series, float(POLES[k]), 1.0 - least**2 / fits[k][1], least)
+        for k in np.flatnonzero(allowed)
+    )
+    rms = float(np.sqrt(fits[best][1]))
+    return Noise(rms, float(POLES[best]), float(np.sqrt(most)), steady)
 
 
 def most_in_quietest(runs: Sequence[Sequence[FloatArray]]) -> float:
