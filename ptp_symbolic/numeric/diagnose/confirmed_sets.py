@@ -2,10 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from functools import partial
+from typing import NamedTuple
 
 from ptp_symbolic.numeric.diagnose.candidates import with_what_needs_it
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, at_bound, why_unconfirmed
-from ptp_symbolic.numeric.diagnose.findings import Step, step_of
+from ptp_symbolic.numeric.diagnose.findings import Refusals, Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import (
     Floor,
     floor_of,
@@ -22,11 +23,17 @@ from ptp_symbolic.numeric.identify.constants import MOST
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
 
-OTHER_LAW = "its torque goes with the speed in another way"  # why a candidate is refused
+
+class Weakness(NamedTuple):
+    """A candidate that is not confirmed, and why not."""
+
+    step: Step
+    reason: str
+    breaks_law: bool = False
 
 
 def confirmed(
-    seeker: Seeker, trial: Trial, steps: list[Step], refused: dict[str, str]
+    seeker: Seeker, trial: Trial, steps: list[Step], refused: Refusals
 ) -> tuple[Trial, list[Step], Fit]:
     """What is left of a trial when all that cannot be confirmed is taken out, noted in `refused`
     with the reason; its steps, and its fit with derivatives that are not blind.
@@ -38,9 +45,11 @@ def confirmed(
         if simpler is not None:
             trial, steps = shortened(seeker, simpler)
         elif weakness is not None:
-            step, reason = weakness
-            refused[step.candidate.key] = reason
-            trial, steps = shortened(seeker, step.without)
+            key = weakness.step.candidate.key
+            refused.why[key] = weakness.reason
+            if weakness.breaks_law:
+                refused.lawless.add(key)
+            trial, steps = shortened(seeker, weakness.step.without)
         else:
             break
         fit = with_finite_differences(trial.fit, seeker.task.executor)
@@ -137,7 +146,7 @@ def _off_bounds(seeker: Seeker, trial: Trial, fit: Fit) -> Trial | None:
     return None
 
 
-def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tuple[Step, str] | None:
+def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> Weakness | None:
     """The candidate of a trial that gains least of those that are not confirmed, and why not; None
     where all are. What is known of the others may change once it is out.
     """
@@ -147,24 +156,24 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> tupl
     refit = partial(without_run, seeker.task, trial)
     for step in by_gain:
         if not seeker.is_needed(step):
-            return step, _too_little(step.gain, seeker.task.material)
+            return Weakness(step, _too_little(step.gain, seeker.task.material))
         if leaves_noise_of_inputs(step.without, floor):
-            return step, "the noise of the inputs leaves as much without it"
+            return Weakness(step, "the noise of the inputs leaves as much without it")
         member = with_what_needs_it(step.candidate, trial.candidates)
         reason = why_unconfirmed(fit, member, quiet, refit)
         if reason is not None:
-            return step, reason
+            return Weakness(step, reason)
         space = seeker.proposals.space
         if space is not None and breaks_its_law(
             seeker.task, space, trial.candidates, trial.values, step.candidate
         ):
-            return step, OTHER_LAW
+            return Weakness(step, "its torque goes with the speed in another way", breaks_law=True)
         if not quiet:
             doubt = _doubt_beside_a_remainder(trial, step, seeker.task.material)
             if doubt is not None:
-                return step, doubt
+                return Weakness(step, doubt)
     if not answers_to_inputs(seeker.task, trial):
-        return by_gain[0], "with it the model no longer answers to its inputs"
+        return Weakness(by_gain[0], "with it the model no longer answers to its inputs")
     return None
 
 

@@ -1,6 +1,6 @@
 """What a search finds: the chosen set, what its members gain, and whether that is enough."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
@@ -37,6 +37,16 @@ class Search:
     others: tuple[Trial, ...]
     proposals: Proposals
     carried: Carried
+
+
+@dataclass(frozen=True, eq=False)
+class Refusals:
+    """Why candidates that gained are not named, by key, and the keys of those whose torque goes
+    with the speed in another way than their law.
+    """
+
+    why: dict[str, str] = field(default_factory=dict)
+    lawless: set[str] = field(default_factory=set)
 
 
 def step_of(trial: Trial, candidate: Candidate, without: Trial) -> Step:

@@ -7,7 +7,6 @@ import numpy as np
 
 from ptp_symbolic.numeric.diagnose.along_rows import grown_along_motion
 from ptp_symbolic.numeric.diagnose.confirmed_sets import (
-    OTHER_LAW,
     confirmed,
     doubtful,
     leaner_rival,
@@ -15,7 +14,7 @@ from ptp_symbolic.numeric.diagnose.confirmed_sets import (
     simplest_alike,
 )
 from ptp_symbolic.numeric.diagnose.fewer_samples import fitted_to_every_sample
-from ptp_symbolic.numeric.diagnose.findings import Search, Step
+from ptp_symbolic.numeric.diagnose.findings import Refusals, Search, Step
 from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
@@ -83,15 +82,14 @@ class Verdict:
 def decide(found: Search) -> Verdict:
     """Confirm the chosen set, find what it cannot be told from, and judge the validation runs."""
     task = found.task
-    refused: dict[str, str] = {}
+    refused = Refusals()
     seeker = Seeker(task, found.declared, found.proposals, found.carried)
     seeker.others = list(found.others)
     seeker.follow(found.chosen)
     trial, steps, alike = _settled(seeker, found.chosen, list(found.members), refused)
     task.progress("fitting every sample, and simulating the validation runs")
     declared, *final = _to_every_sample(found, trial)
-    barred = [key for key, why in refused.items() if why == OTHER_LAW]
-    sets = _along_motion(seeker, trial, declared, barred)
+    sets = _along_motion(seeker, trial, declared, sorted(refused.lawless))
     led = _near_floor(seeker, sets)
     if led is not None:
         trial, steps, alike = _settled(seeker, *shortened(seeker, led), refused)
@@ -110,7 +108,7 @@ def _to_every_sample(found: Search, trial: Trial) -> list[Trial]:
 
 
 def _settled(
-    seeker: Seeker, chosen: Trial, members: list[Step], refused: dict[str, str]
+    seeker: Seeker, chosen: Trial, members: list[Step], refused: Refusals
 ) -> tuple[Trial, list[Step], list[Rival]]:
     """What is confirmed of a chosen set, or of one that predicts better or is simpler and predicts
     as well; its steps, and the sets that it cannot be told from. What is not, is noted in `refused`
@@ -139,7 +137,7 @@ def _settled(
         step = doubtful(trial, steps, confusable(trial, alike), floor)
         if step is None:
             break
-        refused[step.candidate.key] = "others predict as well, and more than noise is left"
+        refused.why[step.candidate.key] = "others predict as well, and more than noise is left"
         trial, steps, fit = confirmed(seeker, *shortened(seeker, step.without), refused)
         alike = []
     return trial, steps, alike
@@ -186,9 +184,7 @@ def _near_floor(seeker: Seeker, sets: Sequence[_Set]) -> Trial | None:
     return seeker.polished(near[0]) if near else None
 
 
-def _judged(
-    found: Search, declared: Trial, sets: Sequence[_Set], refused: dict[str, str]
-) -> Verdict:
+def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refusals) -> Verdict:
     """The verdict for the first of `sets` that the validation runs bear out, or for none."""
     task = found.task
     before = held_out_fit(task, declared)
@@ -201,7 +197,7 @@ def _judged(
         if held_out is None or not is_taken_back(held_out, quiet, task.material):
             break
         for key in final.keys:
-            refused[key] = "takes away too little of the error of the validation runs"
+            refused.why[key] = "takes away too little of the error of the validation runs"
     word = word_of(final, one.confusable, quiet and leaves_noise_alone(final, floor))
     simulated = [s.compared for s in sets if s.estimated is None]
     return Verdict(
@@ -214,7 +210,7 @@ def _judged(
         one.confusable,
         one.rivals,
         next(iter(simulated), _closest(found)) if word == UNEXPLAINED else None,
-        {key: why for key, why in refused.items() if key not in final.keys},
+        {key: why for key, why in refused.why.items() if key not in final.keys},
         floor,
         before,
         after,
