@@ -74,7 +74,7 @@ def named(found: dict[str, Any]) -> list[str]:
 @pytest.mark.parametrize(
     ("force", "near", "held"),
     [
-        (SPRING, 0.1, ("k1_cable_pan", SPRING.size)),
+        (SPRING, 0.3, ("k1_cable_pan", SPRING.size)),
         (COGGING, 0.1, None),
         (FRICTION, 0.25, FRICTION.wave),
     ],

@@ -46,9 +46,7 @@ def confirmed(
             trial, steps = shortened(seeker, simpler)
         elif weakness is not None:
             key = weakness.step.candidate.key
-            refused.why[key] = weakness.reason
-            if weakness.breaks_law:
-                refused.lawless.add(key)
+            refused.note(key, weakness.reason, weakness.breaks_law)
             trial, steps = shortened(seeker, weakness.step.without)
         else:
             break

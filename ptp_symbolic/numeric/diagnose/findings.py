@@ -48,6 +48,14 @@ class Refusals:
     why: dict[str, str] = field(default_factory=dict)
     lawless: set[str] = field(default_factory=set)
 
+    def note(self, key: str, why: str, breaks_law: bool = False) -> None:
+        """Note the last reason: in another set a candidate may be refused for another one."""
+        self.why[key] = why
+        if breaks_law:
+            self.lawless.add(key)
+        else:
+            self.lawless.discard(key)
+
 
 def step_of(trial: Trial, candidate: Candidate, without: Trial) -> Step:
     """What `candidate` gains in `trial` over the trial `without` it."""

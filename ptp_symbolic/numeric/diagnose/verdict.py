@@ -137,7 +137,8 @@ def _settled(
         step = doubtful(trial, steps, confusable(trial, alike), floor)
         if step is None:
             break
-        refused.why[step.candidate.key] = "others predict as well, and more than noise is left"
+        why = "others predict as well, and more than noise is left"
+        refused.note(step.candidate.key, why)
         trial, steps, fit = confirmed(seeker, *shortened(seeker, step.without), refused)
         alike = []
     return trial, steps, alike
@@ -197,7 +198,7 @@ def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refus
         if held_out is None or not is_taken_back(held_out, quiet, task.material):
             break
         for key in final.keys:
-            refused.why[key] = "takes away too little of the error of the validation runs"
+            refused.note(key, "takes away too little of the error of the validation runs")
     word = word_of(final, one.confusable, quiet and leaves_noise_alone(final, floor))
     simulated = [s.compared for s in sets if s.estimated is None]
     return Verdict(
