@@ -1,6 +1,6 @@
 """Logs arrive in SI and in the platform's order, fast, and a bad file is refused with its line."""
 
-import time
+import timeit
 from pathlib import Path
 
 import numpy as np
@@ -198,38 +198,6 @@ def test_time_may_be_in_any_unit_of_time(tmp_path: Path) -> None:
         read_log(path, PLATFORM)
 
 
-@pytest.mark.parametrize(
-    ("form", "separator"),
-    [
-        ("2026-11-26T11:59:59.{:03d}Z", ","),
-        ("2026-11-26 12:59:59,{:03d}+01:00", ";"),
-        ("2026-11-26T11:59:59.{:03d}000", ","),
-    ],
-)
-def test_times_may_be_stamps(tmp_path: Path, form: str, separator: str) -> None:
-    rows = [f"{form.format(940 + 5 * k)},{row.partition(',')[2]}" for k, row in enumerate(ROWS)]
-    text = "\n".join([HEADER.replace("time [s]", "time"), *rows]) + "\n"
-    if separator == ";":
-        date, comma = form.split(",")[0], form[form.find(",") :][:1]
-        text = "\n".join(
-            line.replace(",", ";").replace(f"{date};", f"{date}{comma}")
-            for line in text.split("\n")
-        )
-    log = read_log(write(tmp_path, text), PLATFORM)
-    np.testing.assert_allclose(np.diff(log.time), 0.005, rtol=0, atol=1e-7)
-    np.testing.assert_allclose(log.outputs[:, 0], 0.1 * np.arange(12), rtol=1e-14)
-
-
-def test_a_stamp_that_is_no_time_and_one_among_signals_are_refused(tmp_path: Path) -> None:
-    stamp = "2026-11-26T12:00:00Z"
-    for old, new in (("\n0.0150,", f"\n{stamp[:5]}13{stamp[7:]},"), (",4.50,", f",{stamp},")):
-        path = write(tmp_path, GOOD.replace(old, new))
-        with pytest.raises(
-            InputError, match=r"run.csv:5: '\w+' is '2026-1[0-9T:Z-]+', not a finite decimal"
-        ):
-            read_log(path, PLATFORM)
-
-
 def test_missing_folder_and_oversized_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no such file; give the path of a CSV log"):
         read_log(tmp_path / "none.csv", PLATFORM)
@@ -273,15 +241,10 @@ def test_a_log_is_read_in_less_than_three_times_what_its_numbers_take(tmp_path: 
     table = np.column_stack([np.arange(5000) / 200, random.normal(size=(5000, 3))])
     path = tmp_path / "run.csv"
     np.savetxt(path, table, delimiter=",", header=HEADER, comments="")
-    own, peer = [], []
-    for _ in range(5):
-        start = time.perf_counter()
-        log = read_log(path, PLATFORM)
-        own.append(time.perf_counter() - start)
-        start = time.perf_counter()
-        np.loadtxt(path, delimiter=",", skiprows=1)
-        peer.append(time.perf_counter() - start)
+    own = timeit.repeat(lambda: read_log(path, PLATFORM), number=1)
+    peer = timeit.repeat(lambda: np.loadtxt(path, delimiter=",", skiprows=1), number=1)
     assert min(own) < 3.0 * min(peer)
+    log = read_log(path, PLATFORM)
     np.testing.assert_array_equal(log.inputs[:, 0], table[:, 1])
     np.testing.assert_array_equal(log.outputs, table[:, [3, 2]])
 

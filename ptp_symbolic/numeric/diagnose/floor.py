@@ -23,8 +23,6 @@ from ptp_symbolic.numeric.identify.run_groups import by_source
 
 FloatArray = NDArray[np.float64]
 
-_HARDLY = float(np.sqrt(ABOVE_NOISE**2 - 1.0))  # noise of inputs that leaves white noise as it is
-
 
 @dataclass(frozen=True, eq=False)
 class Floor:
@@ -65,7 +63,7 @@ def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
             series = [e.residual.reshape(r.measured.shape)[:, column] for r, e in fit.pairs()]
             by_log = [[series[k] for k in log if usual[k, column]] for log in by_source(runs)]
             noise = coloured_noise([part for parts in by_log for part in parts], 1.0)
-            if not noise.steady and carried.most[column] <= _HARDLY:
+            if not noise.steady and np.hypot(1.0, carried.most[column]) <= ABOVE_NOISE:
                 continue
             quiet = max(1.0, most_in_quietest([parts for parts in by_log if parts]))
             rms[column] = min(noise.rms, _with_hidden(noise.pole), quiet)

@@ -14,7 +14,6 @@ from scipy import stats
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, FAR, FEWEST_BLOCKS, SEGMENT
 
 FloatArray = NDArray[np.float64]
-QUARTILES = (0.25, 0.75)
 
 
 def is_steady(series: Sequence[FloatArray], pole: float, share: float, least: float) -> bool:
@@ -31,7 +30,7 @@ def is_steady(series: Sequence[FloatArray], pole: float, share: float, least: fl
     ]
     if len(squares) < FEWEST_BLOCKS:
         return True
-    low, high = np.quantile(np.log(np.maximum(squares, least**2)), QUARTILES)
+    low, high = np.quantile(np.log(np.maximum(squares, least**2)), (0.25, 0.75))
     usual, deviation = _spread(degrees(pole, share), len(squares))
     more = float(high - low) - usual
     return more <= max(2.0 * np.log(ABOVE_NOISE), FAR * deviation)
@@ -48,9 +47,9 @@ def _spread(freedom: float, count: int) -> tuple[float, float]:
     """Distance of the quartiles of the logarithm of a mean square with so many degrees of freedom,
     and its standard deviation in samples of `count` (Cramer, 1946, 28.5).
     """
-    places = stats.chi2.ppf(QUARTILES, freedom)
+    below, above = 0.25, 0.75
+    places = stats.chi2.ppf((below, above), freedom)
     density = stats.chi2.pdf(places, freedom) * places
-    below, above = QUARTILES
     variance = (
         below * (1.0 - below) / density[0] ** 2
         + above * (1.0 - above) / density[1] ** 2
