@@ -3,13 +3,11 @@ noise is left; on logs whose motion is known in closed form.
 """
 
 from collections.abc import Iterator
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.confirmed_sets import steps_for_names
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
@@ -209,52 +207,6 @@ def test_a_set_that_was_begun_anew_from_the_rows_is_not_begun_so_again(
     first, second = (seeker.restarted(t) for t in poor)
     assert first is second and len(begun) == 1
     assert first.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
-
-
-@pytest.mark.parametrize(("quiet", "thorough"), [(True, ["a", "b"]), (False, ["b"])])
-def test_what_earns_no_name_is_not_refitted_to_its_end_where_more_than_noise_is_left(
-    monkeypatch: pytest.MonkeyPatch, quiet: bool, thorough: list[str]
-) -> None:
-    """Over brief refits a takes away 30 %, b 80 %; where a remainder is left b alone may earn a
-    name, over a better refit without it.
-    """
-    refitted = []
-    shares = {"a": 0.3, "b": 0.8}
-
-    def without(trial: Any, candidate: Any, *, briefly: bool = False) -> Any:
-        return SimpleNamespace(key=candidate.key, briefly=briefly)
-
-    def restarted(smaller: Any) -> Any:
-        refitted.append(smaller.key)
-        return smaller
-
-    def step(trial: Any, candidate: Any) -> Any:
-        return step_of(trial, candidate, restarted(without(trial, candidate)))
-
-    def step_of(trial: Any, candidate: Any, smaller: Any) -> Any:
-        return SimpleNamespace(candidate=candidate, without=smaller)
-
-    place = "ptp_symbolic.numeric.diagnose.confirmed_sets."
-    monkeypatch.setattr(place + "leaves_noise_alone", lambda trial, floor: quiet)
-    monkeypatch.setattr(place + "floor_of", lambda *arguments: None)
-    monkeypatch.setattr(place + "step_of", step_of)
-    monkeypatch.setattr(
-        place + "gain", lambda t, smaller: SimpleNamespace(share=shares[smaller.key])
-    )
-    fake: Any = SimpleNamespace(
-        task=None,
-        carried=None,
-        others=[],
-        without=without,
-        step=step,
-        restarted=restarted,
-        polished=lambda smaller: smaller,
-        is_decided_at_end_of=lambda smaller, trial: True,
-    )
-    members = [SimpleNamespace(key=key) for key in "ab"]
-    steps = steps_for_names(fake, SimpleNamespace(candidates=members), ())
-    assert [s.candidate.key for s in steps] == ["a", "b"]
-    assert refitted == thorough
 
 
 def test_trials_far_behind_are_kept_with_half_the_memory_and_gain_what_they_gained(

@@ -57,28 +57,7 @@ def confirmed(
 def shortened(seeker: Seeker, trial: Trial) -> tuple[Trial, list[Step]]:
     """A trial that lacks something now, fitted sharply, and what its candidates gain."""
     trial = seeker.sharpened(trial)
-    return trial, steps_for_names(seeker, trial, ())
-
-
-def steps_for_names(seeker: Seeker, trial: Trial, briefly: Sequence[Step]) -> list[Step]:
-    """What the candidates of a trial gain, over refits without them that end where they can. Where
-    more than noise is left, one that takes away less than most of it over a brief refit earns no
-    name (see `_doubt_beside_a_remainder`), and takes away less still over a better one: these are
-    those of the steps `briefly`, where they are known.
-    """
-    if leaves_noise_alone(trial, floor_of(seeker.task, trial, seeker.carried)):
-        return [seeker.step(trial, candidate) for candidate in trial.candidates]
-    known = {step.candidate.key: step.without for step in briefly}
-    steps = []
-    for candidate in trial.candidates:
-        without = known.get(candidate.key)
-        if without is None:
-            without = seeker.without(trial, candidate, briefly=True)
-        if gain(trial, without).share >= MOST and seeker.is_decided_at_end_of(without, trial):
-            without = seeker.restarted(seeker.polished(without))
-            seeker.others.append(without)
-        steps.append(step_of(trial, candidate, without))
-    return steps
+    return trial, [seeker.step(trial, c) for c in trial.candidates]
 
 
 def leaner_rival(seeker: Seeker, trial: Trial, alike: Sequence[Rival]) -> Trial | None:

@@ -4,7 +4,6 @@ completed, pruned and grown until every candidate in it is needed and none outsi
 
 from dataclasses import replace
 
-from ptp_symbolic.numeric.diagnose.confirmed_sets import steps_for_names
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of, parted_task, takes_away_most
 from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
 from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
@@ -92,10 +91,10 @@ def _from_declared(seeker: Seeker) -> Search:
     best = seeker.sharpened(seeker.simplified(best))
     if seeker.is_at_noise(best):
         without = {s.candidate.key: s.without for s in steps}
-        steps = [step_of(best, c, without[c.key]) for c in best.candidates]
     else:  # the search was brief
-        steps = steps_for_names(seeker, best, steps)
-    members, others = tuple(steps), tuple(seeker.others)
+        without = {c.key: seeker.without(best, c) for c in best.candidates}
+    members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
+    others = tuple(seeker.others)
     return Search(task, seeker.declared, best, members, others, seeker.proposals, seeker.carried)
 
 
