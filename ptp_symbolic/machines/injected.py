@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from scipy.io import loadmat, savemat
 from scipy.signal import butter, filtfilt
 
+from ptp_symbolic.platform import SignalDeclaration
+
 Floats = NDArray[np.float64]
 
-FORCE = 35.1507  # N per volt of the logged motor voltage (Janot, Gautier and Brunot, 2019)
 STIFFNESS, MIDDLE = 7.26, 0.123  # N/m, m
 AMPLITUDE = 0.6 * np.sqrt(2.0)  # N: 0.6 N rms
 COGS, WAVES = 2.0 * np.pi / 0.02, 150.0  # rad/m
@@ -77,8 +78,9 @@ FRICTION = Injected(
 INJECTED = (SPRING, COGGING, FRICTION)
 
 
-def write_injected(force: Injected, source: Path, target: Path) -> None:
-    """Write the file `source` of EMPS to `target` with a force put in."""
+def write_injected(force: Injected, driving: SignalDeclaration, source: Path, target: Path) -> None:
+    """Write the file `source` of EMPS to `target` with a force put into its `driving` signal."""
     columns = {k: np.asarray(v) for k, v in loadmat(source).items() if not k.startswith("__")}
-    columns["vir"] = columns["vir"] + force.law(columns["qm"]) / FORCE
+    scale = 1.0 if driving.scale is None else driving.scale
+    columns[driving.column] = columns[driving.column] + force.law(columns["qm"]) / scale
     savemat(target, columns)

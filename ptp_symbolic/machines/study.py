@@ -32,7 +32,7 @@ EMPS = (
 )
 PUT_IN = (
     "Forces of 0.6 N rms, added to the measured force of both files: the same motion of a machine"
-    " that has them. The diagnosis of the machine as it is, above, names none of them."
+    " that has them. The diagnosis of the machine as it is stands above."
 )
 PENDULUM = (
     "M. Duclusaud, G. Passault, V. Padois and O. Ly, Extended Friction Models for the Physics"
@@ -112,11 +112,12 @@ def forces_put_in(folder: Path, progress: Progress) -> dict[str, Any]:
 def force_put_in(force: Injected, folder: Path, progress: Progress) -> dict[str, Any]:
     """The positioning system with one force put in."""
     progress(f"positioning system with {force.title}")
+    platform = read_platform(PLATFORMS / "emps.toml")
+    (driving,) = (s for s in platform.signals if s.role == "input")
     with tempfile.TemporaryDirectory() as scratch:
         for name in EMPS_FILES:
-            write_injected(force, folder / name, Path(scratch) / name)
-        logs = emps_logs(Path(scratch))
-        found = diagnose_platform(read_platform(PLATFORMS / "emps.toml"), *logs, progress)
+            write_injected(force, driving, folder / name, Path(scratch) / name)
+        found = diagnose_platform(platform, *emps_logs(Path(scratch)), progress)
     named = [added["effect"] for added in found.summary["added"]]
     row = {
         "title": force.title,
