@@ -12,9 +12,10 @@ from ptp_symbolic.models import emission, variants
 from ptp_symbolic.models.declared import free_parameters, known_values, refuse_unknown_signals
 from ptp_symbolic.numeric.data import read_logs
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, find_candidates, vanished
+from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose, with_lines
-from ptp_symbolic.numeric.diagnose.refits import fit_declared, polished
+from ptp_symbolic.numeric.diagnose.refits import polished
 from ptp_symbolic.numeric.diagnose.starts import from_rows
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted, halving, restarted
 from ptp_symbolic.numeric.experiment.contender import Contender, from_fit, without_logs

@@ -6,11 +6,11 @@ from pathlib import Path
 
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.data import log_files, read_logs
+from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.errors import error_of
 from ptp_symbolic.numeric.diagnose.floor import floor_of
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.summary import fit_table
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
 from ptp_symbolic.numeric.diagnose.turned_inputs import turned_inputs

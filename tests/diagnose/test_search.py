@@ -8,15 +8,15 @@ from typing import Any
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.refits import fit_declared
 from ptp_symbolic.numeric.diagnose.search import by_effects_alone, extended
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import from_rows, taken_over
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
-from ptp_symbolic.numeric.diagnose.tried import worth_keeping
+from ptp_symbolic.numeric.diagnose.tried import Tried, worth_keeping
 from ptp_symbolic.numeric.identify.constants import LARGEST, MOST
 from tests.diagnose.spring_table import STIFFNESS, spring_table
 
@@ -111,7 +111,7 @@ def test_what_is_left_is_fitted_no_worse_than_the_search_has_fitted_it_before(
     monkeypatch.setattr("ptp_symbolic.numeric.diagnose.seeker.ITERATIONS", 0)
     monkeypatch.setattr(seeker, "polished", lambda trial: trial)
     monkeypatch.setattr(seeker, "restarted", lambda trial: trial)
-    monkeypatch.setattr(seeker, "others", [right])
+    monkeypatch.setattr(seeker, "tried", Tried([right]))
     left = seeker.without(both, wrong.candidates[0])
     assert left.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
 
@@ -203,7 +203,7 @@ def test_a_set_that_was_begun_anew_from_the_rows_is_not_begun_so_again(
         return from_rows(*arguments)
 
     monkeypatch.setattr("ptp_symbolic.numeric.diagnose.seeker.from_rows", counted)
-    monkeypatch.setattr(seeker, "_anew", {})
+    monkeypatch.setattr(seeker, "tried", Tried())
     first, second = (seeker.restarted(t) for t in poor)
     assert first is second and len(begun) == 1
     assert first.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)

@@ -10,9 +10,10 @@ import pytest
 
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.data import log_files, read_split_logs
+from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.refits import fit_declared, to_its_end
+from ptp_symbolic.numeric.diagnose.refits import to_its_end
 from ptp_symbolic.numeric.diagnose.through_windows import through_windows
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted
 from ptp_symbolic.platform import read_platform
@@ -43,7 +44,7 @@ def test_windows_lead_to_the_breakaway_of_the_machine(tmp_path: Path) -> None:
         task, declared = fit_declared(task, propose(task))
         candidate = next(c for c in task.candidates if c.id == "rate_dependent_breakaway")
         carried = carried_noise(task, declared.fit)
-        found = through_windows(task, declared, candidate, carried)
+        found = through_windows(task, declared, candidate, carried, is_white=False)
         assert found is not None
         own = fitted(task, (candidate,), {**declared.values, **truth}, None)
         best = to_its_end(task, own, carried)

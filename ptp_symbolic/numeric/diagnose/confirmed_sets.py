@@ -119,7 +119,8 @@ def _off_bounds(seeker: Seeker, trial: Trial, fit: Fit) -> Trial | None:
         lacking = [f for f in forms(seeker.task, candidate) if {p.name for p in f.free} <= kept]
         if bound is not None and lacking:
             fullest = max(lacking, key=lambda form: len(form.free))
-            return seeker.simplified(seeker.in_form(trial, candidate, fullest))
+            full = seeker.polished(seeker.begun_in_form(trial, candidate, fullest))
+            return seeker.simplified(full)
     return None
 
 

@@ -7,6 +7,7 @@ from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
 from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
+from ptp_symbolic.numeric.diagnose.tried import Tried
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM
 
 
@@ -25,7 +26,7 @@ class Step:
 @dataclass(frozen=True, eq=False)
 class Search:
     """What the search found: the declared model, the chosen set (the same where nothing is added),
-    what every member of it gains, all other trials, and the noise of the inputs as the best model
+    what every member of it gains, all that was tried, and the noise of the inputs as the best model
     so far carries it to the outputs. `task` has the candidates with a frequency where a line was
     found, and without those that have none.
     """
@@ -34,7 +35,7 @@ class Search:
     declared: Trial
     chosen: Trial
     members: tuple[Step, ...]
-    others: tuple[Trial, ...]
+    tried: Tried
     proposals: Proposals
     carried: Carried
 

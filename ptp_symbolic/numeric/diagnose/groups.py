@@ -72,7 +72,7 @@ def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
     more than noise, however far it is till then.
     """
     task = seeker.task
-    near = [t for t in ranked(seeker.others) if _comes_near(t, chosen)]
+    near = [t for t in ranked(seeker.tried.others) if _comes_near(t, chosen)]
     tried = {t.keys for t in near}
     begun: list[Trial] = []
     resembling: set[tuple[str, ...]] = set()

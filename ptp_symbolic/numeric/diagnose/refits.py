@@ -8,18 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.cut_runs import (
-    in_windows,
-    parted_task,
-    takes_away_most,
-    validation_in_windows,
-)
-from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
-from ptp_symbolic.numeric.diagnose.growing_windows import growing, led_through, settled, starts_of
+from ptp_symbolic.numeric.diagnose.growing_windows import settled, starts_of
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
-from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -37,7 +29,6 @@ from ptp_symbolic.numeric.identify.constants import (
     NEARBY,
     POLISH,
     ROUGH,
-    SCREENED,
     SHARP,
     STEP,
     TRIED,
@@ -50,57 +41,10 @@ from ptp_symbolic.numeric.identify.linked_windows import has_linked
 FloatArray = NDArray[np.float64]
 
 
-def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
-    """The declared model, from where windows lead from the rows' start and from the declared one,
-    and from those two themselves; where runs are windows already, from starts far off too, and from
-    where shorter ones lead. And the task with windows for runs that multiply small errors (see
-    `in_windows`), which would lead the fit astray.
-    """
-    starts = [proposals.start, declared_start(task)]
-    spread = far_starts(task, proposals.start) if has_rough_starts(task) else []
-    begun = over_windows(task, (), starts, task.executor, spread)
-    if begun:
-        part = in_windows(task, begun[0])
-        if part is not task:
-            task, led = part, fitted(part, (), begun[0].values, None)
-            begun = [settled(task, led, task.executor)]
-    begun += [fitted(task, (), values, None) for values in starts]
-    if not task.windows:
-        far = [fitted(task, (), values, None) for values in spread]
-        begun += halving(task, far, SCREENED)
-        begun.append(fitted(task, (), led_through(growing(task), (), proposals.start), None))
-    best = halving(task, begun, 1) or begun[-1:]
-    trial = polished(task, best[0], carried_noise(task, best[0].fit))
-    part = parted_task(task, trial)
-    if part is not task:
-        short = refitted_in(part, trial)
-        if takes_away_most(short, trial):
-            task, trial = part, short
-    part = in_windows(task, trial)
-    if part is not task:
-        short = refitted_in(part, trial)
-        if np.all(left_over(short.fit) <= left_over(trial.fit)):
-            task, trial = part, short
-    return validation_in_windows(task, trial), trial
-
-
 def refitted_in(part: Task, trial: Trial) -> Trial:
     """A trial fitted to its end to runs in parts, whose starts are begun at their guesses."""
     begun = fitted(part, trial.candidates, trial.values, None)
     return polished(part, begun, carried_noise(part, begun.fit))
-
-
-def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]]:
-    """`values` with one declared parameter after the other as far from its start as that may be
-    off: rows tell an inertia behind a gear by its share in the whole alone, and fits that begin
-    with a gap and too little of it end with none.
-    """
-    return [
-        {**values, **dict.fromkeys(f.names, _inside(f, factor * f.start))}
-        for f in task.free
-        for factor in (FAR_OFF, 1.0 / FAR_OFF)
-        if f.start > 0.0
-    ]
 
 
 def without_misleading(trial: Trial) -> Trial:
@@ -143,7 +87,7 @@ def over_windows(
         if not begun:
             return []
         best = settled(part, begun[0], executor, brief=bool(candidates))
-    return [fitted(task, candidates, best.values, None)] if best else []
+    return [fitted(task, candidates, best.values, None, executor=executor)] if best else []
 
 
 def polished(task: Task, trial: Trial, carried: Carried) -> Trial:
@@ -190,7 +134,7 @@ def started_anew(task: Task, trial: Trial, carried: Carried) -> Trial:
     begun = [fitted(task, trial.candidates, trial.values, None, parent=trial.fit)]
     strayed = strayed_from_start(task, trial.values)
     for factor in (1.0, FAR_OFF, 1.0 / FAR_OFF) if strayed else ():
-        back = {n: _inside(f, factor * f.start) for f in strayed for n in f.names}
+        back = {n: inside(f, factor * f.start) for f in strayed for n in f.names}
         values = trial.values | back
         begun.append(fitted(task, trial.candidates, values, trial.fit.z, parent=trial.fit))
     left = halving(task, begun, 1)
@@ -211,7 +155,8 @@ def strayed_from_start(task: Task, values: Mapping[str, float]) -> list[FreePara
     ]
 
 
-def _inside(free: FreeParameter, value: float) -> float:
+def inside(free: FreeParameter, value: float) -> float:
+    """The value, or the bound of a parameter that it exceeds."""
     return float(np.clip(value, free.lower, free.upper))
 
 

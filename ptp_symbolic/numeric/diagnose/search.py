@@ -5,13 +5,14 @@ completed, pruned and grown until every candidate in it is needed and none outsi
 from dataclasses import replace
 
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of, parted_task, takes_away_most
+from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows, over_whole_runs
 from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
 from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
-from ptp_symbolic.numeric.diagnose.proposals import propose, with_lines
-from ptp_symbolic.numeric.diagnose.refits import fit_declared, refitted_in
+from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose, with_lines
+from ptp_symbolic.numeric.diagnose.refits import refitted_in
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import started
 from ptp_symbolic.numeric.diagnose.through_windows import each_through_windows
@@ -37,32 +38,73 @@ def search(task: Task) -> Search:
     task = replace(task, candidates=with_lines(task.candidates, proposals))
     task = with_fewer_samples(task, proposals.start)
     task.progress("fitting the declared model")
-    task, declared = fit_declared(task, proposals)
-    seeker = Seeker(task, declared, proposals, carried_noise(task, declared.fit))
-    return _from_declared(seeker)
+    if task.windows:
+        seeker = _seeker(*over_whole_runs(task, proposals), proposals)
+        found = _soon_found(seeker)
+        if any(map(seeker.is_at_noise, (seeker.declared, *found))):
+            return _from_declared(seeker, found)
+        task.progress("fitting the declared model over windows")
+    seeker = _seeker(*led_over_windows(task, proposals), proposals)
+    return _from_declared(seeker, _proposed(seeker))
 
 
-def _from_declared(seeker: Seeker) -> Search:
-    """Propose, refit, complete, prune, grow, simplify; where the chosen set leads the declared
-    model to a better place, from the beginning, or with new gains if it leaves only noise; where
-    what it adds multiplies small errors, from the beginning in windows.
+def _seeker(task: Task, declared: Trial, proposals: Proposals) -> Seeker:
+    return Seeker(task, declared, proposals, carried_noise(task, declared.fit))
+
+
+def _proposed(seeker: Seeker) -> list[Trial]:
+    """The best of the proposed sets, to its end; none where the declared model leaves only noise
+    and the rows ask for nothing.
+    """
+    task, best = seeker.task, seeker.declared
+    if not seeker.proposals.asked_for and seeker.is_at_noise(best):
+        return []
+    sets = started(task, best, seeker.proposals)
+    task.progress(f"refitting {len(sets)} proposed sets")
+    found = halving(task, sets, SCREENED, 1, seen=seeker.tried.others)
+    seeker.follow(ranked([best, *found])[0])
+    return [seeker.completed(t) for t in found if is_near(t, [best, *found])]
+
+
+def _soon_found(seeker: Seeker) -> list[Trial]:
+    """What is proposed, with one candidate more as long as that takes away most of what is left:
+    where this ends at the noise, nothing that is hard to find is missing.
+    """
+    found = _proposed(seeker)
+    best = next((t for t in found if gain(t, seeker.declared).share >= MOST), seeker.declared)
+    for _ in range(LARGEST):
+        if seeker.is_at_noise(best):
+            break
+        grown = seeker.grown(best, briefly=True)
+        if grown is None:
+            break
+        best = seeker.completed(grown)
+    return [best] if seeker.is_at_noise(best) and best.candidates else found
+
+
+def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
+    """Complete what is `found` of the proposed sets, prune, grow, simplify; where the chosen set
+    leads the declared model to a better place, from the beginning, or with new gains if it leaves
+    only noise; where what it adds multiplies small errors, from the beginning in windows.
     """
     task, best = seeker.task, seeker.declared
     if seeker.proposals.asked_for or not seeker.is_at_noise(best):
-        sets = started(task, seeker.declared, seeker.proposals)
-        task.progress(f"refitting {len(sets)} proposed sets")
-        found = halving(task, sets, SCREENED, 1, seen=seeker.others)
-        seeker.follow(ranked([best, *found])[0])
-        if not seeker.have_answer(best, *found, *seeker.others):
+        if not seeker.have_answer(best, *found, *seeker.tried.others):
             unseen = seeker.unseen(best)
             task.progress(f"refitting {len(unseen)} effects that the motion does not show")
-            found += halving(task, unseen, 1)
+            found = found + halving(task, unseen, 1)
         found = [t for t in ranked(found) if is_near(t, found)]
         best = seeker.restarted(ranked([best, *(seeker.completed(t) for t in found)])[0])
         seeker.follow(best)
     pruned = seeker.pruned(best) if seeker.is_at_noise(best) else None
     if pruned is None or not seeker.have_answer(pruned[0]):
-        each = each_through_windows(task, seeker.declared, seeker.proposals.unseen, seeker.carried)
+        each = each_through_windows(
+            task,
+            seeker.declared,
+            seeker.proposals.unseen,
+            seeker.carried,
+            is_white=pruned is not None,
+        )
         led = seeker.simplest([best, *each])
         if pruned is None or led is not best:
             best, pruned = led, seeker.pruned(led)
@@ -72,11 +114,11 @@ def _from_declared(seeker: Seeker) -> Search:
         best, steps = extended(seeker, begun, steps)
         cut = _in_windows(seeker, best)
     if cut is not None:
-        return _from_declared(cut)
+        return _from_declared(cut, _proposed(cut))
     end = best
     other = seeker.exchanged(best)
     if other is not None:
-        seeker.others.append(best)
+        seeker.tried.others.append(best)
         best, steps = seeker.pruned(other)
     if begun.candidates or any(c.is_declared_value for c in best.candidates):
         best, steps = by_effects_alone(seeker, best, steps, end)
@@ -85,8 +127,8 @@ def _from_declared(seeker: Seeker) -> Search:
         if again is not None:
             seeker.declared = again
             if not seeker.is_at_noise(best):
-                seeker.others = []
-                return _from_declared(seeker)
+                seeker.tried.others.clear()
+                return _from_declared(seeker, _proposed(seeker))
             best, steps = seeker.pruned(best)
     best = seeker.sharpened(seeker.simplified(best))
     if seeker.is_at_noise(best):
@@ -94,8 +136,9 @@ def _from_declared(seeker: Seeker) -> Search:
     else:  # the search was brief
         without = {c.key: seeker.without(best, c) for c in best.candidates}
     members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
-    others = tuple(seeker.others)
-    return Search(task, seeker.declared, best, members, others, seeker.proposals, seeker.carried)
+    return Search(
+        task, seeker.declared, best, members, seeker.tried, seeker.proposals, seeker.carried
+    )
 
 
 def _in_windows(seeker: Seeker, best: Trial) -> Seeker | None:
@@ -113,7 +156,7 @@ def _in_windows(seeker: Seeker, best: Trial) -> Seeker | None:
         if not takes_away_most(refitted_in(part, best), best):
             continue
         declared = refitted_in(part, seeker.declared)
-        return Seeker(part, declared, seeker.proposals, carried_noise(part, declared.fit))
+        return _seeker(part, declared, seeker.proposals)
     return None
 
 
@@ -130,11 +173,11 @@ def extended(
             break
         if end is not None and best.keys == end.keys and gain(best, end).share < material:
             break
-        seeker.others[:] = worth_keeping(seeker.others, best)
+        seeker.tried.others[:] = worth_keeping(seeker.tried.others, best)
         grown = seeker.grown(best)
         if grown is None:
             break
-        seeker.others.append(best)
+        seeker.tried.others.append(best)
         full = seeker.completed(grown)
         if gain(grown, best).share >= MOST:  # one that gains less has been begun anew before
             full = seeker.restarted(full)
@@ -165,7 +208,7 @@ def by_effects_alone(
     other, fewer = extended(alone, seeker.declared, [], end)
     no_larger = seeker.is_at_noise(other) and len(other.fit.free) <= len(best.fit.free)
     if ranked([best, other])[0] is best and not (quiet and no_larger):
-        seeker.others.append(other)
+        seeker.tried.others.append(other)
         return best, steps
-    seeker.others.append(best)
+    seeker.tried.others.append(best)
     return other, fewer

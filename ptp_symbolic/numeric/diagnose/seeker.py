@@ -1,8 +1,7 @@
 """The moves of a search: sets are completed, pruned, grown, exchanged, made simpler by refits."""
 
 from collections.abc import Sequence
-from dataclasses import replace
-from weakref import WeakSet
+from dataclasses import dataclass, field, replace
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.findings import Step, is_earned, step_of
@@ -34,6 +33,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
     is_near,
     ranked,
 )
+from ptp_symbolic.numeric.diagnose.tried import Tried
 from ptp_symbolic.numeric.identify.constants import (
     ITERATIONS,
     LITTLE,
@@ -43,21 +43,20 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 
 
+@dataclass(eq=False)
 class Seeker:
-    """A search in progress; `others` are trials not chosen, `carried` is that of `Search`."""
+    """A search in progress, with what was `tried` in it so far; `carried` is that of `Search`."""
 
-    def __init__(self, task: Task, declared: Trial, proposals: Proposals, carried: Carried) -> None:
-        self.task, self.declared, self.proposals, self.carried = task, declared, proposals, carried
-        self.others: list[Trial] = []
-        self._at_end: WeakSet[Trial] = WeakSet()  # their Jacobians are large
-        self._anew: dict[tuple[tuple[str, int], ...], Trial] = {}
+    task: Task
+    declared: Trial
+    proposals: Proposals
+    carried: Carried
+    tried: Tried = field(default_factory=Tried)
 
     def among(self, candidates: tuple[Candidate, ...]) -> "Seeker":
         """The search among other candidates, which knows what was tried so far."""
         task = replace(self.task, candidates=candidates)
-        other = Seeker(task, self.declared, self.proposals, self.carried)
-        other.others, other._at_end, other._anew = self.others, self._at_end, self._anew
-        return other
+        return Seeker(task, self.declared, self.proposals, self.carried, self.tried)
 
     def unseen(self, trial: Trial) -> list[Trial]:
         """The trial with each candidate that the rows cannot show, begun at its response in the
@@ -83,9 +82,9 @@ class Seeker:
 
     def polished(self, trial: Trial) -> Trial:
         """The trial fitted to its end; one that was is not fitted again."""
-        if trial not in self._at_end:
+        if trial not in self.tried.at_end:
             trial = polished(self.task, trial, self.carried)
-            self._at_end.add(trial)
+            self.tried.at_end.add(trial)
         return trial
 
     def sharpened(self, trial: Trial) -> Trial:
@@ -99,7 +98,7 @@ class Seeker:
         """
         if not trial.candidates or self.is_at_noise(trial):
             return trial
-        known = self._anew.get(forms_of(trial.candidates))
+        known = self.tried.anew.get(forms_of(trial.candidates))
         unseen = {c.key for c in self.proposals.unseen}
         if known is not None and (known is trial or unseen.isdisjoint(trial.keys)):
             return ranked([trial, known])[0]
@@ -107,7 +106,7 @@ class Seeker:
         left = halving(self.task, begun, 1)
         fresh = [t for t in left if is_near(t, [trial]) and not is_alike(t, trial)]
         best = ranked([trial, *(self.polished(t) for t in fresh)])[0]
-        self._anew[forms_of(best.candidates)] = best
+        self.tried.anew[forms_of(best.candidates)] = best
         return best
 
     def completed(self, trial: Trial) -> Trial:
@@ -115,9 +114,9 @@ class Seeker:
         that it can do before another is called.
         """
         full = tuple(fullest(self.task, c) for c in trial.candidates)
-        if all(a is b for a, b in zip(full, trial.candidates, strict=True)):
-            return self.polished(trial)
-        return self.polished(fitted(self.task, full, trial.values, trial.fit.z, 0, trial.fit))
+        if full != trial.candidates:
+            trial = fitted(self.task, full, trial.values, trial.fit.z, 0, trial.fit)
+        return self.polished(trial)
 
     def without(self, trial: Trial, candidate: Candidate, *, briefly: bool = False) -> Trial:
         """The trial refitted without one of its candidates, and without what needs it; or what is
@@ -136,13 +135,13 @@ class Seeker:
         if self.is_decided_at_end_of(smaller, trial):
             smaller = self.polished(smaller)
             smaller = smaller if briefly else self.restarted(smaller)
-        same = [t for t in self.others if forms_of(t.candidates) == forms_of(kept)]
+        same = [t for t in self.tried.others if forms_of(t.candidates) == forms_of(kept)]
         known = ranked([smaller, *same])[0]
         if not is_alike(known, smaller):
             smaller = self.polished(known)
         if ranked([smaller, self.declared])[0] is self.declared:
             smaller = beside_declared(self.task, smaller, self.declared, self.carried)
-        self.others.append(smaller)
+        self.tried.others.append(smaller)
         return smaller
 
     def is_decided_at_end_of(self, smaller: Trial, trial: Trial) -> bool:
@@ -175,18 +174,20 @@ class Seeker:
     def pruned(self, trial: Trial) -> tuple[Trial, list[Step]]:
         """Take out candidates until all that is left is needed, with its gains: of those that are
         not needed the one without which the rest fits best, for two that act alike can each be
-        done without while the other is there. Those are refitted first that seem to gain little. A
-        set that gains little over the declared model holds no candidate that gains more.
+        done without while the other is there. Those are refitted first that seem to gain little;
+        without those that seem to gain most, no set is begun anew. A set that gains little over
+        the declared model holds no candidate that gains more.
         """
         while trial.candidates:
             if gain(trial, self.declared).share < self.task.material:
                 return self.declared, []
             steps: list[Step] = []
             briefly = not self.is_at_noise(trial)
-            expected = {c.key: expected_gain(trial, c.vanishing) for c in trial.candidates}
-            little = [c for c in trial.candidates if expected[c.key] < MOST]
-            for part in (little, [c for c in trial.candidates if c not in little]):
-                fresh = [self.step(trial, candidate, briefly=briefly) for candidate in part]
+            every = trial.candidates
+            little = [c for c in every if expected_gain(trial, c.vanishing) < MOST]
+            most = [c for c in every if c not in little]
+            for part, brief in ((little, briefly), (most, True)):
+                fresh = [self.step(trial, c, briefly=brief) for c in part]
                 unneeded = [step.without for step in fresh if not self.is_kept(trial, step)]
                 steps += fresh
                 if unneeded:
@@ -197,43 +198,46 @@ class Seeker:
                 return trial, steps
         return trial, []
 
-    def grown(self, trial: Trial) -> Trial | None:
+    def grown(self, trial: Trial, *, briefly: bool = False) -> Trial | None:
         """The trial with one more candidate that gains clearly and materially; None if none does.
+        `briefly` only one is looked for that takes away most of what is left, and promises to.
 
         Where only noise is left, those are tried that the motion alone cannot show. One that
         promises far more than all others is tried before them.
         """
         task = self.task
+        promised, least = (MOST, MOST) if briefly else (task.material, LITTLE)
         wanted = self.proposals.unseen if self.is_at_noise(trial) else task.candidates
-        found = [r for r in responses(task, trial, wanted) if r.left < 1.0 - task.material]
+        found = [r for r in responses(task, trial, wanted) if r.left < 1.0 - promised]
         if not found:
             return None
         names = " + ".join(trial.keys) or "the declared model"
         task.progress(f"adding one of {len(found)} candidates to {names}")
         if len(found) == 1 or found[0].left < MOST * found[1].left:
-            best = self.best_earning(along(task, self.proposals, found[0], trial), trial)
+            best = self.best_earning(along(task, self.proposals, found[0], trial), trial, least)
             if best is not None:
                 return best
         begun = [t for r in found[:TRIED] for t in along(task, self.proposals, r, trial)]
-        close = screened(task, self.proposals, trial.candidates, wanted, trial.values)
-        begun += [fitted(task, t.candidates, t.values, None) for t in close[:SCREENED]]
-        return self.best_earning(begun, trial)
+        if not briefly:
+            close = screened(task, self.proposals, trial.candidates, wanted, trial.values)
+            begun += [fitted(task, t.candidates, t.values, None) for t in close[:SCREENED]]
+        return self.best_earning(begun, trial, least)
 
     def simplest(self, trials: Sequence[Trial]) -> Trial:
         """The best of trials; of those that leave white noise alone that of fewest parameters."""
         quiet = [t for t in trials if self.is_at_noise(t)]
         return min(quiet, key=lambda t: len(t.fit.free)) if quiet else ranked(trials)[0]
 
-    def best_earning(self, begun: Sequence[Trial], trial: Trial) -> Trial | None:
+    def best_earning(self, begun: Sequence[Trial], trial: Trial, least: float) -> Trial | None:
         """The best of trials `begun`, polished, in which what they have more than `trial` gains
-        clearly and materially; None if there is none. A simpler form may be clear where one that
-        fits better, with parameters that trade for each other, is not.
+        clearly and materially, and the share `least`; None if there is none. A simpler form may be
+        clear where one that fits better, with parameters that trade for each other, is not.
         """
-        left = halving(self.task, begun, SCREENED, seen=self.others)
+        left = halving(self.task, begun, SCREENED, seen=self.tried.others)
         found = ranked([to_its_end(self.task, t, self.carried) for t in left if is_near(t, left)])
         have = {f.name for c in trial.candidates for f in c.free}
         for number, near in enumerate(found):
-            if gain(near, trial).share < LITTLE:
+            if gain(near, trial).share < least:
                 continue
             best = self.polished(near)
             if number == 0 and gain(best, trial).share < MOST:
@@ -253,16 +257,15 @@ class Seeker:
         begun = [
             t for candidates in sets for t in in_place(self.task, self.proposals, candidates, trial)
         ]
-        left = halving(self.task, begun, TRIED, seen=self.others)
+        left = halving(self.task, begun, TRIED, seen=self.tried.others)
         found = [self.polished(t) for t in left if is_near(t, [trial])]
-        self.others += [*found, *(t for t in left if not is_near(t, [trial]))]
+        self.tried.others.extend([*found, *(t for t in left if not is_near(t, [trial]))])
         best = ranked([trial, *found])[0]
         return best if best is not trial else None
 
     def simplified(self, trial: Trial) -> Trial:
-        """Every candidate in the simplest of its forms that loses nothing clear and material.
-
-        A form is not fitted where linear prediction loses most, and not to its end where that
+        """Every candidate in the simplest of its forms that loses nothing clear and material. A
+        form is not fitted where linear prediction loses most, and not to its end where that
         foresees a material loss and most is lost after some iterations.
         """
         for key in trial.keys:
@@ -286,12 +289,8 @@ class Seeker:
                     break
         return trial
 
-    def in_form(self, trial: Trial, candidate: Candidate, form: Candidate) -> Trial:
-        """The trial refitted with a candidate in another form."""
-        return self.polished(self.begun_in_form(trial, candidate, form))
-
     def begun_in_form(self, trial: Trial, candidate: Candidate, form: Candidate) -> Trial:
-        """The same after some iterations."""
+        """The trial refitted, by some iterations, with a candidate in another form."""
         dropped = set(candidate.parameters) - set(form.parameters)
         values = trial.values | {name: self.task.fixed[name] for name in dropped}
         candidates = tuple(form if c is candidate else c for c in trial.candidates)

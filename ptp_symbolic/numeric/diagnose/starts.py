@@ -16,8 +16,9 @@ from ptp_symbolic.numeric.diagnose.trial import (
     fitted,
     ranked,
 )
-from ptp_symbolic.numeric.identify.constants import ITERATIONS, MOST, POLISH, TRIED, WIDE_STEP
+from ptp_symbolic.numeric.identify.constants import ITERATIONS, MOST, TRIED, WIDE_STEP
 from ptp_symbolic.numeric.identify.equation_fit import fit_equations
+from ptp_symbolic.numeric.identify.fit import Fit
 
 
 def started(task: Task, declared: Trial, found: Proposals) -> list[Trial]:
@@ -34,8 +35,8 @@ def started(task: Task, declared: Trial, found: Proposals) -> list[Trial]:
         own = {name for c in short.candidates for name in c.names}
         beside = declared.values | {name: short.values[name] for name in own}
         starts = [
-            fitted(task, short.candidates, short.values, None),
-            fitted(task, short.candidates, beside, declared.fit.z, 0, declared.fit),
+            _begun(task, short.candidates, short.values, None),
+            _begun(task, short.candidates, beside, declared.fit),
         ]
         begun.append(ranked(starts)[0])
     return begun
@@ -50,7 +51,7 @@ def along(task: Task, proposals: Proposals, found: Response, parent: Trial) -> l
     begun = []
     for part in (1.0, MOST):
         values = {n: origin[n] + part * (v - origin[n]) for n, v in proposal.values.items()}
-        begun.append(fitted(task, proposal.candidates, values, parent.fit.z, 0, parent.fit))
+        begun.append(_begun(task, proposal.candidates, values, parent.fit))
     if found.candidate.key not in {c.key for c in proposals.unseen}:
         return [ranked(begun)[0]]
     return [continued(task, t, 1, secants=WIDE_STEP, executor=task.executor) for t in begun]
@@ -65,7 +66,7 @@ def from_rows(
     start = start_for(task, proposals, candidates, values)
     own = {name: start[name] for c in candidates for name in c.names}
     begun = over_windows(task, candidates, [start, declared_start(task) | own], task.executor)
-    return [*begun, fitted(task, candidates, start, None)]
+    return [*begun, _begun(task, candidates, start, None)]
 
 
 def taken_over(
@@ -80,9 +81,9 @@ def taken_over(
     if proposals.space is not None:
         seen = {c.key for c in kept} - {c.key for c in proposals.unseen}
         free = all_free(task, [c for c in kept if c.key in seen], values)
-        found = fit_equations(proposals.space, free, values, POLISH, task.executor)
+        found = fit_equations(proposals.space, free, values, ITERATIONS, task.executor)
         starts.append(possible(task, free, {**values, **found}))
-    return [fitted(task, kept, v, trial.fit.z, 0, trial.fit) for v in starts]
+    return [_begun(task, kept, v, trial.fit) for v in starts]
 
 
 def in_place(
@@ -93,4 +94,17 @@ def in_place(
     """
     start = start_for(task, proposals, candidates, trial.values)
     beside = trial.values | {name: start[name] for c in candidates for name in c.names}
-    return [fitted(task, candidates, values, None) for values in (start, beside)]
+    return [_begun(task, candidates, values, None) for values in (start, beside)]
+
+
+def _begun(
+    task: Task,
+    candidates: Sequence[Candidate],
+    values: Mapping[str, float],
+    parent: Fit | None,
+) -> Trial:
+    """A set at some values, not yet fitted; its runs begin where those of the parent did, or else
+    at their guesses.
+    """
+    z = None if parent is None else parent.z
+    return fitted(task, candidates, values, z, 0, parent, executor=task.executor)

@@ -198,7 +198,9 @@ def ranking(
     compared along the measured motion alone.
     """
     rivals = [r.trial for r in found.rivals]
-    trials = [t for t in (found.compared, *rivals, search.chosen, *search.others) if t.candidates]
+    trials = [
+        t for t in (found.compared, *rivals, search.chosen, *search.tried.others) if t.candidates
+    ]
     best = [t for t in ranked(trials) if np.isfinite(t.fit.cost)]
     kept: dict[tuple[str, ...], Trial] = {}
     for trial in best:

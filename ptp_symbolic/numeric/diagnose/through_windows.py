@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise, most_hidden
@@ -26,27 +27,37 @@ from ptp_symbolic.numeric.identify.constants import (
     SCREENED,
 )
 
+FloatArray = NDArray[np.float64]
+
 
 def each_through_windows(
-    task: Task, parent: Trial, candidates: Sequence[Candidate], carried: Carried
+    task: Task,
+    parent: Trial,
+    candidates: Sequence[Candidate],
+    carried: Carried,
+    *,
+    is_white: bool,
 ) -> list[Trial]:
     """The parent with each of `candidates` but declared values, where windows lead to it (see
     `through_windows`).
     """
     wanted = {c.key: c for c in candidates if not c.is_declared_value}
-    led = [through_windows(task, parent, c, carried) for c in wanted.values()]
+    led = [through_windows(task, parent, c, carried, is_white=is_white) for c in wanted.values()]
     return [t for t in led if t is not None]
 
 
 def through_windows(
-    task: Task, parent: Trial, candidate: Candidate, carried: Carried
+    task: Task, parent: Trial, candidate: Candidate, carried: Carried, *, is_white: bool
 ) -> Trial | None:
     """The parent with a candidate, fitted to whole runs from where windows lead it, and again as
     long as that is a better place; None where it does not gain materially in a few windows.
-    `carried` is that of `leaves_white_noise`.
+    `carried` is that of `leaves_white_noise`; `is_white`: the noise is known to be, since another
+    set leaves no more than that.
     """
     few = growing(task, few=True)
-    values = _first_lead(few, parent, candidate, carried) if few else None
+    hidden = 1.0 if is_white else most_hidden(task)
+    most = ABOVE_NOISE * np.hypot(hidden, carried.most)
+    values = _first_lead(few, parent, candidate, most) if few else None
     if values is None:
         return None
     candidates = (*parent.candidates, candidate)
@@ -64,10 +75,11 @@ def through_windows(
 
 
 def _first_lead(
-    parts: Sequence[Task], parent: Trial, candidate: Candidate, carried: Carried
+    parts: Sequence[Task], parent: Trial, candidate: Candidate, most: FloatArray
 ) -> Mapping[str, float] | None:
-    """Values where windows lead the candidate; None where it does not gain materially in the
-    longest: each begins by itself, so that short ones leave little of an effect that acts late.
+    """Values where windows lead the candidate; None where windows that it leaves as they are hold
+    more than `most` [ny] times their noise, and where it does not gain materially in the longest:
+    each begins by itself, so that short ones leave little of an effect that acts late.
 
     It begins at the amount of its start, to which all others follow first: from where they make up
     for it a search does not find back. And in every part at the best of several amounts, all others
@@ -76,7 +88,7 @@ def _first_lead(
     shortest, run = parts[0], parts[0].executor
     alone = led(shortest, parent.candidates, parent.values)
     starts = [{**_amounts(candidate, 1.0), **shape} for shape in candidate.shapes]
-    if not any(_may_be_all(shortest, alone, start, carried) for start in starts):
+    if not any(_may_be_all(shortest, alone, start, most) for start in starts):
         return None
     candidates = (*parent.candidates, candidate)
 
@@ -119,9 +131,9 @@ def _amounts(candidate: Candidate, factor: float) -> dict[str, float]:
     }
 
 
-def _may_be_all(part: Task, alone: Trial, amounts: Mapping[str, float], carried: Carried) -> bool:
+def _may_be_all(part: Task, alone: Trial, amounts: Mapping[str, float], most: FloatArray) -> bool:
     """Whether a candidate at some `amounts` changes some windows, and those that it leaves as they
-    are hold no more than may be noise: else they lack something besides.
+    are hold no more than may be noise, at `most` [ny]: else they lack something besides.
     """
     fit = alone.fit
     changed = [
@@ -130,5 +142,4 @@ def _may_be_all(part: Task, alone: Trial, amounts: Mapping[str, float], carried:
     ]
     left = mean_squares(fit.evaluations, fit.runs)[np.logical_not(changed)]
     usual = np.median(left, axis=0) if len(left) else np.zeros(left.shape[1])
-    most = ABOVE_NOISE * np.hypot(most_hidden(part), carried.most)
     return any(changed) and bool(np.all(np.sqrt(usual) <= most))

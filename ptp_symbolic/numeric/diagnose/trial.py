@@ -282,18 +282,18 @@ def halving(
     some iterations, side by side, and keeps so many of them; the others end up in `seen`.
     """
     left = list(trials)
+
+    def go_on(trial: Trial, executor: Executor | None) -> Trial:
+        secants = None if trial.fit.misleading is None else WIDE_STEP
+        return continued(task, trial, iterations, secants=secants, executor=executor)
+
     for kept in rungs:
-        go_on = [
-            task.executor.submit(
-                continued,
-                task,
-                trial,
-                iterations,
-                secants=None if trial.fit.misleading is None else WIDE_STEP,
-            )
-            for trial in left
-        ]
-        left = [t for t in ranked([job.result() for job in go_on]) if np.isfinite(t.fit.cost)]
+        if len(left) == 1:  # its runs side by side
+            further = [go_on(left[0], task.executor)]
+        else:
+            jobs = [task.executor.submit(go_on, trial, None) for trial in left]
+            further = [job.result() for job in jobs]
+        left = [t for t in ranked(further) if np.isfinite(t.fit.cost)]
         if seen is not None:
             seen += left[kept:]
         left = left[:kept]

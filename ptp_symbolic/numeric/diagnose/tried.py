@@ -1,11 +1,23 @@
-"""Trials that a search keeps for comparison: a hundred of them, whose Jacobians are large."""
+"""What a search has tried: a hundred trials, whose Jacobians are large, and where sets end."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from weakref import WeakSet
 
 import numpy as np
 
 from ptp_symbolic.numeric.diagnose.trial import Trial, is_near, ranked
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """Trials that are not chosen, `others`; those fitted to their end; and by the forms of its
+    candidates (see `forms_of`) where every set ends that was begun anew from the rows.
+    """
+
+    others: list[Trial] = field(default_factory=list)
+    at_end: WeakSet[Trial] = field(default_factory=WeakSet)
+    anew: dict[tuple[tuple[str, int], ...], Trial] = field(default_factory=dict)
 
 
 def worth_keeping(trials: Sequence[Trial], best: Trial) -> list[Trial]:

@@ -83,8 +83,7 @@ def decide(found: Search) -> Verdict:
     """Confirm the chosen set, find what it cannot be told from, and judge the validation runs."""
     task = found.task
     refused = Refusals()
-    seeker = Seeker(task, found.declared, found.proposals, found.carried)
-    seeker.others = list(found.others)
+    seeker = Seeker(task, found.declared, found.proposals, found.carried, found.tried)
     seeker.follow(found.chosen)
     trial, steps, alike = _settled(seeker, found.chosen, list(found.members), refused)
     task.progress("fitting every sample, and simulating the validation runs")
@@ -120,7 +119,7 @@ def _settled(
         alike = rivals(seeker, trial, fit)
         better = overtaking(trial, alike, seeker.task.material)
         if better is not None:
-            seeker.others.append(trial)
+            seeker.tried.others.append(trial)
             trial, steps, fit = confirmed(
                 seeker, *shortened(seeker, seeker.restarted(better)), refused
             )
@@ -128,7 +127,7 @@ def _settled(
             continue
         leaner = leaner_rival(seeker, trial, alike)
         if leaner is not None:
-            seeker.others.append(trial)
+            seeker.tried.others.append(trial)
             trial, steps, fit = confirmed(seeker, *shortened(seeker, leaner), refused)
             alike = []
             continue
@@ -231,7 +230,7 @@ def _floor_and_quiet(task: Task, final: Trial, after: Fit, estimated: Fit) -> tu
 
 def _closest(found: Search) -> Trial | None:
     """The best trial with any candidate."""
-    trials = [t for t in (found.chosen, *found.others) if t.candidates]
+    trials = [t for t in (found.chosen, *found.tried.others) if t.candidates]
     best = ranked([found.declared, *trials])
     return next((t for t in best if t.candidates and np.isfinite(t.fit.cost)), None)
 

@@ -1,0 +1,101 @@
+"""The declared model fitted to the training runs: to whole ones, or led there over windows."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ptp_symbolic.numeric.diagnose.cut_runs import (
+    in_windows,
+    parted_task,
+    takes_away_most,
+    validation_in_windows,
+)
+from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
+from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
+from ptp_symbolic.numeric.diagnose.growing_windows import growing, led_through, settled
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise, left_over
+from ptp_symbolic.numeric.diagnose.proposals import Proposals
+from ptp_symbolic.numeric.diagnose.refits import (
+    has_rough_starts,
+    inside,
+    over_windows,
+    polished,
+    refitted_in,
+)
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving
+from ptp_symbolic.numeric.identify.constants import FAR_OFF, SCREENED
+
+
+def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
+    """The declared model fitted to whole runs, and over windows where that leaves more than white
+    noise; and the task with windows for runs that ask for them.
+    """
+    if task.windows:
+        part, trial = over_whole_runs(task, proposals)
+        if leaves_white_noise(trial, carried_noise(part, trial.fit)):
+            return part, trial
+    return led_over_windows(task, proposals)
+
+
+def over_whole_runs(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
+    """The declared model fitted to whole runs from the rows' start and from the declared one; the
+    task as in `led_over_windows`.
+    """
+    starts = [proposals.start, declared_start(task)]
+    run = task.executor
+    begun = [fitted(task, (), values, None, executor=run) for values in starts]
+    best = halving(task, begun, 1) or begun[-1:]
+    return _in_windows_of_its_own(task, polished(task, best[0], carried_noise(task, best[0].fit)))
+
+
+def led_over_windows(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
+    """The declared model, from where windows lead from the rows' start and from the declared one,
+    and from those two themselves; where runs are windows already, from starts far off too, and from
+    where shorter ones lead. And the task with windows for runs that multiply small errors (see
+    `in_windows`), which would lead the fit astray.
+    """
+    starts = [proposals.start, declared_start(task)]
+    spread = far_starts(task, proposals.start) if has_rough_starts(task) else []
+    begun = over_windows(task, (), starts, task.executor, spread)
+    if begun:
+        part = in_windows(task, begun[0])
+        if part is not task:
+            task, led = part, fitted(part, (), begun[0].values, None)
+            begun = [settled(task, led, task.executor)]
+    begun += [fitted(task, (), values, None, executor=task.executor) for values in starts]
+    if not task.windows:
+        far = [fitted(task, (), values, None, executor=task.executor) for values in spread]
+        begun += halving(task, far, SCREENED)
+        begun.append(fitted(task, (), led_through(growing(task), (), proposals.start), None))
+    best = halving(task, begun, 1) or begun[-1:]
+    return _in_windows_of_its_own(task, polished(task, best[0], carried_noise(task, best[0].fit)))
+
+
+def _in_windows_of_its_own(task: Task, trial: Trial) -> tuple[Task, Trial]:
+    """The task with its runs parted and cut where the declared model asks for it, and the trial
+    refitted there.
+    """
+    part = parted_task(task, trial)
+    if part is not task:
+        short = refitted_in(part, trial)
+        if takes_away_most(short, trial):
+            task, trial = part, short
+    part = in_windows(task, trial)
+    if part is not task:
+        short = refitted_in(part, trial)
+        if np.all(left_over(short.fit) <= left_over(trial.fit)):
+            task, trial = part, short
+    return validation_in_windows(task, trial), trial
+
+
+def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]]:
+    """`values` with one declared parameter after the other as far from its start as that may be
+    off: rows tell an inertia behind a gear by its share in the whole alone, and fits that begin
+    with a gap and too little of it end with none.
+    """
+    return [
+        {**values, **dict.fromkeys(f.names, inside(f, factor * f.start))}
+        for f in task.free
+        for factor in (FAR_OFF, 1.0 / FAR_OFF)
+        if f.start > 0.0
+    ]

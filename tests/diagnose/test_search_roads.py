@@ -1,0 +1,106 @@
+"""Which roads a search takes: the short one where it ends at the noise, else that over windows; on
+logs whose motion is known in closed form.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.numeric.diagnose import search as roads
+from ptp_symbolic.numeric.diagnose import through_windows
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows, over_whole_runs
+from ptp_symbolic.numeric.diagnose.findings import Step
+from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise
+from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE
+from tests.diagnose.spring_table import STIFFNESS, spring_table
+
+
+@pytest.fixture
+def over_windows(monkeypatch: pytest.MonkeyPatch) -> list[Task]:
+    """The tasks whose declared model was led over windows."""
+    tasks: list[Task] = []
+
+    def noted(task: Task, *rest: Any) -> tuple[Task, Trial]:
+        tasks.append(task)
+        return led_over_windows(task, *rest)
+
+    monkeypatch.setattr(roads, "led_over_windows", noted)
+    return tasks
+
+
+@pytest.fixture
+def seeker(tmp_path: Path) -> Iterator[Seeker]:
+    with spring_table(tmp_path) as task:
+        proposals = propose(task)
+        task, declared = over_whole_runs(task, proposals)
+        yield Seeker(task, declared, proposals, carried_noise(task, declared.fit))
+
+
+def test_what_leaves_only_noise_is_found_without_windows(
+    tmp_path: Path, over_windows: list[Task]
+) -> None:
+    with spring_table(tmp_path) as task:
+        found = roads.search(task)
+    assert found.chosen.keys == ("cable_spring@pan",)
+    assert found.chosen.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
+    assert not over_windows
+
+
+def test_windows_lead_where_no_set_leaves_only_noise(
+    tmp_path: Path, over_windows: list[Task], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Gusts that no log holds, of a tenth of a second."""
+    monkeypatch.setattr(roads, "_from_declared", lambda *begun: begun)
+    with spring_table(tmp_path, gust=0.05, lasting=10) as task:
+        roads.search(task)
+    assert len(over_windows) == 1
+
+
+def test_no_set_is_begun_anew_without_a_candidate_that_seems_to_gain_most(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A spring and a torque that is not there: what the torque adds is looked at closely, but the
+    motion without the spring is another one, wherever a fit begins.
+    """
+    task = seeker.task
+    full = {c.key: c for c in sorted(task.candidates, key=lambda c: len(c.free))}
+    both = tuple(full[key] for key in ("cable_spring@pan", "constant_torque@pan"))
+    start = seeker.declared.values | {f.name: f.start for c in both for f in c.free}
+    whole = seeker.polished(fitted(task, both, start, None))
+    assert seeker.is_at_noise(whole)
+    brief: dict[str, bool] = {}
+    step = seeker.step
+
+    def noted(trial: Trial, candidate: Candidate, *, briefly: bool) -> Step:
+        brief[candidate.key] = briefly
+        return step(trial, candidate, briefly=briefly)
+
+    monkeypatch.setattr(seeker, "step", noted)
+    found, _ = seeker.pruned(whole)
+    assert found.keys == ("cable_spring@pan",)
+    assert brief == {"constant_torque@pan": False, "cable_spring@pan": True}
+
+
+@pytest.mark.parametrize("is_white", [True, False])
+def test_a_set_that_leaves_white_noise_shows_that_none_of_another_colour_is_hidden(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch, is_white: bool
+) -> None:
+    """Windows that a candidate leaves as they are may hold noise alone: white noise, or what noise
+    of the slowest colour that is looked for hides.
+    """
+    most: list[np.ndarray] = []
+    monkeypatch.setattr(through_windows, "_first_lead", lambda *a: most.append(a[-1]))
+    task, nothing = seeker.task, Carried(np.zeros(1), np.zeros(1))
+    found = through_windows.each_through_windows(
+        task, seeker.declared, task.candidates[:1], nothing, is_white=is_white
+    )
+    assert not found and len(most) == 1
+    assert np.all(most[0] == ABOVE_NOISE) == is_white
+    assert np.all(most[0] >= ABOVE_NOISE)
