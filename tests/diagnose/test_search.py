@@ -3,8 +3,10 @@ noise is left; on logs whose motion is known in closed form.
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
@@ -223,3 +225,29 @@ def test_trials_far_behind_are_kept_with_half_the_memory_and_gain_what_they_gain
     before, after = (gain(t, seeker.declared) for t in (far, kept[1]))
     assert after.share == pytest.approx(before.share, abs=1e-4)
     assert worth_keeping(kept, best) == kept
+
+
+def test_what_a_trial_far_behind_gains_is_told_where_its_columns_hardly_differ(
+    seeker: Seeker,
+) -> None:
+    """The last column is a sum of the others: products of them rounded to single precision belong
+    to no matrix of information, most of twenty times.
+    """
+    far = trial(seeker, "constant_torque@pan")
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        steep = 1e9  # so that no prior keeps parameters in place
+        tables = [steep * rng.standard_normal(e.by_parameter.shape) for e in far.fit.evaluations]
+        for table in tables:
+            table[:, -1] = table[:, :-1].sum(axis=1)
+        before, after = (
+            gain(replace(far, fit=replace(far.fit, evaluations=alike)), seeker.declared)
+            for alike in (
+                [
+                    replace(e, by_parameter=t.astype(kind), by_start=e.by_start.astype(kind))
+                    for e, t in zip(far.fit.evaluations, tables, strict=True)
+                ]
+                for kind in (np.float64, np.float32)
+            )
+        )
+        assert after.share == pytest.approx(before.share, abs=1e-4)

@@ -163,9 +163,18 @@ def p_value(trial: Trial, zero: Mapping[str, float]) -> float:
 
 
 def _projected(fit: Fit) -> tuple[list[FloatArray], list[FloatArray]]:
-    """Residuals [k * ny] and Jacobians [k * ny, nf] of every run, its unknown start taken out."""
-    residuals = [project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations]
-    jacobians = [project_out(e.by_parameter, e.by_start) for e in fit.evaluations]
+    """Residuals [k * ny] and Jacobians [k * ny, nf] of every run, its unknown start taken out; in
+    double precision, which products of columns that hardly differ need.
+    """
+    starts = [e.by_start.astype(np.float64) for e in fit.evaluations]
+    residuals = [
+        project_out(e.residual[:, None], start)[:, 0]
+        for e, start in zip(fit.evaluations, starts, strict=True)
+    ]
+    jacobians = [
+        project_out(e.by_parameter.astype(np.float64), start)
+        for e, start in zip(fit.evaluations, starts, strict=True)
+    ]
     return residuals, jacobians
 
 
