@@ -100,7 +100,9 @@ def gain(earned: Mapping[str, Any] | None) -> str:
 def _percent(share: float) -> str:
     """Tenths of a percent; of a share far outside -1 to 1 three digits."""
     percent = 100.0 * share
-    return number(percent) if abs(percent) >= 1000.0 else f"{percent:.1f}".replace("-", "−")
+    if abs(percent) >= 1000.0:
+        return number(percent)
+    return f"{round(percent, 1) + 0.0:.1f}".replace("-", "−")  # no sign of what rounds to zero
 
 
 def _exponent(value: Any) -> int:

@@ -50,11 +50,23 @@ PARTS = ("train", "validate")
 
 def test_candidates_errors_and_files_of_a_machine_are_on_its_page() -> None:
     page = render_machines({"version": "1", "date": "today", "machines": [machine()]})
-    assert "80.0 % (70.0 to 90.0)" in page and "accepted" in page
-    assert "31.0 % (10.0 to 50.0)" in page and "its amount cannot be told from zero" in page
+    assert "80.0 % (70.0 to 90.0 %)" in page and "accepted" in page
+    assert "31.0 % (10.0 to 50.0 %)" in page and "its amount cannot be told from zero" in page
     assert "by itself): cable_spring (12.3 %)." in page
     assert "training 143, validation 157" in page
     assert "held_out.csv" in page and "0f3e" in page
+
+
+def test_a_set_that_grew_along_the_motion_is_accepted_with_what_its_members_gain_there() -> None:
+    grown = {"effect": "backlash + cogging", "gain": None, "accepted": True, "why": ""}
+    members = [
+        {"effect": effect, "gain": {"share": share, "ci95": [0.5 * share, 1.5 * share]}}
+        for effect, share in (("backlash", 0.6), ("cogging", 0.2))
+    ]
+    one = {**machine(), "ranking": [grown], "added": members}
+    page = render_machines({"version": "1", "date": "today", "machines": [one]})
+    assert "accepted: grown in the torque along the measured motion" in page
+    assert "backlash 60.0 % (30.0 to 90.0 %), cogging 20.0 % (10.0 to 30.0 %)" in page
 
 
 def test_a_force_put_in_is_on_the_page_with_what_was_found_of_it() -> None:
