@@ -15,6 +15,7 @@ from ptp_symbolic.numeric.diagnose.errors import error_of
 from ptp_symbolic.numeric.diagnose.residual_tests import residual_tests
 from ptp_symbolic.numeric.diagnose.sizes import sizes_of
 from ptp_symbolic.numeric.diagnose.trial import Trial
+from ptp_symbolic.numeric.diagnose.tried import Tried
 from ptp_symbolic.numeric.diagnose.verdict import EXPLAINED, NOTHING_MISSING, PARTLY, UNEXPLAINED
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.intervals import Estimate
@@ -223,7 +224,7 @@ def test_the_ranking_has_every_fitted_set_by_its_error_and_the_others_after_it()
     search: Any = SimpleNamespace(
         declared=_trial(left=3.0),
         chosen=best,
-        others=(worse, best),
+        tried=Tried([worse, best]),
         proposals=SimpleNamespace(regression=rows_along),
     )
     refused = {"backlash": "takes away only 3 % of the error"}

@@ -67,8 +67,8 @@ def _proposed(seeker: Seeker) -> list[Trial]:
 
 
 def _soon_found(seeker: Seeker) -> list[Trial]:
-    """What is proposed, with one candidate more as long as that takes away most of what is left:
-    where this ends at the noise, nothing that is hard to find is missing.
+    """What is proposed, and with one candidate more as long as that takes away most of what is
+    left: only the last set, where that leaves noise alone.
     """
     found = _proposed(seeker)
     best = next((t for t in found if gain(t, seeker.declared).share >= MOST), seeker.declared)
@@ -79,7 +79,10 @@ def _soon_found(seeker: Seeker) -> list[Trial]:
         if grown is None:
             break
         best = seeker.completed(grown)
-    return [best] if seeker.is_at_noise(best) and best.candidates else found
+    if not best.candidates or not seeker.is_at_noise(best):
+        return found
+    seeker.tried.others.extend(t for t in found if t is not best)
+    return [best]
 
 
 def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:

@@ -200,15 +200,15 @@ class Seeker:
 
     def grown(self, trial: Trial, *, briefly: bool = False) -> Trial | None:
         """The trial with one more candidate that gains clearly and materially; None if none does.
-        `briefly` only one is looked for that takes away most of what is left, and promises to.
+        `briefly` one is looked for that takes away most of what is left, by its response alone.
 
         Where only noise is left, those are tried that the motion alone cannot show. One that
         promises far more than all others is tried before them.
         """
         task = self.task
-        promised, least = (MOST, MOST) if briefly else (task.material, LITTLE)
+        least = MOST if briefly else LITTLE
         wanted = self.proposals.unseen if self.is_at_noise(trial) else task.candidates
-        found = [r for r in responses(task, trial, wanted) if r.left < 1.0 - promised]
+        found = [r for r in responses(task, trial, wanted) if r.left < 1.0 - task.material]
         if not found:
             return None
         names = " + ".join(trial.keys) or "the declared model"
