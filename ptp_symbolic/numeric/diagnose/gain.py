@@ -166,16 +166,11 @@ def _projected(fit: Fit) -> tuple[list[FloatArray], list[FloatArray]]:
     """Residuals [k * ny] and Jacobians [k * ny, nf] of every run, its unknown start taken out; in
     double precision, which products of columns that hardly differ need.
     """
-    starts = [e.by_start.astype(np.float64) for e in fit.evaluations]
-    residuals = [
-        project_out(e.residual[:, None], start)[:, 0]
-        for e, start in zip(fit.evaluations, starts, strict=True)
+    tables = [
+        project_out(np.column_stack([e.residual, e.by_parameter]), e.by_start.astype(np.float64))
+        for e in fit.evaluations
     ]
-    jacobians = [
-        project_out(e.by_parameter.astype(np.float64), start)
-        for e, start in zip(fit.evaluations, starts, strict=True)
-    ]
-    return residuals, jacobians
+    return [table[:, 0] for table in tables], [table[:, 1:] for table in tables]
 
 
 def _predicted_squares(
