@@ -104,3 +104,41 @@ def test_a_set_that_leaves_white_noise_shows_that_none_of_another_colour_is_hidd
     assert not found and len(most) == 1
     assert np.all(most[0] == ABOVE_NOISE) == is_white
     assert np.all(most[0] >= ABOVE_NOISE)
+
+
+def alone(seeker: Seeker, key: str) -> Trial:
+    """One candidate in its fullest form, fitted to its end."""
+    one = max((c for c in seeker.task.candidates if c.key == key), key=lambda c: len(c.free))
+    start = seeker.declared.values | {f.name: f.start for f in one.free}
+    return seeker.polished(fitted(seeker.task, (one,), start, None))
+
+
+def test_a_set_that_took_the_place_of_another_grows_too(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A constant torque does not explain a spring, which can still be added to it."""
+    torque = alone(seeker, "constant_torque@pan")
+    monkeypatch.setattr(Seeker, "exchanged", lambda *_: torque)
+    found = roads._from_declared(seeker, [])
+    assert found.chosen.keys == ("cable_spring@pan",)
+    assert found.chosen.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
+
+
+def test_what_the_rows_do_not_tell_begins_far_off_once_more(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A set that is stuck, here because it was not fitted on, is left for a better end; and what
+    made up for that is taken out.
+    """
+    task, spring = seeker.task, alone(seeker, "cable_spring@pan")
+    stuck = fitted(task, spring.candidates, spring.values | {"b_pan": 0.3}, None)
+    monkeypatch.setattr(roads, "from_far_off", lambda *_: [spring])
+    found, steps = roads._from_far_off(seeker, stuck, [])
+    assert found.values["b_pan"] == pytest.approx(spring.values["b_pan"], rel=1e-3)
+    assert [s.candidate.key for s in steps] == ["cable_spring@pan"]
+    end = seeker.declared
+    seeker.declared = fitted(task, (), end.values | {"b_pan": 0.3}, None)
+    monkeypatch.setattr(roads, "from_far_off", lambda *_: [end])
+    found, steps = roads._from_far_off(seeker, seeker.declared, [])
+    assert found is seeker.declared and not steps
+    assert found.values["b_pan"] == pytest.approx(end.values["b_pan"], rel=1e-2)

@@ -9,7 +9,12 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose import regression as regression_module
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.regression import Regression, regression, remainder
+from ptp_symbolic.numeric.diagnose.regression import (
+    Regression,
+    regression,
+    remainder,
+    untold,
+)
 from ptp_symbolic.numeric.diagnose.signatures import Signature
 from ptp_symbolic.numeric.diagnose.subsets import (
     Subset,
@@ -261,3 +266,14 @@ def test_a_set_grows_with_what_an_effect_brings_along() -> None:
     found = rows_of(rng, own, {"a": 0.5}, BLOCKS)
     assert [c.key for c in larger_sets(found, named(found, "b"))[0]] == ["b", "c", "a"]
     assert [c.key for c in larger_sets(found, named(found, "bc"))[0]] == ["b", "c", "a"]
+
+
+@pytest.mark.parametrize(("rms", "named"), [(0.1, ["b"]), (0.3, [])])
+def test_rows_that_overlap_tell_as_much_as_their_blocks_do(rms: float, named: list[str]) -> None:
+    """400 rows of noise 1 tell a column of 0.1 to half its start, which is 1; their 40 blocks do
+    not.
+    """
+    rng = np.random.default_rng(7)
+    found = rows_of(rng, [], {}, BLOCKS)
+    base = found.base * [1.0, rms]
+    assert [f.name for f in untold(replace(found, base=base))] == named

@@ -1,7 +1,5 @@
 """The declared model fitted to the training runs: to whole ones, or led there over windows."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from ptp_symbolic.numeric.diagnose.cut_runs import (
@@ -17,13 +15,13 @@ from ptp_symbolic.numeric.diagnose.left_over import carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import (
     has_rough_starts,
-    inside,
     over_windows,
     polished,
     refitted_in,
 )
+from ptp_symbolic.numeric.diagnose.starts import far_starts
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving
-from ptp_symbolic.numeric.identify.constants import FAR_OFF, SCREENED
+from ptp_symbolic.numeric.identify.constants import SCREENED
 
 
 def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
@@ -55,7 +53,7 @@ def led_over_windows(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
     `in_windows`), which would lead the fit astray.
     """
     starts = [proposals.start, declared_start(task)]
-    spread = far_starts(task, proposals.start) if has_rough_starts(task) else []
+    spread = far_starts(task.free, proposals.start) if has_rough_starts(task) else []
     begun = over_windows(task, (), starts, task.executor, spread)
     if begun:
         part = in_windows(task, begun[0])
@@ -86,16 +84,3 @@ def _in_windows_of_its_own(task: Task, trial: Trial) -> tuple[Task, Trial]:
         if np.all(left_over(short.fit) <= left_over(trial.fit)):
             task, trial = part, short
     return validation_in_windows(task, trial), trial
-
-
-def far_starts(task: Task, values: Mapping[str, float]) -> list[dict[str, float]]:
-    """`values` with one declared parameter after the other as far from its start as that may be
-    off: rows tell an inertia behind a gear by its share in the whole alone, and fits that begin
-    with a gap and too little of it end with none.
-    """
-    return [
-        {**values, **dict.fromkeys(f.names, inside(f, factor * f.start))}
-        for f in task.free
-        for factor in (FAR_OFF, 1.0 / FAR_OFF)
-        if f.start > 0.0
-    ]

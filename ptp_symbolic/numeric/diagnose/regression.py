@@ -87,6 +87,16 @@ def reweighted(found: Regression, candidates: Sequence[Candidate]) -> Regression
     return replace(found, weight=weight, scale=scale)
 
 
+def untold(found: Regression) -> list[FreeParameter]:
+    """Declared parameters of which all rows tell less than their start does, which may be off by
+    its scale: rows overlap, so that those of a block in one equation count as one.
+    """
+    counted = np.column_stack([found.equation, found.block])
+    overlap = len(counted) / len(np.unique(counted, axis=0))
+    told = np.linalg.norm(found.base * np.sqrt(found.weight / overlap)[:, None], axis=0)
+    return [f for f, size in zip(found.declared, told, strict=True) if size * f.scale < 1.0]
+
+
 def remainder(found: Regression, beside: Sequence[Signature] = ()) -> FloatArray:
     """Residual rows [n] of the regression on the declared parameters and the signatures `beside`
     them.

@@ -14,12 +14,13 @@ from ptp_symbolic.numeric.diagnose.nested import declared_from
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose, with_lines
 from ptp_symbolic.numeric.diagnose.refits import refitted_in
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.starts import started
+from ptp_symbolic.numeric.diagnose.starts import from_far_off, started
 from ptp_symbolic.numeric.diagnose.through_windows import each_through_windows
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
     halving,
+    is_alike,
     is_near,
     ranked,
 )
@@ -122,7 +123,7 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
     other = seeker.exchanged(best)
     if other is not None:
         seeker.tried.others.append(best)
-        best, steps = seeker.pruned(other)
+        best, steps = extended(seeker, *seeker.pruned(other))
     if begun.candidates or any(c.is_declared_value for c in best.candidates):
         best, steps = by_effects_alone(seeker, best, steps, end)
     if best.candidates:
@@ -133,6 +134,7 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
                 seeker.tried.others.clear()
                 return _from_declared(seeker, _proposed(seeker))
             best, steps = seeker.pruned(best)
+    best, steps = _from_far_off(seeker, best, steps)
     best = seeker.sharpened(seeker.simplified(best))
     if seeker.is_at_noise(best):
         without = {s.candidate.key: s.without for s in steps}
@@ -142,6 +144,21 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
     return Search(
         task, seeker.declared, best, members, seeker.tried, seeker.proposals, seeker.carried
     )
+
+
+def _from_far_off(seeker: Seeker, best: Trial, steps: list[Step]) -> tuple[Trial, list[Step]]:
+    """The trial and the `steps` of its candidates; or a better end from where a declared parameter
+    that the rows do not tell begins far off, pruned anew: a candidate may have made up for it.
+    """
+    found = halving(seeker.task, from_far_off(seeker.task, seeker.proposals, best), 1)
+    better = ranked([best, *found])[0]
+    if is_alike(better, best):
+        return best, steps
+    better = seeker.polished(better)
+    if better.candidates:
+        return seeker.pruned(better)
+    seeker.declared = better
+    return better, []
 
 
 def _in_windows(seeker: Seeker, best: Trial) -> Seeker | None:

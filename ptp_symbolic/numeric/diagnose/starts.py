@@ -6,7 +6,8 @@ from dataclasses import replace
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start, possible
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_for
-from ptp_symbolic.numeric.diagnose.refits import over_windows
+from ptp_symbolic.numeric.diagnose.refits import inside, over_windows
+from ptp_symbolic.numeric.diagnose.regression import untold
 from ptp_symbolic.numeric.diagnose.responses import Response
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
@@ -16,7 +17,8 @@ from ptp_symbolic.numeric.diagnose.trial import (
     fitted,
     ranked,
 )
-from ptp_symbolic.numeric.identify.constants import ITERATIONS, MOST, TRIED, WIDE_STEP
+from ptp_symbolic.numeric.identify.constants import FAR_OFF, ITERATIONS, MOST, TRIED, WIDE_STEP
+from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.equation_fit import fit_equations
 from ptp_symbolic.numeric.identify.fit import Fit
 
@@ -95,6 +97,30 @@ def in_place(
     start = start_for(task, proposals, candidates, trial.values)
     beside = trial.values | {name: start[name] for c in candidates for name in c.names}
     return [_begun(task, candidates, values, None) for values in (start, beside)]
+
+
+def far_starts(
+    free: Sequence[FreeParameter], values: Mapping[str, float]
+) -> list[dict[str, float]]:
+    """`values` with one of the parameters `free` after the other as far from its start as that may
+    be off: rows tell an inertia behind a gear by its share in the whole alone, and fits that begin
+    with a gap and too little of it end with none.
+    """
+    return [
+        {**values, **dict.fromkeys(f.names, inside(f, factor * f.start))}
+        for f in free
+        for factor in (FAR_OFF, 1.0 / FAR_OFF)
+        if f.start > 0.0
+    ]
+
+
+def from_far_off(task: Task, proposals: Proposals, trial: Trial) -> list[Trial]:
+    """A trial with each declared parameter that the rows do not tell far off: how a shaft damps
+    shows as a gear bounces alone, and the misfit is rough in it.
+    """
+    rows = proposals.regression
+    starts = [] if rows is None else far_starts(untold(rows), trial.values)
+    return [_begun(task, trial.candidates, values, trial.fit) for values in starts]
 
 
 def _begun(

@@ -25,6 +25,7 @@ from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run_groups import by_source
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -48,11 +49,8 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
     """Values of the free parameters of `fit` with 95 % confidence intervals (Student's t)."""
     if not fit.free:
         return ()
-    covariance, degrees, lost = covariance_of(fit)
-    reach = stats.t.ppf(0.975, degrees)
-    spreads = reach * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    spreads, involved = _spreads(fit)
     units = np.abs(slopes(fit.free, to_search(fit.free, fit.values)))
-    involved = np.any(lost**2 > SAME, axis=0)
     result = []
     for index, free in enumerate(fit.free):
         value = wrapped(free, fit.values[free.name])
@@ -60,13 +58,27 @@ def estimates(fit: Fit) -> tuple[Estimate, ...]:
         if involved[index].any():
             others = np.flatnonzero(involved[:, involved[index]].any(axis=1))
             partners = tuple(fit.free[i].name for i in others if i != index)
-            spreads[index] = np.inf
         low, high, width = _interval(free, value, float(spreads[index]), float(units[index]))
         near = 1e-4 * max(abs(free.start), abs(value))
         at_bound = value - free.lower <= near or free.upper - value <= near
         seen = bool(np.isfinite(width) and width < 1.0)
         result.append(Estimate(free.name, value, low, high, bool(at_bound), seen, partners))
     return tuple(result)
+
+
+def reaches(fit: Fit) -> FloatArray:
+    """Half widths [nf] of the 95 % intervals in search coordinates, infinite where the data see a
+    parameter only in combination with others, or not at all.
+    """
+    return _spreads(fit)[0]
+
+
+def _spreads(fit: Fit) -> tuple[FloatArray, BoolArray]:
+    """See `reaches`; and which of them take part [nf, lost] in what is not seen."""
+    covariance, degrees, lost = covariance_of(fit)
+    spreads = stats.t.ppf(0.975, degrees) * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    involved = np.any(lost**2 > SAME, axis=0)
+    return np.where(involved.any(axis=1), np.inf, spreads), involved
 
 
 def _interval(

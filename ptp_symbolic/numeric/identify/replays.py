@@ -101,11 +101,10 @@ def propagated_noise(
 def estimable(
     fit: Fit, declared_noise: Sequence[float | None], executor: Executor | None = None
 ) -> Fit:
-    """A finished fit with all that its intervals need: derivatives that are not blind, and what the
-    noise of the inputs changes.
+    """A finished fit with all that its intervals need: what the noise of the inputs changes, and
+    derivatives that do not mislead.
     """
-    seeing = with_finite_differences(fit, executor)
-    return with_input_noise(seeing, declared_noise, executor)
+    return with_finite_differences(with_input_noise(fit, declared_noise, executor), executor)
 
 
 def with_input_noise(

@@ -26,14 +26,14 @@ class Secants:
 
     `residual(run, phi, z)` simulates one run (None: it failed); `upper` [nf] bounds phi. The first
     call compares every column of every run, later ones only those that misled, `chosen`; `step` is
-    that of the differences, in search coordinates.
+    that of the differences, in search coordinates, or one for each of them [nf].
     """
 
     residual: Residual
     upper: FloatArray
     executor: Executor | None = None
     chosen: list[Shift] | None = None
-    step: float = STEP
+    step: float | FloatArray = STEP
 
     def __call__(
         self, phi: FloatArray, z: Sequence[FloatArray], evaluations: Sequence[Evaluation]
@@ -41,10 +41,12 @@ class Secants:
         """`evaluations` at (phi, z) with their derivatives by phi refined."""
         every = [(r, c) for r in range(len(evaluations)) for c in range(len(phi))]
         shifts = every if self.chosen is None else self.chosen
+        steps = np.broadcast_to(self.step, phi.shape)
 
         def difference(shift: Shift) -> FloatArray:
             run, column = shift
-            step = self.step if phi[column] + self.step <= self.upper[column] else -self.step
+            step = float(steps[column])
+            step = step if phi[column] + step <= self.upper[column] else -step
             shifted = phi.copy()
             shifted[column] += step
             after = self.residual(run, shifted, z[run])
