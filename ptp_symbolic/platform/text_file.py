@@ -1,18 +1,23 @@
 """Read a text file of limited size, or refuse it in one line."""
 
+import codecs
 from pathlib import Path
 
 from ptp_symbolic.errors import InputError
 
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+_BY_MARK = {codecs.BOM_UTF16_LE: "utf-16-le", codecs.BOM_UTF16_BE: "utf-16-be"}
+_OF_WINDOWS = "cp1252"
 
 
-def read_text_bytes(path: Path, limit: int, kind: str) -> bytes:
-    """Return the content of a UTF-8 text file of at most `limit` bytes, checked, not decoded.
+def read_text_bytes(path: Path, limit: int, kind: str, *, of_instruments: bool = False) -> bytes:
+    """Return the content of a text file of at most `limit` bytes as UTF-8, checked, not decoded.
 
-    A byte order mark is dropped and every kind of line end becomes a line feed. `kind` says in a
-    refusal what was expected, such as "a platform TOML". Raises InputError if the file is missing,
-    not a plain file, too large, or not text.
+    A byte order mark is dropped and every kind of line end becomes a line feed. Other encodings are
+    refused, but for text `of_instruments`: UTF-16 with its mark and Windows-1252, in which western
+    spreadsheets and loggers write a degree sign. `kind` says in a refusal what was expected, such
+    as "a platform TOML". Raises InputError if the file is missing, not a plain file, too large, or
+    not text.
     """
     try:
         if path.is_dir():
@@ -28,10 +33,30 @@ def read_text_bytes(path: Path, limit: int, kind: str) -> bytes:
         raise InputError(f"{path}: cannot be read ({reason}); give {kind}.") from error
     if len(content) > limit:
         raise InputError(f"{path}: is larger than {limit // 10**6} MB, the most for {kind}.")
+    if of_instruments:
+        content = _in_utf8(content)
     _check_text(path, content, kind)
     content = content.removeprefix(_BYTE_ORDER_MARK)
     if b"\r" in content:
         content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    return content
+
+
+def _in_utf8(content: bytes) -> bytes:
+    """Text of another encoding in UTF-8; content that is UTF-8, or no text, as it is."""
+    of_mark = next((e for mark, e in _BY_MARK.items() if content.startswith(mark)), None)
+    try:
+        if of_mark is not None:
+            return content[2:].decode(of_mark).encode()
+        if b"\0" in content or content.isascii():
+            return content
+        content.decode()
+    except UnicodeDecodeError:
+        if of_mark is None:
+            try:
+                return content.decode(_OF_WINDOWS).encode()
+            except UnicodeDecodeError:
+                return content
     return content
 
 

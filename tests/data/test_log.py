@@ -179,14 +179,26 @@ def test_a_bad_log_is_refused_in_one_line(tmp_path: Path, old: str, new: str, me
         (b"", r"run.csv: is empty; give a CSV with a header row such as 'time \[s\]"),
         (b"\n \n", "run.csv: is empty"),
         (GOOD.encode().replace(b"4.50", b"4.\x000"), r"run.csv:5: is not text \(byte 0x00\)"),
-        (GOOD.encode().replace(b"4.50", b"\xb0"), r"run.csv:5: is not text \(byte 0xb0, not UTF-8"),
-        (GOOD.encode("utf-16"), "is not text"),
+        (GOOD.encode().replace(b"4.50", b"\xb0"), r"run.csv:5: 'pan_voltage' is '°', not a finite"),
+        (GOOD.encode().replace(b"4.50", b"\x81"), r"run.csv:5: is not text \(byte 0x81, not UTF-8"),
+        (GOOD.encode("utf-16-le"), "is not text"),
+        (GOOD.encode("utf-16") + b"\x00", "is not text"),
         (GOOD.encode() + b"\x89PNG\r\n\x1a\n\0\0", r"run.csv:16: is not text \(byte 0x00\)"),
     ],
 )
 def test_a_file_that_is_no_csv_is_refused(tmp_path: Path, content: bytes, message: str) -> None:
     with pytest.raises(InputError, match=message):
         read_log(write(tmp_path, content), PLATFORM)
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "utf-16", "utf-16-be", "utf-8"])
+def test_spreadsheets_and_loggers_write_in_other_encodings(tmp_path: Path, encoding: str) -> None:
+    """A degree sign, as Excel and LabVIEW store it."""
+    degrees = [f"{row.rpartition(',')[0]},{np.degrees(0.1 * k):.9f}" for k, row in enumerate(ROWS)]
+    text = "\n".join(["# Größe", HEADER.replace("[rad]", "[°]"), *degrees]) + "\n"
+    mark = "\ufeff" if encoding == "utf-16-be" else ""
+    log = read_log(write(tmp_path, (mark + text).encode(encoding)), PLATFORM)
+    np.testing.assert_allclose(log.outputs[:, 0], 0.1 * np.arange(12), rtol=1e-7)
 
 
 def test_time_may_be_in_any_unit_of_time(tmp_path: Path) -> None:

@@ -66,12 +66,13 @@ class CsvTable(Table):
 
 def read_csv(path: Path) -> CsvTable:
     """Read a CSV and its header row; semicolons, tabs, decimal commas, comments above the header
-    and a row of units are understood (see `plain_text`).
+    and a row of units are understood (see `plain_text`), and other encodings than UTF-8 (see
+    `read_text_bytes`).
 
     Raises InputError for a file that is missing, larger than 200 MB, empty or not text, and for a
     header with a column twice, over 1000 columns or a malformed heading.
     """
-    content = read_text_bytes(path, _MAX_BYTES, "a CSV log")
+    content = read_text_bytes(path, _MAX_BYTES, "a CSV log", of_instruments=True)
     if not content.strip():
         raise InputError(f"{path}: is empty; give a CSV with a header row such as 'time [s],...'.")
     text = plain_text(path, content)
