@@ -191,16 +191,6 @@ def test_a_file_that_is_no_csv_is_refused(tmp_path: Path, content: bytes, messag
         read_log(write(tmp_path, content), PLATFORM)
 
 
-@pytest.mark.parametrize("encoding", ["cp1252", "utf-16", "utf-16-be", "utf-8"])
-def test_spreadsheets_and_loggers_write_in_other_encodings(tmp_path: Path, encoding: str) -> None:
-    """A degree sign, as Excel and LabVIEW store it."""
-    degrees = [f"{row.rpartition(',')[0]},{np.degrees(0.1 * k):.9f}" for k, row in enumerate(ROWS)]
-    text = "\n".join(["# Größe", HEADER.replace("[rad]", "[°]"), *degrees]) + "\n"
-    mark = "\ufeff" if encoding == "utf-16-be" else ""
-    log = read_log(write(tmp_path, (mark + text).encode(encoding)), PLATFORM)
-    np.testing.assert_allclose(log.outputs[:, 0], 0.1 * np.arange(12), rtol=1e-7)
-
-
 def test_time_may_be_in_any_unit_of_time(tmp_path: Path) -> None:
     rows = [f"{5.0 * k:.1f},{row.partition(',')[2]}" for k, row in enumerate(ROWS)]
     text = "\n".join([HEADER.replace("[s]", "[ms]"), *rows]) + "\n"
