@@ -17,8 +17,9 @@ BoolArray = NDArray[np.bool_]
 
 
 def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
-    """`fit` with finite differences in its Jacobians where the tangents at the optimum mislead:
-    friction that holds, or lets go a sample later, makes the residual a staircase of a parameter.
+    """`fit` with finite differences in its Jacobians where the tangents at the optimum are blind to
+    them: friction that holds, or lets go a sample later, makes the residual a staircase of a
+    parameter.
 
     The differences reach as far as the interval by the tangents does, or over a usual step where
     that is shorter. Where they tell a parameter far better than that, the step is too long: one
@@ -41,7 +42,7 @@ def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
         shifts = [(run, int(c)) for run in range(len(here)) for c in np.flatnonzero(wanted)]
         refined = replace(problem.refine, step=steps, chosen=shifts)(phi, fit.z, here)
         parts = zip(fit.evaluations, here, refined, strict=True)
-        fit = replace(fit, evaluations=tuple(_less_misleading(*part, wanted) for part in parts))
+        fit = replace(fit, evaluations=tuple(_seeing(*part, wanted) for part in parts))
         reach = reaches(fit)
         wanted = reach < MOST * steps
         if not wanted.any():
@@ -50,13 +51,12 @@ def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
     return fit
 
 
-def _less_misleading(
+def _seeing(
     before: Evaluation, at_point: Evaluation, finite: Evaluation, wanted: BoolArray
 ) -> Evaluation:
     """A run with the derivatives of `before`; of the `wanted` [nf] parameters with its tangents, or
-    with differences in the place of those that are blind to them or see far more.
+    with differences in the place of those that are blind to them.
     """
     seen, size = (np.linalg.norm(e.by_parameter, axis=0) for e in (at_point, finite))
-    misleads = np.minimum(seen, size) < MISLEADING * np.maximum(seen, size)
-    columns = np.where(misleads, finite.by_parameter, at_point.by_parameter)
+    columns = np.where(seen < MISLEADING * size, finite.by_parameter, at_point.by_parameter)
     return replace(before, by_parameter=np.where(wanted, columns, before.by_parameter))

@@ -102,7 +102,7 @@ def estimable(
     fit: Fit, declared_noise: Sequence[float | None], executor: Executor | None = None
 ) -> Fit:
     """A finished fit with all that its intervals need: what the noise of the inputs changes, and
-    derivatives that do not mislead.
+    derivatives that are not blind.
     """
     return with_finite_differences(with_input_noise(fit, declared_noise, executor), executor)
 
