@@ -44,20 +44,22 @@ def read_text_bytes(path: Path, limit: int, kind: str, *, of_instruments: bool =
 
 def _in_utf8(content: bytes) -> bytes:
     """Text of another encoding in UTF-8; content that is UTF-8, or no text, as it is."""
-    of_mark = next((e for mark, e in _BY_MARK.items() if content.startswith(mark)), None)
+    by_mark = next((e for mark, e in _BY_MARK.items() if content.startswith(mark)), None)
+    if by_mark is None and (b"\0" in content or _is_utf8(content)):
+        return content
+    text = content if by_mark is None else content[len(codecs.BOM_UTF16) :]
     try:
-        if of_mark is not None:
-            return content[2:].decode(of_mark).encode()
-        if b"\0" in content or content.isascii():
-            return content
+        return text.decode(by_mark or _OF_WINDOWS).encode()
+    except UnicodeDecodeError:
+        return content
+
+
+def _is_utf8(content: bytes) -> bool:
+    try:
         content.decode()
     except UnicodeDecodeError:
-        if of_mark is None:
-            try:
-                return content.decode(_OF_WINDOWS).encode()
-            except UnicodeDecodeError:
-                return content
-    return content
+        return False
+    return True
 
 
 def _check_text(path: Path, content: bytes, kind: str) -> None:
