@@ -45,7 +45,9 @@ def read_text_bytes(path: Path, limit: int, kind: str, *, of_instruments: bool =
 def _in_utf8(content: bytes) -> bytes:
     """Text of another encoding in UTF-8; content that is UTF-8, or no text, as it is."""
     by_mark = next((e for mark, e in _BY_MARK.items() if content.startswith(mark)), None)
-    if by_mark is None and (b"\0" in content or _is_utf8(content)):
+    if by_mark is None and (content.startswith(_BYTE_ORDER_MARK) or b"\0" in content):
+        return content
+    if by_mark is None and _is_utf8(content):
         return content
     text = content if by_mark is None else content[len(codecs.BOM_UTF16) :]
     try:

@@ -15,6 +15,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows, over_whole_runs
 from ptp_symbolic.numeric.diagnose.findings import Step
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise
+from ptp_symbolic.numeric.diagnose.nested import declared_from
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
@@ -117,28 +118,41 @@ def test_a_set_that_took_the_place_of_another_grows_too(
     seeker: Seeker, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A constant torque does not explain a spring, which can still be added to it."""
-    torque = alone(seeker, "constant_torque@pan")
+    torque, pruned = alone(seeker, "constant_torque@pan"), Seeker.pruned
     monkeypatch.setattr(Seeker, "exchanged", lambda *_: torque)
+    monkeypatch.setattr(
+        Seeker, "pruned", lambda self, t: (t, []) if t is torque else pruned(self, t)
+    )
     found = roads._from_declared(seeker, [])
     assert found.chosen.keys == ("cable_spring@pan",)
     assert found.chosen.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
 
 
-def test_what_the_rows_do_not_tell_begins_far_off_once_more(
-    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+def test_what_made_up_for_a_fit_that_was_stuck_is_taken_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A set that is stuck, here because it was not fitted on, is left for a better end; and what
-    made up for that is taken out.
+    """A machine of which nothing is missing, fitted with twice its damping; the spring that makes
+    up for a part of that has no gain once the fit begins far off and comes to its end.
     """
-    task, spring = seeker.task, alone(seeker, "cable_spring@pan")
-    stuck = fitted(task, spring.candidates, spring.values | {"b_pan": 0.3}, None)
-    monkeypatch.setattr(roads, "from_far_off", lambda *_: [spring])
-    found, steps = roads._from_far_off(seeker, stuck, [])
-    assert found.values["b_pan"] == pytest.approx(spring.values["b_pan"], rel=1e-3)
-    assert [s.candidate.key for s in steps] == ["cable_spring@pan"]
-    end = seeker.declared
-    seeker.declared = fitted(task, (), end.values | {"b_pan": 0.3}, None)
-    monkeypatch.setattr(roads, "from_far_off", lambda *_: [end])
-    found, steps = roads._from_far_off(seeker, seeker.declared, [])
-    assert found is seeker.declared and not steps
-    assert found.values["b_pan"] == pytest.approx(end.values["b_pan"], rel=1e-2)
+    with spring_table(tmp_path, stiffness=0.0) as task:
+        proposals = propose(task)
+        task, end = over_whole_runs(task, proposals)
+        stuck = fitted(task, (), end.values | {"b_pan": 0.2}, None)
+        seeker = Seeker(task, stuck, proposals, carried_noise(task, end.fit))
+        spring = max((c for c in task.candidates if c.id == "cable_spring"), key=lambda c: c.member)
+        values = stuck.values | {f.name: f.start for f in spring.free}
+        made_up = fitted(task, (spring,), values, None, 1)
+        better = alone(Seeker(task, end, proposals, seeker.carried), spring.key)
+        monkeypatch.setattr(Seeker, "restarted", lambda _, trial: trial)
+        monkeypatch.setattr(roads, "each_through_windows", lambda *_, **__: [made_up])
+        monkeypatch.setattr(roads, "extended", lambda _, begun, steps, *end: (begun, steps))
+        monkeypatch.setattr(roads, "from_far_off", lambda *_: [better])
+
+        def led(task: Task, trial: Trial, *rest: Any) -> Trial | None:
+            return None if trial is made_up else declared_from(task, trial, *rest)
+
+        monkeypatch.setattr(roads, "declared_from", led)
+        monkeypatch.setattr(Seeker, "completed", lambda _, trial: trial)
+        found = roads._from_declared(seeker, [made_up])
+    assert not found.chosen.candidates
+    assert found.declared.values["b_pan"] == pytest.approx(end.values["b_pan"], rel=1e-3)

@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.identify import finite_differences
-from ptp_symbolic.numeric.identify.constants import MISLEADING
+from ptp_symbolic.numeric.identify.constants import MISLEADING, ROUGH
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter, to_search
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
@@ -96,18 +96,37 @@ def closed(monkeypatch: pytest.MonkeyPatch, residual: Residual, tangent: Floats)
     return fit
 
 
-def test_a_single_jump_does_not_tell_where_a_parameter_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The ramp tells the parameter to 1.96 / (4 |ramp|); a jump half as far away says nothing more
-    than that.
-    """
-    own = 1.96 / (4.0 * float(np.linalg.norm(RAMP)))
+SLOPE = 40.0
+KNOWN = 1.96 / (SLOPE * float(np.linalg.norm(RAMP)))  # a quarter of a usual step
+
+
+@pytest.mark.parametrize("away", [2.0, 0.5, 0.01])
+def test_a_single_jump_does_not_tell_where_a_parameter_is(
+    monkeypatch: pytest.MonkeyPatch, away: float
+) -> None:
+    """The ramp tells the parameter as it does without a jump, however near that is."""
     zero = to_search((FREE_ONE,), {"p": 1.0})[0]
 
     def residual(phi: float) -> Floats:
-        return 4.0 * (phi - zero) * RAMP + 1e4 * (phi - zero > 0.5 * own)
+        return SLOPE * (phi - zero) * RAMP + 1e4 * (phi - zero > away * KNOWN)
 
-    fit = closed(monkeypatch, residual, 4.0 * RAMP)
-    assert reaches(with_finite_differences(fit)) == pytest.approx([own], rel=0.15)
+    fit = closed(monkeypatch, residual, SLOPE * RAMP)
+    assert reaches(with_finite_differences(fit)) == pytest.approx([KNOWN], rel=0.15)
+
+
+def test_errors_of_the_simulation_tell_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that does not depend on the parameter, simulated to half a percent of its noise."""
+    draws = np.random.default_rng(4)
+    fit = closed(monkeypatch, lambda _: 0.5 * ROUGH * draws.standard_normal(SAMPLES), 0.0 * RAMP)
+    assert np.isinf(reaches(with_finite_differences(fit))).all()
+
+
+def test_differences_go_as_far_as_they_are_asked_to(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a jump within the errors of a value does to a prediction is seen in full."""
+    zero = to_search((FREE_ONE,), {"p": 1.0})[0]
+    fit = closed(monkeypatch, lambda phi: 1e4 * (phi - zero > 0.5 * KNOWN) + 0.0 * RAMP, 0.0 * RAMP)
+    moved = with_finite_differences(fit, reach=np.array([KNOWN]))
+    assert KNOWN * moved.evaluations[0].by_parameter == pytest.approx(1e4)
 
 
 def test_the_slope_of_a_staircase_is_that_of_its_flight(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -32,7 +32,7 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
-from ptp_symbolic.numeric.identify.intervals import covariance_of, project_out
+from ptp_symbolic.numeric.identify.intervals import covariance_of, project_out, reaches
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import sizes
@@ -61,7 +61,8 @@ def left_by_values(after: Fit, estimated: Fit, executor: Executor | None = None)
     covariance, degrees, _ = covariance_of(estimated)
     wider = stats.t.ppf(0.975, degrees) / stats.norm.ppf(0.975)
     covariance = covariance * np.outer(wider, wider)
-    moved = with_finite_differences(replace(after, free=estimated.free), executor)
+    moved = replace(after, free=estimated.free)
+    moved = with_finite_differences(moved, executor, reaches(estimated))
     found = np.zeros((len(after.runs), signals))
     for number, (run, e) in enumerate(moved.pairs()):
         columns = project_out(e.by_parameter, e.by_start)

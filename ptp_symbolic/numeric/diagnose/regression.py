@@ -88,8 +88,9 @@ def reweighted(found: Regression, candidates: Sequence[Candidate]) -> Regression
 
 
 def untold(found: Regression) -> list[FreeParameter]:
-    """Declared parameters of which all rows tell less than their start does, which may be off by
-    its scale: rows overlap, so that those of a block in one equation count as one.
+    """Declared parameters of which all rows, with all others known, tell less than their start
+    does, which may be off by its scale. Rows overlap: those of a block in one equation count as
+    one.
     """
     counted = np.column_stack([found.equation, found.block])
     overlap = len(counted) / len(np.unique(counted, axis=0))

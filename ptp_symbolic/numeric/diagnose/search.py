@@ -88,8 +88,9 @@ def _soon_found(seeker: Seeker) -> list[Trial]:
 
 def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
     """Complete what is `found` of the proposed sets, prune, grow, simplify; where the chosen set
-    leads the declared model to a better place, from the beginning, or with new gains if it leaves
-    only noise; where what it adds multiplies small errors, from the beginning in windows.
+    (or a far start) leads the declared model to a better place, from the beginning, or with new
+    gains if only noise is left; where what it adds multiplies small errors, from the beginning in
+    windows.
     """
     task, best = seeker.task, seeker.declared
     if seeker.proposals.asked_for or not seeker.is_at_noise(best):
@@ -126,15 +127,19 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
         best, steps = extended(seeker, *seeker.pruned(other))
     if begun.candidates or any(c.is_declared_value for c in best.candidates):
         best, steps = by_effects_alone(seeker, best, steps, end)
-    if best.candidates:
-        again = declared_from(task, best, seeker.declared, seeker.carried)
-        if again is not None:
-            seeker.declared = again
-            if not seeker.is_at_noise(best):
-                seeker.tried.others.clear()
-                return _from_declared(seeker, _proposed(seeker))
-            best, steps = seeker.pruned(best)
-    best, steps = _from_far_off(seeker, best, steps)
+    better = _from_far_off(seeker, best)
+    again: Trial | None = better
+    if better.candidates:
+        again = declared_from(task, better, seeker.declared, seeker.carried)
+    moved = better is not best
+    if again is not None and again is not seeker.declared:
+        is_material = gain(again, seeker.declared).share >= task.material
+        seeker.declared, moved = again, True
+        if is_material and not seeker.is_at_noise(better):
+            seeker.tried.others.clear()
+            return _from_declared(seeker, _proposed(seeker))
+    if moved:
+        best, steps = seeker.pruned(better)
     best = seeker.sharpened(seeker.simplified(best))
     if seeker.is_at_noise(best):
         without = {s.candidate.key: s.without for s in steps}
@@ -146,19 +151,13 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
     )
 
 
-def _from_far_off(seeker: Seeker, best: Trial, steps: list[Step]) -> tuple[Trial, list[Step]]:
-    """The trial and the `steps` of its candidates; or a better end from where a declared parameter
-    that the rows do not tell begins far off, pruned anew: a candidate may have made up for it.
+def _from_far_off(seeker: Seeker, best: Trial) -> Trial:
+    """The trial, or a better end from where a declared parameter that the rows do not tell begins
+    far off.
     """
     found = halving(seeker.task, from_far_off(seeker.task, seeker.proposals, best), 1)
     better = ranked([best, *found])[0]
-    if is_alike(better, best):
-        return best, steps
-    better = seeker.polished(better)
-    if better.candidates:
-        return seeker.pruned(better)
-    seeker.declared = better
-    return better, []
+    return best if is_alike(better, best) else seeker.polished(better)
 
 
 def _in_windows(seeker: Seeker, best: Trial) -> Seeker | None:

@@ -102,9 +102,9 @@ def in_place(
 def far_starts(
     free: Sequence[FreeParameter], values: Mapping[str, float]
 ) -> list[dict[str, float]]:
-    """`values` with one of the parameters `free` after the other as far from its start as that may
-    be off: rows tell an inertia behind a gear by its share in the whole alone, and fits that begin
-    with a gap and too little of it end with none.
+    """`values` with one of the parameters `free` after the other that begin above zero as far from
+    its start as that may be off: rows tell an inertia behind a gear by its share in the whole
+    alone, and fits that begin with a gap and too little of it end with none.
     """
     return [
         {**values, **dict.fromkeys(f.names, inside(f, factor * f.start))}
@@ -115,8 +115,9 @@ def far_starts(
 
 
 def from_far_off(task: Task, proposals: Proposals, trial: Trial) -> list[Trial]:
-    """A trial with each declared parameter that the rows do not tell far off: how a shaft damps
-    shows as a gear bounces alone, and the misfit is rough in it.
+    """A trial with one declared parameter that the rows do not tell far off, each of them in turn
+    (see `far_starts`): how a shaft damps shows only as a gear bounces, and the misfit is rough in
+    it.
     """
     rows = proposals.regression
     starts = [] if rows is None else far_starts(untold(rows), trial.values)

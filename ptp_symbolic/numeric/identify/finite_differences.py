@@ -1,30 +1,35 @@
 """Finite differences in the Jacobian of a finished fit, for intervals and tests."""
 
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import ITERATIONS, MISLEADING, MOST, STEP
+from ptp_symbolic.numeric.identify.constants import MISLEADING, MOST, POLISH, ROUGH, STEP
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import reaches
 from ptp_symbolic.numeric.identify.simulations import Effort, problem_of, simulations_of
 
+FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 
-def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
+def with_finite_differences(
+    fit: Fit, executor: Executor | None = None, reach: FloatArray | None = None
+) -> Fit:
     """`fit` with finite differences in its Jacobians where the tangents at the optimum are blind to
-    them: friction that holds, or lets go a sample later, makes the residual a staircase of a
-    parameter.
+    what these see: friction that holds, or lets go a sample later, makes the residual a staircase
+    of a parameter.
 
-    The differences reach as far as the interval by the tangents does, or over a usual step where
-    that is shorter. Where they tell a parameter far better than that, the step is too long: one
-    jump somewhere in it says that the parameter is no further off, but not where it is. So it is
-    shortened until the interval is about as long.
+    The differences go as far as the parameters may be off: as the `reach` [nf], in search
+    coordinates, or else as the interval by the tangents, and no further than a usual step. Where
+    they tell a parameter far better than that, the step is too long: one jump somewhere in it says
+    that the parameter is no further off, but not where it is. So it is shortened until the interval
+    is about as long; where it never is, the tangents stay.
     """
     if not fit.free or fit.failed:
         return fit
@@ -35,28 +40,36 @@ def with_finite_differences(fit: Fit, executor: Executor | None = None) -> Fit:
     phi = to_search(fit.free, fit.values)
     here = problem.evaluate(phi, fit.z, True)
     fit = replace(fit, evaluations=tuple(here))
-    steps = np.minimum(reaches(fit), STEP)
+    steps = np.minimum(reaches(fit) if reach is None else reach, STEP)
     steps = np.where(steps > 0.0, steps, STEP)
     wanted = np.ones(len(phi), dtype=np.bool_)
-    for _ in range(ITERATIONS):
+    for _ in range(POLISH):
         shifts = [(run, int(c)) for run in range(len(here)) for c in np.flatnonzero(wanted)]
-        refined = replace(problem.refine, step=steps, chosen=shifts)(phi, fit.z, here)
-        parts = zip(fit.evaluations, here, refined, strict=True)
-        fit = replace(fit, evaluations=tuple(_seeing(*part, wanted) for part in parts))
-        reach = reaches(fit)
-        wanted = reach < MOST * steps
+        finite = replace(problem.refine, step=steps, chosen=shifts)(phi, fit.z, here)
+        columns = [_seeing(*pair, steps) for pair in zip(here, finite, strict=True)]
+        fit = _with_columns(fit, columns, wanted)
+        if reach is not None:
+            return fit
+        found = reaches(fit)
+        wanted = found < MOST * steps
         if not wanted.any():
-            break
-        steps = np.where(wanted, np.maximum(reach, MOST**2 * steps), steps)
-    return fit
+            return fit
+        steps = np.where(wanted, np.maximum(found, MOST**2 * steps), steps)
+    return _with_columns(fit, [e.by_parameter for e in here], wanted)
 
 
-def _seeing(
-    before: Evaluation, at_point: Evaluation, finite: Evaluation, wanted: BoolArray
-) -> Evaluation:
-    """A run with the derivatives of `before`; of the `wanted` [nf] parameters with its tangents, or
-    with differences in the place of those that are blind to them.
+def _with_columns(fit: Fit, columns: Sequence[FloatArray], wanted: BoolArray) -> Fit:
+    """`fit` with the `wanted` [nf] columns of other Jacobians, one per run."""
+    parts = zip(fit.evaluations, columns, strict=True)
+    every = [replace(e, by_parameter=np.where(wanted, c, e.by_parameter)) for e, c in parts]
+    return replace(fit, evaluations=tuple(every))
+
+
+def _seeing(at_point: Evaluation, finite: Evaluation, steps: FloatArray) -> FloatArray:
+    """The tangents of a run, or the differences over `steps` [nf] in the place of those that are
+    blind to them; what errors of the simulation may change is not seen.
     """
     seen, size = (np.linalg.norm(e.by_parameter, axis=0) for e in (at_point, finite))
-    columns = np.where(seen < MISLEADING * size, finite.by_parameter, at_point.by_parameter)
-    return replace(before, by_parameter=np.where(wanted, columns, before.by_parameter))
+    by_errors = ROUGH * np.sqrt(len(at_point.residual)) / steps
+    blind = seen < MISLEADING * np.where(size > by_errors, size, 0.0)
+    return np.where(blind, finite.by_parameter, at_point.by_parameter)
