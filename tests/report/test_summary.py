@@ -240,6 +240,8 @@ def test_the_ranking_has_every_fitted_set_by_its_error_and_the_others_after_it()
     assert rows[1]["why"] == "backlash takes away only 3 % of the error"
     share = rows[0]["gain"]["share"]
     assert share > rows[1]["gain"]["share"] > 0.9 and rows[2]["gain"] is None
+    rows = summary.ranking(search, _verdict(UNEXPLAINED, _trial(left=3.0)), ())
+    assert [row["why"] for row in rows] == ["predicts worse than the best"] * 2
 
 
 def test_errors_pool_the_angles_and_tell_every_signal_in_its_own_unit() -> None:

@@ -269,7 +269,7 @@ def _why(search: Search, found: Verdict, trial: Trial) -> str:
     refused = [f"{key} {why}" for key, why in found.refused.items() if key in trial.keys]
     if refused:
         return "; ".join(refused)
-    if set(found.final.keys) < set(trial.keys):
+    if found.final.candidates and set(found.final.keys) < set(trial.keys):
         return "what it adds to the accepted set gains too little"
     if any(c.id.startswith(DECLARED_VALUE) for c in trial.candidates):
         return "a changed declared value explains less than the best"
