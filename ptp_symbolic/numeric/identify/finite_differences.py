@@ -25,11 +25,11 @@ def with_finite_differences(
     what these see: friction that holds, or lets go a sample later, makes the residual a staircase
     of a parameter.
 
-    The differences go as far as the parameters may be off: as the `reach` [nf], in search
-    coordinates, or else as the interval by the tangents, and no further than a usual step. Where
-    they tell a parameter far better than that, the step is too long: one jump somewhere in it says
-    that the parameter is no further off, but not where it is. So it is shortened until the interval
-    is about as long; where it never is, the tangents stay.
+    The differences go over a usual step, or as far as the parameters may be off where that `reach`
+    [nf] in search coordinates is given. Where they stand in and tell a parameter far better than
+    their step, that is too long: one jump somewhere in it says that the parameter is no further
+    off, but not where it is. So it is shortened until the interval is about as long; where it never
+    is, the tangents stay.
     """
     if not fit.free or fit.failed:
         return fit
@@ -40,18 +40,20 @@ def with_finite_differences(
     phi = to_search(fit.free, fit.values)
     here = problem.evaluate(phi, fit.z, True)
     fit = replace(fit, evaluations=tuple(here))
-    steps = np.minimum(reaches(fit) if reach is None else reach, STEP)
+    steps = np.full(len(phi), STEP) if reach is None else np.minimum(reach, STEP)
     steps = np.where(steps > 0.0, steps, STEP)
     wanted = np.ones(len(phi), dtype=np.bool_)
     for _ in range(POLISH):
         shifts = [(run, int(c)) for run in range(len(here)) for c in np.flatnonzero(wanted)]
         finite = replace(problem.refine, step=steps, chosen=shifts)(phi, fit.z, here)
-        columns = [_seeing(*pair, steps) for pair in zip(here, finite, strict=True)]
+        blind = [_is_blind(*pair, steps) for pair in zip(here, finite, strict=True)]
+        parts = zip(blind, here, finite, strict=True)
+        columns = [np.where(b, f.by_parameter, e.by_parameter) for b, e, f in parts]
         fit = _with_columns(fit, columns, wanted)
         if reach is not None:
             return fit
         found = reaches(fit)
-        wanted = found < MOST * steps
+        wanted &= np.any(blind, axis=0) & (found < MOST * steps)
         if not wanted.any():
             return fit
         steps = np.where(wanted, np.maximum(found, MOST**2 * steps), steps)
@@ -65,11 +67,10 @@ def _with_columns(fit: Fit, columns: Sequence[FloatArray], wanted: BoolArray) ->
     return replace(fit, evaluations=tuple(every))
 
 
-def _seeing(at_point: Evaluation, finite: Evaluation, steps: FloatArray) -> FloatArray:
-    """The tangents of a run, or the differences over `steps` [nf] in the place of those that are
-    blind to them; what errors of the simulation may change is not seen.
+def _is_blind(at_point: Evaluation, finite: Evaluation, steps: FloatArray) -> BoolArray:
+    """Which tangents [nf] of a run are blind to what differences over `steps` [nf] see, beyond what
+    errors of the simulation may change.
     """
     seen, size = (np.linalg.norm(e.by_parameter, axis=0) for e in (at_point, finite))
     by_errors = ROUGH * np.sqrt(len(at_point.residual)) / steps
-    blind = seen < MISLEADING * np.where(size > by_errors, size, 0.0)
-    return np.where(blind, finite.by_parameter, at_point.by_parameter)
+    return np.asarray((size > by_errors) & (seen < MISLEADING * size))
