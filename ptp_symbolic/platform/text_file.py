@@ -57,6 +57,8 @@ def _in_utf8(content: bytes) -> bytes:
 
 
 def _is_utf8(content: bytes) -> bool:
+    if content.isascii():  # no copy of a large log
+        return True
     try:
         content.decode()
     except UnicodeDecodeError:

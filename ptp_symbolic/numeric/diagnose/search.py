@@ -127,7 +127,7 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
         best, steps = extended(seeker, *seeker.pruned(other))
     if begun.candidates or any(c.is_declared_value for c in best.candidates):
         best, steps = by_effects_alone(seeker, best, steps, end)
-    better = _from_far_off(seeker, best)
+    better = _better_from_far_off(seeker, best)
     again: Trial | None = better
     if better.candidates:
         again = declared_from(task, better, seeker.declared, seeker.carried)
@@ -151,7 +151,7 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
     )
 
 
-def _from_far_off(seeker: Seeker, best: Trial) -> Trial:
+def _better_from_far_off(seeker: Seeker, best: Trial) -> Trial:
     """The trial, or a better end from where a declared parameter that the rows do not tell begins
     far off.
     """
