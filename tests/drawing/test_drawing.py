@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from ptp_symbolic.platform import Platform, preset_names, read_platform
 from ptp_symbolic.report.diagnosis import render_diagnosis
 from ptp_symbolic.report.drawing import PlatformDrawing, drawn, svg_text, tikz_text
-from ptp_symbolic.report.drawing.scene import Label, Scene
+from ptp_symbolic.report.drawing.scene import Label, Scene, Stroke
 from ptp_symbolic.report.drawing.space import POSE, Space, projected, space_of
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from tests.drawing.platforms import (
@@ -157,6 +157,15 @@ def test_what_was_added_is_marked_and_named_at_its_place() -> None:
     svg = svg_text(pan)
     assert re.search(r'class="mark">cable wrap that pulls back<', svg)
     assert "mark" not in svg_text(tilt)
+
+
+def test_labels_lie_over_all_lines() -> None:
+    scene = drawing_of(read_platform("thesis-payload")).frames
+    arm = next(i for i in scene.items if isinstance(i, Label) and "c_x" in str(i.text))
+    assert any(isinstance(i, Stroke) for i in scene.items[scene.items.index(arm) :])
+    svg, tikz = svg_text(scene), tikz_text(scene)
+    assert svg.rindex("<path") < svg.index("<text")
+    assert tikz.rindex(r"\draw") < tikz.index(r"\node")
 
 
 def test_an_axis_without_a_drive_has_no_motor() -> None:

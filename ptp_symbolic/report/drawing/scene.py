@@ -50,6 +50,18 @@ class Scene:
     items: tuple[Item, ...]
     description: str
 
+    @property
+    def strokes(self) -> list[Stroke]:
+        """The lines and areas, in the order in which they are drawn: before all labels, which
+        would be illegible under them.
+        """
+        return [item for item in self.items if isinstance(item, Stroke)]
+
+    @property
+    def labels(self) -> list[Label]:
+        """The labels, drawn over all strokes."""
+        return [item for item in self.items if isinstance(item, Label)]
+
     def bounds(self) -> tuple[float, float, float, float]:
         """Left, bottom, right and top in cm, with room for the labels."""
         points = [p for item in self.items for p in _extent(item)]

@@ -14,23 +14,24 @@ MARGIN = 6.0
 LETTER, INDEX, DROP = 13.0, 9.5, 3.5  # sizes of a letter and its index, in user units
 WEIGHTS = {"thin": 0.8, "normal": 1.3, "bold": 2.4}
 ARROW, HALF_ARROW = 9.0, 3.4
+RIM = "rim"  # class of what lies under the letters
 ACCENT = "mark"  # class of what is marked; without a style sheet it is told by its weight
 
 
 def svg_text(scene: Scene) -> str:
-    """The scene as an SVG element; all in `currentColor`, what is marked in the class `mark`."""
+    """The scene as an SVG element; all in `currentColor`, what is marked in the class `mark`.
+
+    A page that knows its own colour gives labels a rim of it, which keeps lines off their letters:
+    they are there twice for that, at first without colour, in the class `rim`.
+    """
     left, bottom, right, top = scene.bounds()
     width, height = (right - left) * SCALE + 2 * MARGIN, (top - bottom) * SCALE + 2 * MARGIN
 
     def at(point: Point) -> Point:
         return (point[0] - left) * SCALE + MARGIN, (top - point[1]) * SCALE + MARGIN
 
-    lines = [
-        _stroke(item, [at(p) for p in item.points])
-        if isinstance(item, Stroke)
-        else _label(item, at(placed(item)))
-        for item in scene.items
-    ]
+    lines = [_stroke(stroke, [at(p) for p in stroke.points]) for stroke in scene.strokes]
+    texts = [_label(label, at(placed(label))) for label in scene.labels]
     return "\n".join(
         [
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}"'
@@ -38,7 +39,11 @@ def svg_text(scene: Scene) -> str:
             ' stroke-linejoin="round">',
             f"<title>{escape(scene.description)}</title>",
             *lines,
-            "</svg>",
+            f'<g class="{RIM}" fill="none" aria-hidden="true">',
+            *texts,
+            '</g><g fill="currentColor">',
+            *texts,
+            "</g></svg>",
         ]
     )
 
@@ -74,7 +79,7 @@ def _label(label: Label, at: Point) -> str:
     weight = ' font-weight="bold"' if label.marked else ""
     return (
         f'<text x="{at[0]:.1f}" y="{at[1] + LETTER / 3:.1f}" text-anchor="{anchor}"'
-        f' font-size="{LETTER:g}" fill="currentColor" stroke="none"{weight}{_class(label.marked)}>'
+        f' font-size="{LETTER:g}" stroke="none"{weight}{_class(label.marked)}>'
         f"{_runs(label.text)}</text>"
     )
 

@@ -11,7 +11,7 @@ WEIGHTS = {"thin": "0.3pt", "normal": "0.55pt", "bold": "1.1pt"}
 
 def tikz_text(scene: Scene) -> str:
     """The scene as a `tikzpicture`, in cm; it needs the library arrows.meta."""
-    lines = [_stroke(item) if isinstance(item, Stroke) else _label(item) for item in scene.items]
+    lines = [*map(_stroke, scene.strokes), *map(_label, scene.labels)]
     begin = r"\begin{tikzpicture}[line join=round,>={Stealth[length=1.9mm,width=1.4mm]}]"
     return "\n".join([begin, *lines, r"\end{tikzpicture}"])
 
@@ -34,7 +34,9 @@ def _label(label: Label) -> str:
     text = _text(label.text)
     text = rf"\bfseries {text}" if label.marked else text
     where = _point(placed(label))
-    return rf"\node[anchor={anchor},inner sep=0.6pt,font=\footnotesize] at {where} {{{text}}};"
+    paper = "fill=white,fill opacity=0.8,text opacity=1"  # keeps lines off the letters
+    options = rf"anchor={anchor},inner sep=0.6pt,{paper},font=\footnotesize"
+    return rf"\node[{options}] at {where} {{{text}}};"
 
 
 def _text(text: sp.Expr | str) -> str:
