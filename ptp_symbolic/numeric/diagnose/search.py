@@ -92,6 +92,30 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
     gains if only noise is left; where what it adds multiplies small errors, from the beginning in
     windows.
     """
+    begun, steps = _begun(seeker, found)
+    best, cut = begun, _in_windows(seeker, begun)
+    if cut is None:
+        best, steps = extended(seeker, begun, steps)
+        cut = _in_windows(seeker, best)
+    if cut is not None:
+        return _from_declared(cut, _proposed(cut))
+    best, steps = _over_other_roads(seeker, begun, best, steps)
+    better = _better_from_far_off(seeker, best)
+    declared, before = _led_by(seeker, better), seeker.declared
+    if declared is not before:
+        seeker.declared = declared
+        if gain(declared, before).share >= seeker.task.material and not seeker.is_at_noise(better):
+            seeker.tried.others.clear()
+            return _from_declared(seeker, _proposed(seeker))
+    if better is not best or declared is not before:
+        best, steps = seeker.pruned(better)
+    return _ended(seeker, best, steps)
+
+
+def _begun(seeker: Seeker, found: list[Trial]) -> tuple[Trial, list[Step]]:
+    """The best of the proposed sets, of effects that the motion does not show, and of effects that
+    show in windows, pruned; and the steps of its candidates.
+    """
     task, best = seeker.task, seeker.declared
     if seeker.proposals.asked_for or not seeker.is_at_noise(best):
         if not seeker.have_answer(best, *found, *seeker.tried.others):
@@ -102,44 +126,44 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
         best = seeker.restarted(ranked([best, *(seeker.completed(t) for t in found)])[0])
         seeker.follow(best)
     pruned = seeker.pruned(best) if seeker.is_at_noise(best) else None
-    if pruned is None or not seeker.have_answer(pruned[0]):
-        each = each_through_windows(
-            task,
-            seeker.declared,
-            seeker.proposals.unseen,
-            seeker.carried,
-            is_white=pruned is not None,
-        )
-        led = seeker.simplest([best, *each])
-        if pruned is None or led is not best:
-            best, pruned = led, seeker.pruned(led)
-    begun, steps = pruned
-    cut = _in_windows(seeker, begun)
-    if cut is None:
-        best, steps = extended(seeker, begun, steps)
-        cut = _in_windows(seeker, best)
-    if cut is not None:
-        return _from_declared(cut, _proposed(cut))
-    end = best
-    other = seeker.exchanged(best)
+    if pruned is not None and seeker.have_answer(pruned[0]):
+        return pruned
+    each = each_through_windows(
+        task,
+        seeker.declared,
+        seeker.proposals.unseen,
+        seeker.carried,
+        is_white=pruned is not None,
+    )
+    led = seeker.simplest([best, *each])
+    return pruned if pruned is not None and led is best else seeker.pruned(led)
+
+
+def _over_other_roads(
+    seeker: Seeker, begun: Trial, grown: Trial, steps: list[Step]
+) -> tuple[Trial, list[Step]]:
+    """What was `begun` and `grown`, or what an exchange of candidates or effects alone lead to, if
+    that is better; and the steps of its candidates.
+    """
+    best, other = grown, seeker.exchanged(grown)
     if other is not None:
         seeker.tried.others.append(best)
         best, steps = extended(seeker, *seeker.pruned(other))
     if begun.candidates or any(c.is_declared_value for c in best.candidates):
-        best, steps = by_effects_alone(seeker, best, steps, end)
-    better = _better_from_far_off(seeker, best)
-    again: Trial | None = better
-    if better.candidates:
-        again = declared_from(task, better, seeker.declared, seeker.carried)
-    moved = better is not best
-    if again is not None and again is not seeker.declared:
-        is_material = gain(again, seeker.declared).share >= task.material
-        seeker.declared, moved = again, True
-        if is_material and not seeker.is_at_noise(better):
-            seeker.tried.others.clear()
-            return _from_declared(seeker, _proposed(seeker))
-    if moved:
-        best, steps = seeker.pruned(better)
+        best, steps = by_effects_alone(seeker, best, steps, grown)
+    return best, steps
+
+
+def _led_by(seeker: Seeker, trial: Trial) -> Trial:
+    """The declared model where the chosen trial, which may be one itself, leads it to."""
+    if not trial.candidates:
+        return trial
+    led = declared_from(seeker.task, trial, seeker.declared, seeker.carried)
+    return seeker.declared if led is None else led
+
+
+def _ended(seeker: Seeker, best: Trial, steps: list[Step]) -> Search:
+    """The search that chose the trial, with each of its candidates in its simplest form."""
     best = seeker.sharpened(seeker.simplified(best))
     if seeker.is_at_noise(best):
         without = {s.candidate.key: s.without for s in steps}
@@ -147,7 +171,13 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
         without = {c.key: seeker.without(best, c) for c in best.candidates}
     members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
     return Search(
-        task, seeker.declared, best, members, seeker.tried, seeker.proposals, seeker.carried
+        seeker.task,
+        seeker.declared,
+        best,
+        members,
+        seeker.tried,
+        seeker.proposals,
+        seeker.carried,
     )
 
 
