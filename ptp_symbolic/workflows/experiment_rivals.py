@@ -14,7 +14,7 @@ from ptp_symbolic.numeric.data import read_logs
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, find_candidates, vanished
 from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose, with_lines
+from ptp_symbolic.numeric.diagnose.proposals import Proposals, placed_by_rows, propose
 from ptp_symbolic.numeric.diagnose.refits import polished
 from ptp_symbolic.numeric.diagnose.starts import from_rows
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted, halving, restarted
@@ -111,7 +111,7 @@ def _declared(
 ) -> _Known:
     if task is not None:
         proposals = propose(task)
-        task = replace(task, candidates=with_lines(task.candidates, proposals))
+        task = replace(task, candidates=placed_by_rows(task.candidates, proposals))
         task, trial = fit_declared(task, proposals)
         return _Known(model, task.free, trial.values, task.candidates, task, proposals)
     refuse_unknown_signals(platform, model)

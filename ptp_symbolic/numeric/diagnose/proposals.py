@@ -17,6 +17,7 @@ from ptp_symbolic.numeric.diagnose.declared_rows import (
     first_fit,
     possible,
 )
+from ptp_symbolic.numeric.diagnose.late_inputs import at_best_delays
 from ptp_symbolic.numeric.diagnose.regression import (
     Regression,
     blocks_of,
@@ -78,7 +79,8 @@ def propose(task: Task) -> Proposals:
         return Proposals(start, (), task.candidates, False, None, None)
     values = first_fit(task, space, start)
     declared, around = _declared_rows(task, space, values), rows_around(space, values)
-    seen, unseen = signatures(space, task.candidates, around, declared.weight, task.executor)
+    candidates = at_best_delays(space, task.candidates, around, declared.weight)
+    seen, unseen = signatures(space, candidates, around, declared.weight, task.executor)
     rows = _regressed(task, space, declared, seen)
 
     def scan(left: FloatArray) -> list[Signature]:
@@ -135,17 +137,17 @@ def _refined(
     return Proposal(placed, possible(task, free, {**begun, **found}))
 
 
-def with_lines(candidates: Sequence[Candidate], found: Proposals) -> tuple[Candidate, ...]:
-    """Candidates, those with a frequency at the line that was found, or left out without one."""
-    if found.regression is None:
-        return tuple(c for c in candidates if c.locked is None)
-    lines = {
-        (s.candidate.key, s.candidate.member): s.candidate
-        for s in found.regression.signatures
-        if s.candidate.locked is not None
-    }
-    placed = [c if c.locked is None else lines.get((c.key, c.member)) for c in candidates]
-    return tuple(c for c in placed if c is not None)
+def placed_by_rows(candidates: Sequence[Candidate], found: Proposals) -> tuple[Candidate, ...]:
+    """Candidates as the rows begin them: those with a frequency at the line that was found, or left
+    out without one.
+    """
+    shown = found.regression.signatures if found.regression else ()
+    placed = {(s.candidate.key, s.candidate.member): s.candidate for s in shown}
+    return tuple(
+        placed.get((c.key, c.member), c)
+        for c in candidates
+        if c.locked is None or (c.key, c.member) in placed
+    )
 
 
 def start_for(

@@ -11,7 +11,7 @@ from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose, with_lines
+from ptp_symbolic.numeric.diagnose.proposals import Proposals, placed_by_rows, propose
 from ptp_symbolic.numeric.diagnose.refits import refitted_in
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import from_far_off, started
@@ -36,7 +36,7 @@ def search(task: Task) -> Search:
     """Find the set of candidates that the training runs ask for."""
     task.progress("comparing all sets of effects along the measured motion")
     proposals = propose(task)
-    task = replace(task, candidates=with_lines(task.candidates, proposals))
+    task = replace(task, candidates=placed_by_rows(task.candidates, proposals))
     task = with_fewer_samples(task, proposals.start)
     task.progress("fitting the declared model")
     if task.windows:

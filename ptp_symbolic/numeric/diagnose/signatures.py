@@ -116,12 +116,14 @@ def _signature(
             if candidate.is_declared_value:
                 whole = min(f.start * (1.0 + DECLARED_AMOUNT), 0.5 * (f.start + f.upper))
             column = np.zeros(len(weight))
-            for amount in (zero + STEP * (whole - zero), whole):
+            small = zero + STEP * (whole - zero)
+            for amount in (whole,) if f.name in candidate.whole else (small, whole):
                 changed = dict.fromkeys(f.names, amount)
                 column = (rows({**base, **shape, **changed}) - without) / (amount - zero)
+                if amount == whole:
+                    finite.add(f.name)
                 if np.any(column):
                     break
-                finite.add(f.name)
             columns.append(column)
         slopes.append(tuple(columns))
     span = _orthonormal(np.column_stack([c for columns in slopes for c in columns]), weight)
