@@ -2,14 +2,22 @@
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
+import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of
+from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows
+from ptp_symbolic.numeric.diagnose.left_over import left_over
+from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted
+from ptp_symbolic.numeric.identify.constants import ITERATIONS
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
+from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.workflows.result import windows_table
-from tests.identify.test_windows import COUNT, FREE, MODEL, pendulum
+from tests.identify.test_windows import COUNT, FREE, MODEL, pendulum, run_of
 
 PAYLOAD = {"m_payload": 5.0, "c_x_payload": 0.001}
 
@@ -53,6 +61,44 @@ def test_runs_in_which_a_set_multiplies_errors_are_cut_and_no_other(task: Task) 
     assert part.validate[0] is down
     assert len(part.validate) == 3
     assert windows_table(part) == {"count": 2, "seconds": pytest.approx(up.time[-1] / 2)}
+
+
+def falling(duration: float) -> Run:
+    """The payload leaves the top 0.02 rad beside it (SciPy)."""
+    inertia = FREE["J_y_tilt"] + PAYLOAD["m_payload"] * PAYLOAD["c_x_payload"] ** 2
+    weight = 9.81 * PAYLOAD["m_payload"] * PAYLOAD["c_x_payload"]
+    time = 0.005 * np.arange(round(duration / 0.005) + 1)
+    fall = solve_ivp(
+        lambda _, x: [x[1], weight * np.cos(x[0]) / inertia],
+        (0.0, duration),
+        [0.02 - np.pi / 2, 0.0],
+        t_eval=time,
+        rtol=1e-10,
+        atol=1e-12,
+    )
+    rest = np.zeros(len(time))
+    return run_of(rest, fall.y[0], rest, 0.005)
+
+
+def test_windows_that_the_fitted_model_cannot_follow_are_cut_again(task: Task) -> None:
+    """A payload that is declared a tenth too heavy leaves the top sooner than the true one: that is
+    157 counts over 4 s, and 77 over windows of 1 s.
+    """
+    heavy = {**task.fixed, **PAYLOAD, "m_payload": 1.1 * PAYLOAD["m_payload"]}
+    run = falling(4.0)
+    known = replace(
+        task,
+        train=(run,),
+        every_sample=(run,),
+        validate=(run,),
+        free=(free_parameter("b_pan", 0.0, 0.0, 1e-9),),
+        fixed=heavy,
+    )
+    part, trial = led_over_windows(known, Proposals(heavy, (), (), False, None, None))
+    assert len(part.train) == 4
+    assert len(part.validate) == 4
+    whole = fitted(known, (), heavy, None, ITERATIONS)
+    assert np.max(left_over(trial.fit)) < 0.6 * np.max(left_over(whole.fit))
 
 
 def test_a_set_that_multiplies_none_leaves_the_runs_as_they_are(task: Task) -> None:

@@ -4,6 +4,7 @@ import numpy as np
 
 from ptp_symbolic.numeric.diagnose.cut_runs import (
     in_windows,
+    in_windows_of,
     parted_task,
     takes_away_most,
     validation_in_windows,
@@ -21,7 +22,7 @@ from ptp_symbolic.numeric.diagnose.refits import (
 )
 from ptp_symbolic.numeric.diagnose.starts import far_starts
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving
-from ptp_symbolic.numeric.identify.constants import SCREENED
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, SCREENED
 
 
 def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
@@ -71,16 +72,23 @@ def led_over_windows(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
 
 def _in_windows_of_its_own(task: Task, trial: Trial) -> tuple[Task, Trial]:
     """The task with its runs parted and cut where the declared model asks for it, and the trial
-    refitted there.
+    refitted there. Windows for which its start multiplied no errors may be too long for the fit:
+    what is left may seem to be noise of the inputs then, carried to the other side of a rest.
     """
-    part = parted_task(task, trial)
-    if part is not task:
-        short = refitted_in(part, trial)
-        if takes_away_most(short, trial):
-            task, trial = part, short
+    task, trial = _where_most_goes(parted_task(task, trial), task, trial)
     part = in_windows(task, trial)
     if part is not task:
         short = refitted_in(part, trial)
         if np.all(left_over(short.fit) <= left_over(trial.fit)):
             task, trial = part, short
+    if not task.windows and np.any(left_over(trial.fit) > ABOVE_NOISE):
+        task, trial = _where_most_goes(in_windows_of(task, trial), task, trial)
     return validation_in_windows(task, trial), trial
+
+
+def _where_most_goes(part: Task, task: Task, trial: Trial) -> tuple[Task, Trial]:
+    """The task in parts and the trial refitted there, if that takes away most of what is left."""
+    if part is task:
+        return task, trial
+    short = refitted_in(part, trial)
+    return (part, short) if takes_away_most(short, trial) else (task, trial)
