@@ -129,13 +129,17 @@ def _declared(parameter: Parameter, declarations: dict[str, ParameterDeclaration
 
 def available_quantities(placed: list[tuple[Effect, Place]]) -> set[str]:
     """Names of the quantities that the placed effects define."""
-    return {name for effect, place in placed for name in effect.contribute(place).quantities}
+    return {
+        name
+        for effect, place in placed
+        for name in effect.turning_contribution_at(place).quantities
+    }
 
 
 def definitions(placed: list[tuple[Effect, Place]]) -> dict[str, set[str]]:
     """The quantities that every placed effect defines, by its key."""
     return {
-        effect_key(effect.id, place.axis): set(effect.contribute(place).quantities)
+        effect_key(effect.id, place.axis): set(effect.turning_contribution_at(place).quantities)
         for effect, place in placed
     }
 
@@ -153,7 +157,7 @@ def effects_that_define(quantity: str, axes: tuple[str, ...], linear: bool = Fal
     return [
         effect.id
         for effect, place in _everywhere(axes, linear)
-        if quantity in effect.contribute(place).quantities
+        if quantity in effect.turning_contribution_at(place).quantities
     ]
 
 

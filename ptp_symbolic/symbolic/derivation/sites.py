@@ -60,7 +60,7 @@ def sited_effects(platform: Platform) -> tuple[Sited, ...]:
     Raises InputError as `place_effects` does.
     """
     placed = place_effects(platform)
-    driven = {d.axis for e, p in placed for d in e.contribute(p).drives}
+    driven = {d.axis for e, p in placed for d in e.turning_contribution_at(p).drives}
     apart = [
         (effect, replace(place, shafts=place.shafts | {*driven}))
         if place.axis in driven

@@ -7,6 +7,7 @@ placeholders such as ``winding_resistance_pan`` that one effect defines and othe
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Any
 
 from ptp_symbolic.symbolic.effect_interface.conditions import Requirement
@@ -22,6 +23,11 @@ from ptp_symbolic.symbolic.effect_interface.place import Place
 
 def _always(place: Place, parameter: Parameter) -> bool:
     return True
+
+
+@cache
+def _contribution(contribute: Callable[[Place], Contribution], place: Place) -> Contribution:
+    return contribute(place)
 
 
 def _without_conditions(place: Place) -> tuple[Requirement, ...]:
@@ -105,8 +111,12 @@ class Effect:
 
     def contribution_at(self, place: Place) -> Contribution:
         """What the effect adds at `place`, in the units of the joint there."""
-        added = self.contribute(place)
+        added = self.turning_contribution_at(place)
         return linear_contribution(added) if place.linear else added
+
+    def turning_contribution_at(self, place: Place) -> Contribution:
+        """What `contribute` gives at `place`, as on a joint that turns; called once for a place."""
+        return _contribution(self.contribute, place)
 
     def worded_at(self, place: Place) -> "Effect":
         """The effect with its texts in the words of the joint at `place`."""
