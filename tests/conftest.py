@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from ptp_symbolic.numeric.simulation.ahead import compile_ahead, wait_until_compiled
+
 os.environ.setdefault("MPLBACKEND", "Agg")
 
 # The first call of a jitted function compiles it: a deadline per example would fail at random.
@@ -53,6 +55,17 @@ def printed_in_two_processes() -> Callable[..., set[str]]:
         }
 
     return run
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Before tests run in several processes, compile both runners side by side, once: on a new
+    machine every process would.
+    """
+    if getattr(session.config.option, "numprocesses", None):  # that of the session, not of a worker
+        for sampled in (False, True):
+            compile_ahead(sampled)
+        for sampled in (False, True):
+            wait_until_compiled(sampled)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from ptp_symbolic.models import emission, variants
+from ptp_symbolic.models import variants
 from ptp_symbolic.numeric.black_box.learners import require_library
 from ptp_symbolic.numeric.data import log_files, read_split_logs
 from ptp_symbolic.numeric.diagnose.search import search
@@ -11,7 +11,7 @@ from ptp_symbolic.numeric.diagnose.turned_inputs import turned_inputs
 from ptp_symbolic.numeric.diagnose.verdict import decide
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.against_black_box import against_black_box
-from ptp_symbolic.workflows.preparation import effect_keys, look_at, task_for, workers
+from ptp_symbolic.workflows.preparation import effect_keys, look_at, model_of, task_for, workers
 from ptp_symbolic.workflows.provenance import provenance
 from ptp_symbolic.workflows.result import Output, Progress
 from ptp_symbolic.workflows.write_up import written_up
@@ -39,7 +39,7 @@ def diagnose_platform(
     sources = provenance(platform, read, command)
     noted = look_at(platform, train_logs, (*train_logs, *validate_logs), progress)
     progress("deriving the equations of the platform and its candidates")
-    model = emission.emit(variants.with_candidates(platform))
+    model = model_of(variants.with_candidates(platform))
     with workers() as executor:
         task = task_for(
             platform, model, train_logs, validate_logs, effect_keys(platform), executor, progress

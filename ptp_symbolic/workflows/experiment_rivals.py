@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ptp_symbolic.errors import InputError, unknown
-from ptp_symbolic.models import emission, variants
+from ptp_symbolic.models import variants
 from ptp_symbolic.models.declared import free_parameters, known_values, refuse_unknown_signals
 from ptp_symbolic.numeric.data import read_logs
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, find_candidates, vanished
@@ -25,7 +25,7 @@ from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.simulations import all_values_at_start
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
-from ptp_symbolic.workflows.preparation import effect_keys, look_at, task_for
+from ptp_symbolic.workflows.preparation import effect_keys, look_at, model_of, task_for
 from ptp_symbolic.workflows.result import Progress
 
 USUAL_PERIOD = 5e-3  # s; between samples where no log says another
@@ -75,7 +75,7 @@ def rivals_of(
     Raises InputError for unknown names and logs that do not fit.
     """
     progress("deriving the equations")
-    model = emission.emit(variants.with_candidates(platform) if between else platform)
+    model = model_of(variants.with_candidates(platform) if between else platform)
     declared = effect_keys(platform) if between else ()
     noted: tuple[str, ...] = ()
     task = None

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from ptp_symbolic.models import emission, variants
+from ptp_symbolic.models import variants
 from ptp_symbolic.numeric.data import log_files, read_logs
 from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.errors import error_of
@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.replays import estimable
 from ptp_symbolic.numeric.identify.simulations import Effort, all_values_at_start
 from ptp_symbolic.platform import Platform, platform_text
-from ptp_symbolic.workflows.preparation import look_at, task_for, workers
+from ptp_symbolic.workflows.preparation import look_at, model_of, task_for, workers
 from ptp_symbolic.workflows.provenance import provenance
 from ptp_symbolic.workflows.result import (
     SCHEMA_VERSION,
@@ -50,7 +50,7 @@ def fit_platform(
     logs = read_logs(places, platform)
     sources = provenance(platform, {"fit": (places, logs)}, command)
     noted = look_at(platform, logs, logs, progress)
-    model = emission.emit(platform)
+    model = model_of(platform)
     with workers() as executor:
         task = task_for(platform, model, logs, logs, (), executor, progress)
         begun = _as_declared(task)

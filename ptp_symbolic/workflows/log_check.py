@@ -6,7 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from ptp_symbolic.models import emission, variants
+from ptp_symbolic.models import variants
 from ptp_symbolic.numeric.data import read_logs
 from ptp_symbolic.numeric.diagnose.summary import repeatability_table
 from ptp_symbolic.numeric.diagnose.trial import fitted
@@ -18,7 +18,7 @@ from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.log_check import render_log_check
 from ptp_symbolic.report.log_figures import Shown
-from ptp_symbolic.workflows.preparation import effect_keys, look_at, task_for, workers
+from ptp_symbolic.workflows.preparation import effect_keys, look_at, model_of, task_for, workers
 from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, Progress, json_text
 
 
@@ -33,7 +33,7 @@ def check_logs(
     logs = read_logs(paths, platform)
     noted = look_at(platform, logs, logs, progress)
     progress("deriving the equations of the platform and its candidates")
-    model = emission.emit(variants.with_candidates(platform))
+    model = model_of(variants.with_candidates(platform))
     with workers() as executor:
         task = task_for(platform, model, logs, logs, effect_keys(platform), executor, progress)
         progress("predicting what these logs can show")

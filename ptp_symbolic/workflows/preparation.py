@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 from threadpoolctl import threadpool_limits
 
+from ptp_symbolic.models import emission
 from ptp_symbolic.models.declared import free_parameters, known_values, refuse_unknown_signals
 from ptp_symbolic.numeric.data import Log, refuse_motionless, refuse_wrapped_angles, remarks
 from ptp_symbolic.numeric.diagnose.preparation import task_of
@@ -14,6 +15,7 @@ from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.ahead import compile_ahead
 from ptp_symbolic.platform import Platform, effect_key, naming_file
 from ptp_symbolic.workflows.result import Progress
 
@@ -37,6 +39,12 @@ def effect_keys(platform: Platform) -> list[str]:
 def material_of(platform: Platform) -> float:
     """The share of the error that an effect has to take away for a name."""
     return MATERIAL if platform.material is None else platform.material
+
+
+def model_of(platform: Platform) -> Model:
+    """The model of a platform; on a new machine, what simulates it is compiled meanwhile."""
+    compile_ahead()
+    return emission.emit(platform)
 
 
 def look_at(

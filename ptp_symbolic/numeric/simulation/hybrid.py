@@ -11,6 +11,7 @@ from functools import lru_cache
 
 from numba import njit, types
 
+from ptp_symbolic.numeric.simulation.ahead import note_compiled, wait_until_compiled
 from ptp_symbolic.numeric.simulation.events.crossing import jump_by_delay
 from ptp_symbolic.numeric.simulation.events.domain import is_finite, is_outside
 from ptp_symbolic.numeric.simulation.events.location import (
@@ -273,6 +274,9 @@ def compiled_runner(sources: int, sampled: bool) -> Callable[..., int]:
 @lru_cache(maxsize=2)
 def runner(sampled: bool) -> Callable[..., int]:
     """The runner for machines with samplers (`sampled`) or without, compiled when it is first
-    needed: about a minute once on a new machine.
+    needed: about a minute once on a new machine, or begun before by `compile_ahead`.
     """
-    return compiled_runner(source_stamp(), sampled)
+    wait_until_compiled(sampled)
+    run = compiled_runner(source_stamp(), sampled)
+    note_compiled(sampled)
+    return run

@@ -1,0 +1,76 @@
+"""The runner compiled ahead: a process of its own is begun where it is needed, and waited for."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from ptp_symbolic.numeric.simulation import ahead, hybrid
+
+
+@pytest.fixture
+def mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A mark in an empty folder, and nothing begun; compiling is to leave a file `done` there."""
+    slow = f"import time; time.sleep(0.5); open({str(tmp_path / 'done')!r}, 'w')"
+    monkeypatch.setattr(ahead, "__file__", str(tmp_path / "ahead.py"))
+    monkeypatch.setattr(ahead, "COMPILE", slow)
+    monkeypatch.setattr(ahead, "_begun", {})
+    (tmp_path / "__pycache__").mkdir()
+    return tmp_path / "__pycache__" / f"runner-of-{ahead.source_stamp():x}"
+
+
+def test_who_needs_it_waits_until_it_is_compiled(mark: Path) -> None:
+    ahead.compile_ahead()
+    done = mark.parents[1] / "done"
+    assert not done.exists()
+    ahead.wait_until_compiled(False)
+    assert done.exists()
+
+
+def test_it_is_begun_once_and_not_where_it_was_compiled_before(
+    mark: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun: list[list[str]] = []
+    start = subprocess.Popen
+
+    def noted(command: list[str], **options: object) -> object:
+        begun.append(command)
+        return start(command, **options)  # type: ignore[call-overload]
+
+    monkeypatch.setattr(ahead.subprocess, "Popen", noted)
+    ahead.compile_ahead()
+    ahead.compile_ahead()
+    assert [command[0] for command in begun] == [sys.executable]
+    ahead.note_compiled(True)
+    ahead.compile_ahead(True)
+    assert len(begun) == 1
+
+
+def test_a_mark_of_other_sources_is_replaced(mark: Path) -> None:
+    old = mark.with_name("runner-of-0")
+    other = mark.with_name("sampled-runner-of-0")
+    old.touch()
+    other.touch()
+    ahead.note_compiled(False)
+    assert mark.exists()
+    assert not old.exists()
+    assert other.exists()
+
+
+def test_where_no_process_can_be_begun_nobody_waits(
+    mark: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ahead.sys, "executable", str(mark / "no python"))
+    ahead.compile_ahead()
+    ahead.wait_until_compiled(False)
+    assert not (mark.parents[1] / "done").exists()
+
+
+def test_a_runner_that_was_compiled_leaves_its_mark() -> None:
+    hybrid.runner.cache_clear()
+    hybrid.runner(False)
+    assert ahead._mark(False).exists()
+    source = ahead.COMPILE.format(sampled=False)
+    compile(source, "ahead", "exec")
+    assert "hybrid import runner; runner(False)" in source
