@@ -47,7 +47,7 @@ def torque_driven(platform: Platform) -> Platform:
     """
     kept = []
     for effect, place in place_effects(platform):
-        added = effect.contribute(place)
+        added = effect.turning_contribution_at(place)
         if not (added.drives or added.shafts or added.plays or added.prescribed):
             kept.append((effect, replace(place, shafts=frozenset())))
     while True:

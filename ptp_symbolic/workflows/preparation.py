@@ -17,6 +17,7 @@ from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.ahead import compile_ahead
 from ptp_symbolic.platform import Platform, effect_key, naming_file
+from ptp_symbolic.symbolic.derivation.placement import place_effects
 from ptp_symbolic.workflows.result import Progress
 
 
@@ -42,8 +43,9 @@ def material_of(platform: Platform) -> float:
 
 
 def model_of(platform: Platform) -> Model:
-    """The model of a platform; on a new machine, what simulates it is compiled meanwhile."""
-    compile_ahead()
+    """The model of a platform; on a new machine, the runner that it needs is compiled meanwhile."""
+    placed = place_effects(platform)
+    compile_ahead(any(effect.turning_contribution_at(at).samplers for effect, at in placed))
     return emission.emit(platform)
 
 

@@ -97,6 +97,7 @@ def test_windows_that_the_fitted_model_cannot_follow_are_cut_again(task: Task) -
     part, trial = led_over_windows(known, Proposals(heavy, (), (), False, None, None))
     assert len(part.train) == 4
     assert len(part.validate) == 4
+    assert part.few == part.train
     whole = fitted(known, (), heavy, None, ITERATIONS)
     assert np.max(left_over(trial.fit)) < 0.6 * np.max(left_over(whole.fit))
 

@@ -5,6 +5,7 @@ asked for then, a delay ago. A torque follows a smooth input, and its rows a sma
 """
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.late_inputs import at_best_delays
+from ptp_symbolic.numeric.diagnose.signatures import _signature
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 
 PERIOD = 0.01  # s
@@ -94,7 +96,31 @@ def test_without_a_delay_none_is_begun(signal: Signal) -> None:
 
 def test_a_delay_stays_within_the_windows() -> None:
     (late,) = begun(held, 0.15, windows=0.1)
-    assert late.free[0].start <= 0.1
+    assert late.whole == {"t_delay_pan"}
+    assert 0.05 < late.free[0].start <= 0.1 + 1e-9
+
+
+def test_a_declared_delay_that_may_be_wrong_begins_where_it_is_declared() -> None:
+    declared = replace(
+        LATE,
+        id="declared_value:t_delay_pan",
+        free=(free_parameter("t_delay_pan", 0.02, 0.01, 0.04),),
+        vanishing={"t_delay_pan": 0.02},
+    )
+    assert begun(held, 0.05, candidates=(declared,)) == (declared,)
+
+
+def test_a_delay_at_its_whole_amount_is_its_signature() -> None:
+    """Of the rows before and after the delay, not of a difference quotient at zero."""
+    rows, change = np.array([1.0, 2.0, 4.0]), np.array([0.0, 3.0, 1.0])
+    found = _signature(
+        replace(LATE, whole=frozenset({"t_delay_pan"})),
+        {},
+        lambda changed: rows + change * (changed.get("t_delay_pan", 0.0) >= 0.002),
+        np.ones(3),
+    )
+    assert found.finite == {"t_delay_pan"}
+    assert np.allclose(found.slopes[0][0], change / 0.002)
 
 
 def test_other_candidates_are_left_alone() -> None:

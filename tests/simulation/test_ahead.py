@@ -8,6 +8,8 @@ import pytest
 
 from ptp_symbolic.numeric.simulation import ahead, hybrid
 
+COMPILE = ahead.COMPILE
+
 
 @pytest.fixture
 def mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
@@ -17,13 +19,12 @@ def mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(ahead, "COMPILE", slow)
     monkeypatch.setattr(ahead, "_begun", {})
     (tmp_path / "__pycache__").mkdir()
-    return tmp_path / "__pycache__" / f"runner-of-{ahead.source_stamp():x}"
+    return ahead._mark(False)
 
 
 def test_who_needs_it_waits_until_it_is_compiled(mark: Path) -> None:
-    ahead.compile_ahead()
     done = mark.parents[1] / "done"
-    assert not done.exists()
+    ahead.compile_ahead()
     ahead.wait_until_compiled(False)
     assert done.exists()
 
@@ -67,10 +68,9 @@ def test_where_no_process_can_be_begun_nobody_waits(
     assert not (mark.parents[1] / "done").exists()
 
 
-def test_a_runner_that_was_compiled_leaves_its_mark() -> None:
+def test_what_is_compiled_ahead_is_the_runner_and_leaves_its_mark(mark: Path) -> None:
     hybrid.runner.cache_clear()
-    hybrid.runner(False)
-    assert ahead._mark(False).exists()
-    source = ahead.COMPILE.format(sampled=False)
-    compile(source, "ahead", "exec")
-    assert "hybrid import runner; runner(False)" in source
+    exec(COMPILE.format(sampled=False), {})
+    assert hybrid.runner.cache_info().currsize == 1
+    assert mark.exists()
+    assert not mark.with_name(f"sampled-{mark.name}").exists()

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ptp_symbolic.numeric.diagnose.leading_windows import spread_over
 from ptp_symbolic.numeric.diagnose.left_over import left_over
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, mean_squares
 from ptp_symbolic.numeric.identify.constants import MOST, SHORT
@@ -102,9 +103,11 @@ def _in_parts(
     ]
     starts = [run.guess for run in task.validate]
     validate = task.executor.map(parts_of, task.validate, starts)
+    train = tuple(part for parts in fewer for part in parts)
     return replace(
         task,
         every_sample=tuple(part for parts in every for part in parts),
-        train=tuple(part for parts in fewer for part in parts),
+        train=train,
+        few=task.few if task.windows else spread_over(train, SHORT),
         validate=tuple(part for parts in validate for part in parts),
     )

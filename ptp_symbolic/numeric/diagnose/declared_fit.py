@@ -10,6 +10,7 @@ from ptp_symbolic.numeric.diagnose.cut_runs import (
     validation_in_windows,
 )
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
+from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.growing_windows import growing, led_through, settled
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise, left_over
@@ -72,8 +73,9 @@ def led_over_windows(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
 
 def _in_windows_of_its_own(task: Task, trial: Trial) -> tuple[Task, Trial]:
     """The task with its runs parted and cut where the declared model asks for it, and the trial
-    refitted there. Windows for which its start multiplied no errors may be too long for the fit:
-    what is left may seem to be noise of the inputs then, carried to the other side of a rest.
+    refitted there. The length of windows was chosen at the start values, which may multiply fewer
+    errors than the fitted ones: what these leave may seem to be noise of the inputs, which can push
+    a simulation to the other side of a rest.
     """
     task, trial = _where_most_goes(parted_task(task, trial), task, trial)
     part = in_windows(task, trial)
@@ -82,7 +84,9 @@ def _in_windows_of_its_own(task: Task, trial: Trial) -> tuple[Task, Trial]:
         if np.all(left_over(short.fit) <= left_over(trial.fit)):
             task, trial = part, short
     if not task.windows and np.any(left_over(trial.fit) > ABOVE_NOISE):
-        task, trial = _where_most_goes(in_windows_of(task, trial), task, trial)
+        part = in_windows_of(task, trial)
+        part = part if part is task else with_fewer_samples(part, trial.values)
+        task, trial = _where_most_goes(part, task, trial)
     return validation_in_windows(task, trial), trial
 
 

@@ -23,10 +23,10 @@ FloatArray = NDArray[np.float64]
 def at_best_delays(
     space: EquationSpace, candidates: Sequence[Candidate], rows: Rows, weight: FloatArray
 ) -> tuple[Candidate, ...]:
-    """The candidates, those that delay an input begun at the whole number of samples that leaves
-    least of the `rows` (see `rows_around`), each counted by its `weight` [n]; as they are where
-    their tangent takes away more. A delay fits into the windows of the rows. It is doubled as long
-    as that leaves less, then found by halving: most inputs are smooth, or change seldom, over it.
+    """The candidates, effects that delay an input begun at a whole number of samples where that
+    leaves less of the `rows` (see `rows_around`), each counted by its `weight` [n], than their
+    tangent does. The number is doubled as long as that leaves less, within the windows of the rows,
+    then found by halving: most inputs are smooth, or change seldom, over such times.
     """
     delays = {
         space.model.parameter_names[index] for index in space.model.input_delays if index >= 0
@@ -34,6 +34,8 @@ def at_best_delays(
     by_key = {c.key: c for c in reversed(candidates)}
 
     def begun(candidate: Candidate) -> Candidate:
+        if candidate.is_declared_value:
+            return candidate
         base = brought(candidate, by_key)
         free = tuple(
             _at_best(space, f, base, candidate.vanishing[f.name], rows, weight)
@@ -55,11 +57,11 @@ def _at_best(
     rows: Rows,
     weight: FloatArray,
 ) -> FreeParameter:
-    """A delay `f` that vanishes at `zero`, begun at the best whole number of samples, what it needs
-    at `base`; as it is where its tangent takes away more.
+    """A delay `f` that vanishes at `zero`, where its candidate begins (see `at_best_delays`);
+    `base` are the values of what that brings along.
     """
     period = float(np.median(np.concatenate([np.diff(run.time) for run in space.runs])))
-    most = int(min(space.half_width, f.upper - zero) / period)
+    most = int(min(space.half_width, f.upper - zero) / period + 1e-6)
 
     def late(delay: float) -> FloatArray:
         return rows({**base, **dict.fromkeys(f.names, zero + delay)})

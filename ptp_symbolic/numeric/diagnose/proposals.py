@@ -139,7 +139,7 @@ def _refined(
 
 def placed_by_rows(candidates: Sequence[Candidate], found: Proposals) -> tuple[Candidate, ...]:
     """Candidates as the rows begin them: those with a frequency at the line that was found, or left
-    out without one.
+    out without one, and long delays at their number of samples.
     """
     shown = found.regression.signatures if found.regression else ()
     placed = {(s.candidate.key, s.candidate.member): s.candidate for s in shown}

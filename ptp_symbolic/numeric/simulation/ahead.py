@@ -10,6 +10,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numba
+
 from ptp_symbolic.numeric.simulation.kernels.records import source_stamp
 
 COMPILE = "from ptp_symbolic.numeric.simulation.hybrid import runner; runner({sampled})"
@@ -23,7 +25,9 @@ def compile_ahead(sampled: bool = False) -> None:
     """
     if sampled in _begun or _mark(sampled).exists():
         return
-    command = [sys.executable, "-c", COMPILE.format(sampled=sampled)]
+    if not sys.executable:  # embedded in another program
+        return
+    command = [sys.executable, "-P", "-c", COMPILE.format(sampled=sampled)]
     nothing = subprocess.DEVNULL
     with contextlib.suppress(OSError):
         process = subprocess.Popen(command, stdin=nothing, stdout=nothing, stderr=nothing)
@@ -39,18 +43,25 @@ def wait_until_compiled(sampled: bool) -> None:
 
 
 def note_compiled(sampled: bool) -> None:
-    """Leave a mark for `compile_ahead`; where nothing may be written, there is none."""
+    """Leave a mark for `compile_ahead`, in the place of those of other sources. Where nothing may
+    be written there is none, and every process begins another, which finds the runner soon.
+    """
     mark = _mark(sampled)
     with contextlib.suppress(OSError):
-        for old in mark.parent.glob(f"{_name(sampled)}*"):
-            old.unlink()
         mark.touch()
+    for old in mark.parent.glob(f"{_name(sampled)}*"):
+        if old != mark:
+            with contextlib.suppress(OSError):
+                old.unlink()
 
 
 def _mark(sampled: bool) -> Path:
-    """Beside the compiled kernels, with a number of their sources in its name."""
-    return Path(__file__).parent / "__pycache__" / f"{_name(sampled)}{source_stamp():x}"
+    """A file that tells by its name for which sources, numba and Python the runner was compiled; if
+    it has been taken away since, that costs time alone.
+    """
+    version = f"{numba.__version__}-{sys.implementation.cache_tag}"
+    return Path(__file__).parent / "__pycache__" / f"{_name(sampled)}{source_stamp():x}-{version}"
 
 
 def _name(sampled: bool) -> str:
-    return f"{'sampled-' if sampled else ''}runner-of-"
+    return "sampled-runner-of-" if sampled else "runner-of-"

@@ -72,7 +72,9 @@ def laws(platform: Platform) -> list[Law]:
 
 def _unchanging(effect: Effect) -> Effect:
     """`effect` without the changes that it makes to quantities of others."""
-    return replace(effect, contribute=lambda place: replace(effect.contribute(place), changes={}))
+    return replace(
+        effect, contribute=lambda at: replace(effect.turning_contribution_at(at), changes={})
+    )
 
 
 def _law(

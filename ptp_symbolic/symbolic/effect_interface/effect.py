@@ -7,7 +7,7 @@ placeholders such as ``winding_resistance_pan`` that one effect defines and othe
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import lru_cache
 from typing import Any
 
 from ptp_symbolic.symbolic.effect_interface.conditions import Requirement
@@ -25,7 +25,7 @@ def _always(place: Place, parameter: Parameter) -> bool:
     return True
 
 
-@cache
+@lru_cache(maxsize=1024)
 def _contribution(contribute: Callable[[Place], Contribution], place: Place) -> Contribution:
     return contribute(place)
 
@@ -115,7 +115,7 @@ class Effect:
         return linear_contribution(added) if place.linear else added
 
     def turning_contribution_at(self, place: Place) -> Contribution:
-        """What `contribute` gives at `place`, as on a joint that turns; called once for a place."""
+        """What `contribute` gives at `place`, on a joint that turns; derived once for a place."""
         return _contribution(self.contribute, place)
 
     def worded_at(self, place: Place) -> "Effect":
