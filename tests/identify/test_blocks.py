@@ -209,17 +209,3 @@ def test_blocks_end_at_the_length_that_the_correlation_asks_for() -> None:
     columns = np.column_stack([np.ones(1200), np.zeros(1200)])
     columns[505, 1] = 1.0
     assert long_blocks([1200], 40.0, columns, 1).max() + 1 == 30
-
-
-@pytest.mark.parametrize("seed", range(8))
-def test_parameters_that_act_alike_are_told_in_single_precision_too(seed: int) -> None:
-    """A trial far behind is kept in single precision: its numbers, not its arithmetic."""
-    rng = np.random.default_rng(seed)
-    jacobian = rng.standard_normal((4000, 8))
-    jacobian[:, 7] = 2.0 * jacobian[:, 3] + 1e-7 * rng.standard_normal(4000)
-    label = np.repeat(np.arange(20), 200)
-    single = (rng.standard_normal(4000).astype(np.float32), jacobian.astype(np.float32))
-    found = leave_blocks_out(*single, label)
-    exact = leave_blocks_out(*(a.astype(np.float64) for a in single), label)
-    assert np.array_equal(found.predicted, exact.predicted)
-    assert np.array_equal(found.leverage, exact.leverage)

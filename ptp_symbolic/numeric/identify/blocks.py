@@ -136,10 +136,8 @@ def leave_blocks_out(
     """Leave each block out in turn of a least squares fit with `residual` [n] and `jacobian`
     [n, nf] (by the parameters) at its optimum; `label` [n] numbers the blocks. Directions that no
     other block sees do not move; `prior` is the precision of a prior of every parameter at its
-    optimum. Single precision is enough for what is given, not for what is known of parameters that
-    act alike.
+    optimum.
     """
-    residual, jacobian = residual.astype(np.float64), jacobian.astype(np.float64)
     blocks = int(label.max()) + 1 if len(label) else 0
     nf = jacobian.shape[1]
     predicted, shifts, leverage = residual.copy(), np.zeros((blocks, nf)), np.zeros(blocks)
