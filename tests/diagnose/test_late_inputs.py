@@ -76,7 +76,7 @@ def test_a_delay_begins_at_its_number_of_samples_where_the_rows_are_stairs(truth
     # The first sample that sees a command which came 0.4 samples late is the next one.
     assert f.start == pytest.approx(truth + PERIOD, abs=1e-9)
     assert f.scale == f.start
-    assert late.whole == {"t_delay_pan"}
+    assert late.whole_only == {"t_delay_pan"}
 
 
 def test_a_small_delay_of_a_smooth_input_is_left_to_its_tangent() -> None:
@@ -96,7 +96,7 @@ def test_without_a_delay_none_is_begun(signal: Signal) -> None:
 
 def test_a_delay_stays_within_the_windows() -> None:
     (late,) = begun(held, 0.15, windows=0.1)
-    assert late.whole == {"t_delay_pan"}
+    assert late.whole_only == {"t_delay_pan"}
     assert 0.05 < late.free[0].start <= 0.1 + 1e-9
 
 
@@ -114,7 +114,7 @@ def test_a_delay_at_its_whole_amount_is_its_signature() -> None:
     """Of the rows before and after the delay, not of a difference quotient at zero."""
     rows, change = np.array([1.0, 2.0, 4.0]), np.array([0.0, 3.0, 1.0])
     found = _signature(
-        replace(LATE, whole=frozenset({"t_delay_pan"})),
+        replace(LATE, whole_only=frozenset({"t_delay_pan"})),
         {},
         lambda changed: rows + change * (changed.get("t_delay_pan", 0.0) >= 0.002),
         np.ones(3),

@@ -26,9 +26,9 @@ class Candidate:
     the shaping parameters from which a search begins. `locked` is a shaping frequency that a scan
     finds, with what it is locked to ("time" or "angle"); the scan has compared so many that can be
     told from one another (`frequencies_compared`). `brings` are keys of candidates without which it
-    has nothing to act on. `whole` are parameters that show only at the amount with which they begin
-    (see `late_inputs`). `leading` are those parameters that can only be the larger part of it.
-    `member` numbers the nested versions, the simplest first.
+    has nothing to act on. `whole_only` are parameters that show only at the amount with which they
+    begin (see `late_inputs`). `leading` are those parameters that can only be the larger part of
+    it. `member` numbers the nested versions, the simplest first.
     """
 
     id: str
@@ -44,7 +44,7 @@ class Candidate:
     member: int = 0
     member_title: str = ""
     frequencies_compared: int = 1
-    whole: frozenset[str] = frozenset()
+    whole_only: frozenset[str] = frozenset()
 
     @property
     def key(self) -> str:

@@ -85,8 +85,9 @@ def _in_windows_of_its_own(task: Task, trial: Trial) -> tuple[Task, Trial]:
             task, trial = part, short
     if not task.windows and np.any(left_over(trial.fit) > ABOVE_NOISE):
         part = in_windows_of(task, trial)
-        part = part if part is task else with_fewer_samples(part, trial.values)
-        task, trial = _where_most_goes(part, task, trial)
+        if part is not task:
+            part = with_fewer_samples(part, trial.values)
+            task, trial = _where_most_goes(part, task, trial)
     return validation_in_windows(task, trial), trial
 
 

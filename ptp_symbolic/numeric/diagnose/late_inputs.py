@@ -16,6 +16,7 @@ from ptp_symbolic.numeric.diagnose.signatures import Rows, brought
 from ptp_symbolic.numeric.identify.constants import STEP
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
+from ptp_symbolic.numeric.identify.sample_averages import usual_period
 
 FloatArray = NDArray[np.float64]
 
@@ -43,8 +44,8 @@ def at_best_delays(
             else f
             for f in candidate.free
         )
-        whole = {f.name for f, one in zip(free, candidate.free, strict=True) if f != one}
-        return replace(candidate, free=free, whole=frozenset(whole)) if whole else candidate
+        late = {f.name for f, one in zip(free, candidate.free, strict=True) if f != one}
+        return replace(candidate, free=free, whole_only=frozenset(late)) if late else candidate
 
     return tuple(map(begun, candidates))
 
@@ -60,7 +61,7 @@ def _at_best(
     """A delay `f` that vanishes at `zero`, where its candidate begins (see `at_best_delays`);
     `base` are the values of what that brings along.
     """
-    period = float(np.median(np.concatenate([np.diff(run.time) for run in space.runs])))
+    period = usual_period(space.runs)
     most = int(min(space.half_width, f.upper - zero) / period + 1e-6)
 
     def late(delay: float) -> FloatArray:

@@ -117,7 +117,7 @@ def _signature(
                 whole = min(f.start * (1.0 + DECLARED_AMOUNT), 0.5 * (f.start + f.upper))
             column = np.zeros(len(weight))
             small = zero + STEP * (whole - zero)
-            for amount in (whole,) if f.name in candidate.whole else (small, whole):
+            for amount in (whole,) if f.name in candidate.whole_only else (small, whole):
                 changed = dict.fromkeys(f.names, amount)
                 column = (rows({**base, **shape, **changed}) - without) / (amount - zero)
                 if amount == whole:

@@ -11,6 +11,7 @@ from ptp_symbolic.numeric.identify.equation_rows import half_width_of, resting_r
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.layout import layout_of
 from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.sample_averages import usual_period
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
@@ -45,7 +46,7 @@ def prepare_equation_space(
     depends = dependence_of(model, layout, runs, p, varied)
     columns = [runs[0].signals.index(f"theta_{axis}") for axis in axes]
     noise = 1.0 / runs[0].weight[columns]
-    period = float(np.median(np.concatenate([np.diff(run.time) for run in runs])))
+    period = usual_period(runs)
     half_width = half_width_of(runs, columns, noise, period, shortest)
     resting = resting_rates(runs[0].counts[columns], noise, period, 0.5 * half_width)
     frictions = set(layout.friction_axis.tolist())

@@ -1,5 +1,6 @@
 """Averages over parts of samples: of zero-order-hold inputs, and of values around a grid."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -41,9 +42,14 @@ def part_averages(run: Run, column: int, delay: float, parts: int) -> FloatArray
     return held_averages(run.time, run.held_inputs[:, column], flat - delay).reshape(-1, parts)
 
 
+def usual_period(runs: Sequence[Run]) -> float:
+    """Sampling period in s of most samples of some runs."""
+    return float(np.median(np.concatenate([np.diff(run.time) for run in runs])))
+
+
 def samples_within(run: Run, period: float) -> int:
     """How many samples of `run` come within `period` s, at least one."""
-    return max(1, int(period / float(np.median(np.diff(run.time))) + 1e-6))
+    return max(1, int(period / usual_period((run,)) + 1e-6))
 
 
 def thinned(run: Run, every: int) -> Run:
