@@ -3,6 +3,7 @@ logs whose motion is known in closed form.
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows, over_wh
 from ptp_symbolic.numeric.diagnose.findings import Step
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
-from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.proposals import next_proposed, propose
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE
@@ -62,6 +63,29 @@ def test_windows_lead_where_no_set_leaves_only_noise(
     with spring_table(tmp_path, gust=0.05, lasting=10) as task:
         roads.search(task)
     assert len(over_windows) == 1
+
+
+def test_sets_that_the_rows_put_next_are_tried_where_the_first_leave_more_than_noise(
+    seeker: Seeker,
+) -> None:
+    """Rows that a gap spoils rank the right set behind others; here a constant torque is put before
+    the spring.
+    """
+    full = {c.key: c for c in sorted(seeker.task.candidates, key=lambda c: len(c.free))}
+    torque, spring = (full[key] for key in ("constant_torque@pan", "cable_spring@pan"))
+    wrong, right = (
+        replace(seeker.proposals, sets=(), further=((first,), (other,)))
+        for first, other in ((torque, spring), (spring, torque))
+    )
+    ahead = [next_proposed(seeker.task, replace(p, further=p.further[:1])) for p in (wrong, right)]
+    seeker.proposals = replace(ahead[0], further=wrong.further[1:])
+    found = roads._proposed(seeker)
+    assert [t.keys for t in found] == [("constant_torque@pan",), ("cable_spring@pan",)]
+    assert [seeker.is_at_noise(t) for t in found] == [False, True]
+    assert found[1].values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
+    seeker.proposals = replace(ahead[1], further=right.further[1:])
+    (alone_found,) = roads._proposed(seeker)
+    assert alone_found.keys == ("cable_spring@pan",)
 
 
 def test_no_set_is_begun_anew_without_a_candidate_that_seems_to_gain_most(

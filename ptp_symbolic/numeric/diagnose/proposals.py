@@ -3,7 +3,7 @@
 import itertools
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -45,6 +45,7 @@ from ptp_symbolic.numeric.identify.equation_fit import Linearised, fit_equations
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 
 FloatArray = NDArray[np.float64]
+Candidates = tuple[Candidate, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,12 +60,14 @@ class Proposal:
 class Proposals:
     """The start of the declared model, sets to try, and candidates that the rows do not show.
 
-    `asked_for` tells whether the rows prefer any set to none. `space` is None where the machine has
-    no equation space; then only the simulation searches.
+    `further` are the sets to try next, where none of `sets` leaves noise alone. `asked_for` tells
+    whether the rows prefer any set to none. `space` is None where the machine has no equation
+    space; then only the simulation searches.
     """
 
     start: dict[str, float]
     sets: tuple[Proposal, ...]
+    further: tuple[Candidates, ...]
     unseen: tuple[Candidate, ...]
     asked_for: bool
     space: EquationSpace | None
@@ -76,7 +79,7 @@ def propose(task: Task) -> Proposals:
     start = declared_start(task)
     space = equation_space(task, start)
     if space is None:
-        return Proposals(start, (), task.candidates, False, None, None)
+        return Proposals(start, (), (), task.candidates, False, None, None)
     values = first_fit(task, space, start)
     declared, around = _declared_rows(task, space, values), rows_around(space, values)
     candidates = at_best_delays(space, task.candidates, around, declared.weight)
@@ -87,11 +90,20 @@ def propose(task: Task) -> Proposals:
         return locked_signatures(space, task.candidates, around, left, rows.weight)
 
     rows = _regressed(task, space, declared, [*seen, *lines(rows, scan)])
-    preferred, chosen, rows = _best_sets(rows)
+    preferred, first, further, rows = _best_sets(rows)
     space.rows(task.model.parameter_vector(values))
     refine = partial(_refined, task, space, rows, values)
-    sets = task.executor.map(refine, [s.candidates for s in chosen])
-    return Proposals(values, tuple(sets), tuple(unseen), bool(preferred.candidates), space, rows)
+    sets = tuple(task.executor.map(refine, first))
+    asked_for = bool(preferred.candidates)
+    return Proposals(values, sets, tuple(further), tuple(unseen), asked_for, space, rows)
+
+
+def next_proposed(task: Task, found: Proposals) -> Proposals:
+    """The proposals with those sets in the place of the first that were to be tried after them."""
+    if found.space is None or found.regression is None:
+        return replace(found, sets=(), further=())
+    refine = partial(_refined, task, found.space, found.regression, found.start)
+    return replace(found, sets=tuple(task.executor.map(refine, found.further)), further=())
 
 
 def in_rows_of(
@@ -171,9 +183,10 @@ def start_for(
     return _refined(task, space, rows, found.start, shown, task.executor).values | kept
 
 
-def _best_sets(rows: Regression) -> tuple[Subset, list[Subset], Regression]:
+def _best_sets(rows: Regression) -> tuple[Subset, list[Candidates], list[Candidates], Regression]:
     """The set that blocks left out favour, and those to try: what is no worse than the best, the
-    simplest first, then the best of every size. Scales follow the residual of the favoured set.
+    simplest first, then the best of every size; and those to try next, which predict best of all
+    others. Scales follow the residual of the favoured set.
     """
     chosen: Subset | None = None
     for _ in range(CYCLES):
@@ -187,9 +200,14 @@ def _best_sets(rows: Regression) -> tuple[Subset, list[Subset], Regression]:
         rows = reweighted(rows, chosen.candidates)
     kept: dict[frozenset[str], Subset] = {}
     for subset in (*close[:2], every[0], *_best_by_size(every), *close[2:]):
+        if subset.candidates and len(kept) < 2 * TRIED:
+            kept.setdefault(_keys(subset), subset)
+    first = [s.candidates for s in kept.values()]
+    for subset in every:
         if subset.candidates:
             kept.setdefault(_keys(subset), subset)
-    return close[0], list(kept.values())[: 2 * TRIED], rows
+    every = list(kept.values())[len(first) : len(first) + 4 * TRIED]
+    return close[0], first, [s.candidates for s in every], rows
 
 
 def _best_by_size(every: Sequence[Subset]) -> list[Subset]:

@@ -11,8 +11,13 @@ from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, placed_by_rows, propose
-from ptp_symbolic.numeric.diagnose.refits import refitted_in
+from ptp_symbolic.numeric.diagnose.proposals import (
+    Proposals,
+    next_proposed,
+    placed_by_rows,
+    propose,
+)
+from ptp_symbolic.numeric.diagnose.refits import is_near_floor, refitted_in
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import from_far_off, started
 from ptp_symbolic.numeric.diagnose.through_windows import each_through_windows
@@ -54,13 +59,23 @@ def _seeker(task: Task, declared: Trial, proposals: Proposals) -> Seeker:
 
 
 def _proposed(seeker: Seeker) -> list[Trial]:
-    """The best of the proposed sets, to its end; none where the declared model leaves only noise
-    and the rows ask for nothing.
+    """The best of the proposed sets, to its end, and where that leaves more than noise, of those
+    that the rows put next; none where the declared model leaves only noise and the rows ask for
+    nothing.
     """
     task, best = seeker.task, seeker.declared
     if not seeker.proposals.asked_for and seeker.is_at_noise(best):
         return []
-    sets = started(task, best, seeker.proposals)
+    found = _refitted(seeker, seeker.proposals)
+    if any(map(seeker.is_at_noise, (best, *found))) or not seeker.proposals.further:
+        return found
+    return [*found, *_refitted(seeker, next_proposed(task, seeker.proposals))]
+
+
+def _refitted(seeker: Seeker, proposals: Proposals) -> list[Trial]:
+    """The best of the proposed sets, to its end."""
+    task, best = seeker.task, seeker.declared
+    sets = started(task, best, proposals)
     task.progress(f"refitting {len(sets)} proposed sets")
     found = halving(task, sets, SCREENED, 1, seen=seeker.tried.others)
     seeker.follow(ranked([best, *found])[0])
@@ -72,12 +87,15 @@ def _soon_found(seeker: Seeker) -> list[Trial]:
     left: only the last set, where that leaves noise alone.
     """
     found = _proposed(seeker)
-    best = next((t for t in found if gain(t, seeker.declared).share >= MOST), seeker.declared)
+    best = next(
+        (t for t in ranked(found) if gain(t, seeker.declared).share >= MOST), seeker.declared
+    )
     for _ in range(LARGEST):
         if seeker.is_at_noise(best):
             break
         grown = seeker.grown(best, briefly=True)
         if grown is None:
+            best = seeker.restarted(best) if is_near_floor(best) else best
             break
         best = seeker.completed(grown)
     if not best.candidates or not seeker.is_at_noise(best):
