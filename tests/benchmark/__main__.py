@@ -22,6 +22,7 @@ from tests.benchmark.catalogue import catalogue, redrawn
 from tests.benchmark.constant_rows import halved_and_doubled
 from tests.benchmark.entry import Entry
 from tests.benchmark.runner import diagnose_one, make_missing, progress_bar, run_all
+from tests.benchmark.sizing import AbsorbedError
 from tests.benchmark.table import figures, read_results, show, write_tables
 
 
@@ -42,8 +43,11 @@ def make(arguments: argparse.Namespace) -> None:
     with progress_bar() as progress:
         task = progress.add_task("make", total=len(entries))
         for entry in entries:
-            if make_missing(entry, arguments.out / entry.id):
-                print(entry.id, flush=True)
+            try:
+                if make_missing(entry, arguments.out / entry.id):
+                    print(entry.id, flush=True)
+            except AbsorbedError as absorbed:
+                print(f"not made: {absorbed}", flush=True)
             progress.advance(task)
 
 

@@ -146,8 +146,8 @@ def progress_bar() -> Progress:
 
 
 def run_all(entries: Sequence[Entry], out: Path, jobs: int, scale: str | None = None) -> None:
-    """Diagnose the entries without an outcome, `jobs` at a time; prints a line per set, for one
-    whose machine does not show its effects at a sane size (drawn anew) why it was not made.
+    """Diagnose the entries without an outcome, `jobs` at a time; prints a line per set; where no
+    machine drawn shows the effects at a sane size, why the set was not made.
     """
     run_under([(entry, out, scale) for entry in entries], jobs)
 
@@ -165,11 +165,11 @@ def run_under(wanted: Sequence[tuple[Entry, Path, str | None]], jobs: int) -> No
         share = shares.get()
         try:
             line = line_of(run_one(entry, out, share, scale))
-            return line if scale is None else f"{scale}: {line}"
         except AbsorbedError as absorbed:
-            return f"not made: {absorbed}"
+            line = f"not made: {absorbed}"
         finally:
             shares.put(share)
+        return line if scale is None else f"{scale}: {line}"
 
     with progress_bar() as progress, ThreadPoolExecutor(jobs) as pool:
         task = progress.add_task("diagnose", total=len(todo))

@@ -1,6 +1,7 @@
-"""Sets that cannot be made do not end a run of the others."""
+"""A set that cannot be made does not end a run of the others."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,14 +16,15 @@ def test_a_set_that_shows_nothing_is_said_and_the_next_is_run(
 ) -> None:
     first, second = catalogue()[:2]
 
-    def make(entry: Entry, folder: Path) -> bool:
-        reason = "level 1.48 at the limit 0.05" if entry is first else "torque too large"
-        raise AbsorbedError(f"{entry.id}: {reason}")
+    def run_one(entry: Entry, *_: Any) -> dict[str, Any]:
+        if entry is first:
+            raise AbsorbedError(f"{entry.id}: level 1.48 at the limit 0.05")
+        return {"id": entry.id}
 
-    monkeypatch.setattr(runner, "make_missing", make)
-    runner.run_all([first, second], tmp_path, jobs=1)
-    lines = sorted(capsys.readouterr().out.splitlines())
-    assert lines == [
-        f"not made: {first.id}: level 1.48 at the limit 0.05",
-        f"not made: {second.id}: torque too large",
+    monkeypatch.setattr(runner, "run_one", run_one)
+    monkeypatch.setattr(runner, "line_of", lambda outcome: f"right {outcome['id']}")
+    runner.run_under([(first, tmp_path, "effort=2"), (second, tmp_path, None)], jobs=1)
+    assert sorted(capsys.readouterr().out.splitlines()) == [
+        f"effort=2: not made: {first.id}: level 1.48 at the limit 0.05",
+        f"right {second.id}",
     ]

@@ -17,11 +17,14 @@ from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows, over_wh
 from ptp_symbolic.numeric.diagnose.findings import Step
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
-from ptp_symbolic.numeric.diagnose.proposals import next_proposed, propose
+from ptp_symbolic.numeric.diagnose.proposals import Proposal, propose, start_for
+from ptp_symbolic.numeric.diagnose.refits import is_near_floor
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
-from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, TRIED
 from tests.diagnose.spring_table import STIFFNESS, spring_table
+
+STUCK = 1.0002
 
 
 @pytest.fixture
@@ -65,27 +68,82 @@ def test_windows_lead_where_no_set_leaves_only_noise(
     assert len(over_windows) == 1
 
 
+def proposing(seeker: Seeker, first: str, then: str) -> Seeker:
+    """The seeker whose rows propose one candidate first, and another one next."""
+    full = {c.key: c for c in sorted(seeker.task.candidates, key=lambda c: len(c.free))}
+    sets = [
+        (Proposal((full[key],), start_for(seeker.task, seeker.proposals, (full[key],), {})),)
+        for key in (first, then)
+    ]
+    seeker.proposals = replace(seeker.proposals, sets=sets[0], further=lambda: sets[1])
+    return seeker
+
+
 def test_sets_that_the_rows_put_next_are_tried_where_the_first_leave_more_than_noise(
     seeker: Seeker,
 ) -> None:
-    """Rows that a gap spoils rank the right set behind others; here a constant torque is put before
-    the spring.
-    """
-    full = {c.key: c for c in sorted(seeker.task.candidates, key=lambda c: len(c.free))}
-    torque, spring = (full[key] for key in ("constant_torque@pan", "cable_spring@pan"))
-    wrong, right = (
-        replace(seeker.proposals, sets=(), further=((first,), (other,)))
-        for first, other in ((torque, spring), (spring, torque))
+    """Rows that a gap spoils put the right set behind others; here a torque before the spring."""
+    found = roads._proposed(proposing(seeker, "constant_torque@pan", "cable_spring@pan"))
+    assert found[-1].keys == ("cable_spring@pan",)
+    assert seeker.is_at_noise(found[-1])
+    assert found[-1].values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
+
+
+def test_no_further_sets_are_tried_where_one_leaves_only_noise(seeker: Seeker) -> None:
+    (found,) = roads._proposed(proposing(seeker, "cable_spring@pan", "constant_torque@pan"))
+    assert found.keys == ("cable_spring@pan",)
+
+
+def test_the_better_of_all_sets_tells_what_the_noise_of_inputs_leaves(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not the best of those that were tried last, which is far behind and not fitted further."""
+    followed: list[tuple[str, ...]] = []
+    monkeypatch.setattr(Seeker, "is_at_noise", lambda *_: False)
+    monkeypatch.setattr(Seeker, "follow", lambda _, trial: followed.append(trial.keys))
+    found = roads._proposed(proposing(seeker, "cable_spring@pan", "constant_torque@pan"))
+    assert followed == [("cable_spring@pan",)] * 2
+    assert [t.keys for t in found] == [("cable_spring@pan",)]
+
+
+def test_the_rows_put_other_sets_next_than_first(seeker: Seeker) -> None:
+    first, then = (
+        [frozenset(c.key for c in p.candidates) for p in sets]
+        for sets in (seeker.proposals.sets, seeker.proposals.further())
     )
-    ahead = [next_proposed(seeker.task, replace(p, further=p.further[:1])) for p in (wrong, right)]
-    seeker.proposals = replace(ahead[0], further=wrong.further[1:])
-    found = roads._proposed(seeker)
-    assert [t.keys for t in found] == [("constant_torque@pan",), ("cable_spring@pan",)]
-    assert [seeker.is_at_noise(t) for t in found] == [False, True]
-    assert found[1].values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
-    seeker.proposals = replace(ahead[1], further=right.further[1:])
-    (alone_found,) = roads._proposed(seeker)
-    assert alone_found.keys == ("cable_spring@pan",)
+    assert first and then and all(then)
+    assert len(then) == len(set(then)) <= 4 * TRIED
+    assert not set(first) & set(then)
+
+
+def test_a_set_near_the_floor_is_begun_anew_before_windows_are_asked(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A spring 2e-4 too stiff, which is where its fit has ended: four times the noise is left."""
+    spring = max(
+        (c for c in seeker.task.candidates if c.key == "cable_spring@pan"),
+        key=lambda c: len(c.free),
+    )
+    end = alone(seeker, spring.key)
+    stiff = end.values | {"k1_cable_pan": end.values["k1_cable_pan"] * STUCK}
+    stuck = fitted(seeker.task, (spring,), stiff, end.fit.z, 0)
+    assert is_near_floor(stuck) and not seeker.is_at_noise(stuck)
+    monkeypatch.setattr(roads, "_proposed", lambda _: [stuck])
+    monkeypatch.setattr(Seeker, "grown", lambda *_, **__: None)
+    (found,) = roads._soon_found(seeker)
+    assert seeker.is_at_noise(found)
+
+
+def test_what_was_found_and_not_chosen_is_remembered(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A set that cannot be told from the chosen one is looked for among those."""
+    torque, spring = (alone(seeker, key) for key in ("constant_torque@pan", "cable_spring@pan"))
+    seeker.tried.others.clear()
+    monkeypatch.setattr(Seeker, "have_answer", lambda *_: True)
+    begun, _ = roads._begun(seeker, [torque, spring])
+    assert begun.keys == spring.keys
+    assert torque.keys in {t.keys for t in seeker.tried.others}
 
 
 def test_no_set_is_begun_anew_without_a_candidate_that_seems_to_gain_most(

@@ -1,10 +1,10 @@
 """What the equation space proposes: where to start the declared model, and which sets to try."""
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,7 +52,7 @@ Candidates = tuple[Candidate, ...]
 class Proposal:
     """A set of candidates and the values of all parameters at which to start it."""
 
-    candidates: tuple[Candidate, ...]
+    candidates: Candidates
     values: dict[str, float]
 
 
@@ -60,15 +60,15 @@ class Proposal:
 class Proposals:
     """The start of the declared model, sets to try, and candidates that the rows do not show.
 
-    `further` are the sets to try next, where none of `sets` leaves noise alone. `asked_for` tells
-    whether the rows prefer any set to none. `space` is None where the machine has no equation
+    `further` gives the sets to try where the best of `sets` leaves more than noise. `asked_for`
+    tells whether the rows prefer any set to none. `space` is None where the machine has no equation
     space; then only the simulation searches.
     """
 
     start: dict[str, float]
     sets: tuple[Proposal, ...]
-    further: tuple[Candidates, ...]
-    unseen: tuple[Candidate, ...]
+    further: Callable[[], tuple[Proposal, ...]]
+    unseen: Candidates
     asked_for: bool
     space: EquationSpace | None
     regression: Regression | None
@@ -79,7 +79,7 @@ def propose(task: Task) -> Proposals:
     start = declared_start(task)
     space = equation_space(task, start)
     if space is None:
-        return Proposals(start, (), (), task.candidates, False, None, None)
+        return Proposals(start, (), tuple, task.candidates, False, None, None)
     values = first_fit(task, space, start)
     declared, around = _declared_rows(task, space, values), rows_around(space, values)
     candidates = at_best_delays(space, task.candidates, around, declared.weight)
@@ -90,20 +90,17 @@ def propose(task: Task) -> Proposals:
         return locked_signatures(space, task.candidates, around, left, rows.weight)
 
     rows = _regressed(task, space, declared, [*seen, *lines(rows, scan)])
-    preferred, first, further, rows = _best_sets(rows)
+    preferred, first, others, rows = _best_sets(rows)
     space.rows(task.model.parameter_vector(values))
     refine = partial(_refined, task, space, rows, values)
     sets = tuple(task.executor.map(refine, first))
+
+    @cache
+    def further() -> tuple[Proposal, ...]:
+        return tuple(task.executor.map(refine, others))
+
     asked_for = bool(preferred.candidates)
-    return Proposals(values, sets, tuple(further), tuple(unseen), asked_for, space, rows)
-
-
-def next_proposed(task: Task, found: Proposals) -> Proposals:
-    """The proposals with those sets in the place of the first that were to be tried after them."""
-    if found.space is None or found.regression is None:
-        return replace(found, sets=(), further=())
-    refine = partial(_refined, task, found.space, found.regression, found.start)
-    return replace(found, sets=tuple(task.executor.map(refine, found.further)), further=())
+    return Proposals(values, sets, further, tuple(unseen), asked_for, space, rows)
 
 
 def in_rows_of(
@@ -183,10 +180,13 @@ def start_for(
     return _refined(task, space, rows, found.start, shown, task.executor).values | kept
 
 
-def _best_sets(rows: Regression) -> tuple[Subset, list[Candidates], list[Candidates], Regression]:
+def _best_sets(
+    rows: Regression,
+) -> tuple[Subset, list[Candidates], list[Candidates], Regression]:
     """The set that blocks left out favour, and those to try: what is no worse than the best, the
-    simplest first, then the best of every size; and those to try next, which predict best of all
-    others. Scales follow the residual of the favoured set.
+    simplest first, then the best of every size; and to try next, as many as triples grow from in
+    `ranked_subsets`, those that predict best of all others, most of them triples. Scales follow the
+    residual of the favoured set.
     """
     chosen: Subset | None = None
     for _ in range(CYCLES):
@@ -206,8 +206,8 @@ def _best_sets(rows: Regression) -> tuple[Subset, list[Candidates], list[Candida
     for subset in every:
         if subset.candidates:
             kept.setdefault(_keys(subset), subset)
-    every = list(kept.values())[len(first) : len(first) + 4 * TRIED]
-    return close[0], first, [s.candidates for s in every], rows
+    others = [s.candidates for s in kept.values()][len(first) :]
+    return close[0], first, others[: 4 * TRIED], rows
 
 
 def _best_by_size(every: Sequence[Subset]) -> list[Subset]:

@@ -2,6 +2,7 @@
 completed, pruned and grown until every candidate in it is needed and none outside would add to it.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of, parted_task, takes_away_most
@@ -12,8 +13,8 @@ from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
 from ptp_symbolic.numeric.diagnose.proposals import (
+    Proposal,
     Proposals,
-    next_proposed,
     placed_by_rows,
     propose,
 )
@@ -59,32 +60,34 @@ def _seeker(task: Task, declared: Trial, proposals: Proposals) -> Seeker:
 
 
 def _proposed(seeker: Seeker) -> list[Trial]:
-    """The best of the proposed sets, to its end, and where that leaves more than noise, of those
-    that the rows put next; none where the declared model leaves only noise and the rows ask for
-    nothing.
+    """The best of the proposed sets, to its end, and where neither that nor the declared model
+    leaves noise alone, the best of those that the rows put next; none where the declared model
+    leaves only noise and the rows ask for nothing.
     """
-    task, best = seeker.task, seeker.declared
-    if not seeker.proposals.asked_for and seeker.is_at_noise(best):
+    proposals, best = seeker.proposals, seeker.declared
+    if not proposals.asked_for and seeker.is_at_noise(best):
         return []
-    found = _refitted(seeker, seeker.proposals)
-    if any(map(seeker.is_at_noise, (best, *found))) or not seeker.proposals.further:
-        return found
-    return [*found, *_refitted(seeker, next_proposed(task, seeker.proposals))]
+    found = _refitted(seeker, proposals.sets, [])
+    if not any(map(seeker.is_at_noise, (best, *found))):
+        found += _refitted(seeker, proposals.further(), found)
+    return found
 
 
-def _refitted(seeker: Seeker, proposals: Proposals) -> list[Trial]:
-    """The best of the proposed sets, to its end."""
-    task, best = seeker.task, seeker.declared
-    sets = started(task, best, proposals)
-    task.progress(f"refitting {len(sets)} proposed sets")
-    found = halving(task, sets, SCREENED, 1, seen=seeker.tried.others)
-    seeker.follow(ranked([best, *found])[0])
-    return [seeker.completed(t) for t in found if is_near(t, [best, *found])]
+def _refitted(seeker: Seeker, sets: Sequence[Proposal], known: Sequence[Trial]) -> list[Trial]:
+    """The best of some sets, to its end; none where what is `known` is far better."""
+    task = seeker.task
+    begun = started(task, seeker.declared, sets)
+    task.progress(f"refitting {len(begun)} proposed sets")
+    found = halving(task, begun, SCREENED, 1, seen=seeker.tried.others)
+    every = [seeker.declared, *known, *found]
+    seeker.follow(ranked(every)[0])
+    return [seeker.completed(t) for t in found if is_near(t, every)]
 
 
 def _soon_found(seeker: Seeker) -> list[Trial]:
     """What is proposed, and with one candidate more as long as that takes away most of what is
-    left: only the last set, where that leaves noise alone.
+    left: only the last set, where that leaves noise alone. One that ends near the floor is begun
+    anew from the rows first.
     """
     found = _proposed(seeker)
     best = next(
@@ -95,9 +98,10 @@ def _soon_found(seeker: Seeker) -> list[Trial]:
             break
         grown = seeker.grown(best, briefly=True)
         if grown is None:
-            best = seeker.restarted(best) if is_near_floor(best) else best
             break
         best = seeker.completed(grown)
+    if is_near_floor(best):
+        best = seeker.restarted(best)
     if not best.candidates or not seeker.is_at_noise(best):
         return found
     seeker.tried.others.extend(t for t in found if t is not best)
@@ -140,8 +144,10 @@ def _begun(seeker: Seeker, found: list[Trial]) -> tuple[Trial, list[Step]]:
             unseen = seeker.unseen(best)
             task.progress(f"refitting {len(unseen)} effects that the motion does not show")
             found = found + halving(task, unseen, 1)
-        found = [t for t in ranked(found) if is_near(t, found)]
-        best = seeker.restarted(ranked([best, *(seeker.completed(t) for t in found)])[0])
+        ends = [seeker.completed(t) if is_near(t, found) else t for t in found]
+        best = ranked([best, *ends])[0]
+        seeker.tried.others.extend(t for t in ends if t is not best)
+        best = seeker.restarted(best)
         seeker.follow(best)
     pruned = seeker.pruned(best) if seeker.is_at_noise(best) else None
     if pruned is not None and seeker.have_answer(pruned[0]):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start, possible
-from ptp_symbolic.numeric.diagnose.proposals import Proposals, start_for
+from ptp_symbolic.numeric.diagnose.proposals import Proposal, Proposals, start_for
 from ptp_symbolic.numeric.diagnose.refits import inside, over_windows
 from ptp_symbolic.numeric.diagnose.regression import untold
 from ptp_symbolic.numeric.diagnose.responses import Response
@@ -23,14 +23,13 @@ from ptp_symbolic.numeric.identify.equation_fit import fit_equations
 from ptp_symbolic.numeric.identify.fit import Fit
 
 
-def started(task: Task, declared: Trial, found: Proposals) -> list[Trial]:
+def started(task: Task, declared: Trial, sets: Sequence[Proposal]) -> list[Trial]:
     """The proposed sets that do best over short windows, each at the better of two starts: where
     the windows lead, and beside the declared model.
     """
     part = replace(task, train=task.few)
     jobs = [
-        task.executor.submit(fitted, part, s.candidates, s.values, None, ITERATIONS)
-        for s in found.sets
+        task.executor.submit(fitted, part, s.candidates, s.values, None, ITERATIONS) for s in sets
     ]
     begun = []
     for short in ranked([job.result() for job in jobs])[:TRIED]:
