@@ -68,12 +68,16 @@ def test_windows_lead_where_no_set_leaves_only_noise(
     assert len(over_windows) == 1
 
 
+def full_form(task: Task, key: str) -> Candidate:
+    """A candidate with all that it can do."""
+    return max((c for c in task.candidates if c.key == key), key=lambda c: len(c.free))
+
+
 def proposing(seeker: Seeker, first: str, then: str) -> Seeker:
     """The seeker whose rows propose one candidate first, and another one next."""
-    full = {c.key: c for c in sorted(seeker.task.candidates, key=lambda c: len(c.free))}
     sets = [
-        (Proposal((full[key],), start_for(seeker.task, seeker.proposals, (full[key],), {})),)
-        for key in (first, then)
+        (Proposal((one,), start_for(seeker.task, seeker.proposals, (one,), {})),)
+        for one in (full_form(seeker.task, key) for key in (first, then))
     ]
     seeker.proposals = replace(seeker.proposals, sets=sets[0], further=lambda: sets[1])
     return seeker
@@ -90,8 +94,12 @@ def test_sets_that_the_rows_put_next_are_tried_where_the_first_leave_more_than_n
 
 
 def test_no_further_sets_are_tried_where_one_leaves_only_noise(seeker: Seeker) -> None:
-    (found,) = roads._proposed(proposing(seeker, "cable_spring@pan", "constant_torque@pan"))
+    seeker = proposing(seeker, "cable_spring@pan", "constant_torque@pan")
+    tried: list[str] = []
+    seeker.proposals = replace(seeker.proposals, further=lambda: tried.append("further") or ())
+    (found,) = roads._proposed(seeker)
     assert found.keys == ("cable_spring@pan",)
+    assert not tried
 
 
 def test_the_better_of_all_sets_tells_what_the_noise_of_inputs_leaves(
@@ -120,10 +128,7 @@ def test_a_set_near_the_floor_is_begun_anew_before_windows_are_asked(
     seeker: Seeker, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A spring 2e-4 too stiff, which is where its fit has ended: four times the noise is left."""
-    spring = max(
-        (c for c in seeker.task.candidates if c.key == "cable_spring@pan"),
-        key=lambda c: len(c.free),
-    )
+    spring = full_form(seeker.task, "cable_spring@pan")
     end = alone(seeker, spring.key)
     stiff = end.values | {"k1_cable_pan": end.values["k1_cable_pan"] * STUCK}
     stuck = fitted(seeker.task, (spring,), stiff, end.fit.z, 0)
@@ -153,8 +158,7 @@ def test_no_set_is_begun_anew_without_a_candidate_that_seems_to_gain_most(
     motion without the spring is another one, wherever a fit begins.
     """
     task = seeker.task
-    full = {c.key: c for c in sorted(task.candidates, key=lambda c: len(c.free))}
-    both = tuple(full[key] for key in ("cable_spring@pan", "constant_torque@pan"))
+    both = tuple(full_form(task, key) for key in ("cable_spring@pan", "constant_torque@pan"))
     start = seeker.declared.values | {f.name: f.start for c in both for f in c.free}
     whole = seeker.polished(fitted(task, both, start, None))
     assert seeker.is_at_noise(whole)
@@ -191,7 +195,7 @@ def test_a_set_that_leaves_white_noise_shows_that_none_of_another_colour_is_hidd
 
 def alone(seeker: Seeker, key: str) -> Trial:
     """One candidate in its fullest form, fitted to its end."""
-    one = max((c for c in seeker.task.candidates if c.key == key), key=lambda c: len(c.free))
+    one = full_form(seeker.task, key)
     start = seeker.declared.values | {f.name: f.start for f in one.free}
     return seeker.polished(fitted(seeker.task, (one,), start, None))
 

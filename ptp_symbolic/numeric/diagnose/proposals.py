@@ -184,9 +184,8 @@ def _best_sets(
     rows: Regression,
 ) -> tuple[Subset, list[Candidates], list[Candidates], Regression]:
     """The set that blocks left out favour, and those to try: what is no worse than the best, the
-    simplest first, then the best of every size; and to try next, as many as triples grow from in
-    `ranked_subsets`, those that predict best of all others, most of them triples. Scales follow the
-    residual of the favoured set.
+    simplest first, then the best of every size; and to try next, twice as many that predict best of
+    all others, most of them triples. Scales follow the residual of the favoured set.
     """
     chosen: Subset | None = None
     for _ in range(CYCLES):
