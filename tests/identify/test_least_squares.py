@@ -210,3 +210,39 @@ def test_starts_count_in_the_cost_by_their_prior(curves: Curves) -> None:
     squares = sum(float(np.sum(e.residual**2)) for e in runs)
     expected = squares + 3.0 * sum(curves.unknowns) * (0.2 / PRIOR) ** 2
     assert cost_of(problem, runs, z, scale=3.0) == pytest.approx(expected, rel=1e-14)
+
+
+def inertia_beside_damping(phi: Floats) -> tuple[Floats, Floats]:
+    """Torques of a slow motion that its acceleration and its rate explain nearly alike, and their
+    derivatives; the first coordinate is the logarithm of the inertia.
+    """
+    time = np.linspace(0.0, 2.0, 200)
+    growing, exact = np.exp(0.5 * time), 0.02 * np.sin(7.0 * time)
+    motion = np.column_stack([growing + exact, 2.0 * growing])
+    inertia = np.exp(phi[0])
+    residual = motion @ (np.array([inertia, phi[1]]) - np.array([2.0, 1.0]))
+    return residual, motion * np.array([inertia, 1.0])
+
+
+def test_an_inertia_and_the_damping_beside_it_trade_places_in_a_few_steps() -> None:
+    """Linear in the values, as SciPy's bounded least squares finds it at once; in the logarithm of
+    the inertia the valley bends, and steps that stay in it are short.
+    """
+    calls: list[bool] = []
+
+    def evaluate(phi: Floats, z: object, tangents: bool) -> list[Evaluation]:
+        calls.append(tangents)
+        residual, slope = inertia_beside_damping(phi)
+        return [evaluation(residual, slope, np.zeros((200, 0)))]
+
+    far, none = np.full(2, 9.0), [np.zeros(0)]
+    common = (evaluate, -far, far, none, none, none, np.zeros(2), np.zeros(2))
+    begin = np.array([np.log(0.2), 1.9])
+    bent = minimise(Problem(*common), begin, none, iterations=8)
+    tried = len(calls)
+    straight_on = minimise(
+        Problem(*common, logarithmic=np.array([True, False])), begin, none, iterations=8
+    )
+    assert straight_on.phi == pytest.approx([np.log(2.0), 1.0], abs=1e-6)
+    assert len(calls) - tried <= 9
+    assert abs(bent.phi[0] - np.log(2.0)) > 0.1

@@ -26,12 +26,13 @@ from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
     halving,
-    is_alike,
     is_near,
+    misfits,
     ranked,
 )
 from ptp_symbolic.numeric.diagnose.tried import worth_keeping
 from ptp_symbolic.numeric.identify.constants import (
+    DEVIATIONS,
     LARGEST,
     MOST,
     SCREENED,
@@ -206,12 +207,14 @@ def _ended(seeker: Seeker, best: Trial, steps: list[Step]) -> Search:
 
 
 def _better_from_far_off(seeker: Seeker, best: Trial) -> Trial:
-    """The trial, or a better end from where a declared parameter that the rows do not tell begins
-    far off.
+    """The trial, or the end of a fit that begins in another valley of a declared parameter that the
+    rows do not tell, where that is likelier by more than noise makes of one parameter: a misfit is
+    minus twice the logarithm of a likelihood.
     """
     found = halving(seeker.task, from_far_off(seeker.task, seeker.proposals, best), 1)
-    better = ranked([best, *found])[0]
-    return best if is_alike(better, best) else seeker.polished(better)
+    before, *after = misfits([best, *found])
+    is_lower = bool(after) and before - after[0] > DEVIATIONS**2
+    return seeker.polished(found[0]) if is_lower else best
 
 
 def _in_windows(seeker: Seeker, best: Trial) -> Seeker | None:

@@ -1,7 +1,10 @@
 """Where refits by simulation begin: at what the rows or the outputs ask for, and beside it."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start, possible
@@ -15,7 +18,9 @@ from ptp_symbolic.numeric.diagnose.trial import (
     all_free,
     continued,
     fitted,
+    misfits,
     ranked,
+    simulated,
 )
 from ptp_symbolic.numeric.identify.constants import FAR_OFF, ITERATIONS, MOST, TRIED, WIDE_STEP
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
@@ -114,13 +119,40 @@ def far_starts(
 
 
 def from_far_off(task: Task, proposals: Proposals, trial: Trial) -> list[Trial]:
-    """A trial with one declared parameter that the rows do not tell far off, each of them in turn
-    (see `far_starts`): how a shaft damps shows only as a gear bounces, and the misfit is rough in
-    it.
+    """A trial in every valley but its own over the declared parameters that the rows do not tell,
+    not yet fitted, the best first: how a shaft damps shows only as a gear bounces, and the misfit
+    is rough in it.
     """
     rows = proposals.regression
-    starts = [] if rows is None else far_starts(untold(rows), trial.values)
-    return [_begun(task, trial.candidates, values, trial.fit) for values in starts]
+    places = [] if rows is None else [p for f in untold(rows) for p in _valleys(task, trial, f)]
+    return [
+        _begun(task, trial.candidates, {**trial.values, **values}, trial.fit)
+        for _, values in sorted(places, key=lambda place: place[0])[:TRIED]
+    ]
+
+
+def _valleys(task: Task, trial: Trial, free: FreeParameter) -> list[tuple[float, dict[str, float]]]:
+    """Misfit and values where a trial leaves less at a value of one parameter, all others as they
+    are, than at the values beside it: half as much more at every step, as far from its start as
+    that may be off. Its own value is among the values, and not returned.
+    """
+    own, steps = trial.values[free.name], math.ceil(math.log(FAR_OFF) / math.log(1.0 + MOST))
+    spread = free.start * (1.0 + MOST) ** np.arange(-steps, steps + 1)
+    amounts = sorted({own, *(inside(free, a) for a in spread)})
+    scanned = [trial if a == own else _moved(task, trial, free, a) for a in amounts]
+    cost = [np.inf, *misfits(scanned), np.inf]
+    return [
+        (here, dict.fromkeys(free.names, amount))
+        for amount, before, here, after in zip(amounts, cost, cost[1:], cost[2:], strict=False)
+        if amount != own and here < min(before, after)
+    ]
+
+
+def _moved(task: Task, trial: Trial, free: FreeParameter, amount: float) -> Trial:
+    """The trial with one parameter at another amount, not fitted, and without new Jacobians."""
+    values = dict.fromkeys(free.names, amount)
+    evaluations = simulated(task, trial.fit, values, task.executor)
+    return replace(trial, fit=replace(trial.fit, evaluations=tuple(evaluations)))
 
 
 def _begun(

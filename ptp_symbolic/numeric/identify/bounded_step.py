@@ -20,6 +20,26 @@ def reach(distance: FloatArray) -> FloatArray:
     return np.minimum(LARGEST_STEP, share * distance)
 
 
+def box(
+    phi: FloatArray, lower: FloatArray, upper: FloatArray, logarithmic: NDArray[np.bool_] | bool
+) -> tuple[FloatArray, FloatArray]:
+    """How far down and up one step may go [nf] from phi [nf], as `taken` takes it."""
+    down, up = -reach(phi - lower), reach(upper - phi)
+    return (
+        np.where(logarithmic, np.expm1(down), down),
+        np.where(logarithmic, np.expm1(up), up),
+    )
+
+
+def taken(phi: FloatArray, step: FloatArray, logarithmic: NDArray[np.bool_] | bool) -> FloatArray:
+    """The search coordinates after a step [nf], which is straight in the values, whose logarithms
+    some coordinates are: an inertia and the damping beside it trade places along a straight valley,
+    and one that bends allows short steps only.
+    """
+    share = np.where(logarithmic, step, 0.0)
+    return phi + np.where(logarithmic, np.log1p(share), step)
+
+
 def limited_step(
     matrix: FloatArray, right: FloatArray, size: FloatArray, low: FloatArray, high: FloatArray
 ) -> FloatArray:

@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.bounded_step import limited_step, reach
+from ptp_symbolic.numeric.identify.bounded_step import box, limited_step, taken
 from ptp_symbolic.numeric.identify.constants import (
     BIGGEST,
     FIRST_DAMPING,
@@ -51,7 +51,7 @@ class Problem:
     are always the ones at the point, which intervals need. `allow` projects steps that lead where
     no machine is possible. `blocks` are, run by run, the blocks of rows that the robust loss weighs
     (see `identify.robust_loss`): whole runs, unless given; `robust_below` is that of
-    `robust_tuning`.
+    `robust_tuning`. `logarithmic` marks the coordinates that are logarithms of values.
     """
 
     evaluate: Evaluate
@@ -66,6 +66,7 @@ class Problem:
     allow: Allow | None = None
     blocks: Sequence[Block] | None = None
     robust_below: float = NEARBY
+    logarithmic: NDArray[np.bool_] | bool = False
 
 
 @dataclass(frozen=True)
@@ -189,7 +190,7 @@ def _better(
     """
     for attempt in range(rejections):
         step, steps_z = _step(problem, at, damping, weights)
-        phi = np.clip(at.phi + step, problem.lower, problem.upper)
+        phi = np.clip(taken(at.phi, step, problem.logarithmic), problem.lower, problem.upper)
         if problem.allow is not None:
             phi = problem.allow(at.phi, phi)
         bounds = zip(at.z, steps_z, problem.start_lower, problem.start_upper, strict=True)
@@ -280,8 +281,8 @@ def _step(
     step = np.zeros(nf)
     if free.any():
         matrix = schur[np.ix_(free, free)] + np.diag(damping * diagonal[free])
-        down, up = reach(phi - problem.lower), reach(problem.upper - phi)
+        low, high = box(phi, problem.lower, problem.upper, problem.logarithmic)
         step[free] = limited_step(
-            matrix, right[free], np.sqrt(diagonal[free]), -down[free], up[free]
+            matrix, right[free], np.sqrt(diagonal[free]), low[free], high[free]
         )
     return step, [inverse @ (gz - jk.T @ step) for jk, inverse, gz in blocks]

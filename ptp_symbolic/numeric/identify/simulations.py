@@ -150,4 +150,5 @@ def problem_of(simulations: Simulations, effort: Effort) -> Problem:
         keep_possible(simulations.model, free, simulations.parameters),
         blocks,
         effort.robust_below,
+        np.array([f.logarithmic for f in free], dtype=np.bool_),
     )

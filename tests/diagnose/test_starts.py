@@ -1,0 +1,70 @@
+"""Where refits begin: in the valleys of a parameter, over which the misfit is a known curve."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ptp_symbolic.numeric.diagnose import search, starts
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
+from ptp_symbolic.numeric.identify.constants import FAR_OFF
+from ptp_symbolic.numeric.identify.evaluate import Evaluation
+from tests.diagnose.spring_table import spring_table
+
+START = 0.1
+WAVES = 3.0  # of the misfit, from the least damping to the most
+
+
+def ripple(damping: float) -> float:
+    """Root mean square of what a damping leaves: three valleys in its logarithm, the deepest where
+    the damping is its start.
+    """
+    place = np.log(damping / START) / np.log(FAR_OFF)
+    return float(1.3 - 0.2 * np.cos(np.pi * WAVES * place) + 0.2 * place**2)
+
+
+def test_fits_begin_in_the_other_valleys_the_deepest_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From the place in the lowest valley but one, whose own is not begun again."""
+    with spring_table(tmp_path, stiffness=0.0) as task:
+        proposals = propose(task)
+        (damping,) = (f for f in task.free if f.name == "b_pan")
+        damping = replace(damping, start=START, lower=0.0, upper=9.0)
+        own = START * FAR_OFF ** (-2.0 / WAVES)
+        trial = fitted(task, (), proposals.start | {"b_pan": own}, None)
+
+        def simulated(_: Any, fit: Any, values: dict[str, float], __: Any) -> list[Evaluation]:
+            size = ripple(values["b_pan"])
+            return [replace(e, residual=np.full_like(e.residual, size)) for e in fit.evaluations]
+
+        there = simulated(None, trial.fit, {"b_pan": own}, None)
+        trial = replace(trial, fit=replace(trial.fit, evaluations=tuple(there)))
+        monkeypatch.setattr(starts, "untold", lambda _: [damping])
+        monkeypatch.setattr(starts, "simulated", simulated)
+        begun = starts.from_far_off(task, proposals, trial)
+    found = [t.values["b_pan"] / START for t in begun]
+    assert found == pytest.approx([1.0, 1.5**2], rel=1e-9)
+    assert all(t.values["J_pan"] == trial.values["J_pan"] for t in begun)
+
+
+def test_a_place_that_is_no_likelier_is_not_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with spring_table(tmp_path, stiffness=0.0) as task:
+        proposals = propose(task)
+        end = fitted(task, (), proposals.start, None, 12)
+        seeker = Seeker(task, end, proposals, carried_noise(task, end.fit))
+        worse = fitted(task, (), end.values | {"b_pan": 1.2 * end.values["b_pan"]}, end.fit.z)
+        polished: list[Trial] = []
+        monkeypatch.setattr(Seeker, "polished", lambda _, trial: polished.append(trial) or trial)
+        for begun, known, taken in ((end, end, end), (end, worse, end), (worse, end, end)):
+            monkeypatch.setattr(search, "from_far_off", lambda *_, begun=begun: [begun])
+            monkeypatch.setattr(search, "halving", lambda _, trials, *rest: trials)
+            assert search._better_from_far_off(seeker, known) is taken
+        assert polished == [end]
