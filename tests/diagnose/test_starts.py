@@ -49,7 +49,7 @@ def test_fits_begin_in_the_other_valleys_the_deepest_first(
         monkeypatch.setattr(starts, "simulated", simulated)
         begun = starts.from_far_off(task, proposals, trial)
     found = [t.values["b_pan"] / START for t in begun]
-    assert found == pytest.approx([1.0, 1.5**2], rel=1e-9)
+    assert found == pytest.approx([1.0, 1.5**2, FAR_OFF, 1.0 / FAR_OFF], rel=1e-9)
     assert all(t.values["J_pan"] == trial.values["J_pan"] for t in begun)
 
 

@@ -119,16 +119,15 @@ def far_starts(
 
 
 def from_far_off(task: Task, proposals: Proposals, trial: Trial) -> list[Trial]:
-    """A trial in every valley but its own over the declared parameters that the rows do not tell,
-    not yet fitted, the best first: how a shaft damps shows only as a gear bounces, and the misfit
-    is rough in it.
+    """A trial with one declared parameter that the rows do not tell far off, each of them in turn
+    (see `far_starts`), and in other valleys over it, the best first, not yet fitted: how a shaft
+    damps shows only as a gear bounces, and the misfit is rough in it.
     """
-    rows = proposals.regression
-    places = [] if rows is None else [p for f in untold(rows) for p in _valleys(task, trial, f)]
-    return [
-        _begun(task, trial.candidates, {**trial.values, **values}, trial.fit)
-        for _, values in sorted(places, key=lambda place: place[0])[:TRIED]
-    ]
+    free = [] if proposals.regression is None else untold(proposals.regression)
+    places = sorted((p for f in free for p in _valleys(task, trial, f)), key=lambda place: place[0])
+    found = [{**trial.values, **values} for _, values in places[:TRIED]]
+    starts = [*found, *far_starts(free, trial.values)]
+    return [_begun(task, trial.candidates, values, trial.fit) for values in starts]
 
 
 def _valleys(task: Task, trial: Trial, free: FreeParameter) -> list[tuple[float, dict[str, float]]]:

@@ -30,7 +30,10 @@ class Effort:
 
     `secants` is the step, in search coordinates, of the finite differences that replace derivatives
     which mislead (see `identify.secants`); None: none are replaced. The robust loss weighs blocks
-    of `block` s, whole runs unless given; `robust_below` is that of `robust_tuning`.
+    of `block` s, whole runs unless given; `robust_below` is that of `robust_tuning`. Steps that are
+    `straight` are so in the values of parameters that are searched in logarithms: these end a fit
+    in its valley, along which logarithms bend; a search that is not yet in the right one goes far
+    along a wrong one with them.
     """
 
     iterations: int = 30
@@ -40,6 +43,7 @@ class Effort:
     rejections: int = 5
     block: float = np.inf
     robust_below: float = NEARBY
+    straight: bool = False
 
 
 def all_values(free: Sequence[FreeParameter], phi: FloatArray) -> dict[str, float]:
@@ -150,5 +154,5 @@ def problem_of(simulations: Simulations, effort: Effort) -> Problem:
         keep_possible(simulations.model, free, simulations.parameters),
         blocks,
         effort.robust_below,
-        np.array([f.logarithmic for f in free], dtype=np.bool_),
+        np.array([effort.straight and f.logarithmic for f in free], dtype=np.bool_),
     )
