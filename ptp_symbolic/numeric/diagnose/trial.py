@@ -136,7 +136,7 @@ def fitted(
     fixed = {name: value for name, value in task.fixed.items() if name not in names}
     tolerance = tolerance_for(task, share)
     below = task.robust_below
-    effort = Effort(iterations, GAIN * share, tolerance, secants, 5, block, below, share < ROUGH)
+    effort = Effort(iterations, GAIN * share, tolerance, secants, block, below, share < ROUGH)
     known = None if secants is None else _inherited(parent, free)
     fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known, earlier)
     return Trial(tuple(candidates), fit)

@@ -51,7 +51,7 @@ class Problem:
     are always the ones at the point, which intervals need. `allow` projects steps that lead where
     no machine is possible. `blocks` are, run by run, the blocks of rows that the robust loss weighs
     (see `identify.robust_loss`): whole runs, unless given; `robust_below` is that of
-    `robust_tuning`. `logarithmic` marks the coordinates that are logarithms of values.
+    `robust_tuning`. `logarithmic` marks logarithms of values, in which steps are to be straight.
     """
 
     evaluate: Evaluate

@@ -40,10 +40,10 @@ class Effort:
     gain: float = 1e-5
     tolerance: Tolerance = DEFAULT_TOLERANCE
     secants: float | None = None
-    rejections: int = 5
     block: float = np.inf
     robust_below: float = NEARBY
     straight: bool = False
+    rejections: int = 5
 
 
 def all_values(free: Sequence[FreeParameter], phi: FloatArray) -> dict[str, float]:
