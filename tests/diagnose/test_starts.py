@@ -24,6 +24,8 @@ def ripple(damping: float) -> float:
     """Root mean square of what a damping leaves: three valleys in its logarithm, the deepest where
     the damping is its start.
     """
+    if damping == 0.0:
+        return 0.1
     place = np.log(damping / START) / np.log(FAR_OFF)
     return float(1.3 - 0.2 * np.cos(np.pi * WAVES * place) + 0.2 * place**2)
 
@@ -31,7 +33,9 @@ def ripple(damping: float) -> float:
 def test_fits_begin_in_the_other_valleys_the_deepest_first(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """From the place in the lowest valley but one, whose own is not begun again."""
+    """From the place in one valley, whose own is not begun again. A parameter that starts at zero
+    has no factor by which that may be off, deep as the misfit may be there.
+    """
     with spring_table(tmp_path, stiffness=0.0) as task:
         proposals = propose(task)
         (damping,) = (f for f in task.free if f.name == "b_pan")
@@ -45,7 +49,7 @@ def test_fits_begin_in_the_other_valleys_the_deepest_first(
 
         there = simulated(None, trial.fit, {"b_pan": own}, None)
         trial = replace(trial, fit=replace(trial.fit, evaluations=tuple(there)))
-        monkeypatch.setattr(starts, "untold", lambda _: [damping])
+        monkeypatch.setattr(starts, "untold", lambda _: [damping, replace(damping, start=0.0)])
         monkeypatch.setattr(starts, "simulated", simulated)
         begun = starts.from_far_off(task, proposals, trial)
     found = [t.values["b_pan"] / START for t in begun]

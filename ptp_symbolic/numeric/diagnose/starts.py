@@ -123,7 +123,8 @@ def from_far_off(task: Task, proposals: Proposals, trial: Trial) -> list[Trial]:
     (see `far_starts`), and in other valleys over it, the best first, not yet fitted: how a shaft
     damps shows only as a gear bounces, and the misfit is rough in it.
     """
-    free = [] if proposals.regression is None else untold(proposals.regression)
+    rows = proposals.regression
+    free = [] if rows is None else [f for f in untold(rows) if f.start > 0.0]
     places = sorted((p for f in free for p in _valleys(task, trial, f)), key=lambda place: place[0])
     found = [{**trial.values, **values} for _, values in places[:TRIED]]
     starts = [*found, *far_starts(free, trial.values)]
