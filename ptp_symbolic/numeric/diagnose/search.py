@@ -207,9 +207,9 @@ def _ended(seeker: Seeker, best: Trial, steps: list[Step]) -> Search:
 
 
 def _better_from_far_off(seeker: Seeker, best: Trial) -> Trial:
-    """The trial, or the end of a fit that begins in another valley of a declared parameter that the
-    rows do not tell, where that is likelier by more than noise makes of one parameter: a misfit is
-    minus twice the logarithm of a likelihood.
+    """The trial, or the end of a fit that begins elsewhere over a declared parameter that the rows
+    do not tell, where that is likelier by more than noise makes of one parameter: misfits differ by
+    minus twice the logarithm of the ratio of likelihoods.
     """
     found = halving(seeker.task, from_far_off(seeker.task, seeker.proposals, best), 1)
     before, *after = misfits([best, *found])

@@ -125,16 +125,16 @@ def from_far_off(task: Task, proposals: Proposals, trial: Trial) -> list[Trial]:
     """
     rows = proposals.regression
     free = [] if rows is None else [f for f in untold(rows) if f.start > 0.0]
-    places = sorted((p for f in free for p in _valleys(task, trial, f)), key=lambda place: place[0])
-    found = [{**trial.values, **values} for _, values in places[:TRIED]]
-    starts = [*found, *far_starts(free, trial.values)]
+    valleys = [t for f in free for t in _valleys(task, trial, f)]
+    order = np.argsort(misfits([trial, *valleys])[1:])[:TRIED]
+    starts = [*(valleys[k].values for k in order), *far_starts(free, trial.values)]
     return [_begun(task, trial.candidates, values, trial.fit) for values in starts]
 
 
-def _valleys(task: Task, trial: Trial, free: FreeParameter) -> list[tuple[float, dict[str, float]]]:
-    """Misfit and values where a trial leaves less at a value of one parameter, all others as they
-    are, than at the values beside it: half as much more at every step, as far from its start as
-    that may be off. Its own value is among the values, and not returned.
+def _valleys(task: Task, trial: Trial, free: FreeParameter) -> list[Trial]:
+    """The trial, not fitted, where it leaves less at a value of one parameter, all others as they
+    are, than at the values beside it: half as much more at every step, at least as far from its
+    start as that may be off. Its own value is among the values, and not returned.
     """
     own, steps = trial.values[free.name], math.ceil(math.log(FAR_OFF) / math.log(1.0 + MOST))
     spread = free.start * (1.0 + MOST) ** np.arange(-steps, steps + 1)
@@ -142,17 +142,17 @@ def _valleys(task: Task, trial: Trial, free: FreeParameter) -> list[tuple[float,
     scanned = [trial if a == own else _moved(task, trial, free, a) for a in amounts]
     cost = [np.inf, *misfits(scanned), np.inf]
     return [
-        (here, dict.fromkeys(free.names, amount))
-        for amount, before, here, after in zip(amounts, cost, cost[1:], cost[2:], strict=False)
-        if amount != own and here < min(before, after)
+        place
+        for place, before, here, after in zip(scanned, cost, cost[1:], cost[2:], strict=False)
+        if place is not trial and here < min(before, after)
     ]
 
 
 def _moved(task: Task, trial: Trial, free: FreeParameter, amount: float) -> Trial:
     """The trial with one parameter at another amount, not fitted, and without new Jacobians."""
-    values = dict.fromkeys(free.names, amount)
-    evaluations = simulated(task, trial.fit, values, task.executor)
-    return replace(trial, fit=replace(trial.fit, evaluations=tuple(evaluations)))
+    values = trial.values | dict.fromkeys(free.names, amount)
+    evaluations = tuple(simulated(task, trial.fit, values, task.executor))
+    return replace(trial, fit=replace(trial.fit, values=values, evaluations=evaluations))
 
 
 def _begun(

@@ -127,16 +127,16 @@ def fitted(
     """Fit from `values` (all parameters of the model) and the starts `z`, each [nz], of the runs.
 
     `secants` is the step of the differences that replace derivatives which mislead; those that
-    misled the parent are known to mislead. `share` is that of `tolerance_for`, `block` the length
-    (s) of the blocks that a robust loss weighs; values out of bounds are projected onto them. An
-    `earlier` fit that ends where this one begins is not simulated again there.
+    misled the parent are known to. `share` is that of `tolerance_for`: a finer one than `ROUGH`
+    ends a fit, with straight steps. The robust loss weighs blocks of `block` s. Values out of
+    bounds are projected; an `earlier` fit that ended where this begins is not simulated again.
     """
     free = all_free(task, candidates, values)
     names = {name for f in free for name in f.names}
     fixed = {name: value for name, value in task.fixed.items() if name not in names}
     tolerance = tolerance_for(task, share)
-    below = task.robust_below
-    effort = Effort(iterations, GAIN * share, tolerance, secants, block, below, share < ROUGH)
+    below, straight = task.robust_below, share < ROUGH
+    effort = Effort(iterations, GAIN * share, tolerance, secants, block, below, straight)
     known = None if secants is None else _inherited(parent, free)
     fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known, earlier)
     return Trial(tuple(candidates), fit)
