@@ -1,14 +1,14 @@
 """Friction laws of a geared servo, each with one part more, fitted and simulated freely.
 
-After the ladder of Duclusaud et al. (ICRA 2025): Coulomb and viscous friction; a static part that
-falls off with the rate (Stribeck); friction that grows with the load, without and with the static
-part; at last friction that differs by direction. Their last two rungs tell the torque of the motor
-from that of the load, which no effect here does. The measure is theirs: the mean absolute error of
-the position in free simulation.
+The ladder of Duclusaud et al. (ICRA 2025), models M1 to M6: Coulomb and viscous friction; a static
+part that falls off with the rate (Stribeck); friction that grows with the torque through the gear,
+without and with the static part; with factors of their own for the torques of motor and load; with
+squares of them at rest. The exponent of the Stribeck curve is 2, which they fit. The measure is
+theirs: the mean absolute error of the position in free simulation.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,41 +23,41 @@ from ptp_symbolic.workflows.fit import fit_platform
 from ptp_symbolic.workflows.result import Progress
 
 AXIS = "tilt"
-LOAD = EffectDeclaration("load_dependent_friction", AXIS, None)
-DIRECTION = EffectDeclaration("direction_dependent_friction", AXIS, None)
-LOAD_START = ParameterDeclaration("mu_load_tilt", "1", 0.1, True, 0.0, 0.9)
-BY_DIRECTION = tuple(
-    ParameterDeclaration(f"a_{name}_tilt", "1", 0.0, True, -0.9, 0.9) for name in ("F_c", "F_v")
-)
+LOAD = EffectDeclaration("directional_load_friction", AXIS, None)
+FACTORS = ("mu_motor", "mu_outer")
+AT_REST = ("mu_motor_rest", "mu_outer_rest")
+SQUARES = ("q_motor_rest", "q_outer_rest")
+ONE, ONE_AT_REST = {"mu_outer": "mu_motor"}, {"mu_outer_rest": "mu_motor_rest"}
+START = {**dict.fromkeys((*FACTORS, *AT_REST), 0.05), **dict.fromkeys(SQUARES, 0.0)}
 
 
 @dataclass(frozen=True)
 class Rung:
-    """A friction law beyond Coulomb and viscous friction."""
+    """A friction law: whether it has a static part, and which factors of load are free in it; a
+    factor in `tied` is that of another one.
+    """
 
     title: str
     static: bool
-    effects: tuple[EffectDeclaration, ...] = ()
-    parameters: tuple[ParameterDeclaration, ...] = ()
+    free: tuple[str, ...] = ()
+    tied: Mapping[str, str] = field(default_factory=dict)
 
 
 RUNGS = (
-    Rung("Coulomb, viscous", static=False),
-    Rung("Coulomb, viscous, Stribeck", static=True),
-    Rung("Coulomb, viscous, load", False, (LOAD,), (LOAD_START,)),
-    Rung("Coulomb, viscous, Stribeck, load", True, (LOAD,), (LOAD_START,)),
-    Rung(
-        "Coulomb, viscous, Stribeck, load, direction",
-        True,
-        (LOAD, DIRECTION),
-        (LOAD_START, *BY_DIRECTION),
-    ),
+    Rung("M1: Coulomb, viscous", static=False),
+    Rung("M2: with Stribeck curve", static=True),
+    Rung("M3: M1 with load", False, ("mu_motor",), ONE),
+    Rung("M4: M3 with Stribeck curve", True, ("mu_motor", "mu_motor_rest"), ONE | ONE_AT_REST),
+    Rung("M5: M4, motor and load apart", True, (*FACTORS, *AT_REST)),
+    Rung("M6: M5 with squares at rest", True, (*FACTORS, *AT_REST, *SQUARES)),
 )
 
 
 def platform_of(platform: Platform, rung: Rung) -> Platform:
     """`platform`, which declares `csvs_friction` on its axis, with the friction of a rung."""
-    begun = variants.extended(platform, rung.effects, {}, rung.parameters)
+    factors = [_factor(name, None) for name in rung.free]
+    factors += [_factor(name, other) for name, other in rung.tied.items()]
+    begun = variants.extended(platform, (LOAD,) if factors else (), {}, factors)
     if rung.static:
         return begun
     tied = {f"F_s_{AXIS}": f"F_c_{AXIS}", f"v_s_{AXIS}": None}
@@ -66,6 +66,14 @@ def platform_of(platform: Platform, rung: Rung) -> Platform:
         for p in begun.parameters
     )
     return replace(begun, parameters=parameters)
+
+
+def _factor(name: str, same_as: str | None) -> ParameterDeclaration:
+    """A factor of load, free unless it is that of another one."""
+    other = None if same_as is None else f"{same_as}_{AXIS}"
+    return ParameterDeclaration(
+        f"{name}_{AXIS}", None, START[name], free=same_as is None, same_as=other
+    )
 
 
 def ladder(

@@ -113,20 +113,36 @@ def test_a_name_with_a_plus_is_one_file(tmp_path: Path, platform: Platform) -> N
     assert read_log(path, platform).name == "gain+20"
 
 
-def test_two_encoders_that_are_logged_apart_are_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("resolution", ["counts_per_revolution = 4096", "noise = 0.1"])
+def test_a_second_sensor_at_other_times_comes_onto_the_clock_of_the_encoder(
+    tmp_path: Path, resolution: str
+) -> None:
     path = tmp_path / "two.toml"
-    motor = 'theta_tilt = { role = "output", column = "tilt", unit = "deg"'
-    text = PLATFORM.replace('["pan"]', '["pan", "tilt"]')
-    path.write_text(text + motor + ", counts_per_revolution = 4096 }\n")
+    second = f'theta_tilt = {{ role = "output", column = "tilt", unit = "deg", {resolution} }}'
+    path.write_text(PLATFORM.replace('["pan"]', '["pan", "tilt"]') + second + "\n")
     given = write(tmp_path / "pan.csv", **{"time [s]": TIME, "volt": VOLTAGE, "angle": DEGREES})
-    seen = write(tmp_path / "tilt.csv", **{"time [s]": TIME + 0.001, "tilt": DEGREES})
-    with pytest.raises(InputError, match="'angle' and 'tilt' are logged at different times"):
-        read_log(together(given, seen), read_platform(path))
-    # without counts it is interpolated onto the encoder's clock
-    path.write_text(text + motor + ", noise = 0.1 }\n")
+    own = TIME + 0.001
+    seen = write(tmp_path / "tilt.csv", **{"time [s]": own, "tilt": 20.0 * np.sin(3.0 * own)})
     log = read_log(together(given, seen), read_platform(path))
-    expected = np.interp(log.time, TIME + 0.001, DEGREES)
-    np.testing.assert_allclose(np.degrees(log.outputs[:, 1]), expected)
+    np.testing.assert_allclose(log.time, TIME[1:])
+    expected = 20.0 * np.sin(3.0 * log.time)
+    np.testing.assert_allclose(np.degrees(log.outputs[:, 1]), expected, atol=2e-6)
+
+
+def test_the_slower_of_two_encoders_has_the_clock(tmp_path: Path) -> None:
+    """A value that was not measured is not counted as one: 40 samples, not 200."""
+    path = tmp_path / "two.toml"
+    second = 'theta_tilt = { role = "output", column = "tilt", unit = "rad", '
+    second += "counts_per_revolution = 4096 }"
+    path.write_text(PLATFORM.replace('["pan"]', '["pan", "tilt"]') + second + "\n")
+    fast = 0.001 * np.arange(200)
+    angle = 20.0 * np.sin(3.0 * fast)
+    given = write(tmp_path / "a.csv", **{"time [s]": fast, "volt": 0.0 * fast, "angle": angle})
+    own = TIME[1:-1] + 0.0003
+    seen = write(tmp_path / "b.csv", **{"time [s]": own, "tilt [rad]": own})
+    log = read_log(together(given, seen), read_platform(path))
+    np.testing.assert_allclose(log.time, own)
+    np.testing.assert_allclose(np.degrees(log.outputs[:, 0]), 20.0 * np.sin(3.0 * own), atol=2e-6)
 
 
 def test_the_run_ends_where_the_last_input_no_longer_holds(

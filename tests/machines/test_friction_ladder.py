@@ -32,13 +32,27 @@ def angle(time: np.ndarray) -> np.ndarray:
     return np.asarray(found.y[0])
 
 
-def test_each_law_has_one_part_more() -> None:
-    free = [{p.name for p in platform_of(PLATFORM, rung).parameters if p.free} for rung in RUNGS]
+def test_the_laws_are_those_of_the_paper() -> None:
+    """Their parts beside Coulomb and viscous friction, and the factors that are one."""
+    platforms = [platform_of(PLATFORM, rung) for rung in RUNGS]
+    free = [{p.name for p in platform.parameters if p.free} for platform in platforms]
+    tied = [{p.name: p.same_as for p in q.parameters if p.same_as} for q in platforms]
     plain = {"J_y_payload", "K_t_tilt", "F_c_tilt", "F_v_tilt"}
-    static, load = {"F_s_tilt", "v_s_tilt"}, {"mu_load_tilt"}
-    direction = {"a_F_c_tilt", "a_F_v_tilt"}
-    assert free[:4] == [plain, plain | static, plain | load, plain | static | load]
-    assert free[4] == plain | static | load | direction
+    static = {"F_s_tilt", "v_s_tilt"}
+    apart = {"mu_motor_tilt", "mu_outer_tilt", "mu_motor_rest_tilt", "mu_outer_rest_tilt"}
+    squares = {"q_motor_rest_tilt", "q_outer_rest_tilt"}
+    one = {"mu_outer_tilt": "mu_motor_tilt"}
+    at_rest = {"mu_outer_rest_tilt": "mu_motor_rest_tilt"}
+    assert free == [
+        plain,
+        plain | static,
+        plain | {"mu_motor_tilt"},
+        plain | static | {"mu_motor_tilt", "mu_motor_rest_tilt"},
+        plain | static | apart,
+        plain | static | apart | squares,
+    ]
+    smooth = {"F_s_tilt": "F_c_tilt"}
+    assert tied == [smooth, {}, smooth | one, one | at_rest, {}, {}]
 
 
 def test_the_error_of_the_true_pendulum_is_that_of_rounding(tmp_path: Path) -> None:

@@ -28,7 +28,8 @@ class Log:
     offsets and delays of the signals applied. The sampling may be irregular; inputs are zero-order
     hold. Where they change between samples, being delayed, `inputs` are averages from sample to
     sample, and `steps` the times in s and values [m] of every input (empty: as `inputs` say).
-    `wraps` tells of which angles turns, or ends of a counter, were taken out.
+    `wraps` tells of which angles turns, or ends of a counter, were taken out, `interpolated` which
+    columns have values between their samples.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Log:
     outputs: NDArray[np.float64]
     steps: tuple[Steps, ...] = ()
     wraps: tuple[Wraps, ...] = ()
+    interpolated: tuple[str, ...] = ()
 
 
 def read_log(path: Path | str, platform: Platform) -> Log:
@@ -63,7 +65,7 @@ def read_log(path: Path | str, platform: Platform) -> Log:
     read = _read_signals(path, [*inputs, *outputs], platform.clock)
     whole = [unwrapped(c, s) for (_, c), s in zip(read, [*inputs, *outputs], strict=True)]
     series = [(clock, column) for (clock, _), (column, _) in zip(read, whole, strict=True)]
-    time, values, steps = on_one_clock(path, series, inputs, outputs)
+    time, values, steps, between = on_one_clock(path, series, inputs, outputs)
     _refuse_short(path, time)
     split = len(inputs)
     return Log(
@@ -73,6 +75,7 @@ def read_log(path: Path | str, platform: Platform) -> Log:
         np.ascontiguousarray(values[:, split:]),
         steps,
         tuple(wraps for _, wraps in whole if wraps is not None),
+        between,
     )
 
 

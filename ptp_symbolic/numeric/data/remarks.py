@@ -24,6 +24,7 @@ HALF_TURN = np.pi  # rad: no platform turns further from one sample to the next
 FEW_COUNTS = 3.0  # of an encoder: an angle that stays within them did not move
 SATURATED = 0.5  # share of the samples at the largest or smallest value of a signal that changes
 FEW_LEVELS = 5  # of a signal that is switched
+KINKED = 15.0  # third differences of a kink over what a cubic leaves of it, at least
 JITTER = 0.2  # of the sampling period, rms
 
 
@@ -57,7 +58,7 @@ def refuse_motionless(logs: Sequence[Log], platform: Platform) -> None:
 
 def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
     """Warnings about the logs, one sentence each: motionless angles, constant inputs, saturated
-    signals, gaps and jitter of the sampling.
+    signals, gaps and jitter of the sampling, encoders that were interpolated.
     """
     found = []
     outputs = _outputs(platform)
@@ -83,6 +84,7 @@ def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
         found += [_wrap_remark(log.name, wraps) for wraps in log.wraps]
         found += _clock_remarks(log)
         found += [t for k, s in enumerate(outputs) for t in _jump_remarks(log, k, s)]
+        found += [t for k, s in enumerate(outputs) for t in _interpolation_remarks(log, k, s)]
     return tuple(found)
 
 
@@ -132,6 +134,22 @@ def _jump_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]
     return [
         f"{log.name}: '{signal.column}' jumps by {size:.6g} counts at {time:.6g} s{more},"
         " between samples that hardly move: was the encoder set anew, at an index?"
+    ]
+
+
+def _interpolation_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]:
+    """An encoder between whose samples there is more than cubics tell: an acceleration that jumps
+    shows in third differences, of which a cubic leaves a fifteenth at most.
+    """
+    if signal.count is None or signal.column not in log.interpolated:
+        return []
+    off = float(np.abs(np.diff(log.outputs[:, column], 3)).max(initial=0.0)) / KINKED / signal.count
+    if off <= 1.0:
+        return []
+    return [
+        f"{log.name}: '{signal.column}' is interpolated onto the clock of another encoder, which"
+        f" may be off by {off:.2g} counts where the motion changes suddenly: log both at once, or"
+        " faster."
     ]
 
 

@@ -9,6 +9,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.symbolic.derivation.contributions import Contributions, slope_symbol
 from ptp_symbolic.symbolic.effect_interface.contribution import Drive, Friction
 from ptp_symbolic.symbolic.effect_interface.place import LOADS, quantity, slide
+from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.symbols import ZERO, real
 
 FOLLOWING = ("follower_coupling", "follower_inertia", "follower_torque")
@@ -101,12 +102,8 @@ def _loads(
 ) -> list[Term]:
     """Torque of the drive, and torque and inertia of the rest, other joints eliminated."""
     row, mass = mechanics.rates.index(friction.rate), mechanics.mass
-    inertia, torque, driving = mass[row, row], mechanics.forcing[row], ZERO
-    for drive in contributions.drives:
-        if contributions.drive_rate(drive) == friction.rate:
-            inertia -= contributions.resolve(drive.inertia)
-            driving += driving_torque(drive, contributions, mechanics.coordinates[row])
-    torque -= driving
+    rotor, driving = _driven_by(friction.rate, contributions, mechanics.coordinates[row])
+    inertia, torque = mass[row, row] - rotor, mechanics.forcing[row] - driving
     by_rate = {f.rate: f for f in frictions}
     beside: list[Term] = []
     for other, rate in enumerate(mechanics.rates):
@@ -124,6 +121,21 @@ def _loads(
         torque -= free * coupling * other_torque / other_inertia
     symbols = _carried(friction).values()
     return [*beside, *zip(symbols, (driving, torque, inertia), strict=True)]
+
+
+def _driven_by(
+    rate: sp.Symbol, contributions: Contributions, coordinate: sp.Symbol
+) -> tuple[sp.Expr, sp.Expr]:
+    """Inertia and torque of what drives `rate`: a drive, the shaft before a joint, or an input."""
+    for drive in contributions.drives:
+        if contributions.drive_rate(drive) == rate:
+            torque = driving_torque(drive, contributions, coordinate)
+            return contributions.resolve(drive.inertia), torque
+    axis = kinematics.place_of(rate)
+    if axis in contributions.split_axes:
+        return ZERO, contributions.resolve(quantity(f"shaft_torque_{axis}"))
+    free = axis in kinematics.AXES and axis not in contributions.driven
+    return ZERO, kinematics.torque(axis) if free else ZERO
 
 
 def _refuse_circle(friction: Friction) -> None:

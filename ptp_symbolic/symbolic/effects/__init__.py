@@ -11,6 +11,7 @@ from ptp_symbolic.symbolic.effects.constant_torque import CONSTANT_TORQUE
 from ptp_symbolic.symbolic.effects.csvs_friction import CSVS_FRICTION
 from ptp_symbolic.symbolic.effects.dc_motor import DC_MOTOR
 from ptp_symbolic.symbolic.effects.direction_dependent_friction import DIRECTION_DEPENDENT_FRICTION
+from ptp_symbolic.symbolic.effects.directional_load_friction import DIRECTIONAL_LOAD_FRICTION
 from ptp_symbolic.symbolic.effects.drive_deadband import DRIVE_DEADBAND
 from ptp_symbolic.symbolic.effects.encoder_eccentricity import ENCODER_ECCENTRICITY
 from ptp_symbolic.symbolic.effects.encoder_quantization import ENCODER_QUANTIZATION
@@ -57,6 +58,7 @@ EFFECTS: tuple[Effect, ...] = (
     MAXWELL_SLIP_FRICTION,
     DIRECTION_DEPENDENT_FRICTION,
     LOAD_DEPENDENT_FRICTION,
+    DIRECTIONAL_LOAD_FRICTION,
     POSITION_DEPENDENT_FRICTION,
     RATE_DEPENDENT_BREAKAWAY,
     SHEAR_THINNING_FRICTION,
