@@ -1,10 +1,10 @@
 """Friction laws of a geared servo, each with one part more, fitted and simulated freely.
 
 The ladder of Duclusaud et al. (ICRA 2025), models M1 to M6: Coulomb and viscous friction; a static
-part that falls off with the rate (Stribeck); friction that grows with the torque through the gear,
-without and with the static part; with factors of their own for the torques of motor and load; with
-squares of them at rest. The exponent of the Stribeck curve is 2, which they fit. The measure is
-theirs: the mean absolute error of the position in free simulation.
+part that falls off with the rate (Stribeck); friction that grows with the difference of the torques
+of motor and load, without and with the static part; with factors of their own for the two; with
+squares of them at rest. The exponent of the Stribeck curve is fixed at 2 here; they fit it. The
+measure is theirs: the mean absolute error of the position in free simulation.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,16 +19,17 @@ from ptp_symbolic.numeric.data import read_logs
 from ptp_symbolic.numeric.identify.fit import fit_parameters
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform
+from ptp_symbolic.symbolic.effects.directional_load_friction import DIRECTIONAL_LOAD_FRICTION
 from ptp_symbolic.workflows.fit import fit_platform
 from ptp_symbolic.workflows.result import Progress
 
 AXIS = "tilt"
-LOAD = EffectDeclaration("directional_load_friction", AXIS, None)
+LOAD = EffectDeclaration(DIRECTIONAL_LOAD_FRICTION.id, AXIS, None)
 FACTORS = ("mu_motor", "mu_outer")
 AT_REST = ("mu_motor_rest", "mu_outer_rest")
 SQUARES = ("q_motor_rest", "q_outer_rest")
 ONE, ONE_AT_REST = {"mu_outer": "mu_motor"}, {"mu_outer_rest": "mu_motor_rest"}
-START = {**dict.fromkeys((*FACTORS, *AT_REST), 0.05), **dict.fromkeys(SQUARES, 0.0)}
+START = {p.at_axis(AXIS).name: p.starts[0] for p in DIRECTIONAL_LOAD_FRICTION.parameters}
 
 
 @dataclass(frozen=True)
@@ -70,10 +71,8 @@ def platform_of(platform: Platform, rung: Rung) -> Platform:
 
 def _factor(name: str, same_as: str | None) -> ParameterDeclaration:
     """A factor of load, free unless it is that of another one."""
-    other = None if same_as is None else f"{same_as}_{AXIS}"
-    return ParameterDeclaration(
-        f"{name}_{AXIS}", None, START[name], free=same_as is None, same_as=other
-    )
+    own, other = f"{name}_{AXIS}", None if same_as is None else f"{same_as}_{AXIS}"
+    return ParameterDeclaration(own, None, START[own], free=same_as is None, same_as=other)
 
 
 def ladder(

@@ -6,6 +6,7 @@ import pytest
 from scipy.optimize import brentq
 
 from ptp_symbolic import simulate
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, ramp
@@ -136,3 +137,37 @@ def test_a_motor_at_the_gear_breaks_a_load_away_late(geared: Model) -> None:
     assert found.events[0].time == pytest.approx(
         brentq(lambda t: beyond(motor(t)), 1e-6, 1.0), abs=1e-6
     )
+
+
+def test_torques_that_pull_together_take_their_difference(plain: Model) -> None:
+    """Motor and a small load the same way: no squares, and what they cost cancels in part."""
+    load = 0.5
+
+    def margin(motor: float) -> float:
+        slid = abs(BY_MOTOR * motor - BY_LOAD * load)
+        rested = abs(MOTOR_REST * motor - LOAD_REST * load)
+        return motor + load - (STATIC + slid + rested)
+
+    values = {**VALUES, "tau0_pan": -load}
+    found = simulate(plain, 1.0, {"tau_pan": ramp(0.0, -2.0, 0.0, 1.0)}, values)
+    assert found.events[0].time == pytest.approx(brentq(margin, 0.0, 2.0) / 2.0, abs=1e-8)
+
+
+@pytest.mark.parametrize("torque", [14.0, 11.5])
+def test_what_rest_adds_falls_off_with_the_rate(plain: Model, torque: float) -> None:
+    """At the Stribeck speed 1/e of it is left: the first acceleration, from its law."""
+    rate = 0.4
+    steady = DRY + BY_MOTOR * torque + BY_LOAD * LOAD
+    added = held(torque) - steady
+    accelerated = (torque - LOAD - steady - added * math.exp(-1.0)) / INERTIA
+    values = {**VALUES, "v_s_pan": rate}
+    found = simulate(plain, [0.0, 1e-5], {"tau_pan": constant(torque)}, values, {"omega_pan": rate})
+    assert (found["omega_pan"][-1] - rate) / 1e-5 == pytest.approx(accelerated, rel=1e-4)
+
+
+def test_two_laws_of_one_load_are_refused() -> None:
+    with pytest.raises(InputError, match="Two frictions on the tilt axis depend on the load"):
+        effects = ("linear_actuator", "csvs_friction", "directional_load_friction")
+        body = EffectDeclaration("rigid_bodies", None, None)
+        placed = tuple(EffectDeclaration(e, "tilt", None) for e in effects)
+        emission.emit(Platform("load", "", ("tilt",), 9.81, (body, *placed), (), ()))

@@ -1,18 +1,19 @@
 """Signals that are logged late or act late: put on one clock, that of the motion.
 
 Outputs that share a delay keep their samples, which move on the time axis as they are; others are
-interpolated by cubics. Inputs keep the steps at which they really change, and are averaged from
-sample to sample of that clock beside.
+interpolated. Inputs keep the steps at which they really change, and are averaged from sample to
+sample of that clock beside.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.continuity import LOST
+from ptp_symbolic.numeric.data.between_samples import SAME_TIME, Samples
 from ptp_symbolic.numeric.data.zero_order_hold import held_averages
 from ptp_symbolic.platform import SignalDeclaration
 
@@ -20,8 +21,20 @@ FloatArray = NDArray[np.float64]
 Steps = tuple[FloatArray, FloatArray]  # times in s, and the values that hold from them on
 Series = tuple[FloatArray, FloatArray]  # times [n] in s, and what was logged at them [n]
 
-SAME_TIME = 1e-6  # of a sampling period: what rounding may leave between equal times
-AROUND = (-1, 0, 1, 2)  # the samples of a cubic, from the last one before its time on
+SLOWER = 1.5  # times the period of another: a clock of its own, not the same one
+
+
+@dataclass(frozen=True, eq=False)
+class Clocked:
+    """All signals at one clock: the times [k] in s at which the outputs were measured, `values`
+    [k, nu + ny] at them, and the `steps` of the inputs. `interpolated` are the columns of outputs
+    between samples, each with how far it may be off where the motion changes suddenly.
+    """
+
+    time: FloatArray
+    values: FloatArray
+    steps: tuple[Steps, ...] = ()
+    interpolated: dict[str, float] = field(default_factory=dict)
 
 
 def on_one_clock(
@@ -29,57 +42,84 @@ def on_one_clock(
     series: Sequence[Series],
     inputs: Sequence[SignalDeclaration],
     outputs: Sequence[SignalDeclaration],
-) -> tuple[FloatArray, FloatArray, tuple[Steps, ...], tuple[str, ...]]:
-    """Return the times [k] in s at which the outputs were measured, all signals [k, nu + ny] at
-    them, the steps of the inputs, and the columns that were interpolated, from the `series` of
-    every signal. The clock is that of the slowest encoder, of equally fast ones that of the first;
-    an input acts from the time at which it was logged to the next.
+) -> Clocked:
+    """Put the `series` of every signal on the clock of the slowest encoder, of equally fast ones
+    that of the first; an input acts from the time at which it was logged to the next.
 
-    Samples for which a signal is not there yet, or no more, are left out, and those between which
-    one that is interpolated was lost. Raises InputError where no sample is left.
+    Samples for which a signal is not there yet, or no more, are left out, and those at which one
+    that is interpolated lacks samples, or jumps. Raises InputError where less than two are left.
     """
-    signals = (*inputs, *outputs)
     given, measured = series[: len(inputs)], series[len(inputs) :]
-    encoders = [k for k, s in enumerate(outputs) if s.count is not None]
-    usual = {k: float(np.median(np.diff(measured[k][0]))) for k in encoders or [0]}
-    at = next(k for k, own in usual.items() if (1.0 + LOST) * own > max(usual.values()))
-    time, leader = measured[at][0], outputs[at]
-    if not any(s.delay for s in signals) and all(own is time for own, _ in series):
-        return time, np.column_stack([column for _, column in series]), (), ()
-    late = [s.delay for s in inputs] + [-s.delay for s in outputs]
-    period = usual[at]
-    begin = max(own[0] + d for (own, _), d in zip(series, late, strict=True))
-    end = min(own[-1] + d for (own, _), d in zip(measured, late[len(inputs) :], strict=True))
-    for (own, _), d in zip(given, late, strict=False):
-        held = max(float(np.median(np.diff(own))) - period, 0.0)  # the last value holds as long
-        end = min(end, own[-1] + d + held)
-    clock = time - leader.delay
+    time = measured[_leading(outputs, measured)][0]
+    if not any(s.delay for s in (*inputs, *outputs)) and all(own is time for own, _ in series):
+        return Clocked(time, np.column_stack([column for _, column in series]))
+    seen = [
+        Samples(own - s.delay, column, s.count)
+        for s, (own, column) in zip(outputs, measured, strict=True)
+    ]
+    acting = [own + s.delay for s, (own, _) in zip(inputs, given, strict=True)]
+    is_shared = all(own is time for own, _ in series)
+    clock = _common(path, acting, seen, _leading(outputs, measured), is_shared)
+    moved = delayed_inputs(given, inputs, clock)
+    steps = tuple(
+        (acts, column) if Samples(acts, column).places(clock) is None else (clock, at_clock)
+        for acts, (_, column), at_clock in zip(acting, given, moved.T, strict=True)
+    )
+    return Clocked(
+        clock,
+        np.column_stack([moved, *(samples.at(clock) for samples in seen)]),
+        steps,
+        {
+            s.column: samples.uncertainty
+            for s, samples in zip(outputs, seen, strict=True)
+            if samples.places(clock) is None
+        },
+    )
+
+
+def _leading(outputs: Sequence[SignalDeclaration], measured: Sequence[Series]) -> int:
+    """The output whose clock is kept: the first of the slowest encoders, else the first."""
+    encoders = [k for k, s in enumerate(outputs) if s.count is not None] or [0]
+    period = {k: _usual(measured[k][0]) for k in encoders}
+    return next(k for k in encoders if SLOWER * period[k] > max(period.values()))
+
+
+def _common(
+    path: Path,
+    acting: Sequence[FloatArray],
+    seen: Sequence[Samples],
+    leader: int,
+    is_shared: bool,
+) -> FloatArray:
+    """The times [k] of the leader at which every input acts, since `acting`, and every output is
+    known; `is_shared` tells whether all were logged at the same times.
+    """
+    clock = seen[leader].time
+    period = _usual(clock)
+    begin = max(times[0] for times in (*acting, *(s.time for s in seen)))
+    end = min(s.time[-1] for s in seen)
+    for times in acting:  # the last value holds as long as the others
+        end = min(end, times[-1] + max(_usual(times) - period, 0.0))
     there = (clock >= begin - SAME_TIME * period) & (clock <= end + SAME_TIME * period)
-    for (own, _), d in zip(measured, late[len(inputs) :], strict=True):
-        there &= _between_neighbours(own + d, clock)
-    clock = np.ascontiguousarray(clock[there])
-    if len(clock) < 2:
+    known = there & np.all([samples.is_known(clock) for samples in seen], axis=0)
+    if there.sum() < 2:
         raise InputError(
             f"{path}: is shorter than the delays of its signals; give a longer log."
-            if all(own is time for own, _ in series)
+            if is_shared
             else f"{path}: there is no time at which all signals are logged; give parts of one run"
             " with one clock."
         )
-    moved = delayed_inputs(given, inputs, clock)
-    seen = [
-        interpolated(own - s.delay, column, clock)
-        for s, (own, column) in zip(outputs, measured, strict=True)
-    ]
-    steps = [
-        (own + s.delay, column) if _samples_at(own + s.delay, clock) is None else (clock, acting)
-        for s, (own, column), acting in zip(inputs, given, moved.T, strict=True)
-    ]
-    between = tuple(
-        s.column
-        for s, (own, _) in zip(outputs, measured, strict=True)
-        if _samples_at(own - s.delay, clock) is None
-    )
-    return clock, np.column_stack([moved, *seen]), tuple(steps), between
+    if known.sum() < 2:
+        raise InputError(
+            f"{path}: samples are missing or jump wherever its signals, whose delays differ, are"
+            " put on one clock; give a log without gaps."
+        )
+    return np.ascontiguousarray(clock[known])
+
+
+def _usual(time: FloatArray) -> float:
+    """The sampling period in s."""
+    return float(np.median(np.diff(time)))
 
 
 def delayed_inputs(
@@ -92,7 +132,7 @@ def delayed_inputs(
     moved = []
     for signal, (time, column) in zip(inputs, series, strict=True):
         acts = time + signal.delay
-        at = _samples_at(acts, clock)
+        at = Samples(acts, column).places(clock)
         if at is None:
             at = np.maximum(np.searchsorted(acts, edges, side="right") - 1, 0)
             changes = column[at[1:]] != column[at[:-1]]
@@ -101,45 +141,3 @@ def delayed_inputs(
         else:
             moved.append(column[at])
     return np.column_stack([np.empty((len(clock), 0)), *moved])
-
-
-def interpolated(time: FloatArray, values: FloatArray, clock: FloatArray) -> FloatArray:
-    """`values` [n], measured at `time` [n], at the times of `clock` [k]: the samples themselves
-    where there is one at each, else of the cubics through four samples around (Lagrange).
-
-    A cubic is off by h^4/43 of the fourth derivative at most, h the sampling period; where an
-    acceleration jumps, as where friction turns, by h^2/28 of the jump. Rounding to counts is
-    averaged: it leaves less than in the samples.
-    """
-    at = _samples_at(time, clock)
-    if at is not None:
-        return values[at]
-    if len(time) < len(AROUND):
-        return np.interp(clock, time, values)
-    before = np.clip(np.searchsorted(time, clock, side="right") - 1, 1, len(time) - 3)
-    nodes = [time[before + k] for k in AROUND]
-    found = np.zeros(len(clock))
-    for k, node in zip(AROUND, nodes, strict=True):
-        others = [other for other in nodes if other is not node]
-        weight = np.prod([(clock - other) / (node - other) for other in others], axis=0)
-        found += weight * values[before + k]
-    return found
-
-
-def _between_neighbours(time: FloatArray, clock: FloatArray) -> NDArray[np.bool_]:
-    """Whether no sample of `time` [n] was lost where each of `clock` [k] lies."""
-    after = np.clip(np.searchsorted(time, clock), 1, len(time) - 1)
-    step = np.diff(time)
-    usual = (1.0 + LOST) * float(np.median(step))
-    at_one = np.isclose(clock, time[after], rtol=0.0, atol=SAME_TIME * usual)
-    at_one |= np.isclose(clock, time[after - 1], rtol=0.0, atol=SAME_TIME * usual)
-    return at_one | (step[after - 1] <= usual)
-
-
-def _samples_at(time: FloatArray, clock: FloatArray) -> NDArray[np.int64] | None:
-    """Index of the sample at every time of `clock` [k], None where one lies between samples."""
-    middle = 0.5 * (time[1:] + time[:-1])
-    nearest = np.searchsorted(middle, clock)
-    rounding = SAME_TIME * float(np.median(np.diff(time)))
-    same = np.abs(time[nearest] - clock) <= rounding
-    return nearest if bool(np.all(same)) else None

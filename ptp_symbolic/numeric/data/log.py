@@ -1,7 +1,7 @@
 """Logs of a machine: the columns that its platform names, in SI units."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +28,9 @@ class Log:
     offsets and delays of the signals applied. The sampling may be irregular; inputs are zero-order
     hold. Where they change between samples, being delayed, `inputs` are averages from sample to
     sample, and `steps` the times in s and values [m] of every input (empty: as `inputs` say).
-    `wraps` tells of which angles turns, or ends of a counter, were taken out, `interpolated` which
-    columns have values between their samples.
+    `wraps` tells of which angles turns, or ends of a counter, were taken out; `interpolated` which
+    columns have values between their samples, and how far these may be off where the motion changes
+    suddenly.
     """
 
     name: str
@@ -38,7 +39,7 @@ class Log:
     outputs: NDArray[np.float64]
     steps: tuple[Steps, ...] = ()
     wraps: tuple[Wraps, ...] = ()
-    interpolated: tuple[str, ...] = ()
+    interpolated: Mapping[str, float] = field(default_factory=dict)
 
 
 def read_log(path: Path | str, platform: Platform) -> Log:
@@ -65,17 +66,17 @@ def read_log(path: Path | str, platform: Platform) -> Log:
     read = _read_signals(path, [*inputs, *outputs], platform.clock)
     whole = [unwrapped(c, s) for (_, c), s in zip(read, [*inputs, *outputs], strict=True)]
     series = [(clock, column) for (clock, _), (column, _) in zip(read, whole, strict=True)]
-    time, values, steps, between = on_one_clock(path, series, inputs, outputs)
-    _refuse_short(path, time)
+    clocked = on_one_clock(path, series, inputs, outputs)
+    _refuse_short(path, clocked.time)
     split = len(inputs)
     return Log(
         name_of(path),
-        time,
-        np.ascontiguousarray(values[:, :split]),
-        np.ascontiguousarray(values[:, split:]),
-        steps,
+        clocked.time,
+        np.ascontiguousarray(clocked.values[:, :split]),
+        np.ascontiguousarray(clocked.values[:, split:]),
+        clocked.steps,
         tuple(wraps for _, wraps in whole if wraps is not None),
-        between,
+        clocked.interpolated,
     )
 
 

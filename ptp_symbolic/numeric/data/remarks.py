@@ -24,7 +24,6 @@ HALF_TURN = np.pi  # rad: no platform turns further from one sample to the next
 FEW_COUNTS = 3.0  # of an encoder: an angle that stays within them did not move
 SATURATED = 0.5  # share of the samples at the largest or smallest value of a signal that changes
 FEW_LEVELS = 5  # of a signal that is switched
-KINKED = 15.0  # third differences of a kink over what a cubic leaves of it, at least
 JITTER = 0.2  # of the sampling period, rms
 
 
@@ -84,7 +83,7 @@ def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
         found += [_wrap_remark(log.name, wraps) for wraps in log.wraps]
         found += _clock_remarks(log)
         found += [t for k, s in enumerate(outputs) for t in _jump_remarks(log, k, s)]
-        found += [t for k, s in enumerate(outputs) for t in _interpolation_remarks(log, k, s)]
+        found += [t for s in outputs for t in _interpolation_remarks(log, s)]
     return tuple(found)
 
 
@@ -137,19 +136,15 @@ def _jump_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]
     ]
 
 
-def _interpolation_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]:
-    """An encoder between whose samples there is more than cubics tell: an acceleration that jumps
-    shows in third differences, of which a cubic leaves a fifteenth at most.
-    """
-    if signal.count is None or signal.column not in log.interpolated:
-        return []
-    off = float(np.abs(np.diff(log.outputs[:, column], 3)).max(initial=0.0)) / KINKED / signal.count
+def _interpolation_remarks(log: Log, signal: SignalDeclaration) -> list[str]:
+    """An encoder between whose samples its motion changes too suddenly for its counts."""
+    off = log.interpolated.get(signal.column, 0.0) / (signal.count or np.inf)
     if off <= 1.0:
         return []
     return [
-        f"{log.name}: '{signal.column}' is interpolated onto the clock of another encoder, which"
-        f" may be off by {off:.2g} counts where the motion changes suddenly: log both at once, or"
-        " faster."
+        f"{log.name}: '{signal.column}' is interpolated onto the clock of another encoder, where it"
+        f" may be off by some {off:.2g} counts as the motion changes suddenly: log at a higher"
+        " rate."
     ]
 
 

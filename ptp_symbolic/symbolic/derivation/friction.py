@@ -41,7 +41,8 @@ def resolved_frictions(
 ) -> tuple[tuple[Friction, ...], tuple[Term, ...]]:
     """The frictions, one per rate, and as named functions the loads that some of them carry.
 
-    Raises InputError when the frictions of two coupled joints each depend on their load.
+    Raises InputError when the frictions of two coupled joints, or two on one rate, each depend on
+    their load.
     """
     frictions = [
         replace(
@@ -57,6 +58,7 @@ def resolved_frictions(
     for friction in frictions:
         found = friction
         if is_loaded(friction):
+            _refuse_second(friction, frictions)
             terms += _loads(friction, frictions, contributions, mechanics)
             found = _loaded(friction, frictions)
         terms += found.terms.items()
@@ -75,8 +77,13 @@ def _carried(friction: Friction) -> dict[sp.Symbol, sp.Symbol]:
 
 def is_loaded(friction: Friction) -> bool:
     """Whether `friction` depends on what it carries."""
-    written = (friction.level, friction.breakaway, *friction.terms.values())
-    return any(_carried(friction).keys() & expression.free_symbols for expression in written)
+    return bool(_carried(friction).keys() & _written_with(friction))
+
+
+def _written_with(friction: Friction) -> set[sp.Basic]:
+    """The symbols in the laws of `friction`."""
+    laws = (friction.level, friction.breakaway, *friction.terms.values())
+    return {symbol for law in laws for symbol in law.free_symbols}
 
 
 def _loaded(friction: Friction, frictions: Iterable[Friction]) -> Friction:
@@ -119,8 +126,9 @@ def _loads(
         coupling, other_inertia, other_torque = names
         inertia -= free * coupling**2 / other_inertia
         torque -= free * coupling * other_torque / other_inertia
-    symbols = _carried(friction).values()
-    return [*beside, *zip(symbols, (driving, torque, inertia), strict=True)]
+    loads = zip(_carried(friction).items(), (driving, torque, inertia), strict=True)
+    wanted = _written_with(friction)
+    return [*beside, *((own, value) for (load, own), value in loads if load in wanted)]
 
 
 def _driven_by(
@@ -138,9 +146,18 @@ def _driven_by(
     return ZERO, kinematics.torque(axis) if free else ZERO
 
 
+def _refuse_second(friction: Friction, frictions: Iterable[Friction]) -> None:
+    if any(is_loaded(f) for f in frictions if f.rate == friction.rate and f is not friction):
+        raise InputError(
+            f"Two frictions on the {friction.axis} axis depend on the load there, as those of"
+            " linear_actuator and directional_load_friction do; declare one of them."
+        )
+
+
 def _refuse_circle(friction: Friction) -> None:
     if is_loaded(friction):
         raise InputError(
-            "Two coupled joints have friction that depends on the load; declare linear_actuator on"
-            " one of them, or with shaft_compliance."
+            "Two coupled joints have friction that depends on the load, as that of linear_actuator"
+            " and directional_load_friction does; declare one with shaft_compliance, or on one of"
+            " them alone."
         )

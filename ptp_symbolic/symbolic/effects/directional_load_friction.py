@@ -1,9 +1,10 @@
 """Dry friction that grows with the torque of the motor and with that of the load, each on its own.
 
 A gear loses more where its load drives it than where its motor does. The torque of the motor is
-that of the drive at the gear output (of the shaft for a joint behind one, else the torque input),
-without what accelerates the rotor; that of the load is of all else that acts on the same
-coordinate, gravity first. Equal factors make it friction by the torque through the gear.
+that of the drive at the gear output, what accelerates the rotor included (of the shaft for a joint
+behind one, else the torque input); that of the load is of all else that acts on the same
+coordinate, gravity first, without what accelerates it. Both count towards a growing angle, so that
+equal factors take their difference.
 """
 
 import sympy as sp
