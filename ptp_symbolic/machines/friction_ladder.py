@@ -47,9 +47,9 @@ class Rung:
 RUNGS = (
     Rung("M1: Coulomb, viscous", static=False),
     Rung("M2: with Stribeck curve", static=True),
-    Rung("M3: M1 with load", False, ("mu_motor",), ONE),
+    Rung("M3: M1 with friction by load", False, ("mu_motor",), ONE),
     Rung("M4: M3 with Stribeck curve", True, ("mu_motor", "mu_motor_rest"), ONE | ONE_AT_REST),
-    Rung("M5: M4, motor and load apart", True, (*FACTORS, *AT_REST)),
+    Rung("M5: M4 with motor and load apart", True, (*FACTORS, *AT_REST)),
     Rung("M6: M5 with squares at rest", True, (*FACTORS, *AT_REST, *SQUARES)),
 )
 
