@@ -152,3 +152,11 @@ def test_a_linear_axis_has_no_newton_metres(call, tmp_path: Path) -> None:
     points = carriage_points(tmp_path / "p.csv", "force [N m]")
     done = call("friction-map", points, "--torque", "force")
     assert done.code == 2 and "column 'force' is in N m; give N, or one of mN" in done.err
+
+
+def test_steady_points_given_as_a_log_are_sent_here(call, tmp_path: Path) -> None:
+    points = written(tmp_path / "p.csv", DIFFERENT)
+    done = call("fit", points, "--platform", "thesis-ideal", "--out", tmp_path / "out")
+    assert done.code == 2 and not (tmp_path / "out").exists()
+    assert "p.csv:1: column 'time [s]' is missing; the header has rate [deg/s], " in done.err
+    assert "steady points of rate and torque are for friction-map" in done.err

@@ -17,6 +17,7 @@ from ptp_symbolic.numeric.data.table import Table
 from ptp_symbolic.platform import Clock, Platform, SignalDeclaration, naming_file
 
 MIN_ROWS = 10
+STEADY = {"rate", "torque"}  # columns of points at steady rates
 SLOWEST = 5.0  # Hz; samples at most as often show no drive that lets go
 
 
@@ -154,8 +155,11 @@ def _read_table(
     """Return time [n] and the signals [n, len(signals)] in SI."""
     clock = table.clock(declared)
     if clock is None:
+        steady = STEADY.issubset(name for name, _ in table.headings)
+        advice = "; steady points of rate and torque are for friction-map" if steady else ""
         raise InputError(
-            f"{table.head}: column '{declared.column or 'time'} [s]' is missing; {_listing(table)}."
+            f"{table.head}: column '{declared.column or 'time'} [s]' is missing;"
+            f" {_listing(table)}{advice}."
         )
     places = {signal.column: table.place(signal.column) for signal in signals}
     missing = [column for column, place in places.items() if place is None]
