@@ -129,20 +129,25 @@ def test_a_second_sensor_at_other_times_comes_onto_the_clock_of_the_encoder(
     np.testing.assert_allclose(np.degrees(log.outputs[:, 1]), expected, atol=2e-6)
 
 
-def test_the_slower_of_two_encoders_has_the_clock(tmp_path: Path) -> None:
-    """A value that was not measured is not counted as one: 40 samples, not 200."""
+@pytest.mark.parametrize("shift", [0.0, 0.0003])
+def test_the_slower_of_two_encoders_has_the_clock(tmp_path: Path, shift: float) -> None:
+    """A value that was not measured is not counted as one: 38 samples, not 200. The input, a ramp
+    that is held for 1 ms each, acts between them too.
+    """
     path = tmp_path / "two.toml"
     second = 'theta_tilt = { role = "output", column = "tilt", unit = "rad", '
     second += "counts_per_revolution = 4096 }"
     path.write_text(PLATFORM.replace('["pan"]', '["pan", "tilt"]') + second + "\n")
     fast = 0.001 * np.arange(200)
     angle = 20.0 * np.sin(3.0 * fast)
-    given = write(tmp_path / "a.csv", **{"time [s]": fast, "volt": 0.0 * fast, "angle": angle})
-    own = TIME[1:-1] + 0.0003
+    given = write(tmp_path / "a.csv", **{"time [s]": fast, "volt": fast, "angle": angle})
+    own = TIME[1:-1] + shift
     seen = write(tmp_path / "b.csv", **{"time [s]": own, "tilt [rad]": own})
     log = read_log(together(given, seen), read_platform(path))
     np.testing.assert_allclose(log.time, own)
     np.testing.assert_allclose(np.degrees(log.outputs[:, 0]), 20.0 * np.sin(3.0 * own), atol=2e-6)
+    np.testing.assert_allclose(log.inputs[:, 0], own + 0.002, atol=1e-9)  # of 0 to 4 ms more
+    np.testing.assert_allclose(log.steps[0][0], fast)
 
 
 def test_the_run_ends_where_the_last_input_no_longer_holds(

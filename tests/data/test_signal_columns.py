@@ -218,6 +218,10 @@ def test_no_value_is_made_up_where_samples_were_lost(tmp_path: Path, kept: np.nd
     own = kept[np.append(np.diff(kept) == 1, False)]
     assert log.time == pytest.approx(TIMES[own])
     assert log.outputs[:, 1] == pytest.approx(-smooth(log.time), abs=1e-4)
+    held = np.cumsum(np.append(0.0, TIMES[kept][:-1] * np.diff(TIMES[kept])))  # input, integrated
+    given = np.sum(log.inputs[:-1, 0] * np.diff(log.time))
+    at = np.searchsorted(TIMES[kept], log.time[[0, -1]] - 1e-9)
+    assert given == pytest.approx(held[at[1]] - held[at[0]], abs=1e-12)
 
 
 def test_a_log_shorter_than_its_delays_is_refused(tmp_path: Path) -> None:

@@ -13,9 +13,9 @@ IntArray = NDArray[np.intp]
 
 SAME_TIME = 1e-6  # of a sampling period: what rounding may leave between equal times
 NEXT, OVER_NEXT = (-1, 0, 1, 2), (-3, -1, 1, 3)  # the samples around a time, around a sample
-MOST_SCATTER = 1.1  # of a cubic over that of samples; at the ends of parts it is 1.04
+MOST_SCATTER = 1.1  # of a cubic over that of samples; at the ends of parts it is up to 1.09
 NOISY = 5.0  # standard deviations that noise seldom reaches
-WIDER = 2.0  # spacing of samples over the next but one, in sampling periods
+WIDER = 2.0  # sampling periods between the samples that foretell one
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +73,9 @@ class Samples:
     @cached_property
     def uncertainty(self) -> float:
         """How far cubics are off where the motion changes suddenly, beyond noise, to a factor of a
-        few: half of what they leave of samples over the next but one. The period is twice as long
-        there, of which a rate that jumps leaves half, an acceleration a quarter.
+        few: half of how far each sample is off a cubic through those one and three periods away.
+        These are twice as far apart, which doubles the error where a rate jumps, and quadruples it
+        where an acceleration does.
         """
         own = np.arange(-OVER_NEXT[0], len(self.time) - OVER_NEXT[-1])
         own = own[self.part[own + OVER_NEXT[0]] == self.part[own + OVER_NEXT[-1]]]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.between_samples import SAME_TIME, Samples
+from ptp_symbolic.numeric.data.between_samples import SAME_TIME, IntArray, Samples
 from ptp_symbolic.numeric.data.zero_order_hold import held_averages
 from ptp_symbolic.platform import SignalDeclaration
 
@@ -43,8 +43,8 @@ def on_one_clock(
     inputs: Sequence[SignalDeclaration],
     outputs: Sequence[SignalDeclaration],
 ) -> Clocked:
-    """Put the `series` of every signal on the clock of the slowest encoder, of equally fast ones
-    that of the first; an input acts from the time at which it was logged to the next.
+    """Put the `series` of every signal on the clock of the slowest encoder, of about equally fast
+    ones that of the first; an input acts from the time at which it was logged to the next.
 
     Samples for which a signal is not there yet, or no more, are left out, and those at which one
     that is interpolated lacks samples, or jumps. Raises InputError where less than two are left.
@@ -62,7 +62,7 @@ def on_one_clock(
     clock = _common(path, acting, seen, _leading(outputs, measured), is_shared)
     moved = delayed_inputs(given, inputs, clock)
     steps = tuple(
-        (acts, column) if Samples(acts, column).places(clock) is None else (clock, at_clock)
+        (acts, column) if _all_at(acts, clock) is None else (clock, at_clock)
         for acts, (_, column), at_clock in zip(acting, given, moved.T, strict=True)
     )
     return Clocked(
@@ -111,8 +111,8 @@ def _common(
         )
     if known.sum() < 2:
         raise InputError(
-            f"{path}: samples are missing or jump wherever its signals, whose delays differ, are"
-            " put on one clock; give a log without gaps."
+            f"{path}: samples are missing or jump wherever its signals, measured at different"
+            " times, are put on one clock; give a log without gaps."
         )
     return np.ascontiguousarray(clock[known])
 
@@ -120,6 +120,14 @@ def _common(
 def _usual(time: FloatArray) -> float:
     """The sampling period in s."""
     return float(np.median(np.diff(time)))
+
+
+def _all_at(acts: FloatArray, clock: FloatArray) -> IntArray | None:
+    """Which of the times `acts` [n] every time of `clock` [k] is; None where one is none of them,
+    and where one of them lies between.
+    """
+    at = Samples(acts, acts).places(clock)
+    return None if at is None or bool(np.any(np.diff(at) > 1)) else at
 
 
 def delayed_inputs(
@@ -132,7 +140,7 @@ def delayed_inputs(
     moved = []
     for signal, (time, column) in zip(inputs, series, strict=True):
         acts = time + signal.delay
-        at = Samples(acts, column).places(clock)
+        at = _all_at(acts, clock)
         if at is None:
             at = np.maximum(np.searchsorted(acts, edges, side="right") - 1, 0)
             changes = column[at[1:]] != column[at[:-1]]

@@ -101,11 +101,11 @@ class Friction:
     """Set-valued dry friction that acts on one rate.
 
     `level` > 0 is the friction torque in N m while sliding, `breakaway` the torque that holds at
-    rest; both may depend on the direction symbol ``slide_<axis>`` (-1, 0 or 1) and, where a drive
-    works on `rate`, on the quantities ``driving_torque_<axis>`` of the drive, less what its own
-    inertia takes as it changes, and ``load_torque_<axis>`` and ``load_inertia_<axis>`` of the rest
-    of the machine, other joints free to follow. `terms` are functions of those that the equations
-    keep under their names, each of those before it.
+    rest; both may depend on the direction symbol ``slide_<axis>`` (-1, 0 or 1), on the quantity
+    ``driving_torque_<axis>`` of what drives `rate` (a drive, less what its own inertia takes as it
+    changes, the shaft before a joint, or a torque input), and on ``load_torque_<axis>`` and
+    ``load_inertia_<axis>`` of the rest of the machine, other joints free to follow. `terms` are
+    functions of those that the equations keep under their names, each of those before it.
     """
 
     axis: str

@@ -10,7 +10,7 @@ equal factors take their difference.
 import sympy as sp
 
 from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
-from ptp_symbolic.symbolic.effect_interface.effect import Effect, Member
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 
@@ -19,23 +19,23 @@ PARAMETERS = tuple(
     for name, unit, largest, start, meaning in (
         ("mu_motor", "1", 0.9, 0.05, "dry friction per torque of the motor"),
         ("mu_outer", "1", 0.9, 0.05, "dry friction per torque of the load"),
-        ("mu_motor_rest", "1", 5.0, 0.05, "what rest adds to it per torque of the motor"),
-        ("mu_outer_rest", "1", 5.0, 0.05, "what rest adds to it per torque of the load"),
-        ("q_motor_rest", "1/(N m)", 1e3, 0.0, "the same per square, driven by the load"),
-        ("q_outer_rest", "1/(N m)", 1e3, 0.0, "the same per square, driven by the motor"),
+        ("mu_motor_rest", "1", 5.0, 0.05, "what rest adds per torque of the motor"),
+        ("mu_outer_rest", "1", 5.0, 0.05, "what rest adds per torque of the load"),
+        (
+            "q_motor_rest",
+            "1/(N m)",
+            1e3,
+            0.0,
+            "what rest adds per squared torque of the motor, where the load drives",
+        ),
+        (
+            "q_outer_rest",
+            "1/(N m)",
+            1e3,
+            0.0,
+            "what rest adds per squared torque of the load, where the motor drives",
+        ),
     )
-)
-MOTOR, OUTER, MOTOR_REST, OUTER_REST, MOTOR_SQUARE, OUTER_SQUARE = (p.name for p in PARAMETERS)
-MEMBERS = (
-    Member("one factor for both torques", (MOTOR,), {OUTER: MOTOR}),
-    Member(
-        "one factor for both torques, another at rest",
-        (MOTOR, MOTOR_REST),
-        {OUTER: MOTOR, OUTER_REST: MOTOR_REST},
-    ),
-    Member("factors of motor and load", (MOTOR, OUTER)),
-    Member("factors of motor and load, others at rest", (MOTOR, OUTER, MOTOR_REST, OUTER_REST)),
-    Member("factors and squares of motor and load", tuple(p.name for p in PARAMETERS)),
 )
 
 
@@ -63,7 +63,6 @@ DIRECTIONAL_LOAD_FRICTION = Effect(
     contribute=_contribute,
     declared_only=True,
     needs=("coulomb_torque_{axis}", "static_torque_{axis}"),
-    members=MEMBERS,
     separating_experiment="Lift and lower a known weight at the same slow speeds, driven by the"
     " motor and, the motor weaker, by the weight.",
 )
