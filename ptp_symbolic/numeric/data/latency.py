@@ -50,16 +50,17 @@ def on_one_clock(
     that is interpolated lacks samples, or jumps. Raises InputError where less than two are left.
     """
     given, measured = series[: len(inputs)], series[len(inputs) :]
-    time = measured[_leading(outputs, measured)][0]
-    if not any(s.delay for s in (*inputs, *outputs)) and all(own is time for own, _ in series):
+    leader = _leading(outputs, measured)
+    time = measured[leader][0]
+    is_shared = all(own is time for own, _ in series)
+    if is_shared and not any(s.delay for s in (*inputs, *outputs)):
         return Clocked(time, np.column_stack([column for _, column in series]))
     seen = [
         Samples(own - s.delay, column, s.count)
         for s, (own, column) in zip(outputs, measured, strict=True)
     ]
     acting = [own + s.delay for s, (own, _) in zip(inputs, given, strict=True)]
-    is_shared = all(own is time for own, _ in series)
-    clock = _common(path, acting, seen, _leading(outputs, measured), is_shared)
+    clock = _common(path, acting, seen, seen[leader].time, is_shared)
     moved = delayed_inputs(given, inputs, clock)
     steps = tuple(
         (acts, column) if _all_at(acts, clock) is None else (clock, at_clock)
@@ -88,13 +89,12 @@ def _common(
     path: Path,
     acting: Sequence[FloatArray],
     seen: Sequence[Samples],
-    leader: int,
+    clock: FloatArray,
     is_shared: bool,
 ) -> FloatArray:
-    """The times [k] of the leader at which every input acts, since `acting`, and every output is
-    known; `is_shared` tells whether all were logged at the same times.
+    """The times of `clock` at which every input acts, since `acting`, and every output is known;
+    `is_shared` tells whether all were logged at the same times.
     """
-    clock = seen[leader].time
     period = _usual(clock)
     begin = max(times[0] for times in (*acting, *(s.time for s in seen)))
     end = min(s.time[-1] for s in seen)

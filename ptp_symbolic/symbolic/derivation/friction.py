@@ -149,15 +149,14 @@ def _driven_by(
 def _refuse_second(friction: Friction, frictions: Iterable[Friction]) -> None:
     if any(is_loaded(f) for f in frictions if f.rate == friction.rate and f is not friction):
         raise InputError(
-            f"Two frictions on the {friction.axis} axis depend on the load there, as those of"
-            " linear_actuator and directional_load_friction do; declare one of them."
+            f"Two frictions on the {friction.axis} axis depend on the load there, of a lead screw"
+            " or of a gear; declare one of them."
         )
 
 
 def _refuse_circle(friction: Friction) -> None:
     if is_loaded(friction):
         raise InputError(
-            "Two coupled joints have friction that depends on the load, as that of linear_actuator"
-            " and directional_load_friction does; declare one with shaft_compliance, or on one of"
-            " them alone."
+            "Two coupled joints have friction that depends on the load, of a lead screw or of a"
+            " gear; declare shaft_compliance on one of them, or that friction on one of them alone."
         )
