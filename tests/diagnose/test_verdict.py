@@ -15,7 +15,7 @@ from ptp_symbolic.numeric.diagnose.floor import (
 )
 from ptp_symbolic.numeric.diagnose.held_out import held_out_gain, is_quiet, is_taken_back
 from ptp_symbolic.numeric.diagnose.left_over import Carried
-from ptp_symbolic.numeric.diagnose.trial import Trial
+from ptp_symbolic.numeric.diagnose.trial import Trial, mean_squares
 from ptp_symbolic.numeric.diagnose.verdict import (
     EXPLAINED,
     NOTHING_MISSING,
@@ -25,16 +25,22 @@ from ptp_symbolic.numeric.diagnose.verdict import (
     word_of,
 )
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE
+from ptp_symbolic.numeric.identify.fit import Fit
+from tests.identify.curves import Floats
 from tests.identify.straight import finished
 
 WAVE = np.where(np.arange(400) % 2, 1.0, -1.0)
-NOTHING = np.zeros((1, 1))  # left by errors of the values
 EFFECT = cast(Any, object())
 
 
 def floor(carried: float = 0.0) -> Floor:
     one = np.ones(1)
     return Floor(one, one, Carried(carried * one, carried * one))
+
+
+def squares(after: Fit) -> Floats:
+    """What `after` leaves [runs, ny] where no value is free to move."""
+    return mean_squares(after.evaluations, after.runs)
 
 
 def word(
@@ -45,7 +51,7 @@ def word(
     """
     trial = Trial((EFFECT,) if named else (), finished([left * WAVE] * 3))
     after = finished([held_out * WAVE] * 2)
-    quiet = is_quiet(after, floor(carried), NOTHING, trial.fit) and leaves_noise_alone(
+    quiet = is_quiet(after, floor(carried), squares(after), trial.fit) and leaves_noise_alone(
         trial, floor()
     )
     return word_of(trial, {"effect": group} if named else {}, quiet)
@@ -92,15 +98,16 @@ def test_look_alikes_make_a_group_of_an_explanation_alone() -> None:
 
 
 def test_a_run_that_sticks_elsewhere_does_not_decide() -> None:
-    assert is_quiet(finished([WAVE, WAVE, 40.0 * WAVE]), floor(), NOTHING, finished([WAVE] * 3))
+    after = finished([WAVE, WAVE, 40.0 * WAVE])
+    assert is_quiet(after, floor(), squares(after), finished([WAVE] * 3))
 
 
-def test_validation_runs_may_leave_what_errors_of_the_values_leave_there() -> None:
-    """Of three runs the median counts, each held to what its own derivatives carry."""
+def test_what_runs_leave_with_the_best_values_decides() -> None:
+    """Of three runs the median counts."""
     after, trained = finished([2.0 * WAVE] * 3), finished([WAVE] * 3)
-    assert not is_quiet(after, floor(), NOTHING, trained)
-    assert is_quiet(after, floor(), np.array([[3.0], [3.0], [0.0]]), trained)
-    assert not is_quiet(after, floor(), np.array([[3.0], [0.0], [0.0]]), trained)
+    assert not is_quiet(after, floor(), squares(after), trained)
+    assert is_quiet(after, floor(), np.array([[1.0], [1.0], [4.0]]), trained)
+    assert not is_quiet(after, floor(), np.array([[1.0], [4.0], [4.0]]), trained)
 
 
 def noisy(windows: int, spread: float, seed: int) -> list[Any]:
@@ -114,16 +121,16 @@ def noisy(windows: int, spread: float, seed: int) -> list[Any]:
 def test_windows_that_are_alike_are_quiet(training: float, validation: float) -> None:
     """A machine that sticks elsewhere in some windows does so in both parts."""
     after, trained = finished(noisy(28, validation, 1)), finished(noisy(48, training, 2))
-    assert is_quiet(after, floor(), NOTHING, trained)
+    assert is_quiet(after, floor(), squares(after), trained)
 
 
 def test_windows_half_of_which_leave_more_than_the_training_runs_are_not_quiet() -> None:
     """The median alone is within its bound, and says nothing of the other half."""
-    squares = np.concatenate([np.linspace(1.0, 1.05, 14), np.linspace(1.1, 9.0, 14)])
-    after = finished([s * WAVE for s in squares])
-    assert np.median(squares) < ABOVE_NOISE
-    assert not is_quiet(after, floor(), NOTHING, finished(noisy(48, 1.0, 3)))
-    assert is_quiet(after, floor(), NOTHING, finished(noisy(3, 1.0, 3)))  # too few to tell
+    sizes = np.concatenate([np.linspace(1.0, 1.05, 14), np.linspace(1.1, 9.0, 14)])
+    after = finished([s * WAVE for s in sizes])
+    assert np.median(sizes) < ABOVE_NOISE
+    assert not is_quiet(after, floor(), squares(after), finished(noisy(48, 1.0, 3)))
+    assert is_quiet(after, floor(), squares(after), finished(noisy(3, 1.0, 3)))  # too few to tell
 
 
 @pytest.mark.parametrize(

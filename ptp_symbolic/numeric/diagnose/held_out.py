@@ -17,6 +17,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
     mean_squares,
     tolerance_for,
 )
+from ptp_symbolic.numeric.identify.blocks import huber_root
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
     BIGGEST,
@@ -24,15 +25,16 @@ from ptp_symbolic.numeric.identify.constants import (
     MANY_RUNS,
     MOST,
     POLISH,
+    REWEIGHTINGS,
     ROUGH,
     SHARP,
-    TEST_ALARM,
     TUNING,
     UNALIKE,
 )
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
-from ptp_symbolic.numeric.identify.intervals import covariance_of, project_out, reaches
+from ptp_symbolic.numeric.identify.intervals import project_out, reaches
+from ptp_symbolic.numeric.identify.joint_region import closest_in_ball, joint_region
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import sizes
@@ -49,45 +51,52 @@ def is_taken_back(held_out: Gain, quiet: bool, material: float) -> bool:
     return held_out.share < (material if quiet else MOST)
 
 
-def left_by_values(after: Fit, estimated: Fit, executor: Executor | None = None) -> FloatArray:
-    """The most [runs, ny] at 99 % that errors of the `estimated` values leave in validation runs
-    `after`, as a mean square in units of the noise: their covariance carried there by the
-    derivatives of the runs, a sum of squares of few normal numbers (its first two moments:
-    Satterthwaite, 1946).
-    """
-    signals = after.runs[0].measured.shape[1]
-    if not estimated.free or after.failed:
-        return np.zeros((len(after.runs), signals))
-    covariance, degrees, _ = covariance_of(estimated)
-    wider = stats.t.ppf(0.975, degrees) / stats.norm.ppf(0.975)
-    covariance = covariance * np.outer(wider, wider)
-    moved = replace(after, free=estimated.free)
-    moved = with_finite_differences(moved, executor, reaches(estimated))
-    found = np.zeros((len(after.runs), signals))
-    for number, (run, e) in enumerate(moved.pairs()):
-        columns = project_out(e.by_parameter, e.by_start)
-        for signal in range(signals):
-            own = columns[signal::signals]
-            carried = own.T @ own @ covariance / len(run.time)
-            mean, square = np.trace(carried), np.trace(carried @ carried)
-            if mean > 0.0:
-                freedom = mean**2 / square
-                most = stats.chi2.ppf(1.0 - TEST_ALARM, freedom) / freedom
-                found[number, signal] = mean * most
-    return found
+def left_by_best_values(
+    after: Fit, estimated: Fit, level: FloatArray, executor: Executor | None = None
+) -> FloatArray:
+    """Mean squares [runs, ny], in units of the noise, that the validation runs `after` leave with
+    those values within the joint confidence region of the `estimated` ones that suit them best, all
+    runs together, and free starts. The derivatives of the runs carry the values there; signals
+    count by their noise `level` [ny], runs that are far worse than usual count less (Huber).
 
-
-def is_quiet(after: Fit, floor: Floor, by_values: FloatArray, trained: Fit) -> bool:
-    """Whether validation runs show no more than noise, and what errors of the values leave
-    (`by_values` [runs, ny], see `left_by_values`). The median of the samples counts, for a run that
-    sticks at another sample than it did is off by counts. Of many windows it sees half: beside it
-    they may not leave more than the windows of the training runs (Mann and Whitney, 1947).
+    A model that lacks nothing leaves noise with its true values, and the region holds those. What
+    a lacking model leaves has another form than any change of its values.
     """
     squares = mean_squares(after.evaluations, after.runs)
+    if not estimated.free or after.failed:
+        return squares
+    moved = replace(after, free=estimated.free)
+    moved = with_finite_differences(moved, executor, reaches(estimated))
+    region, size = joint_region(estimated), sizes(after.runs)
+    scaled = []  # residuals and what the region carries there, over the noise of their signals
+    for run, e in moved.pairs():
+        noise = np.tile(level, len(run.time))[:, None]
+        residual = project_out(e.residual[:, None], e.by_start) / noise
+        scaled.append((residual[:, 0], project_out(e.by_parameter, e.by_start) @ region / noise))
+    left = [residual for residual, _ in scaled]
+    for _ in range(REWEIGHTINGS):
+        square = np.array([np.mean(r**2) for r in left])
+        usual = max(float(weighted_median(square[:, None], size)[0]), 1.0)
+        weighted = list(zip(huber_root(square, usual), scaled, strict=True))
+        columns = np.vstack([root * carried for root, (_, carried) in weighted])
+        target = -np.concatenate([root * residual for root, (residual, _) in weighted])
+        shift = closest_in_ball(columns, target)
+        left = [residual + carried @ shift for residual, carried in scaled]
+    tables = [r.reshape(run.measured.shape) for r, run in zip(left, after.runs, strict=True)]
+    return np.array([np.mean((table * level) ** 2, axis=0) for table in tables])
+
+
+def is_quiet(after: Fit, floor: Floor, left: FloatArray, trained: Fit) -> bool:
+    """Whether validation runs show no more than noise, by what they leave with the best values that
+    the training runs allow (`left` [runs, ny], see `left_by_best_values`). The median of the runs
+    counts, for one that sticks at another sample than it did is off by counts. Of many windows it
+    sees half: beside it they may not leave more than the windows of the training runs (Mann and
+    Whitney, 1947).
+    """
     size = sizes(after.runs)
-    allowed = (ABOVE_NOISE * floor.most) ** 2 + by_values
-    if not np.all(weighted_median(squares / allowed, size) <= 1.0):
+    if not np.all(weighted_median(left / (ABOVE_NOISE * floor.most) ** 2, size) <= 1.0):
         return False
+    squares = mean_squares(after.evaluations, after.runs)
     own = mean_squares(trained.evaluations, trained.runs)
     if min(len(squares), len(own)) < MANY_RUNS:
         return True

@@ -23,7 +23,7 @@ from ptp_symbolic.numeric.diagnose.held_out import (
     held_out_gain,
     is_quiet,
     is_taken_back,
-    left_by_values,
+    left_by_best_values,
 )
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.refits import is_near_floor
@@ -219,13 +219,13 @@ def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refus
 
 
 def _floor_and_quiet(task: Task, final: Trial, after: Fit, estimated: Fit) -> tuple[Floor, bool]:
-    """The floor of the final model, and whether its validation runs `after` leave no more, but for
-    what the error of its `estimated` values leaves there.
+    """The floor of the final model, and whether its validation runs `after` leave no more with the
+    values that suit them best among those that its `estimated` ones allow.
     """
     floor = floor_of(task, final, carried_noise(task, final.fit))
     here = replace(floor, carried=carried_noise(task, after))
-    by_values = left_by_values(after, estimated, task.executor)
-    return floor, is_quiet(after, here, by_values, final.fit)
+    left = left_by_best_values(after, estimated, here.level, task.executor)
+    return floor, is_quiet(after, here, left, final.fit)
 
 
 def _closest(found: Search) -> Trial | None:
