@@ -56,6 +56,11 @@ def test_an_encoder_between_samples_is_noted_where_that_costs_a_count() -> None:
     assert "'pan_angle' is interpolated" in text and "off by some 33 counts" in text
 
 
+def test_samples_that_are_left_out_are_noted() -> None:
+    (text,) = remarks([replace(log(MOVING), thinned={"pan_angle": 5.0})], PLATFORM)
+    assert "'pan_angle' is logged 5 times as fast as the slowest encoder" in text
+
+
 def test_constant_inputs_are_noted() -> None:
     (text,) = remarks([log(MOVING, np.full(400, 3.0))], PLATFORM)
     assert "No input changes" in text

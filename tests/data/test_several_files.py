@@ -148,6 +148,7 @@ def test_the_slower_of_two_encoders_has_the_clock(tmp_path: Path, shift: float) 
     np.testing.assert_allclose(np.degrees(log.outputs[:, 0]), 20.0 * np.sin(3.0 * own), atol=2e-6)
     np.testing.assert_allclose(log.inputs[:, 0], own + 0.002, atol=1e-9)  # of 0 to 4 ms more
     np.testing.assert_allclose(log.steps[0][0], fast)
+    assert log.thinned == {"angle": pytest.approx(5.0)}
 
 
 def test_the_run_ends_where_the_last_input_no_longer_holds(

@@ -28,13 +28,15 @@ SLOWER = 1.5  # times the period of another: a clock of its own, not the same on
 class Clocked:
     """All signals at one clock: the times [k] in s at which the outputs were measured, `values`
     [k, nu + ny] at them, and the `steps` of the inputs. `interpolated` are the columns of outputs
-    between samples, each with how far it may be off where the motion changes suddenly.
+    between samples, each with how far it may be off where the motion changes suddenly; `thinned`
+    those of which samples are left out, each with how many times as fast it was logged.
     """
 
     time: FloatArray
     values: FloatArray
     steps: tuple[Steps, ...] = ()
     interpolated: dict[str, float] = field(default_factory=dict)
+    thinned: dict[str, float] = field(default_factory=dict)
 
 
 def on_one_clock(
@@ -74,6 +76,11 @@ def on_one_clock(
             s.column: samples.uncertainty
             for s, samples in zip(outputs, seen, strict=True)
             if samples.places(clock) is None
+        },
+        {
+            s.column: _usual(clock) / _usual(samples.time)
+            for s, samples in zip(outputs, seen, strict=True)
+            if _usual(clock) > SLOWER * _usual(samples.time)
         },
     )
 

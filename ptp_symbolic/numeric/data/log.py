@@ -31,7 +31,7 @@ class Log:
     sample, and `steps` the times in s and values [m] of every input (empty: as `inputs` say).
     `wraps` tells of which angles turns, or ends of a counter, were taken out; `interpolated` which
     columns have values between their samples, and how far these may be off where the motion changes
-    suddenly.
+    suddenly; `thinned` which were logged faster than `time`, and how many times as fast.
     """
 
     name: str
@@ -41,6 +41,7 @@ class Log:
     steps: tuple[Steps, ...] = ()
     wraps: tuple[Wraps, ...] = ()
     interpolated: Mapping[str, float] = field(default_factory=dict)
+    thinned: Mapping[str, float] = field(default_factory=dict)
 
 
 def read_log(path: Path | str, platform: Platform) -> Log:
@@ -78,6 +79,7 @@ def read_log(path: Path | str, platform: Platform) -> Log:
         clocked.steps,
         tuple(wraps for _, wraps in whole if wraps is not None),
         clocked.interpolated,
+        clocked.thinned,
     )
 
 

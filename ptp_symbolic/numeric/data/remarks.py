@@ -57,7 +57,7 @@ def refuse_motionless(logs: Sequence[Log], platform: Platform) -> None:
 
 def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
     """Warnings about the logs, one sentence each: motionless angles, constant inputs, saturated
-    signals, gaps and jitter of the sampling, encoders that were interpolated.
+    signals, gaps and jitter of the sampling, signals that were interpolated or thinned.
     """
     found = []
     outputs = _outputs(platform)
@@ -84,6 +84,7 @@ def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
         found += _clock_remarks(log)
         found += [t for k, s in enumerate(outputs) for t in _jump_remarks(log, k, s)]
         found += [t for s in outputs for t in _interpolation_remarks(log, s)]
+        found += [_thinning_remark(log.name, *thinned) for thinned in log.thinned.items()]
     return tuple(found)
 
 
@@ -146,6 +147,13 @@ def _interpolation_remarks(log: Log, signal: SignalDeclaration) -> list[str]:
         f" may be off by some {off:.2g} counts as the motion changes suddenly: log at a higher"
         " rate."
     ]
+
+
+def _thinning_remark(name: str, column: str, faster: float) -> str:
+    return (
+        f"{name}: '{column}' is logged {faster:.3g} times as fast as the slowest encoder, whose"
+        " clock counts: the samples between are left out. Log the encoders at one rate to use them."
+    )
 
 
 def _wrap_remark(name: str, wraps: Wraps) -> str:
