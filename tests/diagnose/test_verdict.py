@@ -26,6 +26,7 @@ from ptp_symbolic.numeric.diagnose.verdict import (
 )
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE
 from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.run_groups import sizes
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 
@@ -38,9 +39,10 @@ def floor(carried: float = 0.0) -> Floor:
     return Floor(one, one, Carried(carried * one, carried * one))
 
 
-def squares(after: Fit) -> Floats:
-    """What `after` leaves [runs, ny] where no value is free to move."""
-    return mean_squares(after.evaluations, after.runs)
+def quiet(after: Fit, trained: Fit, carried: float = 0.0, left: Floats | None = None) -> bool:
+    """Whether `after` is, by what it has `left` [runs, ny] (default: as no value is free)."""
+    left = mean_squares(after.evaluations, after.runs) if left is None else left
+    return is_quiet(left, sizes(after.runs), floor(carried), trained)
 
 
 def word(
@@ -51,10 +53,8 @@ def word(
     """
     trial = Trial((EFFECT,) if named else (), finished([left * WAVE] * 3))
     after = finished([held_out * WAVE] * 2)
-    quiet = is_quiet(after, floor(carried), squares(after), trial.fit) and leaves_noise_alone(
-        trial, floor()
-    )
-    return word_of(trial, {"effect": group} if named else {}, quiet)
+    at_noise = quiet(after, trial.fit, carried) and leaves_noise_alone(trial, floor())
+    return word_of(trial, {"effect": group} if named else {}, at_noise)
 
 
 @pytest.mark.parametrize(
@@ -99,15 +99,15 @@ def test_look_alikes_make_a_group_of_an_explanation_alone() -> None:
 
 def test_a_run_that_sticks_elsewhere_does_not_decide() -> None:
     after = finished([WAVE, WAVE, 40.0 * WAVE])
-    assert is_quiet(after, floor(), squares(after), finished([WAVE] * 3))
+    assert quiet(after, finished([WAVE] * 3))
 
 
 def test_what_runs_leave_with_the_best_values_decides() -> None:
     """Of three runs the median counts."""
     after, trained = finished([2.0 * WAVE] * 3), finished([WAVE] * 3)
-    assert not is_quiet(after, floor(), squares(after), trained)
-    assert is_quiet(after, floor(), np.array([[1.0], [1.0], [4.0]]), trained)
-    assert not is_quiet(after, floor(), np.array([[1.0], [4.0], [4.0]]), trained)
+    assert not quiet(after, trained)
+    assert quiet(after, trained, left=np.array([[1.0], [1.0], [4.0]]))
+    assert not quiet(after, trained, left=np.array([[1.0], [4.0], [4.0]]))
 
 
 def noisy(windows: int, spread: float, seed: int) -> list[Any]:
@@ -121,16 +121,16 @@ def noisy(windows: int, spread: float, seed: int) -> list[Any]:
 def test_windows_that_are_alike_are_quiet(training: float, validation: float) -> None:
     """A machine that sticks elsewhere in some windows does so in both parts."""
     after, trained = finished(noisy(28, validation, 1)), finished(noisy(48, training, 2))
-    assert is_quiet(after, floor(), squares(after), trained)
+    assert quiet(after, trained)
 
 
 def test_windows_half_of_which_leave_more_than_the_training_runs_are_not_quiet() -> None:
     """The median alone is within its bound, and says nothing of the other half."""
-    sizes = np.concatenate([np.linspace(1.0, 1.05, 14), np.linspace(1.1, 9.0, 14)])
-    after = finished([s * WAVE for s in sizes])
-    assert np.median(sizes) < ABOVE_NOISE
-    assert not is_quiet(after, floor(), squares(after), finished(noisy(48, 1.0, 3)))
-    assert is_quiet(after, floor(), squares(after), finished(noisy(3, 1.0, 3)))  # too few to tell
+    rms = np.concatenate([np.linspace(1.0, 1.05, 14), np.linspace(1.1, 9.0, 14)])
+    after = finished([s * WAVE for s in rms])
+    assert np.median(rms) < ABOVE_NOISE
+    assert not quiet(after, finished(noisy(48, 1.0, 3)))
+    assert quiet(after, finished(noisy(3, 1.0, 3)))  # too few to tell
 
 
 @pytest.mark.parametrize(

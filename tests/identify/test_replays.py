@@ -92,27 +92,48 @@ def test_runs_may_be_off_by_what_the_training_runs_allow_the_values(off: float) 
     after = fit_parameters(MODEL, after.runs, (), dict(known.values), None, Effort(20))
     bend = 0.5 * TORQUE / known.values["J_pan"] * TIME[-1] ** 2 / (6.0 * math.sqrt(5.0))
     rms = bend * reach * after.runs[0].weight[0]
-    plain = left_by_best_values(after, replace(known, free=()), np.ones(2))
-    assert plain[0, 0] > (off * rms) ** 2
     found = left_by_best_values(after, known, np.ones(2))
+    assert left_by_best_values(after, known, np.full(2, 4.0)) == pytest.approx(found)
     expected = (max(off - 1.0, 0.0) * rms) ** 2 + 1.0  # and the rounding of the angle
     assert found[0, 0] == pytest.approx(expected, rel=0.1)
     assert found[0, 1] == pytest.approx(0.0, abs=1e-9)
 
 
+def test_one_run_that_is_far_off_does_not_draw_the_values_to_it() -> None:
+    """Six runs ask for an inertia at four fifths of the reach, one for one far off on the other
+    side; the mean of all would leave 3.2 times the square of the reach in the six.
+    """
+    known = estimable(accelerated(3), (0.0003, 0.0))
+    covariance, _, _ = covariance_of(known)
+    reach = math.sqrt(6.635 * covariance[0, 0])
+    inertia = known.values["J_pan"]
+    runs = accelerated(6, math.exp(0.8 * reach) * inertia).runs
+    runs += accelerated(1, math.exp(-15.0 * reach) * inertia).runs
+    after = fit_parameters(MODEL, runs, (), dict(known.values), None, Effort(20))
+    bend = 0.5 * TORQUE / inertia * TIME[-1] ** 2 / (6.0 * math.sqrt(5.0))
+    rms = bend * reach * runs[0].weight[0]
+    found = left_by_best_values(after, known, np.ones(2))
+    assert np.all(found[:6, 0] < 1.0 + rms**2)
+    assert found[6, 0] > (14.0 * rms) ** 2
+
+
 def test_values_do_not_take_up_what_has_another_form() -> None:
-    """A wave that turns eight times is no parabola, however little the inertia is known."""
-    known = estimable(accelerated(3), (0.2, 0.0))
+    """A wave that turns eight times is no parabola, however little the inertia is known: errors of
+    it as large as the region allows would be more than the wave.
+    """
+    known = estimable(accelerated(3), (0.02, 0.0))
     wave = 10.0 * SIGMA * np.sin(16.0 * np.pi * TIME / TIME[-1])
     after = accelerated(1)
     (run,) = after.runs
     measured = run.measured + np.column_stack([wave, 0.0 * wave])
-    shaken = fit_parameters(
-        MODEL, (replace(run, measured=measured),), (), dict(known.values), None, Effort(20)
-    )
+    runs = (replace(run, measured=measured),)
+    shaken = fit_parameters(MODEL, runs, (), dict(known.values), None, Effort(20))
     plain = left_by_best_values(shaken, replace(known, free=()), np.ones(2))
     found = left_by_best_values(shaken, known, np.ones(2))
     assert found[0, 0] == pytest.approx(plain[0, 0], rel=0.05)
+    reach = math.sqrt(6.635 * covariance_of(known)[0][0, 0])
+    bend = 0.5 * TORQUE / INERTIA * TIME[-1] ** 2 / (6.0 * math.sqrt(5.0))
+    assert (bend * reach * run.weight[0]) ** 2 > 4.0 * plain[0, 0]
 
 
 WINDOWS, SAMPLES = 4, 300

@@ -55,19 +55,21 @@ def left_by_best_values(
     after: Fit, estimated: Fit, level: FloatArray, executor: Executor | None = None
 ) -> FloatArray:
     """Mean squares [runs, ny], in units of the noise, that the validation runs `after` leave with
-    those values within the joint confidence region of the `estimated` ones that suit them best, all
-    runs together, and free starts. The derivatives of the runs carry the values there; signals
-    count by their noise `level` [ny], runs that are far worse than usual count less (Huber).
+    other values: those in the joint confidence region of the `estimated` ones that suit all runs
+    together best, to first order. Starts are free. Signals count by their noise `level` [ny], runs
+    that are far worse than usual count less (Huber).
 
     A model that lacks nothing leaves noise with its true values, and the region holds those. What
-    a lacking model leaves has another form than any change of its values.
+    a lacking model leaves is seldom of the form of a change of its values.
     """
     squares = mean_squares(after.evaluations, after.runs)
-    if not estimated.free or after.failed:
-        return squares
     moved = replace(after, free=estimated.free)
-    moved = with_finite_differences(moved, executor, reaches(estimated))
-    region, size = joint_region(estimated), sizes(after.runs)
+    if estimated.free and not after.failed:
+        moved = with_finite_differences(moved, executor, reaches(estimated))
+    if moved.failed or not all(np.all(np.isfinite(e.by_parameter)) for e in moved.evaluations):
+        return squares
+    region = joint_region(estimated) if estimated.free else np.zeros((0, 0))
+    size = sizes(after.runs)
     scaled = []  # residuals and what the region carries there, over the noise of their signals
     for run, e in moved.pairs():
         noise = np.tile(level, len(run.time))[:, None]
@@ -86,21 +88,18 @@ def left_by_best_values(
     return np.array([np.mean((table * level) ** 2, axis=0) for table in tables])
 
 
-def is_quiet(after: Fit, floor: Floor, left: FloatArray, trained: Fit) -> bool:
-    """Whether validation runs show no more than noise, by what they leave with the best values that
-    the training runs allow (`left` [runs, ny], see `left_by_best_values`). The median of the runs
-    counts, for one that sticks at another sample than it did is off by counts. Of many windows it
-    sees half: beside it they may not leave more than the windows of the training runs (Mann and
-    Whitney, 1947).
+def is_quiet(left: FloatArray, size: FloatArray, floor: Floor, trained: Fit) -> bool:
+    """Whether validation runs of `size` [runs] samples show no more than noise, by what they have
+    `left` [runs, ny] (see `left_by_best_values`). The median of the runs counts, for one that
+    sticks at another sample than it did is off by counts. Of many windows it sees half: beside it
+    they may not leave more than the windows of the training runs (Mann and Whitney, 1947).
     """
-    size = sizes(after.runs)
     if not np.all(weighted_median(left / (ABOVE_NOISE * floor.most) ** 2, size) <= 1.0):
         return False
-    squares = mean_squares(after.evaluations, after.runs)
     own = mean_squares(trained.evaluations, trained.runs)
-    if min(len(squares), len(own)) < MANY_RUNS:
+    if min(len(left), len(own)) < MANY_RUNS:
         return True
-    return bool(np.all(stats.mannwhitneyu(squares, own, alternative="greater").pvalue > UNALIKE))
+    return bool(np.all(stats.mannwhitneyu(left, own, alternative="greater").pvalue > UNALIKE))
 
 
 def held_out_fit(task: Task, trial: Trial) -> Fit:

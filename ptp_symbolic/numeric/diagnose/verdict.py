@@ -31,6 +31,7 @@ from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, ranked
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.replays import estimable
+from ptp_symbolic.numeric.identify.run_groups import sizes
 
 NOTHING_MISSING = "nothing_missing"
 EXPLAINED = "explained"
@@ -219,13 +220,13 @@ def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refus
 
 
 def _floor_and_quiet(task: Task, final: Trial, after: Fit, estimated: Fit) -> tuple[Floor, bool]:
-    """The floor of the final model, and whether its validation runs `after` leave no more with the
-    values that suit them best among those that its `estimated` ones allow.
+    """The floor of the final model, and whether its validation runs `after` are at theirs, with
+    values in the joint confidence region of the `estimated` ones.
     """
     floor = floor_of(task, final, carried_noise(task, final.fit))
     here = replace(floor, carried=carried_noise(task, after))
     left = left_by_best_values(after, estimated, here.level, task.executor)
-    return floor, is_quiet(after, here, left, final.fit)
+    return floor, is_quiet(left, sizes(after.runs), here, final.fit)
 
 
 def _closest(found: Search) -> Trial | None:

@@ -129,6 +129,17 @@ def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
     return _covariance(fit, _columns(fit))
 
 
+def axes_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Directions [nf, seen] of the search coordinates that white noise moves independently and by
+    one each; the variance [seen] along each, as that of an interval; and the degrees of freedom
+    [seen] behind it. A few blocks tell these variances, but not how many coordinates go together.
+    """
+    columns = _columns(fit)
+    axes, _ = _axes(columns.T @ columns)
+    covariance, degrees, _ = _covariance(fit, columns @ axes)
+    return axes, np.diag(covariance), degrees
+
+
 def _columns(fit: Fit) -> FloatArray:
     """Derivatives [k, nf] of the residuals by the search coordinates, without what the unknown
     starts can explain.
@@ -181,7 +192,16 @@ def degrees_of_freedom(shifts: FloatArray) -> FloatArray:
 
 
 def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Inverse [nf, nf] where there is information, and the directions [2, nf, lost] without.
+    """Inverse [nf, nf] where there is information, and the directions [2, nf, lost] without (see
+    `_axes`).
+    """
+    axes, lost = _axes(information)
+    return axes @ axes.T, lost
+
+
+def _axes(information: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Directions [nf, seen] in which the information is one and that share none; and those [2, nf,
+    lost] in which there is none.
 
     A parameter that the data hardly see takes part in a lost direction by little once it is scaled
     by that, and by much as it is.
@@ -189,11 +209,11 @@ def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
     size = np.sqrt(np.diag(information))
     unit = np.where(size > 0.0, size, 1.0)
     shares, directions = np.linalg.eigh(information / np.outer(unit, unit))
-    kept = shares > NOTHING * max(shares[-1], 1e-300)
-    seen = directions[:, kept] / unit[:, None]
+    kept = shares > NOTHING * max(shares.max(initial=0.0), 1e-300)
+    axes = directions[:, kept] / unit[:, None] / np.sqrt(shares[kept])
     lost = directions[:, ~kept] / unit[:, None]
     lost /= np.maximum(np.linalg.norm(lost, axis=0), 1e-300)
-    return seen / shares[kept] @ seen.T, np.stack([directions[:, ~kept], lost])
+    return axes, np.stack([directions[:, ~kept], lost])
 
 
 def project_out(jacobian: FloatArray, nuisance: FloatArray) -> FloatArray:

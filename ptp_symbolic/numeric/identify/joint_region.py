@@ -6,22 +6,22 @@ from scipy import optimize, stats
 
 from ptp_symbolic.numeric.identify.constants import TEST_ALARM
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.intervals import covariance_of
+from ptp_symbolic.numeric.identify.intervals import axes_of
 
 FloatArray = NDArray[np.float64]
 
 
 def joint_region(fit: Fit) -> FloatArray:
-    """The ellipsoid [nf, nf] that holds the true search coordinates of a finished fit with a chance
-    of 99 %: the fitted ones plus this matrix times any vector of length one at most (Scheffe,
-    1953). It is wider by Student's t where few blocks tell of a coordinate. Coordinates that the
-    data do not see stay as they are.
+    """The ellipsoid [nf, seen] that holds the true search coordinates of a finished fit with a
+    chance of 99 %: the fitted ones plus this matrix times any vector of length one at most
+    (Scheffe, 1953). Student's t widens its axes where few blocks tell of one. Directions that the
+    data do not see are left out.
     """
-    covariance, degrees, _ = covariance_of(fit)
-    wider = stats.t.ppf(0.975, degrees) / stats.norm.ppf(0.975)
-    variances, directions = np.linalg.eigh(covariance * np.outer(wider, wider))
-    radius = np.sqrt(stats.chi2.ppf(1.0 - TEST_ALARM, len(fit.free)))
-    return np.asarray(radius * directions * np.sqrt(np.maximum(variances, 0.0)))
+    axes, variances, degrees = axes_of(fit)
+    tail = 0.5 * TEST_ALARM
+    wider = stats.t.isf(tail, degrees) / stats.norm.isf(tail)
+    radius = np.sqrt(stats.chi2.isf(TEST_ALARM, max(axes.shape[1], 1)))
+    return np.asarray(radius * axes * wider * np.sqrt(variances))
 
 
 def closest_in_ball(matrix: FloatArray, target: FloatArray) -> FloatArray:
@@ -29,8 +29,10 @@ def closest_in_ball(matrix: FloatArray, target: FloatArray) -> FloatArray:
     [k]: least squares with a quadratic constraint (Golub and Van Loan, 2013, 6.2.1).
     """
     left, sizes, right = np.linalg.svd(matrix, full_matrices=False)
-    seen = sizes > 1e-14 * max(sizes.max(initial=0.0), 1e-300)
-    sizes, along, right = sizes[seen], (left.T @ target)[seen], right[seen]
+    largest = max(sizes.max(initial=0.0), 1e-300)
+    seen = sizes > 1e-14 * largest
+    along, right = (left.T @ target)[seen] / largest, right[seen]
+    sizes = sizes[seen] / largest
 
     def solution(multiplier: float) -> FloatArray:
         return sizes * along / (sizes**2 + multiplier)
@@ -40,6 +42,6 @@ def closest_in_ball(matrix: FloatArray, target: FloatArray) -> FloatArray:
 
     multiplier = 0.0
     if seen.any() and excess(0.0) > 0.0:
-        enough = float(np.linalg.norm(sizes * along))  # the length is below one from here on
-        multiplier = float(optimize.brentq(excess, 0.0, enough, rtol=1e-12))
+        enough = 2.0 * float(np.linalg.norm(sizes * along))  # the length is below one half there
+        multiplier = float(optimize.brentq(excess, 0.0, enough, xtol=1e-300, rtol=1e-12))
     return np.asarray(right.T @ solution(multiplier))
