@@ -220,8 +220,8 @@ def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refus
 
 
 def _floor_and_quiet(task: Task, final: Trial, after: Fit, estimated: Fit) -> tuple[Floor, bool]:
-    """The floor of the final model, and whether its validation runs `after` are at theirs, with
-    values in the joint confidence region of the `estimated` ones.
+    """The floor of the final model, and whether its validation runs `after` show noise alone, with
+    some values in the joint confidence region of the `estimated` ones.
     """
     floor = floor_of(task, final, carried_noise(task, final.fit))
     here = replace(floor, carried=carried_noise(task, after))

@@ -130,9 +130,10 @@ def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def axes_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Directions [nf, seen] of the search coordinates that white noise moves independently and by
-    one each; the variance [seen] along each, as that of an interval; and the degrees of freedom
-    [seen] behind it. A few blocks tell these variances, but not how many coordinates go together.
+    """Directions [nf, seen] of the search coordinates, along which white noise of one moves a fit
+    independently and by one each; the variance [seen] along each by the jackknife of the intervals;
+    and the degrees of freedom [seen] behind it. Few blocks tell these variances, but not the
+    correlations of many coordinates.
     """
     columns = _columns(fit)
     axes, _ = _axes(columns.T @ columns)
@@ -200,8 +201,8 @@ def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _axes(information: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Directions [nf, seen] in which the information is one and that share none; and those [2, nf,
-    lost] in which there is none.
+    """Directions [nf, seen] that make a unit matrix of the information; and those [2, nf, lost]
+    without any.
 
     A parameter that the data hardly see takes part in a lost direction by little once it is scaled
     by that, and by much as it is.

@@ -14,8 +14,8 @@ FloatArray = NDArray[np.float64]
 def joint_region(fit: Fit) -> FloatArray:
     """The ellipsoid [nf, seen] that holds the true search coordinates of a finished fit with a
     chance of 99 %: the fitted ones plus this matrix times any vector of length one at most
-    (Scheffe, 1953). Student's t widens its axes where few blocks tell of one. Directions that the
-    data do not see are left out.
+    (Scheffe, 1953). An axis of which few blocks tell is widened as Student's t is at 99 %.
+    Directions that the data do not see are left out.
     """
     axes, variances, degrees = axes_of(fit)
     tail = 0.5 * TEST_ALARM
@@ -30,7 +30,7 @@ def closest_in_ball(matrix: FloatArray, target: FloatArray) -> FloatArray:
     """
     left, sizes, right = np.linalg.svd(matrix, full_matrices=False)
     largest = max(sizes.max(initial=0.0), 1e-300)
-    seen = sizes > 1e-14 * largest
+    seen = sizes > 1e-14 * largest  # below is the rounding of equal columns
     along, right = (left.T @ target)[seen] / largest, right[seen]
     sizes = sizes[seen] / largest
 
