@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from ptp_symbolic.numeric.simulation.ahead import compile_ahead, wait_until_compiled
+from ptp_symbolic.numeric.simulation.ahead import COMPILE, compile_ahead, wait_until_compiled
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 
@@ -58,14 +58,13 @@ def printed_in_two_processes() -> Callable[..., set[str]]:
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Before tests run in several processes, compile both runners side by side, once: on a new
+    """Before tests run in several processes, compile all kernels side by side, once: on a new
     machine every process would.
     """
     if getattr(session.config.option, "numprocesses", None):  # that of the session, not of a worker
-        for sampled in (False, True):
-            compile_ahead(sampled)
-        for sampled in (False, True):
-            wait_until_compiled(sampled)
+        compile_ahead(*COMPILE)
+        for kernel in COMPILE:
+            wait_until_compiled(kernel)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

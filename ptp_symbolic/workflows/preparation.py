@@ -15,7 +15,12 @@ from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.ahead import compile_ahead
+from ptp_symbolic.numeric.simulation.ahead import (
+    HELD_SAMPLES,
+    RUNNER,
+    SAMPLED_RUNNER,
+    compile_ahead,
+)
 from ptp_symbolic.platform import Platform, effect_key, naming_file
 from ptp_symbolic.symbolic.derivation.placement import place_effects
 from ptp_symbolic.workflows.result import Progress
@@ -43,9 +48,12 @@ def material_of(platform: Platform) -> float:
 
 
 def model_of(platform: Platform) -> Model:
-    """The model of a platform; on a new machine, the runner that it needs is compiled meanwhile."""
+    """The model of a platform; on a new machine, its kernels are compiled meanwhile."""
     placed = place_effects(platform)
-    compile_ahead(any(effect.turning_contribution_at(at).samplers for effect, at in placed))
+    if any(effect.turning_contribution_at(at).samplers for effect, at in placed):
+        compile_ahead(SAMPLED_RUNNER)
+    else:
+        compile_ahead(RUNNER, HELD_SAMPLES)
     return emission.emit(platform)
 
 

@@ -1,4 +1,4 @@
-"""The runner compiled ahead: a process of its own is begun where it is needed, and waited for."""
+"""Kernels compiled ahead: a process of its own is begun where one is needed, and waited for."""
 
 import subprocess
 import sys
@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.numeric.simulation import ahead, hybrid
+from ptp_symbolic.numeric.simulation import ahead, held_samples, hybrid
+from ptp_symbolic.numeric.simulation.ahead import HELD_SAMPLES, RUNNER, SAMPLED_RUNNER
 
 COMPILE = ahead.COMPILE
 
@@ -16,16 +17,16 @@ def mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A mark in an empty folder, and nothing begun; compiling is to leave a file `done` there."""
     slow = f"import time; time.sleep(0.5); open({str(tmp_path / 'done')!r}, 'w')"
     monkeypatch.setattr(ahead, "__file__", str(tmp_path / "ahead.py"))
-    monkeypatch.setattr(ahead, "COMPILE", slow)
+    monkeypatch.setattr(ahead, "COMPILE", dict.fromkeys(COMPILE, slow))
     monkeypatch.setattr(ahead, "_begun", {})
     (tmp_path / "__pycache__").mkdir()
-    return ahead._mark(False)
+    return ahead._mark(RUNNER)
 
 
 def test_who_needs_it_waits_until_it_is_compiled(mark: Path) -> None:
     done = mark.parents[1] / "done"
-    ahead.compile_ahead()
-    ahead.wait_until_compiled(False)
+    ahead.compile_ahead(RUNNER)
+    ahead.wait_until_compiled(RUNNER)
     assert done.exists()
 
 
@@ -40,11 +41,11 @@ def test_it_is_begun_once_and_not_where_it_was_compiled_before(
         return start(command, **options)  # type: ignore[call-overload]
 
     monkeypatch.setattr(ahead.subprocess, "Popen", noted)
-    ahead.compile_ahead()
-    ahead.compile_ahead()
+    ahead.compile_ahead(RUNNER)
+    ahead.compile_ahead(RUNNER)
     assert [command[0] for command in begun] == [sys.executable]
-    ahead.note_compiled(True)
-    ahead.compile_ahead(True)
+    ahead.note_compiled(SAMPLED_RUNNER)
+    ahead.compile_ahead(SAMPLED_RUNNER)
     assert len(begun) == 1
 
 
@@ -53,7 +54,7 @@ def test_a_mark_of_other_sources_is_replaced(mark: Path) -> None:
     other = mark.with_name("sampled-runner-of-0")
     old.touch()
     other.touch()
-    ahead.note_compiled(False)
+    ahead.note_compiled(RUNNER)
     assert mark.exists()
     assert not old.exists()
     assert other.exists()
@@ -63,14 +64,18 @@ def test_where_no_process_can_be_begun_nobody_waits(
     mark: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(ahead.sys, "executable", str(mark / "no python"))
-    ahead.compile_ahead()
-    ahead.wait_until_compiled(False)
+    ahead.compile_ahead(RUNNER)
+    ahead.wait_until_compiled(RUNNER)
     assert not (mark.parents[1] / "done").exists()
 
 
-def test_what_is_compiled_ahead_is_the_runner_and_leaves_its_mark(mark: Path) -> None:
+def test_what_is_compiled_ahead_is_what_runs_and_leaves_its_mark(mark: Path) -> None:
     hybrid.runner.cache_clear()
-    exec(COMPILE.format(sampled=False), {})
+    exec(COMPILE[RUNNER], {})
     assert hybrid.runner.cache_info().currsize == 1
     assert mark.exists()
-    assert not mark.with_name(f"sampled-{mark.name}").exists()
+    assert not ahead._mark(SAMPLED_RUNNER).exists()
+    held_samples.loop.cache_clear()
+    exec(COMPILE[HELD_SAMPLES], {})
+    assert held_samples.loop.cache_info().currsize == 1
+    assert ahead._mark(HELD_SAMPLES).exists()

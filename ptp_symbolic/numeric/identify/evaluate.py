@@ -206,6 +206,7 @@ def evaluate(
         columns,
         delay_columns(model, columns),
         lean=True,
+        rough_tangents=True,
     )
     r, j = np.zeros(run.size), np.zeros((run.size, found.s.shape[2]))
     failed = None if found.status == DONE else f"{run.name}: stopped at {found.reached:.4f} s"

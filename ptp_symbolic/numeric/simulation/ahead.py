@@ -1,7 +1,7 @@
-"""The runner compiled by another process while this one derives equations.
+"""Kernels compiled by other processes while this one derives equations.
 
-numba compiles it on one core for most of a minute, once on a new machine, and keeps it where every
-process finds it. What goes wrong there costs time alone: the runner is compiled where it is needed.
+numba compiles each on one core, for up to half a minute, once on a new machine, and keeps it where
+every process finds it. What goes wrong there costs time alone: it is compiled where it is needed.
 """
 
 import atexit
@@ -14,54 +14,58 @@ import numba
 
 from ptp_symbolic.numeric.simulation.kernels.records import source_stamp
 
-COMPILE = "from ptp_symbolic.numeric.simulation.hybrid import runner; runner({sampled})"
+RUNNER, SAMPLED_RUNNER, HELD_SAMPLES = "runner", "sampled-runner", "held-samples"
+PACKAGE = "ptp_symbolic.numeric.simulation"
+COMPILE = {
+    RUNNER: f"from {PACKAGE}.hybrid import runner; runner(False)",
+    SAMPLED_RUNNER: f"from {PACKAGE}.hybrid import runner; runner(True)",
+    HELD_SAMPLES: f"from {PACKAGE}.held_samples import loop; loop()",
+}
 
-_begun: dict[bool, "subprocess.Popen[bytes]"] = {}
+_begun: dict[str, "subprocess.Popen[bytes]"] = {}
 
 
-def compile_ahead(sampled: bool = False) -> None:
-    """Begin to compile the runner for machines with samplers (`sampled`), or for those without,
-    unless that was done before or is under way.
+def compile_ahead(*kernels: str) -> None:
+    """Begin to compile `kernels` (keys of COMPILE), each in a process of its own, unless that was
+    done before or is under way.
     """
-    if sampled in _begun or _mark(sampled).exists():
-        return
-    if not sys.executable:  # embedded in another program
-        return
-    command = [sys.executable, "-P", "-c", COMPILE.format(sampled=sampled)]
-    nothing = subprocess.DEVNULL
-    with contextlib.suppress(OSError):
-        process = subprocess.Popen(command, stdin=nothing, stdout=nothing, stderr=nothing)
-        atexit.register(process.kill)
-        _begun[sampled] = process
+    for kernel in kernels:
+        if kernel in _begun or _mark(kernel).exists():
+            continue
+        if not sys.executable:  # embedded in another program
+            return
+        command = [sys.executable, "-P", "-c", COMPILE[kernel]]
+        nothing = subprocess.DEVNULL
+        with contextlib.suppress(OSError):
+            process = subprocess.Popen(command, stdin=nothing, stdout=nothing, stderr=nothing)
+            atexit.register(process.kill)
+            _begun[kernel] = process
 
 
-def wait_until_compiled(sampled: bool) -> None:
-    """Return when no process that `compile_ahead` began is at work on the runner."""
-    process = _begun.get(sampled)
+def wait_until_compiled(kernel: str) -> None:
+    """Return when no process that `compile_ahead` began is at work on the kernel."""
+    process = _begun.get(kernel)
     if process is not None:
         process.wait()
 
 
-def note_compiled(sampled: bool) -> None:
+def note_compiled(kernel: str) -> None:
     """Leave a mark for `compile_ahead`, in the place of those of other sources. Where nothing may
-    be written there is none, and every process begins another, which finds the runner soon.
+    be written there is none, and every process begins another, which finds the kernel soon.
     """
-    mark = _mark(sampled)
+    mark = _mark(kernel)
     with contextlib.suppress(OSError):
         mark.touch()
-    for old in mark.parent.glob(f"{_name(sampled)}*"):
+    for old in mark.parent.glob(f"{kernel}-of-*"):
         if old != mark:
             with contextlib.suppress(OSError):
                 old.unlink()
 
 
-def _mark(sampled: bool) -> Path:
-    """A file that tells by its name for which sources, numba and Python the runner was compiled; if
+def _mark(kernel: str) -> Path:
+    """A file that tells by its name for which sources, numba and Python a kernel was compiled; if
     it has been taken away since, that costs time alone.
     """
     version = f"{numba.__version__}-{sys.implementation.cache_tag}"
-    return Path(__file__).parent / "__pycache__" / f"{_name(sampled)}{source_stamp():x}-{version}"
-
-
-def _name(sampled: bool) -> str:
-    return "sampled-runner-of-" if sampled else "runner-of-"
+    name = f"{kernel}-of-{source_stamp():x}-{version}"
+    return Path(__file__).parent / "__pycache__" / name

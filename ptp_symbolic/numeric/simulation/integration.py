@@ -17,6 +17,7 @@ from ptp_symbolic.numeric.simulation.buffers import (
     new_watch,
 )
 from ptp_symbolic.numeric.simulation.events.impacts import STICKS
+from ptp_symbolic.numeric.simulation.held_samples import loop_address
 from ptp_symbolic.numeric.simulation.kernels.calls import addresses
 from ptp_symbolic.numeric.simulation.kernels.lanes import padded
 from ptp_symbolic.numeric.simulation.kernels.records import (
@@ -26,7 +27,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     Watch,
 )
 from ptp_symbolic.numeric.simulation.kernels.specialised import specialised, zeros_of
-from ptp_symbolic.numeric.simulation.methods.exponential_step import Propagator, new_propagator
+from ptp_symbolic.numeric.simulation.methods.propagator import new_propagator
 from ptp_symbolic.numeric.simulation.methods.steps import ROSENBROCK, RUNGE_KUTTA
 from ptp_symbolic.numeric.simulation.sampling import new_sampling
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
@@ -132,6 +133,7 @@ def integrate(
     ledger: bool = False,
     event_room: int = 0,
     lean: bool = False,
+    rough_tangents: bool = False,
 ) -> Solution:
     """Integrate `model` at p [np] from the first to the last of `stops` in s, from x [n] with
     tangents s [n, ns]; outputs at `times` [k] in s.
@@ -140,8 +142,9 @@ def integrate(
     need not be. With tangents, output times must be stops. The first tangents are by the parameters
     `columns`; `delay_column` [nu] is per input the tangent of its delay, or -1. `lean`: states
     and terms of effects at their vanishing values are left out, which changes nothing else (see
-    `Model.acting` and `kernels.specialised`); for the implicit method. Raises InputError as
-    `refuse_start` and `new_sampling` do.
+    `Model.acting` and `kernels.specialised`); for the implicit method. `rough_tangents`:
+    good to some thousandths is enough, so that exponential steps may carry them. Raises InputError
+    as `refuse_start` and `new_sampling` do.
     """
     n, nu, module = len(x), len(model.input_names), model.module
     columns = np.zeros(0, dtype=np.int64) if columns is None else columns
@@ -165,8 +168,12 @@ def integrate(
     module.initial_modes(stops[0], x, u[0], p, watch.m)
     refuse_start(model, x, u[0], p, watch)
     record = new_record(times, n, s.shape[1], len(times) if ledger else 0, event_room)
-    status = hybrid.runner(len(model.sampler_periods) > 0)(
+    sampled, stands_still = len(model.sampler_periods) > 0, held or not any(module.INPUT_ACTS)
+    whole = method == "rosenbrock" and stands_still and not ledger and not sampled
+    whole = whole and (rough_tangents or not s.shape[1]) and not np.any(tangents.delay_column >= 0)
+    status = hybrid.runner(sampled)(
         METHODS[method],
+        loop_address() if whole else 0,
         functions,
         p,
         c,
@@ -175,7 +182,7 @@ def integrate(
         contact_table(model),
         inputs.arrays,
         cursor,
-        held or not any(module.INPUT_ACTS),
+        stands_still,
         u,
         x,
         stops,
@@ -186,7 +193,7 @@ def integrate(
         tuple(tangents),
         tuple(record),
         tuple(new_sampling(model, p, x, stops, padded(s.shape[1]))),
-        tuple(_propagator(model)),
+        tuple(new_propagator(len(model.mode_names), solved, n)),
     )
     return Solution(
         status,
@@ -199,12 +206,6 @@ def integrate(
         int(record.counts[EVENTS]),
         int(record.counts[STEPS]),
     )
-
-
-def _propagator(model: Model) -> Propagator:
-    """Room for the matrices of a machine with samplers; none in others."""
-    n = len(model.state_names) if len(model.sampled) else 0
-    return new_propagator(len(model.mode_names), model.moving if n else 0, n)
 
 
 def refuse_start(model: Model, x: FloatArray, u: FloatArray, p: FloatArray, watch: Watch) -> None:

@@ -1,36 +1,30 @@
-"""From one sample of a controller to the next in one step: exponential time differencing.
+"""From one sample to the next in one step, of a controller or of inputs that are held: exponential
+time differencing.
 
 Between samples the inputs stand still, and a geared machine that keeps its modes is nearly linear.
-With L its Jacobian, taken once and kept while the modes stay, the step of Cox and Matthews (J.
-Comput. Phys. 176, 2002, Eq. 22) is exact in what is linear and of order 2 in the rest:
+With L its Jacobian, taken once and kept while the modes stay, the exponential of L integrates the
+rest g = f - L x of its slope f (Cox and Matthews, J. Comput. Phys. 176, 2002), known at four states
+of the step:
 
-    middle, ahead = x + h/2 phi1(h/2 L) f(x), x + h phi1(h L) f(x)
-    end = ahead + h phi2(h L) (f(ahead) - phi0(h L) f(x))
+    x + s h phi1(s h L) f(x), s = 0, 1/4, 1/2, 1
 
-where phi0 is the exponential. It takes three slopes where the implicit method takes eight and a
-Jacobian. A step is made only where its correction is within the tolerance, also by what the slope
-at the middle says (two slopes a period of cogging apart would not see it), no mode ends inside and
-nothing is asked for inside; everything else is left to the adaptive method. So are machines that
-time itself drives, such as a shaken base.
+Between these g is a parabola and a decay as quick as that of the fastest state (see
+`propagator`). A step is exact in what is linear and of order 2 in the rest. It takes four slopes
+where the implicit method takes eight and a Jacobian. A step is made only where the rest is within
+the tolerance (also inside: two slopes a period of cogging apart would not see it), no mode ends
+inside and nothing is asked for inside; everything else is left to the adaptive method. So are
+machines that time itself drives, such as a shaken base, and samples at uneven times.
 """
-
-from typing import Any, NamedTuple
-
-import numpy as np
-from numba import types
 
 from ptp_symbolic.numeric.simulation.events.domain import is_finite
 from ptp_symbolic.numeric.simulation.events.location import TIME_RESOLUTION, fill_violations, summit
 from ptp_symbolic.numeric.simulation.events.pressed import derivative, hold_at_rest, jacobian
-from ptp_symbolic.numeric.simulation.kernels.lanes import padded
 from ptp_symbolic.numeric.simulation.kernels.linear import multiply
 from ptp_symbolic.numeric.simulation.kernels.records import (
     INSTANT,
     LARGEST_STATE,
-    MATRIX,
     STEPS,
     TIME,
-    VECTOR,
     copy,
     flush,
     inlined,
@@ -38,7 +32,13 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     merged,
 )
 from ptp_symbolic.numeric.simulation.methods.drive import TIME_DIFFERENCE
-from ptp_symbolic.numeric.simulation.methods.phi_functions import double, fill_phi_functions
+from ptp_symbolic.numeric.simulation.methods.exponential_tangents import push_tangents
+from ptp_symbolic.numeric.simulation.methods.propagator import (
+    FRACTIONS,
+    MIDDLE,
+    NODES,
+    fill_propagator,
+)
 from ptp_symbolic.numeric.simulation.methods.steps import larger, over_tolerance
 from ptp_symbolic.numeric.simulation.outputs import next_output
 
@@ -46,54 +46,14 @@ PERIOD, KNOWN, WAIT, PATIENCE = 0, 1, 2, 3
 LONGEST_WAIT = 64.0  # samples
 RESTING = 1e-3  # of the tolerance
 
-_V, _M = VECTOR, MATRIX
-PROPAGATOR = types.Tuple((_V, _V, *[_M] * 10, *[_V] * 5))
-
-
-class Propagator(NamedTuple):
-    """Matrices that carry the moving states of a machine over one period of its sampler.
-
-    modes: those that the matrices hold for; clock [4]: the last period in s, whether matrices of it
-    are known, samples to wait before the next try, and how many after the next failure. decay =
-    phi0(h L), straight = h phi1(h L), bent = h phi2(h L), half_decay = phi0(h/2 L), half = h/2
-    phi1(h/2 L), all by columns [moving, moving rounded up to LANES]; linear, phi0, phi1, phi2,
-    product [moving, moving], slope, ahead, right, change, none [w]: scratch; `none` stays zero.
-    """
-
-    modes: Any
-    clock: Any
-    decay: Any
-    straight: Any
-    bent: Any
-    half_decay: Any
-    half: Any
-    linear: Any
-    phi0: Any
-    phi1: Any
-    phi2: Any
-    product: Any
-    slope: Any
-    ahead: Any
-    right: Any
-    change: Any
-    none: Any
-
-
-def new_propagator(modes: int, moving: int, n: int) -> Propagator:
-    """Preallocated propagator of n states, the first `moving` of which are not set by samplers."""
-    z = np.zeros
-    return Propagator(
-        z(modes),
-        np.array([0.0, 0.0, 0.0, 1.0]),
-        *(z((moving, padded(moving))) for _ in range(5)),
-        *(z((moving, moving)) for _ in range(5)),
-        *(z(padded(n)) for _ in range(5)),
-    )
-
 
 @merged
-def reach_sample(equations, inputs, target, x, limits, atol, step, watch, record, propagator):
-    """Try an exponential step from x [n] to the sample at `target` in s; False with x as it was."""
+def reach_sample(
+    equations, inputs, target, x, limits, atol, step, watch, tangents, record, propagator
+):
+    """Try an exponential step from x [n], and its tangents, to the sample at `target` in s; False
+    with all as it was.
+    """
     t, clock = record.clock[TIME], propagator.clock
     length = target - t
     again = abs(length - clock[PERIOD]) <= TIME_RESOLUTION
@@ -113,8 +73,10 @@ def reach_sample(equations, inputs, target, x, limits, atol, step, watch, record
         if not known:
             if is_driven_by_time(equations, inputs, t, x, watch.m, propagator):
                 break
-            take_linear_part(equations, inputs, t, x, watch.m, step, propagator)
-            fill_propagator(length, propagator)
+            jacobian(equations, t, x, inputs.u, watch.m, step.fx, step.fu, step.fp)
+            fill_propagator(length, step.fx, propagator)
+            copy(watch.m, propagator.modes)
+            clock[KNOWN] = 1.0
         error = propagate(equations, inputs, t, length, x, limits, atol, watch.m, step, propagator)
         if error <= 1.0 or not known:
             break
@@ -129,6 +91,9 @@ def reach_sample(equations, inputs, target, x, limits, atol, step, watch, record
     record.counts[STEPS] += 1
     record.counts[INSTANT] = 0
     record.clock[TIME] = target
+    if tangents.table.shape[1] > 0:
+        push_tangents(equations, inputs, t, length, x, watch.m, step, tangents, propagator)
+        flush(tangents.s)
     copy(step.end, x)
     flush(x)
     return True
@@ -137,8 +102,8 @@ def reach_sample(equations, inputs, target, x, limits, atol, step, watch, record
 @kernel
 def is_driven_by_time(equations, inputs, t, x, m, propagator):
     """Whether dx/dt depends on time explicitly."""
-    derivative(equations, t + TIME_DIFFERENCE, x, inputs.u, m, propagator.right)
-    return not are_equal(propagator.right, propagator.slope)
+    derivative(equations, t + TIME_DIFFERENCE, x, inputs.u, m, propagator.change)
+    return not are_equal(propagator.change, propagator.slope)
 
 
 @inlined
@@ -152,43 +117,45 @@ def are_equal(a, b):
 
 @inlined
 def propagate(equations, inputs, t, h, x, limits, atol, m, step, propagator):
-    """Fill middle (step.point [w]) and end [n] of a step of h s; returns its largest correction
-    over the tolerance.
+    """Fill the states [3, w] inside, the middle of them also as step.point [w], and the end [n] of
+    a step of h s; returns the largest effect of its rest over the tolerance.
 
     Where next to nothing moves, nothing needs to be corrected.
     """
-    slope, ahead, right = propagator.slope, propagator.ahead, propagator.right
-    change, none, moving = propagator.change, propagator.none, propagator.linear.shape[0]
-    copy(x, step.end)
-    copy(x, step.point)
-    copy(x, ahead)
-    multiply(propagator.straight, slope, none, change)
-    for a in range(moving):
-        ahead[a] += change[a]
-    multiply(propagator.half, slope, none, change)
-    for a in range(moving):
-        step.point[a] += change[a]
+    slope, change, none = propagator.slope, propagator.change, propagator.none
+    states, rest, moving = propagator.states, propagator.rest, propagator.linear.shape[0]
+    for node in range(NODES):
+        copy(x, states[node])
+        multiply(propagator.reach[node], slope, none, change)
+        for a in range(moving):
+            states[node, a] += change[a]
+    copy(states[MIDDLE], step.point)
+    copy(states[NODES - 1], step.end)
     worst = 0.0
     for a in range(moving):
-        worst = larger(worst, over_tolerance(h * slope[a], x[a], ahead[a], limits[0], atol[a]))
+        worst = larger(worst, over_tolerance(h * slope[a], x[a], step.end[a], limits[0], atol[a]))
     if worst <= RESTING:
-        copy(ahead, step.end)
         hold_at_rest(equations, m, x, step.end)
         return worst
     worst = 0.0
-    multiply(propagator.half_decay, slope, none, change)
-    derivative(equations, t + 0.5 * h, step.point, inputs.u, m, right)
+    for node in range(NODES):
+        reached = FRACTIONS[node] * h
+        derivative(equations, t + reached, states[node], inputs.u, m, rest[node])
+        multiply(propagator.decay[node], slope, none, change)
+        for a in range(moving):
+            rest[node, a] -= change[a]
+            if node < NODES - 1:
+                unseen = over_tolerance(
+                    reached * rest[node, a], x[a], states[node, a], limits[0], atol[a]
+                )
+                worst = larger(worst, unseen)
+    for node in range(NODES):
+        multiply(propagator.weights[node], rest[node], none, change)
+        for a in range(moving):
+            step.end[a] += change[a]
     for a in range(moving):
-        unseen = 0.5 * h * (right[a] - change[a])
-        worst = larger(worst, over_tolerance(unseen, x[a], step.point[a], limits[0], atol[a]))
-    multiply(propagator.decay, slope, none, change)
-    derivative(equations, t + h, ahead, inputs.u, m, right)
-    for a in range(moving):
-        right[a] -= change[a]
-    multiply(propagator.bent, right, none, change)
-    for a in range(moving):
-        step.end[a] = ahead[a] + change[a]
-        worst = larger(worst, over_tolerance(change[a], x[a], step.end[a], limits[0], atol[a]))
+        correction = step.end[a] - states[NODES - 1, a]
+        worst = larger(worst, over_tolerance(correction, x[a], step.end[a], limits[0], atol[a]))
     hold_at_rest(equations, m, x, step.end)
     return worst
 
@@ -209,41 +176,3 @@ def may_end_a_mode(equations, inputs, t, h, step, watch):
         start, middle = watch.at_start[element], watch.at_middle[element]
         near = near or summit(start, middle, watch.at_end[element]) > 0.0
     return near
-
-
-@kernel
-def take_linear_part(equations, inputs, t, x, m, step, propagator):
-    """Linearise at x [n]: the Jacobian [moving, moving] of the moving states in the modes m."""
-    jacobian(equations, t, x, inputs.u, m, step.fx, step.fu, step.fp)
-    for i in range(propagator.linear.shape[0]):
-        for j in range(propagator.linear.shape[0]):
-            propagator.linear[i, j] = step.fx[i, j]
-    copy(m, propagator.modes)
-    propagator.clock[KNOWN] = 1.0
-
-
-@inlined
-def fill_propagator(h, propagator):
-    """Fill the matrices of a step of h s from the linear part."""
-    linear, phi0, phi1, phi2, product = (
-        propagator.linear,
-        propagator.phi0,
-        propagator.phi1,
-        propagator.phi2,
-        propagator.product,
-    )
-    fill_phi_functions(linear, 0.5 * h, phi0, phi1, phi2, product)
-    fill_columns(1.0, phi0, propagator.half_decay)
-    fill_columns(0.5 * h, phi1, propagator.half)
-    double(phi0, phi1, phi2, product)
-    fill_columns(1.0, phi0, propagator.decay)
-    fill_columns(h, phi1, propagator.straight)
-    fill_columns(h, phi2, propagator.bent)
-
-
-@inlined
-def fill_columns(factor, matrix, columns):
-    """Write a factor times `matrix` [moving, moving], transposed, into columns [moving, w]."""
-    for i in range(matrix.shape[0]):
-        for j in range(matrix.shape[0]):
-            columns[j, i] = factor * matrix[i, j]

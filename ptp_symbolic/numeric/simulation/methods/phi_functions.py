@@ -1,7 +1,8 @@
-"""The exponential of a small matrix, and the two phi functions that go with it.
+"""The exponential of a small matrix, and the three phi functions that go with it.
 
-phi0(z) = exp(z), phi1(z) = (phi0(z) - 1) / z, phi2(z) = (phi1(z) - 1) / z (Hochbruck and Ostermann,
-Acta Numerica 19, 2010, Eq. 2.10), by scaling and squaring of a Taylor series.
+phi0(z) = exp(z), phi1(z) = (phi0(z) - 1) / z, phi2(z) = (phi1(z) - 1) / z, phi3(z) = (phi2(z) -
+1/2) / z (Hochbruck and Ostermann, Acta Numerica 19, 2010, Eq. 2.10), by scaling and squaring of a
+Taylor series.
 """
 
 from ptp_symbolic.numeric.simulation.kernels.records import copy_matrix, inlined, kernel
@@ -10,8 +11,8 @@ HIGHEST_POWER, LARGEST_NORM, MOST_DOUBLINGS = 15, 0.5, 60
 
 
 @kernel
-def fill_phi_functions(matrix, scale, phi0, phi1, phi2, product):
-    """Write phi0, phi1 and phi2 of scale times `matrix`, all [k, k]; `product` is scratch."""
+def fill_phi_functions(matrix, scale, phi0, phi1, phi2, phi3, product):
+    """Write phi0 to phi3 of scale times `matrix`, all [k, k]; `product` is scratch."""
     doublings, norm = 0, largest_row_sum(matrix)
     while not norm * scale <= LARGEST_NORM and doublings < MOST_DOUBLINGS:
         scale *= 0.5
@@ -19,22 +20,28 @@ def fill_phi_functions(matrix, scale, phi0, phi1, phi2, product):
     coefficient = 1.0
     for power in range(2, HIGHEST_POWER + 1):
         coefficient /= power
-    for i in range(len(phi2)):
-        for j in range(len(phi2)):
-            phi2[i, j] = coefficient if i == j else 0.0
-    for power in range(HIGHEST_POWER, 2, -1):
+    for i in range(len(phi3)):
+        for j in range(len(phi3)):
+            phi3[i, j] = coefficient if i == j else 0.0
+    for power in range(HIGHEST_POWER, 3, -1):
         coefficient *= power
-        fill_product_and_diagonal(scale, matrix, phi2, coefficient, product)
-        copy_matrix(product, phi2)
+        fill_product_and_diagonal(scale, matrix, phi3, coefficient, product)
+        copy_matrix(product, phi3)
+    fill_product_and_diagonal(scale, matrix, phi3, 0.5, phi2)
     fill_product_and_diagonal(scale, matrix, phi2, 1.0, phi1)
     fill_product_and_diagonal(scale, matrix, phi1, 1.0, phi0)
     for _ in range(doublings):
-        double(phi0, phi1, phi2, product)
+        double(phi0, phi1, phi2, phi3, product)
 
 
 @kernel
-def double(phi0, phi1, phi2, product):
+def double(phi0, phi1, phi2, phi3, product):
     """Square: from z to 2 z (Skaflestad and Wright, Appl. Numer. Math. 59); all [k, k]."""
+    fill_product_and_diagonal(1.0, phi0, phi3, 0.0, product)
+    for i in range(len(phi3)):
+        for j in range(len(phi3)):
+            before = 0.5 * phi1[i, j] + phi2[i, j] + phi3[i, j]
+            phi3[i, j] = 0.125 * (product[i, j] + before)
     fill_product_and_diagonal(1.0, phi0, phi2, 0.0, product)
     for i in range(len(phi2)):
         for j in range(len(phi2)):

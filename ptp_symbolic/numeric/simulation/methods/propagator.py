@@ -1,0 +1,149 @@
+"""The matrices of an exponential step, and how they weigh what is not linear.
+
+The rest g of a slope is known at the NODES of a step after its start, as differences to what it is
+there. Between them it is taken for a s + b s^2 + c (exp(-d s) - 1) over the fraction s of the step,
+d being how often the fastest state decays in it: what follows a winding, such as its heat, is done
+in a thousandth of a second, and a polynomial alone would see it last for the whole step
+(exponential fitting: Ixaru, Comput. Phys. Commun. 105, 1997). The exponential of the linear part L
+integrates the three to h times phi2, 2 phi3 and psi - phi1, with psi = exp(-d) phi1(h L + d).
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import types
+
+from ptp_symbolic.numeric.simulation.kernels.lanes import padded
+from ptp_symbolic.numeric.simulation.kernels.linear import factor, solve
+from ptp_symbolic.numeric.simulation.kernels.records import (
+    CUBE,
+    INTEGERS,
+    MATRIX,
+    VECTOR,
+    copy_matrix,
+    inlined,
+    kernel,
+)
+from ptp_symbolic.numeric.simulation.methods.phi_functions import double, fill_phi_functions
+
+NODES, MIDDLE = 3, 1
+FRACTIONS = np.array([0.25, 0.5, 1.0])  # of the step, where the nodes are
+SLOWEST, FASTEST = 1.0, 40.0  # decays per step; slower is like a cubic, faster like a jump
+
+_V, _M, _C = VECTOR, MATRIX, CUBE
+PROPAGATOR = types.Tuple((_V, _V, *[_C] * 4, *[_M] * 11, *[_V] * 4, INTEGERS))
+
+
+class Propagator(NamedTuple):
+    """Matrices that carry the moving states of a machine over one sampling period.
+
+    modes: those that the matrices hold for; clock [4]: the last period in s, whether matrices of it
+    are known, samples to wait before the next try, and how many after the next failure. For every
+    node s, by columns [moving, moving rounded up to LANES]: decay = phi0(s h L), reach = s h
+    phi1(s h L), weights of the rests, these also `by_rows`; linear = L, phi0 to phi3 of h L
+    [moving, moving]; shifted, psi, product [moving, moving]: scratch. states, rest [3, w]: those at
+    the nodes; fitted [3, 3], unit, order [3], slope, change, none [w]: scratch; `none` stays
+    zero.
+    """
+
+    modes: Any
+    clock: Any
+    decay: Any
+    reach: Any
+    weights: Any
+    by_rows: Any
+    linear: Any
+    phi0: Any
+    phi1: Any
+    phi2: Any
+    phi3: Any
+    shifted: Any
+    psi: Any
+    product: Any
+    states: Any
+    rest: Any
+    fitted: Any
+    slope: Any
+    change: Any
+    none: Any
+    unit: Any
+    order: Any
+
+
+def new_propagator(modes: int, moving: int, n: int) -> Propagator:
+    """Preallocated propagator of n states, the first `moving` of which are not set by samplers."""
+    z, w = np.zeros, padded(n)
+    arrays = [z(modes), np.array([0.0, 0.0, 0.0, 1.0])]
+    arrays += [z((NODES, moving, padded(moving))) for _ in range(3)]
+    arrays += [z((NODES, moving, moving))]
+    arrays += [z((moving, moving)) for _ in range(8)]
+    arrays += [z((NODES, size)) for size in (w, w, NODES)]
+    arrays += [z(size) for size in (w, w, w, NODES)]
+    arrays += [z(NODES, dtype=np.int64)]
+    return Propagator(*arrays)
+
+
+@kernel
+def fill_propagator(h, fx, propagator):
+    """Fill the matrices of a step of h s, with the linear part from fx [n, n]."""
+    linear, phi0, phi1, phi2, phi3, product = (
+        propagator.linear,
+        propagator.phi0,
+        propagator.phi1,
+        propagator.phi2,
+        propagator.phi3,
+        propagator.product,
+    )
+    copy_matrix(fx, linear)
+    decays = decays_in(h, linear)
+    copy_matrix(linear, propagator.shifted)
+    for i in range(linear.shape[0]):
+        propagator.shifted[i, i] += decays / h
+    fill_phi_functions(propagator.shifted, h, phi0, propagator.psi, phi2, phi3, product)
+    fill_phi_functions(linear, FRACTIONS[0] * h, phi0, phi1, phi2, phi3, product)
+    for node in range(NODES):
+        if node > 0:
+            double(phi0, phi1, phi2, phi3, product)
+        fill_columns(1.0, phi0, propagator.decay[node])
+        fill_columns(FRACTIONS[node] * h, phi1, propagator.reach[node])
+    fill_weights(decays, h, propagator)
+
+
+@inlined
+def decays_in(h, linear):
+    """How often the fastest state decays by a factor of e in h s, by itself."""
+    fastest = SLOWEST
+    for i in range(linear.shape[0]):
+        fastest = max(fastest, -h * linear[i, i])
+    return min(fastest, FASTEST)
+
+
+@kernel
+def fill_weights(decays, h, propagator):
+    """Fill the weights of the rests at the nodes, by the fit of the three functions to them."""
+    phi1, phi2, phi3, psi = propagator.phi1, propagator.phi2, propagator.phi3, propagator.psi
+    fitted, unit, left = propagator.fitted, propagator.unit, math.exp(-decays)
+    for node in range(NODES):
+        s = FRACTIONS[node]
+        fitted[node, 0], fitted[node, 1], fitted[node, 2] = s, s * s, math.expm1(-decays * s)
+    factor(fitted, propagator.order)
+    for node in range(NODES):
+        for k in range(NODES):
+            unit[k] = 1.0 if k == node else 0.0
+        solve(fitted, propagator.order, unit)
+        weights = propagator.by_rows[node]
+        for i in range(phi1.shape[0]):
+            for j in range(phi1.shape[0]):
+                decaying = left * psi[i, j] - phi1[i, j]
+                total = unit[0] * phi2[i, j] + 2.0 * unit[1] * phi3[i, j] + unit[2] * decaying
+                weights[i, j] = h * total
+        fill_columns(1.0, weights, propagator.weights[node])
+
+
+@inlined
+def fill_columns(scale, matrix, columns):
+    """Write a scale times `matrix` [moving, moving], transposed, into columns [moving, w]."""
+    for i in range(matrix.shape[0]):
+        for j in range(matrix.shape[0]):
+            columns[j, i] = scale * matrix[i, j]

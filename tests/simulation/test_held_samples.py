@@ -1,0 +1,136 @@
+"""Exponential steps over the samples of held inputs: against the explicit method, and closed forms.
+
+The machine is the pan drive of the field logs, its voltage held from sample to sample: the winding
+has a time constant of a millisecond, beside a sampling period of five.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.integration import (
+    Accuracy,
+    Solution,
+    geared_weights,
+    integrate,
+)
+from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
+from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
+
+PLATFORM = Path(__file__).parents[1] / "platforms" / "fieldlog_pan.toml"
+PERIOD = 5e-3
+TIMES = PERIOD * np.arange(601)
+VOLTAGE = 8.0 * np.sin(5.0 * TIMES) + 3.0 * np.sin(17.0 * TIMES)  # V; reverses, crosses the gap
+BY = ("J_pan", "F_c_pan", "F_v_pan", "d_shaft_pan", "b_pan")
+
+
+@pytest.fixture(scope="module")
+def drive() -> Model:
+    return emission.emit(read_platform(PLATFORM))
+
+
+def run(
+    model: Model,
+    tolerance: float,
+    times: np.ndarray = TIMES,
+    by: tuple[str, ...] = (),
+    method: str = "rosenbrock",
+    rough: bool = False,
+    values: dict[str, float] | None = None,
+) -> Solution:
+    """The drive from rest, the voltage held between `times`."""
+    n = len(model.state_names)
+    columns = np.array([model.parameter_names.index(name) for name in by], dtype=np.int64)
+    voltage = np.interp(times, TIMES, VOLTAGE)
+    found = integrate(
+        model,
+        method,
+        model.parameter_vector(values),
+        np.zeros(n),
+        stack([table(times, voltage)]),
+        True,
+        times,
+        times,
+        Accuracy(tolerance, 0.01 * tolerance * geared_weights(model), 1.0),
+        np.zeros((n, len(by))) if by else None,
+        columns,
+        rough_tangents=rough,
+        event_room=500,
+    )
+    assert found.status == 0
+    return found
+
+
+def test_most_samples_are_one_step_and_the_motion_is_that_of_the_explicit_method(
+    drive: Model, figure
+) -> None:
+    exact, found = run(drive, 1e-10, method="runge_kutta"), run(drive, 1e-6)
+    assert figure("error, rad", np.abs(found.x[:, 0] - exact.x[:, 0]).max()) < 1e-6
+    assert len(exact.events) == len(found.events) >= 10
+    np.testing.assert_array_equal(found.events[:, 1:], exact.events[:, 1:])
+    assert figure("steps per sample", found.steps / (len(TIMES) - 1)) < 2.5
+
+
+def test_samples_at_uneven_times_are_left_to_the_adaptive_method(drive: Model) -> None:
+    shaken = TIMES.copy()
+    shaken[1:-1] += 1e-4 * np.random.default_rng(4).uniform(-1.0, 1.0, len(TIMES) - 2)
+    exact, found = run(drive, 1e-10, shaken, method="runge_kutta"), run(drive, 1e-6, shaken)
+    assert np.abs(found.x[:, 0] - exact.x[:, 0]).max() < 1e-6
+    assert found.steps > 2 * (len(TIMES) - 1)
+
+
+def test_rough_tangents_are_good_to_some_thousandths(drive: Model, figure) -> None:
+    """Those that follow every step of the adaptive method are exact, at a fine tolerance."""
+    exact = run(drive, 1e-8, by=BY)
+    found = run(drive, 1e-5, by=BY, rough=True)
+    assert found.steps < 0.5 * exact.steps
+    for column, name in enumerate(BY):
+        error = np.linalg.norm(found.s[:, 0, column] - exact.s[:, 0, column])
+        assert figure(name, error / np.linalg.norm(exact.s[:, 0, column])) < 4e-3
+
+
+def test_tangents_that_must_be_good_are_not_taken_by_exponential_steps(drive: Model) -> None:
+    exact, found = run(drive, 1e-8, by=BY), run(drive, 1e-7, by=BY)
+    for column in range(len(BY)):
+        error = np.linalg.norm(found.s[:, 0, column] - exact.s[:, 0, column])
+        assert error < 1e-5 * np.linalg.norm(exact.s[:, 0, column])
+
+
+def test_a_linear_drive_moves_as_the_exponential_says(figure) -> None:
+    """Motor and load alone: x' = A x + b u, held from sample to sample, and its tangent by J."""
+    names = ("rigid_bodies", "dc_motor", "viscous_friction")
+    axes = (None, "pan", "pan")
+    effects = tuple(EffectDeclaration(n, a, None) for n, a in zip(names, axes, strict=True))
+    model = emission.emit(Platform("motor", "Motor", ("pan",), 9.81, effects, (), ()))
+    n, p = len(model.state_names), model.parameter_vector(None)
+    assert model.input_names == ("u_pan",)
+
+    def matrices(inertia: float) -> tuple[np.ndarray, np.ndarray]:
+        q = p.copy()
+        q[model.parameter_names.index("J_pan")] = inertia
+        a = [model.rhs(0.0, x, np.zeros(1), q) for x in np.eye(n)]
+        return np.column_stack(a), model.rhs(0.0, np.zeros(n), np.ones(1), q)
+
+    def moved(inertia: float) -> np.ndarray:
+        a, b = matrices(inertia)
+        whole = np.zeros((n + 1, n + 1))
+        whole[:n, :n], whole[:n, n] = a, b
+        step = expm(PERIOD * whole)
+        x, found = np.zeros(n), [np.zeros(n)]
+        for u in VOLTAGE[:-1]:
+            x = step[:n, :n] @ x + step[:n, n] * u
+            found.append(x)
+        return np.array(found)
+
+    inertia = float(p[model.parameter_names.index("J_pan")])
+    found = run(model, 1e-6, by=("J_pan",), rough=True)
+    assert found.steps < len(TIMES) + 10
+    assert figure("error, rad", np.abs(found.x - moved(inertia)).max()) < 1e-9
+    small = 1e-5 * inertia
+    slope = (moved(inertia + small) - moved(inertia - small))[:, 0] / (2.0 * small)
+    error = np.linalg.norm(found.s[:, 0, 0] - slope) / np.linalg.norm(slope)
+    assert figure("error of the tangent", error) < 3e-4
