@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from ptp_symbolic.models import emission
+from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.integration import (
     Accuracy,
@@ -81,6 +81,16 @@ def test_samples_at_uneven_times_are_left_to_the_adaptive_method(drive: Model) -
     exact, found = run(drive, 1e-10, shaken, method="runge_kutta"), run(drive, 1e-6, shaken)
     assert np.abs(found.x[:, 0] - exact.x[:, 0]).max() < 1e-6
     assert found.steps > 2 * (len(TIMES) - 1)
+
+
+def test_heat_of_what_a_winding_does_between_samples_is_counted(figure) -> None:
+    """The current follows every change of the voltage in a fifth of a sample."""
+    model = emission.emit(variants.with_candidates(read_platform(PLATFORM)))
+    heated, heat = {"k_heat_pan": 0.05, "t_heat_pan": 4.0}, model.state_names.index("heat_pan")
+    exact = run(model, 1e-9, method="runge_kutta", values=heated)
+    found = run(model, 1e-4, values=heated)
+    error = np.abs(found.x[:, heat] - exact.x[:, heat]).max() / np.abs(exact.x[:, heat]).max()
+    assert figure("error of the heat", error) < 1e-3
 
 
 def test_rough_tangents_are_good_to_some_thousandths(drive: Model, figure) -> None:
