@@ -43,6 +43,18 @@ def test_a_third_taken_from_every_block_is_a_third_beyond_doubt() -> None:
     assert not compared(smaller, smaller).is_clear(1)
 
 
+@pytest.mark.parametrize(("half_width", "is_most"), [(0.1, True), (1.5, False)])
+def test_most_is_taken_away_where_blocks_agree(half_width: float, is_most: bool) -> None:
+    """Sixty percent on average of 30 blocks: 0.6 -+ 1.96 half_width / sqrt(3 * 30) by the central
+    limit, above a half or not.
+    """
+    taken = 0.6 + half_width * np.linspace(-1.0, 1.0, 30)
+    found = compared(1.0 - taken, np.ones(30))
+    assert found.share == pytest.approx(0.6)
+    assert (0.6 - 1.96 * half_width / np.sqrt(90.0) > 0.5) == is_most
+    assert found.is_most is is_most
+
+
 def test_a_gain_that_lies_in_few_blocks_is_clear_by_ranks_if_many_gain_besides() -> None:
     """Of twenty blocks that all gain, all signs are as likely otherwise: one in 2^20. Where ten
     gain and ten lose, of the same sizes, it is one in two.

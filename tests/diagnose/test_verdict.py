@@ -5,11 +5,13 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from ptp_symbolic.numeric.diagnose.confirmed_sets import doubtful
 from ptp_symbolic.numeric.diagnose.findings import Step
 from ptp_symbolic.numeric.diagnose.floor import (
     Floor,
+    floor_of,
     leaves_noise_alone,
     leaves_noise_of_inputs,
 )
@@ -90,6 +92,22 @@ def test_what_the_noise_of_the_inputs_leaves_is_no_lack(
     """
     trial = Trial((), finished([left * WAVE] * 3))
     assert leaves_noise_of_inputs(trial, floor(carried)) is hidden
+
+
+@pytest.mark.parametrize("white", [False, True])
+def test_slow_noise_is_noise_unless_it_is_known_to_be_white(white: bool) -> None:
+    """An autoregression three times as large as the white noise beside it."""
+    rng = np.random.default_rng(8)
+    series = [
+        rng.standard_normal(4000) + 3.0 * lfilter([np.sqrt(1.0 - 0.95**2)], [1.0, -0.95], slow)
+        for slow in rng.standard_normal((3, 4000))
+    ]
+    trial = Trial((), finished(series))
+    runs = trial.fit.runs
+    task = SimpleNamespace(declared_noise=(), train=runs, every_sample=runs, white=white)
+    found = floor_of(cast(Any, task), trial, Carried(np.zeros(1), np.zeros(1)))
+    assert leaves_noise_alone(trial, found) is not white
+    assert found.level[0] == pytest.approx(1.0 if white else np.sqrt(10.0), rel=0.2)
 
 
 def test_look_alikes_make_a_group_of_an_explanation_alone() -> None:

@@ -19,7 +19,6 @@ from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial
-from ptp_symbolic.numeric.identify.constants import MOST
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
 
@@ -157,11 +156,15 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> Weak
 
 def _doubt_beside_a_remainder(trial: Trial, step: Step, material: float) -> str | None:
     """Why a step cannot be named where more than noise is left, which a wrong effect may imitate:
-    it takes away less than is left, or no `material` share but of slow drift.
+    that it takes away more than is left is not sure at 95 %, or it takes away no `material` share
+    but of slow drift.
     """
-    if step.gain.share < MOST:
-        share = f"{100.0 * step.gain.share:.0f} %"
-        return f"takes away {share} of the error, too little where more than noise is left"
+    if not step.gain.is_most:
+        share, least = 100.0 * step.gain.share, 100.0 * max(step.gain.lower, 0.0)
+        return (
+            f"takes away {share:.0f} % of the error, surely {least:.0f} %, too little where more "
+            "than noise is left"
+        )
     if gain_in_innovations(trial, step.without).share < material:
         return "takes away slow drift alone, which other effects left out may have caused as well"
     return None

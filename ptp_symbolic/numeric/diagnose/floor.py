@@ -50,7 +50,8 @@ def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
     """The floor, with the colour of the noise as the residual of `trial` shows it, but no more than
     the differences of the measured signals and the quietest run leave room for, and what the inputs
     `carried`. Where more is left than noise of that colour, or what is left varies as no noise does
-    (and not by that of the inputs), model error has a colour: the floor is white then.
+    (and not by that of the inputs), model error has a colour: the floor is white then, as it is for
+    a task whose noise is.
     """
     fit = with_every_residual(task, trial.fit)
     runs = fit.runs
@@ -59,7 +60,7 @@ def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
     hidden = most_hidden(task)
     usual = squares <= TUNING**2 * np.maximum(left_over(fit) ** 2, 1.0)
     for column, signal in enumerate(runs[0].signals):
-        if signal not in task.declared_noise:
+        if signal not in task.declared_noise and not task.white:
             series = [e.residual.reshape(r.measured.shape)[:, column] for r, e in fit.pairs()]
             by_log = [[series[k] for k in log if usual[k, column]] for log in by_source(runs)]
             noise = coloured_noise([part for parts in by_log for part in parts], 1.0)

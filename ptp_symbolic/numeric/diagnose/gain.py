@@ -24,6 +24,7 @@ from ptp_symbolic.numeric.identify.blocks import (
 from ptp_symbolic.numeric.identify.constants import (
     ELSEWHERE,
     FALSE_ALARM,
+    MOST,
     NOTHING,
     SINGULAR,
     TUNING,
@@ -59,6 +60,11 @@ class Gain:
     def chance(self) -> float:
         """Probability of this gain, or a larger one, where there is none (one-sided)."""
         return float(stats.t.sf(self.statistic, max(self.degrees, 1)))
+
+    @property
+    def is_most(self) -> bool:
+        """Whether surely, at 95 %, more of the loss is taken away than is left."""
+        return self.lower > MOST
 
     def is_clear(self, tests: int) -> bool:
         """Whether the gain is above zero at 5 % over so many `tests` (Bonferroni)."""

@@ -41,11 +41,11 @@ class Task:
     `train` these with as many samples as the search needs (see `fewer_samples`); `windows` some
     short and some longer ones (none where `train` are windows already), `few` those windows that
     tell what a set is worth, `validate` the runs that only the report sees. `free` are the
-    declared free parameters, `fixed` the values of all others, every candidate at its vanishing
-    value. `input_noise` is the declared noise (rms) of every input [nu] in its unit (None: as the
-    logs show it), `declared_noise` names the outputs whose noise is declared, and `resolution` is
-    the noise of the finest angle in rad; `robust_below` is that of `robust_tuning`, and `material`
-    the share of what is left from which on an effect earns a name.
+    declared free parameters, `fixed` the values of all others (candidates vanish). `input_noise` is
+    the declared noise (rms) of every input [nu] in its unit (None: as the logs show it),
+    `declared_noise` names the outputs whose noise is declared, `resolution` is the noise of the
+    finest angle in rad, `robust_below` that of `robust_tuning`, `material` the share of what is
+    left that earns a name; noise has no colour where it is `white`.
     """
 
     model: Model
@@ -65,6 +65,7 @@ class Task:
     resolution: float
     robust_below: float = NEARBY
     material: float = MATERIAL
+    white: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,9 +172,7 @@ def continued(
     executor: Executor | None = None,
     z: Sequence[FloatArray] | None = None,
 ) -> Trial:
-    """Fit a trial on from where it ended, or there from other starts `z`, each [nz], of its runs; a
-    worse end is not taken.
-    """
+    """Fit a trial on, from other starts `z` of its runs if given; a worse end is not taken."""
     new = fitted(
         task,
         trial.candidates,
