@@ -5,6 +5,7 @@ that noise, where it is not declared, from what the model leaves; and the noise 
 carried to the outputs by the model itself.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,8 @@ from ptp_symbolic.numeric.identify.noise import (
     hidden_from_differences,
     most_in_quietest,
 )
+from ptp_symbolic.numeric.identify.noise_at_rest import is_missed_at_rest
+from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import by_source
 
 FloatArray = NDArray[np.float64]
@@ -49,9 +52,9 @@ class Floor:
 def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
     """The floor, with the colour of the noise as the residual of `trial` shows it, but no more than
     the differences of the measured signals and the quietest run leave room for, and what the inputs
-    `carried`. Where more is left than noise of that colour, or what is left varies as no noise does
-    (and not by that of the inputs), model error has a colour: the floor is white then, as it is for
-    a task whose noise is.
+    `carried`. Where more is left than noise of that colour, where what is left varies as no noise
+    does (and not by that of the inputs), or where its slow part is not there while the model rests,
+    model error has a colour: the floor is white then, as it is for a task whose noise is.
     """
     fit = with_every_residual(task, trial.fit)
     runs = fit.runs
@@ -64,7 +67,10 @@ def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
             series = [e.residual.reshape(r.measured.shape)[:, column] for r, e in fit.pairs()]
             by_log = [[series[k] for k in log if usual[k, column]] for log in by_source(runs)]
             noise = coloured_noise([part for parts in by_log for part in parts], 1.0)
-            if not noise.steady and np.hypot(1.0, carried.most[column]) <= ABOVE_NOISE:
+            simulated = [m - r for m, r in zip(shown(runs, column), series, strict=True)]
+            slow = float(np.sqrt(noise.rms**2 - 1.0))
+            doubted = not noise.steady or is_missed_at_rest(series, simulated, slow, noise.pole)
+            if doubted and np.hypot(1.0, carried.most[column]) <= ABOVE_NOISE:
                 continue
             quiet = max(1.0, most_in_quietest([parts for parts in by_log if parts]))
             rms[column] = min(noise.rms, _with_hidden(noise.pole), quiet)
@@ -72,6 +78,11 @@ def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
     floor = Floor(rms, most, carried)
     white = np.ones(len(rms))
     return floor if leaves_noise_alone(trial, floor) else Floor(white, white, carried)
+
+
+def shown(runs: Sequence[Run], column: int) -> list[FloatArray]:
+    """A measured signal [n] of every run, in units of its noise."""
+    return [run.measured[:, column] * run.weight[column] for run in runs]
 
 
 def most_hidden(task: Task) -> FloatArray:

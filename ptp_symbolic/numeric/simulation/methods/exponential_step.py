@@ -8,8 +8,8 @@ of the step:
 
     x + s h phi1(s h L) f(x), s = 0, 1/4, 1/2, 1
 
-Between these g is a parabola and a decay as quick as that of the fastest state (see
-`propagator`). A step is exact in what is linear and of order 2 in the rest. It takes four slopes
+Between these g is a parabola and a decay as quick as that of the fastest state (see `propagator`).
+A step is exact in what is linear and of order 2 in the rest. It takes four slopes
 where the implicit method takes eight and a Jacobian. A step is made only where the rest is within
 the tolerance (also inside: two slopes a period of cogging apart would not see it), no mode ends
 inside and nothing is asked for inside; everything else is left to the adaptive method. So are
@@ -125,10 +125,9 @@ def propagate(equations, inputs, t, h, x, limits, atol, m, step, propagator):
     slope, change, none = propagator.slope, propagator.change, propagator.none
     states, rest, moving = propagator.states, propagator.rest, propagator.linear.shape[0]
     for node in range(NODES):
-        copy(x, states[node])
         multiply(propagator.reach[node], slope, none, change)
-        for a in range(moving):
-            states[node, a] += change[a]
+        for a in range(len(x)):
+            states[node, a] = x[a] + (change[a] if a < moving else 0.0)
     copy(states[MIDDLE], step.point)
     copy(states[NODES - 1], step.end)
     worst = 0.0
