@@ -1,5 +1,6 @@
 """Words for what is left: training and validation runs are each held to the noise of their own."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -31,6 +32,7 @@ from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run_groups import sizes
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
+from tests.identify.test_noise_at_rest import motion, slow_noise
 
 WAVE = np.where(np.arange(400) % 2, 1.0, -1.0)
 EFFECT = cast(Any, object())
@@ -108,6 +110,27 @@ def test_slow_noise_is_noise_unless_it_is_known_to_be_white(white: bool) -> None
     found = floor_of(cast(Any, task), trial, Carried(np.zeros(1), np.zeros(1)))
     assert leaves_noise_alone(trial, found) is not white
     assert found.level[0] == pytest.approx(1.0 if white else np.sqrt(10.0), rel=0.2)
+
+
+@pytest.mark.parametrize("goes_on", [True, False])
+def test_slow_noise_goes_on_while_the_model_rests(goes_on: bool) -> None:
+    """Noise of a pole that the spectrum, cut below, tells as larger than it is; or what stands
+    still with the machine.
+    """
+    rng, signal = np.random.default_rng(9), motion(6)
+    moved = np.concatenate([[True], np.diff(signal) != 0.0])
+    last = np.maximum.accumulate(np.where(moved, np.arange(len(signal)), 0))
+    series = []
+    for _ in range(3):
+        slow = 2.5 * slow_noise(rng, 0.82, len(signal))
+        series.append(rng.standard_normal(len(signal)) + (slow if goes_on else slow[last]))
+    fit = finished(series)
+    shown = [(signal + part)[:, None] for part in series]
+    runs = tuple(replace(r, measured=m) for r, m in zip(fit.runs, shown, strict=True))
+    task = SimpleNamespace(declared_noise=(), train=runs, every_sample=runs, white=False)
+    trial = Trial((), replace(fit, runs=runs))
+    found = floor_of(cast(Any, task), trial, Carried(np.zeros(1), np.zeros(1)))
+    assert leaves_noise_alone(trial, found) is goes_on
 
 
 def test_look_alikes_make_a_group_of_an_explanation_alone() -> None:

@@ -16,6 +16,7 @@ from ptp_symbolic.numeric.diagnose.left_over import Carried, left_over
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, mean_squares
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, POLES, TUNING
 from ptp_symbolic.numeric.identify.noise import (
+    Noise,
     coloured_noise,
     hidden_from_differences,
     most_in_quietest,
@@ -66,9 +67,10 @@ def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
         if signal not in task.declared_noise and not task.white:
             series = [e.residual.reshape(r.measured.shape)[:, column] for r, e in fit.pairs()]
             by_log = [[series[k] for k in log if usual[k, column]] for log in by_source(runs)]
-            noise = coloured_noise([part for parts in by_log for part in parts], 1.0)
+            usual_parts = [part for parts in by_log for part in parts]
+            noise = coloured_noise(usual_parts, 1.0)
+            slow = _slow_part(usual_parts, noise)
             simulated = [m - r for m, r in zip(shown(runs, column), series, strict=True)]
-            slow = float(np.sqrt(noise.rms**2 - 1.0))
             doubted = not noise.steady or is_missed_at_rest(series, simulated, slow, noise.pole)
             if doubted and np.hypot(1.0, carried.most[column]) <= ABOVE_NOISE:
                 continue
@@ -83,6 +85,14 @@ def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
 def shown(runs: Sequence[Run], column: int) -> list[FloatArray]:
     """A measured signal [n] of every run, in units of its noise."""
     return [run.measured[:, column] * run.weight[column] for run in runs]
+
+
+def _slow_part(series: Sequence[FloatArray], noise: Noise) -> float:
+    """Standard deviation of what residual `series` [n] hold beside white noise of 1, no more than
+    `noise` would: a spectrum that is cut below tells slow noise too large.
+    """
+    left = float(np.mean(np.concatenate(series) ** 2)) if series else 1.0
+    return float(np.sqrt(max(min(noise.rms**2, left) - 1.0, 0.0)))
 
 
 def most_hidden(task: Task) -> FloatArray:
