@@ -22,7 +22,6 @@ from ptp_symbolic.numeric.identify.noise import (
     most_in_quietest,
 )
 from ptp_symbolic.numeric.identify.noise_at_rest import is_missed_at_rest
-from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import by_source
 
 FloatArray = NDArray[np.float64]
@@ -66,25 +65,22 @@ def floor_of(task: Task, trial: Trial, carried: Carried) -> Floor:
     for column, signal in enumerate(runs[0].signals):
         if signal not in task.declared_noise and not task.white:
             series = [e.residual.reshape(r.measured.shape)[:, column] for r, e in fit.pairs()]
-            by_log = [[series[k] for k in log if usual[k, column]] for log in by_source(runs)]
-            usual_parts = [part for parts in by_log for part in parts]
-            noise = coloured_noise(usual_parts, 1.0)
-            slow = _slow_part(usual_parts, noise)
-            simulated = [m - r for m, r in zip(shown(runs, column), series, strict=True)]
-            doubted = not noise.steady or is_missed_at_rest(series, simulated, slow, noise.pole)
+            measured = [run.measured[:, column] * run.weight[column] for run in runs]
+            kept = np.flatnonzero(usual[:, column])
+            parts = [series[k] for k in kept]
+            noise = coloured_noise(parts, 1.0)
+            doubted = not noise.steady or is_missed_at_rest(
+                parts, [measured[k] - series[k] for k in kept], _slow_part(parts, noise), noise.pole
+            )
             if doubted and np.hypot(1.0, carried.most[column]) <= ABOVE_NOISE:
                 continue
+            by_log = [[series[k] for k in log if usual[k, column]] for log in by_source(runs)]
             quiet = max(1.0, most_in_quietest([parts for parts in by_log if parts]))
             rms[column] = min(noise.rms, _with_hidden(noise.pole), quiet)
             most[column] = min(noise.most, hidden[column], quiet)
     floor = Floor(rms, most, carried)
     white = np.ones(len(rms))
     return floor if leaves_noise_alone(trial, floor) else Floor(white, white, carried)
-
-
-def shown(runs: Sequence[Run], column: int) -> list[FloatArray]:
-    """A measured signal [n] of every run, in units of its noise."""
-    return [run.measured[:, column] * run.weight[column] for run in runs]
 
 
 def _slow_part(series: Sequence[FloatArray], noise: Noise) -> float:

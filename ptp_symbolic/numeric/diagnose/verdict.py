@@ -87,7 +87,8 @@ def decide(found: Search) -> Verdict:
     is no such noise: names are held to white noise then.
     """
     verdict = _decided(found)
-    if verdict.word != PARTLY or not leaves_noise_alone(verdict.final, verdict.floor):
+    quiet = leaves_noise_alone(verdict.final, verdict.floor)
+    if verdict.word != PARTLY or not quiet or not np.any(verdict.floor.largest > 1.0):
         return verdict
     return _decided(replace(found, task=replace(found.task, white=True)))
 

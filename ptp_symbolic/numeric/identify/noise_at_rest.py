@@ -5,6 +5,7 @@ alone. What a model lacks is slow, too, but stands still there.
 """
 
 from collections.abc import Sequence
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,27 +20,39 @@ FloatArray = NDArray[np.float64]
 def is_missed_at_rest(
     series: Sequence[FloatArray], simulated: Sequence[FloatArray], slow: float, pole: float
 ) -> bool:
-    """Whether, at 99 %, residual `series` [n] hold less slow noise where the `simulated` signals
-    [n], in the same unit, stand still than an autoregression with `pole` and the standard deviation
-    `slow` would leave there; False where they hardly stand still.
+    """Whether residual `series` [n] hold less slow noise where the `simulated` signals [n], in the
+    same unit, stand still than they would if noise of the standard deviation `slow`, as an
+    autoregression with `pole` has it, went on there; False where they hardly stand still.
 
-    The squares about the mean of each stretch, less those of its white noise by its differences, in
-    which a part of the slow one is; beside those of an autoregression with the largest pole that is
-    tried. They vary as those of n (1 - a^2) / (1 + a^2) - 1 normal numbers that are independent
-    (Bartlett, 1946).
+    Their squares about the mean of each stretch, less those of white noise by its differences (in
+    which a part of the slow noise is), are compared with what would go on at the largest pole that
+    is tried. That varies as n (1 - a^2) / (1 + a^2) - 1 independent normal numbers (Bartlett,
+    1946), and the squares of white noise miss those of its differences by what `_spread` says: both
+    are allowed for at 99 %.
     """
     seen = (slow / hidden_from_differences(pole)) ** 2
-    pole, found, expected, degrees = float(max(POLES)), 0.0, 0.0, 0.0
+    slowest, found, expected, degrees, variance = float(max(POLES)), 0.0, 0.0, 0.0, 0.0
     for residual, signal in zip(series, simulated, strict=True):
         for first, last in stretches_at_rest(signal):
             rest = residual[first:last]
-            white = max(float(np.mean(differences(rest) ** 2)) - seen, 0.0)
-            found += float(np.sum((rest - rest.mean()) ** 2)) - (len(rest) - 1) * white
-            expected += slow**2 * len(rest) * (1.0 - _kept_in_mean(pole, len(rest)))
-            degrees += max(len(rest) * (1.0 - pole**2) / (1.0 + pole**2) - 1.0, 0.0)
+            n, white = len(rest), max(float(np.mean(differences(rest) ** 2)) - seen, 0.0)
+            found += float(np.sum((rest - rest.mean()) ** 2)) - (n - 1) * white
+            variance += _spread() * n * max(white, float(np.var(rest))) ** 2
+            expected += slow**2 * n * (1.0 - _kept_in_mean(slowest, n))
+            degrees += max(n * (1.0 - slowest**2) / (1.0 + slowest**2) - 1.0, 0.0)
     if degrees == 0.0:
         return False
-    return found < expected * float(stats.chi2.ppf(TEST_ALARM, degrees)) / degrees
+    least = expected * float(stats.chi2.ppf(TEST_ALARM, degrees)) / degrees
+    least -= float(stats.norm.isf(TEST_ALARM)) * np.sqrt(variance)
+    return least > 0.0 and found < least
+
+
+def _spread() -> float:
+    """Variance, per sample, of the sum of squares of white noise of 1 less that of its differences:
+    twice the sum of squares of the autocorrelation of these, less 2.
+    """
+    lag = [comb(2 * ORDER, ORDER - k) / comb(2 * ORDER, ORDER) for k in range(1, ORDER + 1)]
+    return 4.0 * float(np.sum(np.square(lag)))
 
 
 def stretches_at_rest(signal: FloatArray) -> list[tuple[int, int]]:

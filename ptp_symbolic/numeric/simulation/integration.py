@@ -143,7 +143,8 @@ def integrate(
     `columns`; `delay_column` [nu] is per input the tangent of its delay, or -1. `lean`: states
     and terms of effects at their vanishing values are left out, which changes nothing else (see
     `Model.acting` and `kernels.specialised`); for the implicit method. `rough_tangents`:
-    good to some thousandths is enough, so that exponential steps may carry them. Raises InputError
+    good to some thousandths is enough, so that exponential steps may carry them (see
+    `methods.exponential_tangents`). Raises InputError
     as `refuse_start` and `new_sampling` do.
     """
     n, nu, module = len(x), len(model.input_names), model.module

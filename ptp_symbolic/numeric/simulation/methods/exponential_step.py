@@ -17,7 +17,12 @@ machines that time itself drives, such as a shaken base, and samples at uneven t
 """
 
 from ptp_symbolic.numeric.simulation.events.domain import is_finite
-from ptp_symbolic.numeric.simulation.events.location import TIME_RESOLUTION, fill_violations, summit
+from ptp_symbolic.numeric.simulation.events.location import (
+    NEARLY,
+    TIME_RESOLUTION,
+    fill_violations,
+    summit,
+)
 from ptp_symbolic.numeric.simulation.events.pressed import derivative, hold_at_rest, jacobian
 from ptp_symbolic.numeric.simulation.kernels.linear import multiply
 from ptp_symbolic.numeric.simulation.kernels.records import (
@@ -86,7 +91,7 @@ def reach_sample(
         clock[PATIENCE] = min(2.0 * clock[PATIENCE], LONGEST_WAIT)
         return False
     clock[PATIENCE] = 1.0
-    if may_end_a_mode(equations, inputs, t, length, step, watch):
+    if may_end_a_mode(equations, inputs, t, length, step, watch, propagator):
         return False
     record.counts[STEPS] += 1
     record.counts[INSTANT] = 0
@@ -160,18 +165,39 @@ def propagate(equations, inputs, t, h, x, limits, atol, m, step, propagator):
 
 
 @inlined
-def may_end_a_mode(equations, inputs, t, h, step, watch):
-    """Whether a mode or the domain may end in the step, by the event functions at its start, middle
-    and end and by the vertices of their parabolas.
+def may_end_a_mode(equations, inputs, t, h, step, watch, propagator):
+    """Whether a mode or the domain may end in the step, by the event functions at its start, first
+    quarter, middle and end, by the vertices of their parabolas, and by how rates of sliding begin.
     """
     if not is_finite(step.end, LARGEST_STATE):
         return True
-    if fill_violations(equations, inputs, t + h, step.end, watch, watch.at_end) > 0.0:
+    early, inside = watch.at_end, propagator.states[0]  # the first quarter, before the end
+    if fill_violations(equations, inputs, t + FRACTIONS[0] * h, inside, watch, early) > 0.0:
         return True
     if fill_violations(equations, inputs, t + 0.5 * h, step.point, watch, watch.at_middle) > 0.0:
         return True
     near = False
     for element in range(len(watch.at_end)):
         start, middle = watch.at_start[element], watch.at_middle[element]
+        near = near or summit(start, early[element], middle) > 0.0
+    for f in range(len(equations.friction_rates)):
+        rise = -watch.m[f] * propagator.slope[equations.friction_rates[f]] * FRACTIONS[0] * h
+        near = near or rises_to_zero(watch.at_start[f], rise, early[f])
+    if near or fill_violations(equations, inputs, t + h, step.end, watch, watch.at_end) > 0.0:
+        return True
+    for element in range(len(watch.at_end)):
+        start, middle = watch.at_start[element], watch.at_middle[element]
         near = near or summit(start, middle, watch.at_end[element]) > 0.0
     return near
+
+
+@inlined
+def rises_to_zero(start, rise, end):
+    """Whether the parabola from `start` to `end`, which begins to `rise`, comes near zero between:
+    within a quarter of how far it rises.
+    """
+    bend = end - start - rise
+    if not bend < 0.0 < rise < -2.0 * bend:
+        return False
+    height = -0.25 * rise * rise / bend
+    return start + height > -NEARLY * height

@@ -2,7 +2,8 @@
 
 With the linear part L of the step, s' = L s + g, where g = (fx - L) s + fp is weighed at the nodes
 as the rest of the slope is (see `propagator`). It follows what a winding or a shaft does within the
-step, and the tangents are good to some thousandths, however small the tolerance of the states.
+step: the tangents are good to some thousandths where inputs change little from sample to sample. No
+tolerance controls them.
 """
 
 from ptp_symbolic.numeric.simulation.events.pressed import jacobian
