@@ -18,7 +18,8 @@ from ptp_symbolic.numeric.diagnose.groups import Rival
 from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.trial import Trial
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial
+from ptp_symbolic.numeric.identify.constants import MOST
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
 
@@ -146,7 +147,7 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> Weak
         ):
             return Weakness(step, "its torque goes with the speed in another way", breaks_law=True)
         if not quiet:
-            doubt = _doubt_beside_a_remainder(trial, step, seeker.task.material)
+            doubt = _doubt_beside_a_remainder(seeker.task, trial, step)
             if doubt is not None:
                 return Weakness(step, doubt)
     if not answers_to_inputs(seeker.task, trial):
@@ -154,18 +155,21 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> Weak
     return None
 
 
-def _doubt_beside_a_remainder(trial: Trial, step: Step, material: float) -> str | None:
+def _doubt_beside_a_remainder(task: Task, trial: Trial, step: Step) -> str | None:
     """Why a step cannot be named where more than noise is left, which a wrong effect may imitate:
-    that it takes away more than is left is not sure at 95 %, or it takes away no `material` share
-    but of slow drift.
+    it takes away less than is left, or no material share but of slow drift. Where validation runs
+    alone show that more is left, gains on training runs promise too much: most of the error must
+    surely be taken away then.
     """
-    if not step.gain.is_most:
-        share, least = 100.0 * step.gain.share, 100.0 * max(step.gain.lower, 0.0)
+    share = f"{100.0 * step.gain.share:.0f} %"
+    if step.gain.share < MOST:
+        return f"takes away {share} of the error, too little where more than noise is left"
+    if task.white and not step.gain.is_most:
+        least = 100.0 * max(step.gain.lower, 0.0)
         return (
-            f"takes away {share:.0f} % of the error, surely {least:.0f} %, too little where more "
-            "than noise is left"
+            f"takes away {share} of the error, surely {least:.0f} %, too little beside what is left"
         )
-    if gain_in_innovations(trial, step.without).share < material:
+    if gain_in_innovations(trial, step.without).share < task.material:
         return "takes away slow drift alone, which other effects left out may have caused as well"
     return None
 
