@@ -33,7 +33,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     equations_at,
     source_stamp,
 )
-from ptp_symbolic.numeric.simulation.methods.exponential_step import KNOWN, reach_sample
+from ptp_symbolic.numeric.simulation.methods.exponential_step import reach_sample
 from ptp_symbolic.numeric.simulation.methods.propagator import PROPAGATOR, Propagator
 from ptp_symbolic.numeric.simulation.outputs import write_here
 from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
@@ -87,7 +87,6 @@ def compiled_loop(sources: int) -> Callable[..., int]:
         tangents, record = Tangents(*tangents), Record(*record)
         record.counts[SOURCES] = sources
         propagator = Propagator(*propagator)
-        propagator.clock[KNOWN] = 0.0  # what came between may have changed more than the modes
         while index < len(stops) - 1 and record.counts[STEPS] < limits[2]:
             t = stops[index]
             evaluate_inputs(t, 1, *inputs.table, inputs.cursor, inputs.u)
