@@ -95,6 +95,7 @@ def decide(found: Search) -> Verdict:
 
 
 def _decided(found: Search) -> Verdict:
+    """The verdict, with noise as white as the task of the search says."""
     task = found.task
     refused = Refusals()
     seeker = Seeker(task, found.declared, found.proposals, found.carried, found.tried)

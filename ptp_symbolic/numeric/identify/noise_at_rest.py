@@ -37,13 +37,13 @@ def is_missed_at_rest(
             rest = residual[first:last]
             n, white = len(rest), max(float(np.mean(differences(rest) ** 2)) - seen, 0.0)
             found += float(np.sum((rest - rest.mean()) ** 2)) - (n - 1) * white
-            variance += _spread() * n * max(white, float(np.var(rest))) ** 2
+            variance += n * max(white, float(np.var(rest))) ** 2
             expected += slow**2 * n * (1.0 - _kept_in_mean(slowest, n))
             degrees += max(n * (1.0 - slowest**2) / (1.0 + slowest**2) - 1.0, 0.0)
     if degrees == 0.0:
         return False
     least = expected * float(stats.chi2.ppf(TEST_ALARM, degrees)) / degrees
-    least -= float(stats.norm.isf(TEST_ALARM)) * np.sqrt(variance)
+    least -= float(stats.norm.isf(TEST_ALARM)) * np.sqrt(_spread() * variance)
     return least > 0.0 and found < least
 
 
@@ -64,7 +64,7 @@ def stretches_at_rest(signal: FloatArray) -> list[tuple[int, int]]:
     return [
         (int(first), int(last) + 1)
         for first, last in edges.reshape(-1, 2)
-        if last + 1 - first >= max(SEGMENT, 2 * ORDER)
+        if last + 1 - first >= SEGMENT
     ]
 
 

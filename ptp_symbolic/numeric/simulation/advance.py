@@ -26,9 +26,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     copy,
     merged,
 )
-from ptp_symbolic.numeric.simulation.methods.exponential_step import (
-    reach_sample,
-)
+from ptp_symbolic.numeric.simulation.methods.exponential_step import reach_sample
 from ptp_symbolic.numeric.simulation.methods.step_length import (
     is_balanced,
     leave,
@@ -42,11 +40,7 @@ from ptp_symbolic.numeric.simulation.methods.steps import (
     end_slope,
 )
 from ptp_symbolic.numeric.simulation.outputs import write_here
-from ptp_symbolic.numeric.simulation.sampling import (
-    is_due,
-    next_stop,
-    sample_at,
-)
+from ptp_symbolic.numeric.simulation.sampling import is_due, next_stop, sample_at
 
 SHORTEST = 1e-11  # s
 

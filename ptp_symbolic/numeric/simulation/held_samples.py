@@ -16,15 +16,9 @@ from ptp_symbolic.numeric.simulation.ahead import HELD_SAMPLES, note_compiled, w
 from ptp_symbolic.numeric.simulation.events.location import fill_violations
 from ptp_symbolic.numeric.simulation.kernels.records import (
     KERNEL,
-    MACHINE_TYPES,
-    MATRIX,
-    RECORD_TYPE,
+    RUN_TYPES,
     SOURCES,
-    STEP_TYPE,
     STEPS,
-    TANGENTS_TYPE,
-    VECTOR,
-    WATCH_TYPE,
     Inputs,
     Record,
     Step,
@@ -38,19 +32,9 @@ from ptp_symbolic.numeric.simulation.methods.propagator import PROPAGATOR, Propa
 from ptp_symbolic.numeric.simulation.outputs import write_here
 from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 
-_V, _M = VECTOR, MATRIX
 SIGNATURE = types.int64(
     types.int64,  # index of the stop where it begins
-    *MACHINE_TYPES,
-    _M,  # inputs: now, ahead, before [3, nu]
-    _V,  # x, changed in place
-    _V,  # stops, the first is the start
-    _V,  # rtol, largest step, most steps
-    _V,  # atol
-    STEP_TYPE,
-    WATCH_TYPE,
-    TANGENTS_TYPE,
-    RECORD_TYPE,
+    *RUN_TYPES,
     PROPAGATOR,
 )
 

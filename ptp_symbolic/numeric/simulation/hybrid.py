@@ -23,18 +23,11 @@ from ptp_symbolic.numeric.simulation.held_samples import reach_samples_at
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CHATTERING,
     DONE,
-    INTEGERS,
     KERNEL,
     LENGTH,
-    MACHINE_TYPES,
-    MATRIX,
-    RECORD_TYPE,
+    RUN_TYPES,
     SOURCES,
-    STEP_TYPE,
-    TANGENTS_TYPE,
     TIME,
-    VECTOR,
-    WATCH_TYPE,
     Inputs,
     Record,
     Step,
@@ -54,8 +47,6 @@ from ptp_symbolic.numeric.simulation.sampling import (
 )
 from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
 
-_V, _M, _I = VECTOR, MATRIX, INTEGERS
-
 
 def compiled_runner(sources: int, sampled: bool) -> Callable[..., int]:
     """The compiled runner for machines with samplers (`sampled`), or for those without, which takes
@@ -66,16 +57,7 @@ def compiled_runner(sources: int, sampled: bool) -> Callable[..., int]:
         types.int64(
             types.int64,  # method
             types.int64,  # address of the loop over held samples, or 0
-            *MACHINE_TYPES,
-            _M,  # inputs: now, ahead, before [3, nu]
-            _V,  # x, changed in place
-            _V,  # stops, the first is the start
-            _V,  # rtol, largest step, most steps
-            _V,  # atol
-            STEP_TYPE,
-            WATCH_TYPE,
-            TANGENTS_TYPE,
-            RECORD_TYPE,
+            *RUN_TYPES,
             SAMPLING,
             PROPAGATOR,
         ),

@@ -194,7 +194,7 @@ def integrate(
         tuple(tangents),
         tuple(record),
         tuple(new_sampling(model, p, x, stops, padded(s.shape[1]))),
-        tuple(new_propagator(len(model.mode_names), solved, n)),
+        tuple(new_propagator(len(model.mode_names), solved if whole or sampled else 0, n)),
     )
     return Solution(
         status,

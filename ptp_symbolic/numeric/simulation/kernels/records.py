@@ -193,6 +193,18 @@ WATCH_TYPE = types.Tuple(
 )
 TANGENTS_TYPE = types.Tuple((_V, _M, _I, _I, _M, _V, _V, _V, _C, _M, _M, _M, _M))
 RECORD_TYPE = types.Tuple((_V, _M, _C, _M, _M, _V, _M, _V, _I))
+RUN_TYPES = (
+    *MACHINE_TYPES,
+    _M,  # inputs: now, ahead, before [3, nu]
+    _V,  # x, changed in place
+    _V,  # stops, the first is the start
+    _V,  # rtol, largest step, most steps
+    _V,  # atol
+    STEP_TYPE,
+    WATCH_TYPE,
+    TANGENTS_TYPE,
+    RECORD_TYPE,
+)
 
 
 def source_stamp() -> int:

@@ -9,11 +9,11 @@ of the step:
     x + s h phi1(s h L) f(x), s = 0, 1/4, 1/2, 1
 
 Between these g is a parabola and a decay as quick as that of the fastest state (see `propagator`).
-A step is exact in what is linear and of order 2 in the rest. It takes four slopes
-where the implicit method takes eight and a Jacobian. A step is made only where the rest is within
-the tolerance (also inside: two slopes a period of cogging apart would not see it), no mode ends
-inside and nothing is asked for inside; everything else is left to the adaptive method. So are
-machines that time itself drives, such as a shaken base, and samples at uneven times.
+A step is exact in what is linear and of order 2 in the rest. It takes four slopes where the
+implicit method takes eight and a Jacobian. A step is made only where the rest is within the
+tolerance (also inside: two slopes a period of cogging apart would not see it), no mode ends inside
+and nothing is asked for inside; everything else is left to the adaptive method. So are machines
+that time itself drives, such as a shaken base, and samples at uneven times.
 """
 
 from ptp_symbolic.numeric.simulation.events.domain import is_finite

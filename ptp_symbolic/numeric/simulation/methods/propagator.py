@@ -4,8 +4,8 @@ The rest g of a slope is known at the NODES of a step after its start, as differ
 there. Between them it is taken for a s + b s^2 + c (exp(-d s) - 1) over the fraction s of the step,
 d being how often the fastest state decays in it: what follows a winding, such as its heat, is done
 in a thousandth of a second, and a polynomial alone would see it last for the whole step
-(exponential fitting: Ixaru, Comput. Phys. Commun. 105, 1997). Where another state decays faster, a
-winding counts as well as the parabola follows it. The exponential of the linear part L
+(exponential fitting: Ixaru, Comput. Phys. Commun. 105, 1997). Where another state decays faster
+than the winding, the parabola alone follows the winding. The exponential of the linear part L
 integrates the three to h times phi2, 2 phi3 and psi - phi1, with psi = exp(-d) phi1(h L + d).
 """
 
