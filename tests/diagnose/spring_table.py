@@ -22,7 +22,8 @@ from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.preparation import effect_keys
 
 INERTIA, DAMPING, STIFFNESS = 0.05, 0.1, 0.8  # kg m^2, N m s/rad, N m/rad
-PAYLOAD = 2.0 * 0.1**2  # kg m^2, of the inertia
+MASS = 2.0  # kg, of a payload
+PAYLOAD = MASS * 0.1**2  # kg m^2, of the inertia
 PERIOD, SAMPLES = 0.01, 600
 COUNT = 2.0 * np.pi / 65536
 PLATFORM = """[platform]

@@ -95,6 +95,20 @@ def test_parameters_that_trade_for_each_other_have_an_amount_together() -> None:
     assert is_amount_known(fit, pair)
 
 
+@pytest.mark.parametrize(("apart", "is_named"), [(0.0, False), (0.01, False), (0.5, True)])
+def test_no_effect_is_named_where_noise_is_left_and_the_others_can_do_what_it_does(
+    apart: float, is_named: bool
+) -> None:
+    """A wave of half the noise per sample, and a parameter that is free too and acts as it does."""
+    other = free_parameter("J", 1.0, -9.0, 9.0)
+    columns = [np.column_stack([w, w + apart * np.roll(w, 16)]) for w in waves(4)]
+    noise = [np.random.default_rng(8).standard_normal(len(c)) for c in columns]
+    fit = finished(noise, [-c for c in columns], None, (SPRING, other), {"k": 0.5, "J": 1.0})
+    reason = why_unconfirmed(fit, EFFECT, leaves_noise=True)
+    assert (reason is None) is is_named
+    assert is_named or "can do all that it does" in str(reason)
+
+
 def test_an_effect_of_no_amount_through_which_another_acts_is_known_with_that() -> None:
     """Friction that goes with the load alone needs the law that it makes larger."""
     through = free_parameter("F", 1.0, 0.0, 5.0)

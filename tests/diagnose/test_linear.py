@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 from scipy.linalg import null_space, orth, subspace_angles
 
-from ptp_symbolic.numeric.diagnose.linear import canonical_correlation, projected_off
+from ptp_symbolic.numeric.diagnose.linear import (
+    canonical_correlation,
+    made_up_for,
+    predicted_share,
+    projected_off,
+)
+from ptp_symbolic.numeric.identify.coordinates import free_parameter
+from tests.identify.straight import finished
 
 RNG = np.random.default_rng(31)
 COLUMNS = RNG.normal(size=(200, 3))
@@ -75,3 +82,55 @@ def test_units_of_the_columns_and_of_the_target_do_not_matter() -> None:
 def test_where_there_is_nothing_there_is_no_correlation() -> None:
     assert canonical_correlation(np.zeros(200), COLUMNS) == 0.0
     assert canonical_correlation(COLUMNS[:, 0], np.zeros((200, 2))) == 0.0
+
+
+INERTIA, OFFSET = free_parameter("J", 0.02, 1e-3, 0.5), free_parameter("d", 0.1, -0.5, 0.5)
+DAMPING, TWIN = free_parameter("b", 0.3, 0.0, 9.0), free_parameter("b2", 0.6, 0.0, 9.0)
+SWINGING, SLIDING = np.linalg.qr(RNG.normal(size=(200, 2)))[0].T * 40.0
+MASS = 5.0
+
+
+def a_moved_mass(offset: float, inertia: float = 0.02, twin: float = 0.0):
+    """A fit of an inertia with a mass at some offset, which adds m d^2 to it, and of a damping;
+    with a `twin` that does as much of what that does per unit.
+    """
+    by_value = np.column_stack([SWINGING, 2.0 * MASS * offset * SWINGING, SLIDING, twin * SLIDING])
+    units = [inertia, OFFSET.scale, DAMPING.scale, TWIN.scale]
+    values = {"J": inertia, "d": offset, "b": 0.3, "b2": 0.6}
+    free = (INERTIA, OFFSET, DAMPING, TWIN)
+    slopes = by_value * units
+    return finished([RNG.normal(size=200)], [slopes], None, free, values), slopes
+
+
+def test_an_inertia_makes_up_for_a_mass_that_is_put_back() -> None:
+    """By the slope 2 m d, in kg m^2, and not by a power of e; the damping stays."""
+    fit, table = a_moved_mass(0.2)
+    found = made_up_for(fit, {"d": 0.05}, ["J", "b", "b2"], table)
+    assert found["J"] == pytest.approx(0.02 + 2.0 * MASS * 0.2 * 0.15)
+    assert found["d"] == 0.05
+    assert (found["b"], found["b2"]) == pytest.approx((0.3, 0.6))
+
+
+def test_nothing_makes_up_for_an_effect_beyond_its_bounds_or_where_all_is_held() -> None:
+    fit, table = a_moved_mass(0.5)
+    assert made_up_for(fit, {"d": -0.5}, ["J", "b", "b2"], table)["J"] == INERTIA.upper
+    assert made_up_for(fit, {"d": -0.5}, ["b", "b2"], table)["J"] == 0.02
+    assert made_up_for(fit, {"d": -0.5}, [], table) == {"J": 0.02, "d": -0.5, "b": 0.3, "b2": 0.6}
+
+
+def test_what_the_logs_do_not_tell_apart_moves_together() -> None:
+    """Damping taken away whole: its twin, and nothing else, takes over; three alike share it."""
+    fit, table = a_moved_mass(0.2, twin=0.5)
+    found = made_up_for(fit, {"b": 0.0}, ["J", "d", "b2"], table)
+    assert found["b2"] == pytest.approx(0.6 + 0.3 / 0.5)
+    found = made_up_for(fit, {"b": 0.1}, ["J", "d", "b", "b2"], table)
+    assert found["b2"] - 0.6 == pytest.approx((0.2 / 2) / 0.5, rel=1e-6)
+
+
+@pytest.mark.parametrize("offset", [0.01, 0.2])
+def test_an_effect_that_others_can_do_is_predicted_to_take_nothing_away(offset: float) -> None:
+    fit, _ = a_moved_mass(offset)
+    assert predicted_share(fit, {"d": 0.0}, ["d"]) < 1e-20
+    alone = predicted_share(fit, {"d": 0.0}, ["d", "J"])
+    taken = (2.0 * MASS * offset**2 * 40.0) ** 2
+    assert alone == pytest.approx(taken / (taken + fit.cost))

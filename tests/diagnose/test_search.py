@@ -2,8 +2,10 @@
 noise is left; on logs whose motion is known in closed form.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.nested import declared_from
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.search import by_effects_alone, extended
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
@@ -20,7 +23,7 @@ from ptp_symbolic.numeric.diagnose.starts import from_rows, taken_over
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
 from ptp_symbolic.numeric.diagnose.tried import Tried, worth_keeping
 from ptp_symbolic.numeric.identify.constants import LARGEST, MOST
-from tests.diagnose.spring_table import STIFFNESS, spring_table
+from tests.diagnose.spring_table import DAMPING, INERTIA, MASS, PAYLOAD, STIFFNESS, spring_table
 
 
 @pytest.fixture(scope="module")
@@ -138,11 +141,32 @@ def test_what_stays_takes_over_in_the_rows_what_the_others_did(seeker: Seeker) -
     both = trial(seeker, "cable_spring@pan", "base_tilt")
     values = both.values | {"k1_cable_pan": 0.5 * STIFFNESS, "beta_base": 0.2}
     halved = fitted(task, both.candidates, values, both.fit.z)
-    as_it_is, led = taken_over(task, seeker.proposals, halved.candidates[:1], halved)
+    as_it_is, _, led = taken_over(task, seeker.proposals, halved.candidates[:1], halved)
     assert as_it_is.values["k1_cable_pan"] == 0.5 * STIFFNESS
     assert led.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.05)
     assert led.values["beta_base"] == as_it_is.values["beta_base"] == 0.0
     assert led.fit.cost < 0.01 * as_it_is.fit.cost
+
+
+def test_a_stuck_inertia_takes_over_what_a_moved_payload_made_up_for(tmp_path: Path) -> None:
+    """A machine of which nothing is missing: m d^2 holds what the inertia lacks, and the declared
+    model has no way from its inertia alone.
+    """
+    with spring_table(tmp_path, stiffness=0.0) as task:
+        proposals = propose(task)
+        (moved,) = (c for c in task.candidates if c.id == "declared_value:c_x_payload")
+        lack = INERTIA - PAYLOAD - 0.005
+        values = task.fixed | {"J_pan": 0.005, "b_pan": DAMPING}
+        values["c_x_payload"] = math.sqrt((PAYLOAD + lack) / MASS)
+        made_up = fitted(task, [moved], values, None)
+        as_it_is, led, _ = taken_over(task, proposals, (), made_up)
+        assert as_it_is.values["J_pan"] == 0.005
+        assert led.values["c_x_payload"] == 0.1
+        assert led.values["J_pan"] == pytest.approx(0.005 + lack, rel=0.25)
+        assert led.fit.cost < 0.2 * as_it_is.fit.cost
+        found = declared_from(task, proposals, made_up, as_it_is, carried_noise(task, made_up.fit))
+        assert found is not None
+        assert found.values["J_pan"] == pytest.approx(INERTIA - PAYLOAD, rel=1e-3)
 
 
 def test_forward_selection_stops_where_it_meets_a_set_that_could_not_be_grown(

@@ -6,10 +6,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
+from ptp_symbolic.numeric.diagnose.linear import effect_of, predicted_share, projected_off, stacked
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
 from ptp_symbolic.numeric.identify.blocks import leave_blocks_out, without_outliers
-from ptp_symbolic.numeric.identify.constants import ELSEWHERE, FALSE_ALARM, MOST, SAME, SHARP
+from ptp_symbolic.numeric.identify.constants import (
+    ELSEWHERE,
+    FALSE_ALARM,
+    LITTLE,
+    MOST,
+    SAME,
+    SHARP,
+)
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.evaluate import evaluate
 from ptp_symbolic.numeric.identify.fit import Fit
@@ -26,13 +33,15 @@ def why_unconfirmed(
     """Why `candidate` of a set cannot be named; None where nothing speaks against it. `fit` is that
     of the set, from `with_finite_differences` if it is one of simulations, `refit` that of
     `unstable_without`. Where it leaves noise alone, nothing is missing that the candidate could
-    make up for.
+    make up for but a better place of the other parameters: what it adds to them must show.
     """
     bound = at_bound(fit, candidate)
     if bound is not None:
         return f"{bound} ends at its bound"
     if not leaves_noise and not is_amount_known(fit, candidate):
         return "its amount cannot be told from zero"
+    if leaves_noise and predicted_share(fit, candidate.vanishing, candidate.parameters) < LITTLE:
+        return "the other parameters of the model can do all that it does"
     if not leads(fit, candidate):
         return "what it adds to its simplest form is larger than that"
     run = unstable_without(fit, candidate, refit)

@@ -2,12 +2,12 @@
 follow.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import SINGULAR
+from ptp_symbolic.numeric.identify.constants import SAME, SINGULAR
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import project_out
@@ -31,6 +31,40 @@ def effect_of(fit: Fit, vanishing: Mapping[str, float], table: FloatArray) -> Fl
         if f.name in vanishing:
             effect += table[:, k] / unit[k] * (fit.values[f.name] - vanishing[f.name])
     return effect
+
+
+def predicted_share(fit: Fit, vanishing: Mapping[str, float], own: Collection[str]) -> float:
+    """The share of the squared residual with parameters at their values in `vanishing` that those
+    at the fit take away, by linear prediction from the Jacobian; those not in `own` follow.
+    """
+    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    others = [k for k, f in enumerate(fit.free) if f.name not in own]
+    effect = effect_of(fit, vanishing, columns)[:, None]
+    taken = float(np.sum(projected_off(effect, columns[:, others]) ** 2))
+    return taken / max(taken + float(residual @ residual), 1e-300)
+
+
+def made_up_for(
+    fit: Fit, vanishing: Mapping[str, float], kept: Collection[str], table: FloatArray
+) -> dict[str, float]:
+    """Values of the fit with parameters at their values in `vanishing`, and those `kept` where they
+    make up for that, by linear prediction; `table` is that of `effect_of`.
+
+    They move by what that predicts in their units, not in search coordinates: what an effect adds
+    to an inertia is a sum. Where the logs hardly tell them apart, they move together.
+    """
+    own = [k for k, f in enumerate(fit.free) if f.name in kept]
+    columns, unit = table[:, own], slopes(fit.free, to_search(fit.free, fit.values))
+    size = np.linalg.norm(columns, axis=0)
+    size[size == 0.0] = 1.0
+    steps, *_ = np.linalg.lstsq(columns / size, effect_of(fit, vanishing, table), SAME)
+    values = {**fit.values, **vanishing}
+    for k, step in zip(own, steps / size, strict=True):
+        f = fit.free[k]
+        moved = float(np.clip(fit.values[f.name] + unit[k] * step, f.lower, f.upper))
+        values.update(dict.fromkeys(f.names, moved))
+    return values
 
 
 def projected_off(columns: FloatArray, away: FloatArray) -> FloatArray:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start, possible
+from ptp_symbolic.numeric.diagnose.linear import made_up_for, stacked
 from ptp_symbolic.numeric.diagnose.proposals import Proposal, Proposals, start_for
 from ptp_symbolic.numeric.diagnose.refits import inside, over_windows
 from ptp_symbolic.numeric.diagnose.regression import untold
@@ -78,12 +79,16 @@ def from_rows(
 def taken_over(
     task: Task, proposals: Proposals, kept: Sequence[Candidate], trial: Trial
 ) -> list[Trial]:
-    """Some candidates `kept` of a trial without the others: as they are, and where they take over
-    in the rows what the others did there.
+    """The declared model with some candidates `kept` of a trial, without the others: as they are,
+    and where they take over what the others did, in the outputs and in the rows.
     """
-    names = {name for c in trial.candidates if c not in kept for name in c.names}
-    values = trial.values | {name: task.fixed[name] for name in names}
-    starts = [values]
+    dropped = [c for c in trial.candidates if c not in kept]
+    off = {name: task.fixed[name] for c in dropped for name in c.names}
+    values = trial.values | off
+    others = {f.name for f in all_free(task, kept, values)}
+    vanishing = {name: zero for c in dropped for name, zero in c.vanishing.items()}
+    table = stacked(trial.fit, [e.by_parameter for e in trial.fit.evaluations])
+    starts = [values, made_up_for(trial.fit, vanishing, others, table) | off]
     if proposals.space is not None:
         seen = {c.key for c in kept} - {c.key for c in proposals.unseen}
         free = all_free(task, [c for c in kept if c.key in seen], values)
