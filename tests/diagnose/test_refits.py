@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ptp_symbolic.numeric.diagnose.declared_fit import _led_back
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.nested import beside_declared, declared_from
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
-from ptp_symbolic.numeric.diagnose.refits import started_anew, strayed_from_start
+from ptp_symbolic.numeric.diagnose.refits import is_near_floor, started_anew, strayed_from_start
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.pan_runs import COUNT, FLOOR, KNOWN, MODEL, THREE, TRUTH, make_runs
@@ -70,6 +71,17 @@ def test_a_fit_whose_parameters_strayed_is_led_back(task: Task) -> None:
     assert leaves_white_noise(found, NOTHING_CARRIED)
     for name in NAMES:
         assert found.values[name] == pytest.approx(TRUTH[name], rel=0.1)
+
+
+def test_a_declared_model_that_strayed_is_led_back_before_its_end_is_believed(task: Task) -> None:
+    """Nothing else is tried where nothing has strayed, and nothing is gained by the way back."""
+    strayed = fitted(task, (), {**task.fixed, "J_pan": 1e-3, "d_shaft_pan": 0.0}, None)
+    assert not is_near_floor(strayed)
+    assert leaves_white_noise(_led_back(task, strayed), NOTHING_CARRIED)
+    assert _led_back(replace(task, material=1.0), strayed) is strayed
+    wrong = fitted(task, (), {**task.fixed, "J_pan": 0.19}, None)
+    assert not is_near_floor(wrong)
+    assert _led_back(task, wrong) is wrong
 
 
 def test_a_trial_that_leaves_noise_alone_stays(task: Task) -> None:

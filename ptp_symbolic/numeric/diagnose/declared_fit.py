@@ -12,14 +12,18 @@ from ptp_symbolic.numeric.diagnose.cut_runs import (
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
+from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.growing_windows import growing, led_through, settled
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import (
+    begun_anew,
     has_rough_starts,
+    is_near_floor,
     over_windows,
     polished,
     refitted_in,
+    strayed_from_start,
 )
 from ptp_symbolic.numeric.diagnose.starts import far_starts
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving
@@ -88,7 +92,21 @@ def _in_windows_of_its_own(task: Task, trial: Trial) -> tuple[Task, Trial]:
         if part is not task:
             part = with_fewer_samples(part, trial.values)
             task, trial = _where_most_goes(part, task, trial)
+    trial = _led_back(task, trial)
     return validation_in_windows(task, trial), trial
+
+
+def _led_back(task: Task, trial: Trial) -> Trial:
+    """The declared model, or a better end from where parameters that have strayed are back where a
+    start may be, if some iterations gain materially: one that went where it does nothing has no
+    derivative that leads back, and what makes up for it is no effect.
+    """
+    if is_near_floor(trial) or not strayed_from_start(task, trial.values):
+        return trial
+    left = halving(task, begun_anew(task, trial), 1)
+    if not left or gain(left[0], trial).share < task.material:
+        return trial
+    return polished(task, left[0], carried_noise(task, left[0].fit))
 
 
 def _where_most_goes(part: Task, task: Task, trial: Trial) -> tuple[Task, Trial]:

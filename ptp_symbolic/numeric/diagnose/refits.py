@@ -129,16 +129,23 @@ def started_anew(task: Task, trial: Trial, carried: Carried) -> Trial:
     Places in a gap that have followed the parameters keep these in place, and a parameter that the
     others' errors drove to where it does nothing has no derivative that leads back.
     """
-    if leaves_white_noise(trial, carried) or not has_rough_starts(task):
+    if leaves_white_noise(trial, carried):
         return trial
+    left = halving(task, begun_anew(task, trial), 1)
+    return ranked([trial, *(to_its_end(task, t, carried) for t in left)])[0]
+
+
+def begun_anew(task: Task, trial: Trial) -> list[Trial]:
+    """Where `started_anew` begins; nowhere where every run has a single place to start from."""
+    if not has_rough_starts(task):
+        return []
     begun = [fitted(task, trial.candidates, trial.values, None, parent=trial.fit)]
     strayed = strayed_from_start(task, trial.values)
     for factor in (1.0, FAR_OFF, 1.0 / FAR_OFF) if strayed else ():
         back = {n: inside(f, factor * f.start) for f in strayed for n in f.names}
         values = trial.values | back
         begun.append(fitted(task, trial.candidates, values, trial.fit.z, parent=trial.fit))
-    left = halving(task, begun, 1)
-    return ranked([trial, *(to_its_end(task, t, carried) for t in left)])[0]
+    return begun
 
 
 def has_rough_starts(task: Task) -> bool:
