@@ -11,7 +11,6 @@ from ptp_symbolic.numeric.diagnose.declared_fit import _led_back
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.nested import beside_declared, declared_from
-from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import is_near_floor, started_anew, strayed_from_start
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
@@ -24,7 +23,6 @@ FREE = (
 )
 NAMES = tuple(f.name for f in FREE)
 NOTHING_CARRIED = Carried(np.zeros(2), np.zeros(2))
-NO_ROWS = Proposals({}, (), tuple, (), False, None, None)
 
 
 @pytest.fixture(scope="module")
@@ -93,11 +91,11 @@ def test_a_trial_that_leaves_noise_alone_stays(task: Task) -> None:
 def test_a_declared_model_that_was_stuck_goes_where_a_set_leads_it(task: Task) -> None:
     stuck = fitted(task, (), {**task.fixed, "J_pan": 1e-3, "d_shaft_pan": 0.0}, None)
     elsewhere = fitted(task, (), {**task.fixed, "J_pan": 0.08, "d_shaft_pan": 1.2}, None)
-    found = declared_from(task, NO_ROWS, elsewhere, stuck, NOTHING_CARRIED)
+    found = declared_from(task, elsewhere, stuck, NOTHING_CARRIED)
     assert found is not None and leaves_white_noise(found, NOTHING_CARRIED)
-    assert declared_from(task, NO_ROWS, stuck, found, NOTHING_CARRIED) is None
+    assert declared_from(task, stuck, found, NOTHING_CARRIED) is None
     strict = replace(task, material=1.0)
-    assert declared_from(strict, NO_ROWS, elsewhere, stuck, NOTHING_CARRIED) is None
+    assert declared_from(strict, elsewhere, stuck, NOTHING_CARRIED) is None
 
 
 def test_a_set_that_is_stuck_goes_where_the_declared_model_leads_it(task: Task) -> None:

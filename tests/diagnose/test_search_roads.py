@@ -17,7 +17,7 @@ from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows, over_wh
 from ptp_symbolic.numeric.diagnose.findings import Step
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
-from ptp_symbolic.numeric.diagnose.proposals import Proposal, Proposals, propose, start_for
+from ptp_symbolic.numeric.diagnose.proposals import Proposal, propose, start_for
 from ptp_symbolic.numeric.diagnose.refits import is_near_floor
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
@@ -234,8 +234,8 @@ def test_what_made_up_for_a_fit_that_was_stuck_is_taken_out(
         monkeypatch.setattr(roads, "extended", lambda _, begun, steps, *end: (begun, steps))
         monkeypatch.setattr(roads, "from_far_off", lambda *_: [better])
 
-        def led(task: Task, proposals: Proposals, trial: Trial, *rest: Any) -> Trial | None:
-            return None if trial is made_up else declared_from(task, proposals, trial, *rest)
+        def led(task: Task, trial: Trial, *rest: Any) -> Trial | None:
+            return None if trial is made_up else declared_from(task, trial, *rest)
 
         monkeypatch.setattr(roads, "declared_from", led)
         monkeypatch.setattr(Seeker, "completed", lambda _, trial: trial)

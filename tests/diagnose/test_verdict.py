@@ -174,6 +174,18 @@ def test_windows_half_of_which_leave_more_than_the_training_runs_are_not_quiet()
     assert quiet(after, finished(noisy(3, 1.0, 3)))  # too few to tell
 
 
+def test_windows_that_leave_noise_are_quiet_however_little_those_at_rest_leave() -> None:
+    """A rounded angle that rests leaves next to nothing, and the validation runs move all along;
+    what a third of them leave beside the noise is seen all the same.
+    """
+    resting = [0.1 * s for s in noisy(40, 1.0, 5)]
+    trained = finished([*resting, *noisy(20, 1.0, 6)])
+    moving = noisy(28, 1.0, 4)
+    assert quiet(finished(moving), trained)
+    assert quiet(finished([0.0 * s for s in moving]), finished([0.0 * s for s in resting]))
+    assert not quiet(finished([*moving[:18], *(3.0 * s for s in moving[18:])]), trained)
+
+
 @pytest.mark.parametrize(
     ("left", "declared_value", "group", "is_doubtful"),
     [

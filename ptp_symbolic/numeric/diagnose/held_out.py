@@ -92,13 +92,17 @@ def is_quiet(left: FloatArray, size: FloatArray, floor: Floor, trained: Fit) -> 
     """Whether validation runs of `size` [runs] samples show no more than noise, by what they have
     `left` [runs, ny] (see `left_by_best_values`). The median of the runs counts, for one that
     sticks at another sample than it did is off by counts. Of many windows it sees half: beside it
-    they may not leave more than the windows of the training runs (Mann and Whitney, 1947).
+    they may not leave more than the windows of the training runs (Mann and Whitney, 1947). All that
+    leave no more than noise may count alike: windows at rest, rounded to a count that they stay at,
+    leave less, and show no lack in those that move.
     """
-    if not np.all(weighted_median(left / (ABOVE_NOISE * floor.most) ** 2, size) <= 1.0):
+    bound = (ABOVE_NOISE * floor.most) ** 2
+    if not np.all(weighted_median(left, size) <= bound):
         return False
     own = mean_squares(trained.evaluations, trained.runs)
     if min(len(left), len(own)) < MANY_RUNS:
         return True
+    left, own = np.maximum(left, bound), np.maximum(own, bound)
     return bool(np.all(stats.mannwhitneyu(left, own, alternative="greater").pvalue > UNALIKE))
 
 

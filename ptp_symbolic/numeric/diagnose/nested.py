@@ -6,7 +6,6 @@ name where the declared model had the same chance.
 
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import Carried
-from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import polished
 from ptp_symbolic.numeric.diagnose.starts import taken_over
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, is_near, ranked
@@ -26,14 +25,12 @@ def beside_declared(task: Task, trial: Trial, declared: Trial, carried: Carried)
     return ranked([trial, *(polished(task, t, carried) for t in left)])[0]
 
 
-def declared_from(
-    task: Task, proposals: Proposals, trial: Trial, declared: Trial, carried: Carried
-) -> Trial | None:
+def declared_from(task: Task, trial: Trial, declared: Trial, carried: Carried) -> Trial | None:
     """The declared model fitted from where a trial ended, as it is and where it takes over what the
     effects did; None unless that is materially better than `declared`, which was in a local minimum
     then.
     """
-    left = halving(task, taken_over(task, proposals, (), trial), 1)
+    left = halving(task, taken_over(task, (), trial), 1)
     again = [polished(task, t, carried) for t in left if is_near(t, [declared])]
     best = ranked([declared, *again])[0]
     return best if gain(best, declared).share >= task.material else None

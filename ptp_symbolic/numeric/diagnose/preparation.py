@@ -50,7 +50,7 @@ def task_of(
     fixed = {**model.defaults, **off, **{name: value for name, (value, _) in known.items()}}
     start = model.parameter_vector({**fixed, **all_values_at_start(free)})
     noise = tuple(noises[name] for name in model.input_names)
-    length = window_length(model, train, start, noise) if window is None else window
+    length = window_length(model, train, start, noise, executor) if window is None else window
     if length is not None and length >= max(float(run.time[-1] - run.time[0]) for run in train):
         length = None
     few = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in train]

@@ -183,7 +183,7 @@ def _led_by(seeker: Seeker, trial: Trial) -> Trial:
     """The declared model where the chosen trial, which may be one itself, leads it to."""
     if not trial.candidates:
         return trial
-    led = declared_from(seeker.task, seeker.proposals, trial, seeker.declared, seeker.carried)
+    led = declared_from(seeker.task, trial, seeker.declared, seeker.carried)
     return seeker.declared if led is None else led
 
 

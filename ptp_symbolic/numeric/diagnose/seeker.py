@@ -45,13 +45,14 @@ from ptp_symbolic.numeric.identify.constants import (
 
 @dataclass(eq=False)
 class Seeker:
-    """A search in progress, with what was `tried` in it so far; `carried` is that of `Search`."""
+    """A search in progress, with what was `tried`; `carried` is that of `Search`, as `followed`."""
 
     task: Task
     declared: Trial
     proposals: Proposals
     carried: Carried
     tried: Tried = field(default_factory=Tried)
+    followed: Trial | None = None
 
     def among(self, candidates: tuple[Candidate, ...]) -> "Seeker":
         """The search among other candidates, which knows what was tried so far."""
@@ -67,8 +68,8 @@ class Seeker:
 
     def follow(self, trial: Trial) -> None:
         """Let a trial tell what the noise of the inputs leaves: a model that rests shows none."""
-        if trial.candidates:
-            self.carried = carried_noise(self.task, trial.fit)
+        if trial.candidates and trial is not self.followed:
+            self.followed, self.carried = trial, carried_noise(self.task, trial.fit)
 
     def is_at_noise(self, trial: Trial) -> bool:
         """Whether a trial leaves white noise alone."""
@@ -130,7 +131,7 @@ class Seeker:
         )
         if not kept:
             return self.declared
-        begun = ranked(taken_over(self.task, self.proposals, kept, trial))[0]
+        begun = ranked(taken_over(self.task, kept, trial))[0]
         smaller = continued(self.task, begun, ITERATIONS, executor=self.task.executor)
         if self.is_decided_at_end_of(smaller, trial):
             smaller = self.polished(smaller)

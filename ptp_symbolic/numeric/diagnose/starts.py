@@ -7,12 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.declared_rows import declared_start, possible
+from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.linear import made_up_for, stacked
 from ptp_symbolic.numeric.diagnose.proposals import Proposal, Proposals, start_for
 from ptp_symbolic.numeric.diagnose.refits import inside, over_windows
 from ptp_symbolic.numeric.diagnose.regression import untold
 from ptp_symbolic.numeric.diagnose.responses import Response
+from ptp_symbolic.numeric.diagnose.side_by_side import side_by_side
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -25,7 +26,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
 )
 from ptp_symbolic.numeric.identify.constants import FAR_OFF, ITERATIONS, MOST, TRIED, WIDE_STEP
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.equation_fit import fit_equations
 from ptp_symbolic.numeric.identify.fit import Fit
 
 
@@ -34,19 +34,21 @@ def started(task: Task, declared: Trial, sets: Sequence[Proposal]) -> list[Trial
     the windows lead, and beside the declared model.
     """
     part = replace(task, train=task.few)
-    jobs = [
-        task.executor.submit(fitted, part, s.candidates, s.values, None, ITERATIONS) for s in sets
-    ]
-    begun = []
-    for short in ranked([job.result() for job in jobs])[:TRIED]:
+
+    def short_fit(proposal: Proposal) -> Trial:
+        values, run = proposal.values, task.executor
+        return fitted(part, proposal.candidates, values, None, ITERATIONS, executor=run)
+
+    def at_better_start(short: Trial) -> Trial:
         own = {name for c in short.candidates for name in c.names}
         beside = declared.values | {name: short.values[name] for name in own}
         starts = [
             _begun(task, short.candidates, short.values, None),
             _begun(task, short.candidates, beside, declared.fit),
         ]
-        begun.append(ranked(starts)[0])
-    return begun
+        return ranked(starts)[0]
+
+    return side_by_side(at_better_start, ranked(side_by_side(short_fit, sets))[:TRIED])
 
 
 def along(task: Task, proposals: Proposals, found: Response, parent: Trial) -> list[Trial]:
@@ -76,11 +78,9 @@ def from_rows(
     return [*begun, _begun(task, candidates, start, None)]
 
 
-def taken_over(
-    task: Task, proposals: Proposals, kept: Sequence[Candidate], trial: Trial
-) -> list[Trial]:
+def taken_over(task: Task, kept: Sequence[Candidate], trial: Trial) -> list[Trial]:
     """The declared model with some candidates `kept` of a trial, without the others: as they are,
-    and where they take over what the others did, in the outputs and in the rows.
+    and where they take over what the others did.
     """
     dropped = [c for c in trial.candidates if c not in kept]
     off = {name: task.fixed[name] for c in dropped for name in c.names}
@@ -88,13 +88,8 @@ def taken_over(
     others = {f.name for f in all_free(task, kept, values)}
     vanishing = {name: zero for c in dropped for name, zero in c.vanishing.items()}
     table = stacked(trial.fit, [e.by_parameter for e in trial.fit.evaluations])
-    starts = [values, made_up_for(trial.fit, vanishing, others, table) | off]
-    if proposals.space is not None:
-        seen = {c.key for c in kept} - {c.key for c in proposals.unseen}
-        free = all_free(task, [c for c in kept if c.key in seen], values)
-        found = fit_equations(proposals.space, free, values, ITERATIONS, task.executor)
-        starts.append(possible(task, free, {**values, **found}))
-    return [_begun(task, kept, v, trial.fit) for v in starts]
+    taken = made_up_for(trial.fit, vanishing, others, table) | off
+    return side_by_side(lambda start: _begun(task, kept, start, trial.fit), [values, taken])
 
 
 def in_place(

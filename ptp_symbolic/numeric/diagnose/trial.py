@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.side_by_side import side_by_side
 from ptp_symbolic.numeric.identify.constants import (
     GAIN,
     ITERATIONS,
@@ -282,16 +283,12 @@ def halving(
     """
     left = list(trials)
 
-    def go_on(trial: Trial, executor: Executor | None) -> Trial:
+    def go_on(trial: Trial) -> Trial:
         secants = None if trial.fit.misleading is None else WIDE_STEP
-        return continued(task, trial, iterations, secants=secants, executor=executor)
+        return continued(task, trial, iterations, secants=secants, executor=task.executor)
 
     for kept in rungs:
-        if len(left) == 1:  # its runs side by side
-            further = [go_on(left[0], task.executor)]
-        else:
-            jobs = [task.executor.submit(go_on, trial, None) for trial in left]
-            further = [job.result() for job in jobs]
+        further = side_by_side(go_on, left)
         left = [t for t in ranked(further) if np.isfinite(t.fit.cost)]
         if seen is not None:
             seen += left[kept:]

@@ -37,13 +37,18 @@ FloatArray = NDArray[np.float64]
 
 
 def window_length(
-    model: Model, runs: Sequence[Run], p: FloatArray, declared_noise: Sequence[float | None]
+    model: Model,
+    runs: Sequence[Run],
+    p: FloatArray,
+    declared_noise: Sequence[float | None],
+    executor: Executor | None = None,
 ) -> float | None:
     """Longest window in s over which input noise stays near the noise of the angles, at p [np].
 
     None where whole runs do. Where an error of the start grows tenfold, windows of 1 s at most.
     """
-    if any(multiplies_errors(model, run, p, run.guess) for run in runs):
+    side_by_side = executor.map if executor else map
+    if any(side_by_side(lambda run: multiplies_errors(model, run, p, run.guess), runs)):
         lengths: tuple[float, ...] = tuple(x for x in LENGTHS if x <= SHORT)
     else:
         lengths = (np.inf, *LENGTHS)
