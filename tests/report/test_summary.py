@@ -92,7 +92,8 @@ def _verdict(word: str, final: Trial, **more: Any) -> Any:
 
 def _errors(counts: float | None = 0.5) -> dict[str, Any]:
     stage = {"total": {"rmse_counts": counts, "rmse": 5.4321e-4, "unit": "rad"}, "without": None}
-    return {"validate": {"before": stage, "after": stage, "noise_floor": stage}}
+    stages = {"before": stage, "after": stage, "noise_floor": stage}
+    return {"train": stages, "validate": stages}
 
 
 @pytest.mark.parametrize(

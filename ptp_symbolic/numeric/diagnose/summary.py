@@ -58,13 +58,26 @@ def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -
         if found.word == PARTLY:
             sentences.append(f"The floor is {floor}: a remainder is left unexplained.")
         return " ".join(sentences)
-    text = (
-        f"Something is missing that has no name here: {before} on validation runs, the floor is"
-        f" {floor}."
-    )
+    text = f"Something is missing that has no name here: {_most_left(errors)}."
     if found.closest is not None:
         text += f" The closest candidate, not confirmed: {' + '.join(found.closest.keys)}."
     return text
+
+
+def _most_left(errors: Mapping[str, Any]) -> str:
+    """What the declared model leaves beside the floor: of the validation runs, or of the training
+    runs where these alone show more than noise.
+    """
+
+    def is_at_floor(part: str) -> bool:
+        rms, floor = (errors[part][w]["total"]["rmse"] for w in ("before", "noise_floor"))
+        return bool(rms <= ABOVE_NOISE * floor)
+
+    training = is_at_floor("validate") and not is_at_floor("train")
+    part, name = ("train", "training") if training else ("validate", "validation")
+    before, floor = (_worded(errors[part][w]["total"]) for w in ("before", "noise_floor"))
+    text = f"{before} on {name} runs, the floor is {floor}"
+    return f"{text}, and that of the validation runs is reached" if training else text
 
 
 def _mostly_in_one_run(without: Mapping[str, Any] | None) -> list[str]:
