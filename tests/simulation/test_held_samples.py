@@ -91,6 +91,23 @@ def test_what_turns_back_twice_within_a_sample_is_not_missed(
     assert len(found.events) == len(exact.events)
 
 
+@pytest.mark.parametrize(("kind", "damping"), [("waves", 1.0), ("waves", 0.2), ("steps", 1.0)])
+def test_a_gear_that_bounces_in_less_than_a_sample_loses_no_face(
+    drive: Model, kind: str, damping: float, figure
+) -> None:
+    """The load swings on its shaft by sqrt(5000 / 0.05) = 316 rad/s, a whole turn in a sample of
+    20 ms: the gear leaves a face and is back between two states of a step.
+    """
+    times = 0.02 * np.arange(301)
+    waves = 8.0 * np.sin(5.0 * times) + 3.0 * np.sin(17.0 * times)
+    voltage = waves if kind == "waves" else 6.0 * np.sign(np.sin(4.0 * times + 0.3))
+    values = {"d_shaft_pan": damping}
+    exact = run(drive, 1e-10, times, method="runge_kutta", voltage=voltage, values=values)
+    found = run(drive, 1e-5, times, voltage=voltage, values=values)
+    assert len(found.events) == len(exact.events) > 100
+    assert figure("error, rad", np.abs(found.x[:, 0] - exact.x[:, 0]).max()) < 1e-6
+
+
 def test_samples_at_uneven_times_are_left_to_the_adaptive_method(drive: Model) -> None:
     shaken = TIMES.copy()
     shaken[1:-1] += 1e-4 * np.random.default_rng(4).uniform(-1.0, 1.0, len(TIMES) - 2)

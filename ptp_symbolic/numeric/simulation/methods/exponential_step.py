@@ -13,8 +13,12 @@ A step is exact in what is linear and of order 2 in the rest. It takes four slop
 implicit method takes eight and a Jacobian. A step is made only where the rest is within the
 tolerance (also inside: two slopes a period of cogging apart would not see it), no mode ends inside
 and nothing is asked for inside; everything else is left to the adaptive method. So are machines
-that time itself drives, such as a shaken base, and samples at uneven times.
+that time itself drives, such as a shaken base, samples at uneven times, and steps in which an
+oscillation turns so far that a mode may end, and the force be back, unseen between the four states:
+a load that swings on its shaft leaves the face of a gap for a few milliseconds.
 """
+
+import math
 
 from ptp_symbolic.numeric.simulation.events.domain import is_finite
 from ptp_symbolic.numeric.simulation.events.location import (
@@ -47,9 +51,10 @@ from ptp_symbolic.numeric.simulation.methods.propagator import (
 from ptp_symbolic.numeric.simulation.methods.steps import larger, over_tolerance
 from ptp_symbolic.numeric.simulation.outputs import next_output
 
-PERIOD, KNOWN, WAIT, PATIENCE = 0, 1, 2, 3
+PERIOD, KNOWN, WAIT, PATIENCE, TURN = 0, 1, 2, 3, 4
 LONGEST_WAIT = 64.0  # samples
 RESTING = 1e-3  # of the tolerance
+FARTHEST_TURN = math.pi  # rad; of an oscillation in a step, which parabolas through its nodes show
 
 
 @merged
@@ -71,17 +76,21 @@ def reach_sample(
         return False
     if length > limits[1] or next_output(record) < target - TIME_RESOLUTION:
         return False
-    derivative(equations, t, x, inputs.u, watch.m, propagator.slope)
     known = clock[KNOWN] == 1.0 and are_equal(watch.m, propagator.modes)
+    if known and clock[TURN] > FARTHEST_TURN:
+        return False
+    derivative(equations, t, x, inputs.u, watch.m, propagator.slope)
     error = 1e300
     for _ in range(2):
         if not known:
             if is_driven_by_time(equations, inputs, t, x, watch.m, propagator):
                 break
             jacobian(equations, t, x, inputs.u, watch.m, step.fx, step.fu, step.fp)
-            fill_propagator(length, step.fx, propagator)
             copy(watch.m, propagator.modes)
-            clock[KNOWN] = 1.0
+            clock[KNOWN], clock[TURN] = 1.0, turn_in(length, step.fx, propagator.linear.shape[0])
+            if clock[TURN] > FARTHEST_TURN:
+                return False
+            fill_propagator(length, step.fx, propagator)
         error = propagate(equations, inputs, t, length, x, limits, atol, watch.m, step, propagator)
         if error <= 1.0 or not known:
             break
@@ -102,6 +111,19 @@ def reach_sample(
     copy(step.end, x)
     flush(x)
     return True
+
+
+@inlined
+def turn_in(h, fx, moving):
+    """By how much, in rad, the fastest oscillation of two of the `moving` states turns in h s, by
+    itself; fx [n, n].
+    """
+    fastest = 0.0
+    for i in range(moving):
+        for j in range(i):
+            apart = 0.5 * (fx[i, i] - fx[j, j])
+            fastest = max(fastest, -fx[i, j] * fx[j, i] - apart * apart)
+    return h * math.sqrt(fastest)
 
 
 @kernel

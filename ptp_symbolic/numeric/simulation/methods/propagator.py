@@ -39,13 +39,13 @@ PROPAGATOR = types.Tuple((_V, _V, *[_C] * 4, *[_M] * 11, *[_V] * 4, INTEGERS))
 class Propagator(NamedTuple):
     """Matrices that carry the moving states of a machine over one sampling period.
 
-    modes: those that the matrices hold for; clock [4]: the last period in s, whether matrices of it
-    are known, samples to wait before the next try, and how many after the next failure. For every
-    node s, by columns [moving, moving rounded up to LANES]: decay = phi0(s h L), reach = s h
-    phi1(s h L), weights of the rests, these also `by_rows`; linear = L, phi0 to phi3 of h L
-    [moving, moving]; shifted, psi, product [moving, moving]: scratch. states, rest [3, w]: those at
-    the nodes; fitted [3, 3], unit, order [3], slope, change, none [w]: scratch; `none` stays
-    zero.
+    modes: those that the matrices hold for; clock [5]: the last period in s, whether matrices of it
+    are known, samples to wait before the next try, how many after the next failure, and by how much
+    in rad the fastest oscillation turns in the period. For every node s, by columns [moving, moving
+    rounded up to LANES]: decay = phi0(s h L), reach = s h phi1(s h L), weights of the rests, these
+    also `by_rows`; linear = L, phi0 to phi3 of h L [moving, moving]; shifted, psi, product [moving,
+    moving]: scratch. states, rest [3, w]: those at the nodes; fitted [3, 3], unit, order [3],
+    slope, change, none [w]: scratch; `none` stays zero.
     """
 
     modes: Any
@@ -75,7 +75,7 @@ class Propagator(NamedTuple):
 def new_propagator(modes: int, moving: int, n: int) -> Propagator:
     """Preallocated propagator of n states, the first `moving` of which are not set by samplers."""
     z, w = np.zeros, padded(n)
-    arrays = [z(modes), np.array([0.0, 0.0, 0.0, 1.0])]
+    arrays = [z(modes), np.array([0.0, 0.0, 0.0, 1.0, 0.0])]
     arrays += [z((NODES, moving, padded(moving))) for _ in range(3)]
     arrays += [z((NODES, moving, moving))]
     arrays += [z((moving, moving)) for _ in range(8)]
