@@ -10,6 +10,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_needs_
 from ptp_symbolic.numeric.diagnose.confirm import (
     at_bound,
     is_amount_known,
+    is_done_by_others,
     leads,
     unstable_without,
     why_unconfirmed,
@@ -107,6 +108,20 @@ def test_no_effect_is_named_where_noise_is_left_and_the_others_can_do_what_it_do
     reason = why_unconfirmed(fit, EFFECT, leaves_noise=True)
     assert (reason is None) is is_named
     assert is_named or "can do all that it does" in str(reason)
+
+
+@pytest.mark.parametrize(("amount", "spoilt"), [(0.1, False), (0.5, True), (0.0, False)])
+def test_only_what_others_do_is_held_against_an_effect(amount: float, spoilt: bool) -> None:
+    """A wave that nothing else makes is let be, however small: half a percent of the noise's mean
+    square; one that is large, beside a log that is off by 60 times the noise; one without slope.
+    """
+    other = free_parameter("J", 1.0, -9.0, 9.0)
+    columns = [np.column_stack([w, np.roll(w, 16)]) for w in waves(4)]
+    noise = list(np.random.default_rng(8).standard_normal((4, 300)))
+    noise[1] *= 60.0 if spoilt else 1.0
+    slopes = [-c if amount else 0.0 * c for c in columns]
+    fit = finished(noise, slopes, None, (SPRING, other), {"k": amount, "J": 1.0})
+    assert not is_done_by_others(fit, EFFECT)
 
 
 def test_an_effect_of_no_amount_through_which_another_acts_is_known_with_that() -> None:

@@ -80,6 +80,8 @@ def test_a_declared_model_that_strayed_is_led_back_before_its_end_is_believed(ta
     wrong = fitted(task, (), {**task.fixed, "J_pan": 0.19}, None)
     assert not is_near_floor(wrong)
     assert _led_back(task, wrong) is wrong
+    failed = replace(strayed, fit=replace(strayed.fit, failed="not finite", cost=np.inf))
+    assert leaves_white_noise(_led_back(replace(task, material=1.0), failed), NOTHING_CARRIED)
 
 
 def test_a_trial_that_leaves_noise_alone_stays(task: Task) -> None:

@@ -23,6 +23,7 @@ from ptp_symbolic.numeric.diagnose.starts import from_rows, taken_over
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
 from ptp_symbolic.numeric.diagnose.tried import Tried, worth_keeping
 from ptp_symbolic.numeric.identify.constants import LARGEST, MOST
+from ptp_symbolic.numeric.identify.fit import Fit
 from tests.diagnose.spring_table import DAMPING, INERTIA, MASS, PAYLOAD, STIFFNESS, spring_table
 
 
@@ -149,9 +150,7 @@ def test_what_stays_takes_over_what_the_others_did(seeker: Seeker) -> None:
 
 
 def test_a_stuck_inertia_takes_over_what_a_moved_payload_made_up_for(tmp_path: Path) -> None:
-    """A machine of which nothing is missing: m d^2 holds what the inertia lacks, and the declared
-    model has no way from its inertia alone.
-    """
+    """A machine of which nothing is missing: m d^2 holds what the inertia lacks."""
     with spring_table(tmp_path, stiffness=0.0) as task:
         (moved,) = (c for c in task.candidates if c.id == "declared_value:c_x_payload")
         lack = INERTIA - PAYLOAD - 0.005
@@ -279,7 +278,7 @@ def test_what_a_trial_far_behind_gains_is_told_where_its_columns_hardly_differ(
 def test_the_noise_that_a_trial_carries_is_replayed_once(
     seeker: Seeker, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    replayed: list[Trial] = []
+    replayed: list[Fit] = []
     name = "ptp_symbolic.numeric.diagnose.seeker.carried_noise"
     monkeypatch.setattr(name, lambda _, fit: replayed.append(fit) or seeker.carried)
     fresh = seeker.among(seeker.task.candidates)

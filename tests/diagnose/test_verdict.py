@@ -6,6 +6,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from scipy import stats
 from scipy.signal import lfilter
 
 from ptp_symbolic.numeric.diagnose.confirmed_sets import doubtful
@@ -16,7 +17,12 @@ from ptp_symbolic.numeric.diagnose.floor import (
     leaves_noise_alone,
     leaves_noise_of_inputs,
 )
-from ptp_symbolic.numeric.diagnose.held_out import held_out_gain, is_quiet, is_taken_back
+from ptp_symbolic.numeric.diagnose.held_out import (
+    chance_of_larger,
+    held_out_gain,
+    is_quiet,
+    is_taken_back,
+)
 from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.trial import Trial, mean_squares
 from ptp_symbolic.numeric.diagnose.verdict import (
@@ -172,6 +178,30 @@ def test_windows_half_of_which_leave_more_than_the_training_runs_are_not_quiet()
     assert np.median(rms) < ABOVE_NOISE
     assert not quiet(after, finished(noisy(48, 1.0, 3)))
     assert quiet(after, finished(noisy(3, 1.0, 3)))  # too few to tell
+
+
+def test_one_window_that_sticks_elsewhere_is_no_lack() -> None:
+    """Of 221 the largest is any of those 20 in one case of eleven."""
+    after = finished([*noisy(19, 1.0, 4), *(5.0 * s for s in noisy(1, 1.0, 5))])
+    assert quiet(after, finished(noisy(200, 1.0, 6)))
+    ours, theirs = np.r_[np.ones(19), 5.0], np.ones(200)
+    assert chance_of_larger(ours, theirs) == pytest.approx(20 / 220, abs=0.01)
+    drawn = np.random.default_rng(2).standard_normal((2, 30))
+    exact = stats.mannwhitneyu(*drawn, alternative="greater", method="exact").pvalue
+    assert chance_of_larger(*drawn) == pytest.approx(exact, abs=0.02)
+
+
+def test_windows_are_held_to_the_usual_noise_and_not_to_the_most_that_may_be() -> None:
+    """All validation windows leave 1.8, which noise of some colour may, and the others one."""
+    after, own, one = (
+        finished([1.8 * s for s in noisy(28, 1.0, 4)]),
+        finished(noisy(48, 1.0, 6)),
+        np.ones(1),
+    )
+    left = mean_squares(after.evaluations, after.runs)
+    wide = Floor(one, 1.9 * one, Carried(0.0 * one, 0.0 * one))
+    assert not is_quiet(left, np.full(28, 400), wide, own)
+    assert is_quiet(left, np.full(28, 400), wide, after)
 
 
 def test_windows_that_leave_noise_are_quiet_however_little_those_at_rest_leave() -> None:

@@ -95,8 +95,8 @@ def test_what_turns_back_twice_within_a_sample_is_not_missed(
 def test_a_gear_that_bounces_in_less_than_a_sample_loses_no_face(
     drive: Model, kind: str, damping: float, figure
 ) -> None:
-    """The load swings on its shaft by sqrt(5000 / 0.05) = 316 rad/s, a whole turn in a sample of
-    20 ms: the gear leaves a face and is back between two states of a step.
+    """The load, 0.05 + 0.05 kg m^2, swings on its shaft by sqrt(5000 / 0.1) = 224 rad/s, two thirds
+    of a turn in a sample of 20 ms: the gear leaves a face and is back between two states of a step.
     """
     times = 0.02 * np.arange(301)
     waves = 8.0 * np.sin(5.0 * times) + 3.0 * np.sin(17.0 * times)

@@ -1,12 +1,13 @@
 """What an effect must stand before it is named, besides its predictive gain."""
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.linear import effect_of, predicted_share, projected_off, stacked
+from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
 from ptp_symbolic.numeric.identify.blocks import leave_blocks_out, without_outliers
 from ptp_symbolic.numeric.identify.constants import (
@@ -32,15 +33,15 @@ def why_unconfirmed(
 ) -> str | None:
     """Why `candidate` of a set cannot be named; None where nothing speaks against it. `fit` is that
     of the set, from `with_finite_differences` if it is one of simulations, `refit` that of
-    `unstable_without`. Where it leaves noise alone, nothing is missing that the candidate could
-    make up for but a better place of the other parameters: what it adds to them must show.
+    `unstable_without`. Where more than noise is left, the candidate may make up for what is
+    missing; where noise alone is, for a better place of the other parameters.
     """
     bound = at_bound(fit, candidate)
     if bound is not None:
         return f"{bound} ends at its bound"
     if not leaves_noise and not is_amount_known(fit, candidate):
         return "its amount cannot be told from zero"
-    if leaves_noise and predicted_share(fit, candidate.vanishing, candidate.parameters) < LITTLE:
+    if leaves_noise and is_done_by_others(fit, candidate):
         return "the other parameters of the model can do all that it does"
     if not leads(fit, candidate):
         return "what it adds to its simplest form is larger than that"
@@ -58,6 +59,19 @@ def is_amount_known(fit: Fit, candidate: Candidate) -> bool:
     known: a single axis feels a base that shakes by what goes along with it, whatever the azimuth.
     """
     return chance_of_zero(fit, candidate.vanishing, candidate.parameters) < FALSE_ALARM
+
+
+def is_done_by_others(fit: Fit, candidate: Candidate) -> bool:
+    """Whether the other parameters can do all that the candidate does, by linear prediction: a
+    small part of it is left beside them, and changes the mean square by less than errors of
+    simulations do.
+    """
+    rows = _rows_of(fit)
+    others = [k for k, f in enumerate(fit.free) if f.name not in candidate.parameters]
+    effect = effect_of(fit, candidate.vanishing, rows.columns)
+    added = projected_off(effect[:, None], rows.columns[:, others])[:, 0]
+    square, left = float(added @ added), float(rows.residual @ rows.residual)
+    return square < min(ELSEWHERE * float(effect @ effect), LITTLE * left)
 
 
 def leads(fit: Fit, candidate: Candidate) -> bool:
@@ -96,14 +110,7 @@ def unstable_without(fit: Fit, candidate: Candidate, refit: Refit | None = None)
     out says nothing. What linear prediction finds so is fitted without the run where a `refit` is
     given: breakaways are no straight line.
     """
-    sources = [run.source for run in fit.runs]
-    names = list(dict.fromkeys(sources))
-    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
-    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
-    signals = fit.runs[0].measured.shape[1]
-    source = np.repeat([names.index(s) for s in sources], [len(run.time) for run in fit.runs])
-    residual, columns, step = without_outliers(residual, columns, source, signals)
-    label = np.repeat(source, signals)
+    names, residual, columns, step, label = _rows_of(fit)
     left = leave_blocks_out(residual, columns, label)
     own = [k for k, f in enumerate(fit.free) if f.name in candidate.parameters]
     others = [k for k in range(len(fit.free)) if k not in own]
@@ -126,6 +133,30 @@ def unstable_without(fit: Fit, candidate: Candidate, refit: Refit | None = None)
         if refit is None or not holds(to_search(fit.free, refit(name).values) - at):
             return name
     return None
+
+
+class _Rows(NamedTuple):
+    """Residual [n] and columns [n, nf] of a fit, projected off the starts of its runs, logs far
+    worse than usual weighed down; the step [nf] to the optimum with these weights, and the number
+    [n] in `names` of the log of each.
+    """
+
+    names: list[str]
+    residual: FloatArray
+    columns: FloatArray
+    step: FloatArray
+    label: NDArray[np.int64]
+
+
+def _rows_of(fit: Fit) -> _Rows:
+    sources = [run.source for run in fit.runs]
+    names = list(dict.fromkeys(sources))
+    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    signals = fit.runs[0].measured.shape[1]
+    source = np.repeat([names.index(s) for s in sources], [len(run.time) for run in fit.runs])
+    weighed = without_outliers(residual, columns, source, signals)
+    return _Rows(names, *weighed, np.repeat(source, signals))
 
 
 def answers_to_inputs(task: Task, trial: Trial) -> bool:

@@ -60,7 +60,7 @@ def led_over_windows(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
     """
     starts = [proposals.start, declared_start(task)]
     spread = far_starts(task.free, proposals.start) if has_rough_starts(task) else []
-    begun = over_windows(task, (), starts, task.executor, spread)
+    begun = over_windows(task, (), starts, spread)
     if begun:
         part = in_windows(task, begun[0])
         if part is not task:
@@ -98,13 +98,14 @@ def _in_windows_of_its_own(task: Task, trial: Trial) -> tuple[Task, Trial]:
 
 def _led_back(task: Task, trial: Trial) -> Trial:
     """The declared model, or a better end from where parameters that have strayed are back where a
-    start may be, if some iterations gain materially: one that went where it does nothing has no
-    derivative that leads back, and what makes up for it is no effect.
+    start may be (see `begun_anew`), if some iterations gain materially: one that went where it does
+    nothing has no derivative that leads back, and what makes up for it is no effect.
     """
-    if is_near_floor(trial) or not strayed_from_start(task, trial.values):
+    strayed = strayed_from_start(task, trial.values)
+    if not strayed or (is_near_floor(trial) and not trial.fit.failed):
         return trial
     left = halving(task, begun_anew(task, trial), 1)
-    if not left or gain(left[0], trial).share < task.material:
+    if not left or not (trial.fit.failed or gain(left[0], trial).share >= task.material):
         return trial
     return polished(task, left[0], carried_noise(task, left[0].fit))
 

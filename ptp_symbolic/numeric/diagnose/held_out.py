@@ -21,12 +21,15 @@ from ptp_symbolic.numeric.identify.blocks import huber_root
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
     BIGGEST,
+    FOLDS,
     GAIN,
     MANY_RUNS,
     MOST,
     POLISH,
+    RESAMPLES,
     REWEIGHTINGS,
     ROUGH,
+    SEED,
     SHARP,
     TUNING,
     UNALIKE,
@@ -92,18 +95,28 @@ def is_quiet(left: FloatArray, size: FloatArray, floor: Floor, trained: Fit) -> 
     """Whether validation runs of `size` [runs] samples show no more than noise, by what they have
     `left` [runs, ny] (see `left_by_best_values`). The median of the runs counts, for one that
     sticks at another sample than it did is off by counts. Of many windows it sees half: beside it
-    they may not leave more than the windows of the training runs (Mann and Whitney, 1947). All that
-    leave no more than noise may count alike: windows at rest, rounded to a count that they stay at,
-    leave less, and show no lack in those that move.
+    they may not leave more than the windows of the training runs. Windows that leave no more than
+    the usual noise count alike in that: those at rest, rounded to a count that they stay at, leave
+    less, and show no lack in those that move.
     """
-    bound = (ABOVE_NOISE * floor.most) ** 2
-    if not np.all(weighted_median(left, size) <= bound):
+    if not np.all(weighted_median(left / (ABOVE_NOISE * floor.most) ** 2, size) <= 1.0):
         return False
     own = mean_squares(trained.evaluations, trained.runs)
     if min(len(left), len(own)) < MANY_RUNS:
         return True
-    left, own = np.maximum(left, bound), np.maximum(own, bound)
-    return bool(np.all(stats.mannwhitneyu(left, own, alternative="greater").pvalue > UNALIKE))
+    usual = (ABOVE_NOISE * floor.level) ** 2
+    pairs = zip(np.maximum(left, usual).T, np.maximum(own, usual).T, strict=True)
+    return all(chance_of_larger(ours, theirs) > UNALIKE for ours, theirs in pairs)
+
+
+def chance_of_larger(ours: FloatArray, theirs: FloatArray) -> float:
+    """The chance of ranks as high as those of `ours` [m] among `theirs` [n] if all are alike (Mann
+    and Whitney, 1947), by permutation: where most are the same, their sum is far from normal.
+    """
+    ranks = stats.rankdata(np.concatenate([ours, theirs]))
+    rng, count = np.random.default_rng(SEED), FOLDS * RESAMPLES
+    sums = [rng.permutation(ranks)[: len(ours)].sum() for _ in range(count)]
+    return (1.0 + np.count_nonzero(sums >= ranks[: len(ours)].sum())) / (1.0 + count)
 
 
 def held_out_fit(task: Task, trial: Trial) -> Fit:

@@ -33,23 +33,11 @@ def effect_of(fit: Fit, vanishing: Mapping[str, float], table: FloatArray) -> Fl
     return effect
 
 
-def predicted_share(fit: Fit, vanishing: Mapping[str, float], own: Collection[str]) -> float:
-    """The share of the squared residual with parameters at their values in `vanishing` that those
-    at the fit take away, by linear prediction from the Jacobian; those not in `own` follow.
-    """
-    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
-    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
-    others = [k for k, f in enumerate(fit.free) if f.name not in own]
-    effect = effect_of(fit, vanishing, columns)[:, None]
-    taken = float(np.sum(projected_off(effect, columns[:, others]) ** 2))
-    return taken / max(taken + float(residual @ residual), 1e-300)
-
-
 def made_up_for(
     fit: Fit, vanishing: Mapping[str, float], kept: Collection[str], table: FloatArray
 ) -> dict[str, float]:
-    """Values of the fit with parameters at their values in `vanishing`, and those `kept` where they
-    make up for that, by linear prediction; `table` is that of `effect_of`.
+    """Values of the fit with parameters at their values in `vanishing`, and with others, `kept`,
+    where they make up for that, by linear prediction; `table` is that of `effect_of`.
 
     They move by what that predicts in their units, not in search coordinates: what an effect adds
     to an inertia is a sum. Where the logs hardly tell them apart, they move together.

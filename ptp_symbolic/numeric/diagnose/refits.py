@@ -1,7 +1,6 @@
 """Refits of a set by simulation: over short windows first, then whole runs, at last to the end."""
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.growing_windows import settled, starts_of
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise, left_over
-from ptp_symbolic.numeric.diagnose.linear import predicted_share
+from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -56,7 +55,6 @@ def over_windows(
     task: Task,
     candidates: Sequence[Candidate],
     starts: Sequence[Mapping[str, float]],
-    executor: Executor | None = None,
     spread: Sequence[Mapping[str, float]] = (),
 ) -> list[Trial]:
     """The trial that begins where fits over ever longer windows lead from the best of `starts`, and
@@ -76,7 +74,7 @@ def over_windows(
             z: Sequence[FloatArray] | None = None,
             part: Task = part,
         ) -> Trial:
-            return fitted(part, candidates, values, z, executor=executor)
+            return fitted(part, candidates, values, z, executor=task.executor)
 
         near = starts if best is None else [best.values]
         begun = halving(part, [begin(values) for values in near], 1)
@@ -86,8 +84,8 @@ def over_windows(
             begun = ranked([*begun, *halving(part, far, 1)])
         if not begun:
             return []
-        best = settled(part, begun[0], executor, brief=bool(candidates))
-    return [fitted(task, candidates, best.values, None, executor=executor)] if best else []
+        best = settled(part, begun[0], task.executor, brief=bool(candidates))
+    return [fitted(task, candidates, best.values, None, executor=task.executor)] if best else []
 
 
 def polished(task: Task, trial: Trial, carried: Carried) -> Trial:
@@ -139,12 +137,14 @@ def begun_anew(task: Task, trial: Trial) -> list[Trial]:
     """Where `started_anew` begins; nowhere where every run has a single place to start from."""
     if not has_rough_starts(task):
         return []
-    begun = [fitted(task, trial.candidates, trial.values, None, parent=trial.fit)]
+    run = task.executor
+    begun = [fitted(task, trial.candidates, trial.values, None, parent=trial.fit, executor=run)]
     strayed = strayed_from_start(task, trial.values)
     for factor in (1.0, FAR_OFF, 1.0 / FAR_OFF) if strayed else ():
         back = {n: inside(f, factor * f.start) for f in strayed for n in f.names}
         values = trial.values | back
-        begun.append(fitted(task, trial.candidates, values, trial.fit.z, parent=trial.fit))
+        z, parent = trial.fit.z, trial.fit
+        begun.append(fitted(task, trial.candidates, values, z, parent=parent, executor=run))
     return begun
 
 
@@ -206,7 +206,13 @@ def expected_gain(trial: Trial, vanishing: Mapping[str, float]) -> float:
     """The share of the squared residual with the parameters in `vanishing` at their values there
     that those at the fit take away, by linear prediction from the Jacobian.
     """
-    return predicted_share(trial.fit, vanishing, vanishing)
+    fit = trial.fit
+    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    others = [k for k, f in enumerate(fit.free) if f.name not in vanishing]
+    effect = projected_off(effect_of(fit, vanishing, columns)[:, None], columns[:, others])[:, 0]
+    taken = float(effect @ effect)
+    return taken / max(taken + float(residual @ residual), 1e-300)
 
 
 def forms(task: Task, candidate: Candidate) -> list[Candidate]:

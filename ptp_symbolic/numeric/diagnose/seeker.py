@@ -45,7 +45,7 @@ from ptp_symbolic.numeric.identify.constants import (
 
 @dataclass(eq=False)
 class Seeker:
-    """A search in progress, with what was `tried`; `carried` is that of `Search`, as `followed`."""
+    """A search, with what was `tried`; `carried` is that of the trial that was `followed` last."""
 
     task: Task
     declared: Trial

@@ -1,5 +1,6 @@
-"""Work done side by side, each piece in a thread of its own that shares out its simulations."""
+"""Fits side by side, in threads of their own that share out their simulations."""
 
+import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
@@ -11,10 +12,11 @@ Result = TypeVar("Result")
 def side_by_side(work: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
     """What `work` makes of every item, in their order.
 
-    Its threads only wait for what they hand to an executor, one worker per core: where there are
-    three fits for two cores, the last of them does not hold one core idle.
+    Simulations that it hands to an executor of one worker per core go on while another piece is
+    between two of its own, so that the last of three fits for two cores keeps both at work. One
+    piece more than cores is enough for that.
     """
     if len(items) <= 1:
         return [work(item) for item in items]
-    with ThreadPoolExecutor(len(items)) as threads:
+    with ThreadPoolExecutor(min(len(items), 1 + (os.cpu_count() or 1))) as threads:
         return list(threads.map(work, items))

@@ -74,22 +74,25 @@ def from_rows(
     """
     start = start_for(task, proposals, candidates, values)
     own = {name: start[name] for c in candidates for name in c.names}
-    begun = over_windows(task, candidates, [start, declared_start(task) | own], task.executor)
+    begun = over_windows(task, candidates, [start, declared_start(task) | own])
     return [*begun, _begun(task, candidates, start, None)]
 
 
 def taken_over(task: Task, kept: Sequence[Candidate], trial: Trial) -> list[Trial]:
     """The declared model with some candidates `kept` of a trial, without the others: as they are,
-    and where they take over what the others did.
+    and where they take over what the others did, by linear prediction; a limit is too far from
+    where it vanishes for that.
     """
     dropped = [c for c in trial.candidates if c not in kept]
     off = {name: task.fixed[name] for c in dropped for name in c.names}
     values = trial.values | off
     others = {f.name for f in all_free(task, kept, values)}
-    vanishing = {name: zero for c in dropped for name, zero in c.vanishing.items()}
+    linear = [f for c in dropped for f in c.defining if not c.is_limit(f)]
+    vanishing = {f.name: off[f.name] for f in linear}
     table = stacked(trial.fit, [e.by_parameter for e in trial.fit.evaluations])
     taken = made_up_for(trial.fit, vanishing, others, table) | off
-    return side_by_side(lambda start: _begun(task, kept, start, trial.fit), [values, taken])
+    starts = [values] if taken == values else [values, taken]
+    return side_by_side(lambda start: _begun(task, kept, start, trial.fit), starts)
 
 
 def in_place(
