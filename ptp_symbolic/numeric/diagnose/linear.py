@@ -40,7 +40,7 @@ def made_up_for(
     where they make up for that, by linear prediction; `table` is that of `effect_of`.
 
     They move by what that predicts in their units, not in search coordinates: what an effect adds
-    to an inertia is a sum. Where the logs hardly tell them apart, they move together.
+    to an inertia is a sum. Parameters that the logs hardly tell apart move together.
     """
     own = [k for k, f in enumerate(fit.free) if f.name in kept]
     columns, unit = table[:, own], slopes(fit.free, to_search(fit.free, fit.values))

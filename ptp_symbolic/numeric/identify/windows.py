@@ -47,8 +47,8 @@ def window_length(
 
     None where whole runs do. Where an error of the start grows tenfold, windows of 1 s at most.
     """
-    side_by_side = executor.map if executor else map
-    if any(side_by_side(lambda run: multiplies_errors(model, run, p, run.guess), runs)):
+    every = executor.map if executor else map
+    if any(every(lambda run: multiplies_errors(model, run, p, run.guess), runs)):
         lengths: tuple[float, ...] = tuple(x for x in LENGTHS if x <= SHORT)
     else:
         lengths = (np.inf, *LENGTHS)

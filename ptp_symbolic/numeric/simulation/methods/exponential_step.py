@@ -54,7 +54,7 @@ from ptp_symbolic.numeric.simulation.outputs import next_output
 PERIOD, KNOWN, WAIT, PATIENCE, TURN = 0, 1, 2, 3, 4
 LONGEST_WAIT = 64.0  # samples
 RESTING = 1e-3  # of the tolerance
-FARTHEST_TURN = math.pi  # rad; of an oscillation in a step, which parabolas through its nodes show
+FARTHEST_TURN = math.pi  # rad in a step; of an oscillation that parabolas through the nodes show
 
 
 @merged
