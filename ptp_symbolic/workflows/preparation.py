@@ -1,6 +1,5 @@
 """What comes before any fit: logs looked at, runs matched to the model, workers."""
 
-import os
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
@@ -11,6 +10,7 @@ from ptp_symbolic.models import emission
 from ptp_symbolic.models.declared import free_parameters, known_values, refuse_unknown_signals
 from ptp_symbolic.numeric.data import Log, refuse_motionless, refuse_wrapped_angles, remarks
 from ptp_symbolic.numeric.diagnose.preparation import task_of
+from ptp_symbolic.numeric.diagnose.side_by_side import usable_cores
 from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
@@ -31,9 +31,7 @@ def workers() -> Iterator[Executor]:
     """One thread per core that the process may use, for runs side by side; threads of the linear
     algebra would be in their way.
     """
-    affinity = getattr(os, "sched_getaffinity", None)  # Linux alone has one
-    cores = len(affinity(0)) if affinity else os.cpu_count()
-    with threadpool_limits(limits=1), ThreadPoolExecutor(cores) as executor:
+    with threadpool_limits(limits=1), ThreadPoolExecutor(usable_cores()) as executor:
         yield executor
 
 

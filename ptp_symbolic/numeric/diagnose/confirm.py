@@ -7,7 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
+from ptp_symbolic.numeric.diagnose.linear import (
+    effect_of,
+    projected_off,
+    stacked_jacobian,
+    stacked_residual,
+)
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
 from ptp_symbolic.numeric.identify.blocks import leave_blocks_out, without_outliers
 from ptp_symbolic.numeric.identify.constants import (
@@ -151,8 +156,8 @@ class _Rows(NamedTuple):
 def _rows_of(fit: Fit) -> _Rows:
     sources = [run.source for run in fit.runs]
     names = list(dict.fromkeys(sources))
-    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
-    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    residual = stacked_residual(fit)
+    columns = stacked_jacobian(fit)
     signals = fit.runs[0].measured.shape[1]
     source = np.repeat([names.index(s) for s in sources], [len(run.time) for run in fit.runs])
     weighed = without_outliers(residual, columns, source, signals)

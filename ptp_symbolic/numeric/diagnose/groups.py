@@ -18,7 +18,8 @@ from ptp_symbolic.numeric.diagnose.linear import (
     canonical_correlation,
     effect_of,
     projected_off,
-    stacked,
+    stacked_jacobian,
+    stacked_residual,
 )
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import is_near_floor, started_anew
@@ -189,8 +190,8 @@ def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[S
     """Candidates whose response has a canonical correlation above SIMILAR with the effect of
     `member` at `fit`, best first.
     """
-    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
-    table = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    residual = stacked_residual(fit)
+    table = stacked_jacobian(fit)
     own = [k for k, f in enumerate(fit.free) if f.name in member.parameters]
     others = [k for k in range(len(fit.free)) if k not in own]
     effect = effect_of(fit, member.vanishing, table)

@@ -21,6 +21,16 @@ def stacked(fit: Fit, columns: Sequence[FloatArray]) -> FloatArray:
     return np.vstack([project_out(c, e.by_start) for c, e in pairs])
 
 
+def stacked_residual(fit: Fit) -> FloatArray:
+    """The weighted residual [n] of all runs, projected off their starts."""
+    return stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
+
+
+def stacked_jacobian(fit: Fit) -> FloatArray:
+    """Its derivatives by the search coordinates [n, nf], projected likewise."""
+    return stacked(fit, [e.by_parameter for e in fit.evaluations])
+
+
 def effect_of(fit: Fit, vanishing: Mapping[str, float], table: FloatArray) -> FloatArray:
     """Linear prediction of what parameters change in the residuals [n] at the fit against their
     values in `vanishing`: `table` [n, nf] is the Jacobian by the search coordinates.

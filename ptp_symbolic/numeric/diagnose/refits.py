@@ -10,7 +10,12 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.growing_windows import settled, starts_of
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise, left_over
-from ptp_symbolic.numeric.diagnose.linear import effect_of, projected_off, stacked
+from ptp_symbolic.numeric.diagnose.linear import (
+    effect_of,
+    projected_off,
+    stacked_jacobian,
+    stacked_residual,
+)
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
     Trial,
@@ -207,8 +212,8 @@ def expected_gain(trial: Trial, vanishing: Mapping[str, float]) -> float:
     that those at the fit take away, by linear prediction from the Jacobian.
     """
     fit = trial.fit
-    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
-    columns = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    residual = stacked_residual(fit)
+    columns = stacked_jacobian(fit)
     others = [k for k, f in enumerate(fit.free) if f.name not in vanishing]
     effect = projected_off(effect_of(fit, vanishing, columns)[:, None], columns[:, others])[:, 0]
     taken = float(effect @ effect)

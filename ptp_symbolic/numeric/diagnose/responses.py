@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.linear import stacked
+from ptp_symbolic.numeric.diagnose.linear import stacked, stacked_jacobian, stacked_residual
 from ptp_symbolic.numeric.diagnose.proposals import Proposal
 from ptp_symbolic.numeric.diagnose.signatures import brought
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, simulated
@@ -84,8 +84,8 @@ def responses(task: Task, trial: Trial, candidates: Sequence[Candidate]) -> list
         if c.key not in have:
             wanted.setdefault(c.key, []).append(c)
     fit = trial.fit
-    residual = stacked(fit, [e.residual[:, None] for e in fit.evaluations])[:, 0]
-    declared = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    residual = stacked_residual(fit)
+    declared = stacked_jacobian(fit)
     most = REACH * float(np.linalg.norm(residual))
 
     def respond(

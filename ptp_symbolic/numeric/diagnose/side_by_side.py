@@ -9,6 +9,12 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
+def usable_cores() -> int:
+    """Cores that the process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)  # Linux alone has one
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
 def side_by_side(work: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
     """What `work` makes of every item, in their order.
 
@@ -18,5 +24,5 @@ def side_by_side(work: Callable[[Item], Result], items: Sequence[Item]) -> list[
     """
     if len(items) <= 1:
         return [work(item) for item in items]
-    with ThreadPoolExecutor(min(len(items), 1 + (os.cpu_count() or 1))) as threads:
+    with ThreadPoolExecutor(min(len(items), 1 + usable_cores())) as threads:
         return list(threads.map(work, items))

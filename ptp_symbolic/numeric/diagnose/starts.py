@@ -8,7 +8,7 @@ import numpy as np
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
-from ptp_symbolic.numeric.diagnose.linear import made_up_for, stacked
+from ptp_symbolic.numeric.diagnose.linear import made_up_for, stacked_jacobian
 from ptp_symbolic.numeric.diagnose.proposals import Proposal, Proposals, start_for
 from ptp_symbolic.numeric.diagnose.refits import inside, over_windows
 from ptp_symbolic.numeric.diagnose.regression import untold
@@ -89,7 +89,7 @@ def taken_over(task: Task, kept: Sequence[Candidate], trial: Trial) -> list[Tria
     others = {f.name for f in all_free(task, kept, values)}
     linear = [f for c in dropped for f in c.defining if not c.is_limit(f)]
     vanishing = {f.name: off[f.name] for f in linear}
-    table = stacked(trial.fit, [e.by_parameter for e in trial.fit.evaluations])
+    table = stacked_jacobian(trial.fit)
     taken = made_up_for(trial.fit, vanishing, others, table) | off
     starts = [values] if taken == values else [values, taken]
     return side_by_side(lambda start: _begun(task, kept, start, trial.fit), starts)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.linear import projected_off, stacked
+from ptp_symbolic.numeric.diagnose.linear import projected_off, stacked_jacobian
 from ptp_symbolic.numeric.diagnose.responses import response_columns
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.identify.constants import NOTHING, REACH, SEEN, WIDE_STEP
@@ -37,7 +37,7 @@ def visible_amounts(task: Task, start: Trial) -> list[Visible]:
     """Smallest visible change of every free parameter, and amount of every effect that is searched
     for in its simplest form, in their units, at `start`, the declared model with its Jacobians.
     """
-    declared = stacked(start.fit, [e.by_parameter for e in start.fit.evaluations])
+    declared = stacked_jacobian(start.fit)
     units = np.abs(slopes(start.fit.free, to_search(start.fit.free, start.fit.values)))
     found = [
         Visible(None, f.name, _smallest(declared[:, k] / units[k], np.delete(declared, k, axis=1)))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.linear import stacked
+from ptp_symbolic.numeric.diagnose.linear import stacked_jacobian
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, limits, slopes, to_search
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance
 from ptp_symbolic.numeric.identify.fit import Fit
@@ -65,7 +65,7 @@ def without_logs(
 
 def from_fit(name: str, fit: Fit) -> Contender:
     """A contender as it was fitted to the logs so far."""
-    table = stacked(fit, [e.by_parameter for e in fit.evaluations])
+    table = stacked_jacobian(fit)
     left = sum(float(e.residual @ e.residual) for e in fit.evaluations)
     memory = np.asarray(np.linalg.qr(table, mode="r"))
     return Contender(name, fit.model, fit.free, fit.values, memory, left)
