@@ -163,8 +163,9 @@ def further_states(addresses, layout, motion, p, resting, acts, shown, wanted, l
             mean[k, e] += halves[0, e]
             mean[k + 1, e] += halves[1, e]
             if wanted[k] and shown[e] and decay[e] != 0.0:
-                _settle(addresses, layout, motion.time[k], x, late[k, 0], p, m, r, by_rate[k])
-                by_rate[k, e] /= -decay[e]
+                _settle(addresses, layout, motion.time[k], x, late[k, 0], p, m, r, e, by_rate[k, e])
+                for a in range(na):
+                    by_rate[k, e, a] /= -decay[e]
     for k in (0, n - 1):
         for e in range(count):
             mean[k, e] += 0.5 * found[k, e]
@@ -199,13 +200,10 @@ def _find_decays(addresses, layout, time, x, u, p, m, r, acts, decay):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _settle(addresses, layout, time, x, u, p, m, r, by_rate):
-    """Derivative [e, na] of the rates of further states by the rates of the joints."""
-    count = len(layout.further)
+def _settle(addresses, layout, time, x, u, p, m, r, e, by_rate):
+    """Derivative [na] of the rate of the further state e by the rates of the joints."""
     call(addresses[0], time, x, u, p, m, r)
-    for e in range(count):
-        for a in range(len(layout.angle)):
-            by_rate[e, a] = -r[layout.rows + e] / QUOTIENT
+    still = r[layout.rows + e]
     for a in range(len(layout.angle)):
         behind = layout.gear_rate[a]
         x[layout.rate[a]] += QUOTIENT
@@ -215,8 +213,7 @@ def _settle(addresses, layout, time, x, u, p, m, r, by_rate):
         x[layout.rate[a]] -= QUOTIENT
         if behind >= 0:
             x[behind] -= QUOTIENT
-        for e in range(count):
-            by_rate[e, a] += r[layout.rows + e] / QUOTIENT
+        by_rate[a] = (r[layout.rows + e] - still) / QUOTIENT
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
