@@ -6,6 +6,7 @@ same number of sets, and a machine or an effect that comes twice in a row comes 
 
 import dataclasses
 import itertools
+from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
@@ -85,6 +86,20 @@ def _drafts() -> Iterator[Draft]:
         yield from itertools.repeat((machine, "slightly_wrong", ()), count)
     for machine, effect in plan.SHORT_ARCS:
         yield machine, "short_arc", (_planted(machine, effect, SHORT_ARC_LEVEL),)
+    yield from _both_driven()
+
+
+def _both_driven() -> Iterator[Draft]:
+    """All sets of the machine with two motors."""
+    visible = plan.LEVELS[:3]
+    for number, (kind, *names) in enumerate(plan.OF_BOTH_DRIVEN):
+        levels = _levels(400 + number, len(names), COMBINED_LEVELS)
+        if kind == "single":
+            levels = [visible[number % len(visible)]]
+        elif kind == "declared_value":
+            names, levels = [DECLARED_VALUE + names[0]], [DECLARED_LEVEL]
+        planted = [_planted(plan.BOTH_DRIVEN, *both) for both in zip(names, levels, strict=True)]
+        yield plan.BOTH_DRIVEN, kind, tuple(planted)
 
 
 def _variation(seed: int, draft: Draft, far: bool) -> Variation:
@@ -109,14 +124,13 @@ def _variation(seed: int, draft: Draft, far: bool) -> Variation:
 
 def catalogue() -> tuple[Entry, ...]:
     """All entries; the same on every call."""
-    entries, perfect = [], 0
+    entries, perfect = [], Counter[str]()
     for number, draft in enumerate(_drafts()):
         machine, kind, planted = draft
         far = False
         if kind == "perfect":
-            # One of every three in turn, so that each machine has its share.
-            far = (perfect // len(plan.SLIGHTLY_WRONG)) % plan.FAR_EVERY == 1
-            perfect += 1
+            far = perfect[machine] % plan.FAR_EVERY == 1
+            perfect[machine] += 1
         seed = FIRST_SEED + number
         names = "+".join(
             one.effect.replace(DECLARED_VALUE, "") + (f"@{one.axis}" if one.axis else "")

@@ -2,9 +2,9 @@
 
 from tests.benchmark.machine import Machine
 from tests.benchmark.pan_machine import PAN_DRIVE, PAN_DRIVE_DC
-from tests.benchmark.rigid_machine import DIRECT_DRIVE, TILT_SERVO, TWO_AXIS
+from tests.benchmark.rigid_machines import DIRECT_DRIVE, TILT_SERVO, TWO_AXIS, TWO_AXIS_SERVO
 
 MACHINES: dict[str, Machine] = {
     machine.name: machine
-    for machine in (PAN_DRIVE, PAN_DRIVE_DC, TILT_SERVO, DIRECT_DRIVE, TWO_AXIS)
+    for machine in (PAN_DRIVE, PAN_DRIVE_DC, TILT_SERVO, DIRECT_DRIVE, TWO_AXIS, TWO_AXIS_SERVO)
 }

@@ -20,21 +20,27 @@ DAMPING = 0.8
 # rad/s; a torque servo slips and sticks where friction falls with the rate, and stays above that.
 CRAWLS = {"tilt_servo": (0.03, 0.06, 0.12), "direct_drive": (0.12, 0.2, 0.35)}
 NO_LIMIT = 1e3
+JOINTS = ("pan", "tilt")
+BODY = {"pan": "J_pan", "tilt": "J_y_tilt"}  # inertia of an axis without its payload
 
 
-def _motor_servo(values: Values, variation: Variation) -> tuple[Servo, float]:
-    """Position servo of a voltage-driven motor, and volts per rad/s for its feedforward."""
-    constant = values["K_t_tilt"] * values["N_tilt"]
-    damping = constant**2 / values["R_tilt"] + values.get("F_v_tilt", 0.0)
-    inertia = values["J_y_tilt"] + values["m_payload"] * values["c_x_payload"] ** 2
-    inertia += values["J_motor_tilt"] * values["N_tilt"] ** 2
-    stiffness = min(0.1 * damping**2 / inertia, 0.4 * damping / variation.period)
-    gain = stiffness * values["R_tilt"] / constant
+def _motor_servo(
+    axes: tuple[str, ...], values: Values, variation: Variation
+) -> tuple[Servo, Floats]:
+    """Position servo of voltage-driven motors, and volts per rad/s [joints] for its feedforward."""
+    gains, volts = np.zeros(2), np.zeros(len(axes))
+    lever = values["m_payload"] * values["c_x_payload"] ** 2
+    for number, axis in enumerate(axes):
+        constant = values[f"K_t_{axis}"] * values[f"N_{axis}"]
+        damping = constant**2 / values[f"R_{axis}"] + values.get(f"F_v_{axis}", 0.0)
+        inertia = lever + values[BODY[axis]]
+        inertia += values[f"J_motor_{axis}"] * values[f"N_{axis}"] ** 2
+        stiffness = min(0.1 * damping**2 / inertia, 0.4 * damping / variation.period)
+        gains[JOINTS.index(axis)] = stiffness * values[f"R_{axis}"] / constant
+        volts[number] = damping * values[f"R_{axis}"] / constant
     supply = 24.0 if variation.heavy else 12.0
-    count = 2 * math.pi / variation.counts
-    zero = np.zeros(2)
-    servo = Servo(np.array([0.0, gain]), zero, zero, np.full(2, supply), count)
-    return servo, damping * values["R_tilt"] / constant
+    count, zero = 2 * math.pi / variation.counts, np.zeros(2)
+    return Servo(gains, zero, zero, np.full(2, supply), count), volts
 
 
 def _torque_servo(inertia: Floats, weight: float, variation: Variation) -> Servo:
@@ -104,11 +110,13 @@ def _two_axis_references(rng: np.random.Generator, variation: Variation) -> dict
     return many
 
 
-def _drive_by(name: str, values: Values, variation: Variation) -> tuple[Servo, Floats, Floats]:
+def _drive_by(
+    name: str, axes: tuple[str, ...], values: Values, variation: Variation
+) -> tuple[Servo, Floats, Floats]:
     """The servo, and its feedforward per rate and per acceleration wanted, each [joints]."""
-    if name == "tilt_servo":
-        servo, volts = _motor_servo(values, variation)
-        return servo, np.array([volts]), np.zeros(1)
+    if name in ("tilt_servo", "two_axis_servo"):
+        servo, volts = _motor_servo(axes, values, variation)
+        return servo, volts, np.zeros(len(axes))
     lever = values["m_payload"] * values["c_x_payload"]
     if name == "direct_drive":
         inertia = values["J_pan"] + lever * values["c_x_payload"]
@@ -131,7 +139,7 @@ def make_runs(
         angles = {path: angle[:, None] for path, angle in single.items()}
     else:
         angles = _two_axis_references(rng, variation)
-    servo, per_rate, per_acceleration = _drive_by(name, values, variation)
+    servo, per_rate, per_acceleration = _drive_by(name, axes, values, variation)
     correlation, made = float(rng.uniform(0.3, 2.0)), []
     for path, angle in angles.items():
         rate = np.gradient(angle, variation.period, axis=0)

@@ -68,7 +68,8 @@ class Yardstick:
         self.recordings = list(recordings)
         self.floors = np.full(len(machine.axes), angle_floor(variation))
         if machine.voltage_driven and variation.current:
-            self.floors = np.append(self.floors, CURRENT_NOISE)
+            currents = np.full(len(machine.axes), CURRENT_NOISE)
+            self.floors = np.append(self.floors, currents)
         self.stride = max(1, round(SAMPLE_SPACING / variation.period))
         self.widening = np.ones(len(self.floors))
         self.base = self._outputs(values)

@@ -40,8 +40,6 @@ def test_every_current_settles_to_its_own_voltage_over_its_resistance() -> None:
     *_, further = space._torques(0, p, None, space.rows_of[0].part)
     at = space.rows_of[0].grid[space.rows_of[0].chosen]
     value = dict(zip(model.parameter_names, p, strict=True))
-    expected = np.diag(
-        [-value[f"N_{a}"] * value[f"K_t_{a}"] / value[f"R_{a}"] for a in AXES]
-    )
+    expected = np.diag([-value[f"N_{a}"] * value[f"K_t_{a}"] / value[f"R_{a}"] for a in AXES])
     assert len(at) > 40
     assert np.allclose(further.by_rate[at], expected, rtol=1e-6, atol=1e-6)

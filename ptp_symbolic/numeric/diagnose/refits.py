@@ -142,9 +142,18 @@ def begun_anew(task: Task, trial: Trial) -> list[Trial]:
     """Where `started_anew` begins; nowhere where every run has a single place to start from."""
     if not has_rough_starts(task):
         return []
-    run = task.executor
-    begun = [fitted(task, trial.candidates, trial.values, None, parent=trial.fit, executor=run)]
-    strayed = strayed_from_start(task, trial.values)
+    here = fitted(
+        task, trial.candidates, trial.values, None, parent=trial.fit, executor=task.executor
+    )
+    return [here, *strayed_back(task, trial)]
+
+
+def strayed_back(task: Task, trial: Trial) -> list[Trial]:
+    """The trial with declared parameters that have strayed back at their starts, and as far off as
+    a start may be, not yet fitted; none where none has.
+    """
+    run, strayed = task.executor, strayed_from_start(task, trial.values)
+    begun: list[Trial] = []
     for factor in (1.0, FAR_OFF, 1.0 / FAR_OFF) if strayed else ():
         back = {n: inside(f, factor * f.start) for f in strayed for n in f.names}
         values = trial.values | back

@@ -10,7 +10,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.linear import made_up_for, stacked_jacobian
 from ptp_symbolic.numeric.diagnose.proposals import Proposal, Proposals, start_for
-from ptp_symbolic.numeric.diagnose.refits import inside, over_windows
+from ptp_symbolic.numeric.diagnose.refits import inside, over_windows, strayed_back
 from ptp_symbolic.numeric.diagnose.regression import untold
 from ptp_symbolic.numeric.diagnose.responses import Response
 from ptp_symbolic.numeric.diagnose.side_by_side import side_by_side
@@ -124,14 +124,16 @@ def far_starts(
 def from_far_off(task: Task, proposals: Proposals, trial: Trial) -> list[Trial]:
     """A trial with one declared parameter that the rows do not tell far off, each of them in turn
     (see `far_starts`), and in other valleys over it, the best first, not yet fitted: how a shaft
-    damps shows only as a gear bounces, and the misfit is rough in it.
+    damps shows only as a gear bounces, and the misfit is rough in it. And with those that strayed
+    back where a start may be: noise alone may be left in these runs where they hardly matter.
     """
     rows = proposals.regression
     free = [] if rows is None else [f for f in untold(rows) if f.start > 0.0]
     valleys = [t for f in free for t in _valleys(task, trial, f)]
     order = np.argsort(misfits([trial, *valleys])[1:])[:TRIED]
     starts = [*(valleys[k].values for k in order), *far_starts(free, trial.values)]
-    return [_begun(task, trial.candidates, values, trial.fit) for values in starts]
+    begun = [_begun(task, trial.candidates, values, trial.fit) for values in starts]
+    return begun + strayed_back(task, trial)
 
 
 def _valleys(task: Task, trial: Trial, free: FreeParameter) -> list[Trial]:
