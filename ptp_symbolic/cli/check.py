@@ -107,7 +107,10 @@ def _print_visible(summary: Mapping[str, Any]) -> None:
     if not summary["simulates"]:
         click.echo("The declared model does not simulate at its start values; change them.")
         return
-    click.echo("Smallest amounts that these logs can show, if the declared model is right:")
+    click.echo(
+        "Smallest amounts that these logs can show, and of effects those that diagnose would name,"
+        " if the declared model is right:"
+    )
     table = Table("", "parameter", "smallest", box=None)
     rows = sorted(summary["visible"], key=lambda r: (r["effect"] is not None, r["effect"] or ""))
     for row in rows:

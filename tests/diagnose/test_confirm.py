@@ -15,7 +15,7 @@ from ptp_symbolic.numeric.diagnose.confirm import (
     unstable_without,
     why_unconfirmed,
 )
-from ptp_symbolic.numeric.diagnose.findings import is_earned
+from ptp_symbolic.numeric.diagnose.findings import is_earned, looked_at
 from ptp_symbolic.numeric.diagnose.gain import Gain, p_value
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM
@@ -194,6 +194,9 @@ def test_a_gain_must_be_material_and_clear_over_all_candidates() -> None:
         (0.0, 1.1 * p, 1.0, False),
     ):
         assert is_earned(Gain(0.1, 0.01, 0.2, t, 20, by_rank), chance, 40, 0.1) is earned
+    scanned = replace(EFFECT, frequencies_compared=50)
+    assert looked_at([EFFECT, scanned], [EFFECT]) == 2
+    assert looked_at([EFFECT, scanned], [scanned, EFFECT]) == 100
     small = Gain(0.09, 0.01, 0.2, 9.0, 20)
     assert is_earned(small, 0.9 * p, 40, 0.05)
     assert not is_earned(small, 0.9 * p, 40, 0.1)

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from ptp_symbolic.numeric.diagnose.residual_tests import correlations, residual_tests
 from ptp_symbolic.numeric.identify.constants import LAGS
@@ -48,6 +49,18 @@ def test_a_lag_correlates_as_often_as_its_standard_deviation_says() -> None:
     assert found.std(axis=0) * np.sqrt(sum(LENGTHS)) == pytest.approx(np.ones(LAGS + 1), rel=0.15)
 
 
+@pytest.mark.parametrize("pole", [0.5, 0.8, 0.95])
+def test_slow_residuals_beside_a_slow_input_fail_no_more_often(pole: float) -> None:
+    """An input with a pole of 0.95. Held to white series, they failed in 14, 46 and 68 %."""
+    rng = np.random.default_rng(45)
+
+    def slow(a: float) -> list[Floats]:
+        return [lfilter([1.0], [1.0, -a], r, axis=0) for r in white(rng)]
+
+    rows = [judged(slow(pole), slow(0.95))["independence of u_pan", "y0"] for _ in range(300)]
+    assert sum(not row["passed"] for row in rows) <= 12
+
+
 def test_correlations_of_one_run_are_numpys() -> None:
     rng = np.random.default_rng(43)
     a, b = rng.standard_normal((2, 300))
@@ -87,7 +100,7 @@ def test_the_size_of_the_residual_of_one_run_does_not_matter() -> None:
     for key, row in judged(residuals, inputs).items():
         other = judged(louder, inputs)[key]
         assert other["statistic"] == pytest.approx(row["statistic"], rel=1e-9)
-        assert other["threshold"] == row["threshold"]
+        assert other["threshold"] == pytest.approx(row["threshold"], rel=1e-9)
 
 
 def test_runs_too_short_for_the_lags_are_left_out() -> None:

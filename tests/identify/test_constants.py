@@ -99,7 +99,7 @@ def rms_off() -> float:
         ("REPLAYS", "7 %", 1.0 / np.sqrt(2.0 * (c.REPLAYS - 1))),
         ("RESAMPLES", "0.35 %", np.sqrt(0.025 * 0.975 / c.RESAMPLES)),
         ("MANY_RUNS", "28 %", np.sqrt(np.pi / 2.0 / c.MANY_RUNS)),
-        ("SEEN", "95 %", stats.norm.cdf(c.SEEN - stats.norm.ppf(0.95))),
+        ("SEEN", "95 %", stats.norm.cdf(c.SEEN - stats.norm.ppf(0.975))),
         ("DEVIATIONS", "99 %", huber_efficiency(c.DEVIATIONS)),
         ("SAMPLES_PER_WINDOW", "2e-4", curvature_off(c.SAMPLES_PER_WINDOW)),
         ("MOST_COARSE", "0.3 %", curvature_off(c.MOST_COARSE)),

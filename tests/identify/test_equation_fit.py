@@ -35,6 +35,14 @@ def test_rows_that_are_linear_are_fitted() -> None:
     assert fitted(lambda a: (a - 3.0) * wave) == pytest.approx(3.0, rel=0.05)
 
 
+def test_a_drive_that_is_off_for_most_of_a_log_tells_no_scale() -> None:
+    """Seven of ten rows leave exactly nothing, whatever the parameter is."""
+    wave = np.where(np.arange(len(TIME)) < 30, np.sin(7.0 * TIME), 0.0)
+    noise = np.where(wave != 0.0, 0.01 * np.cos(11.0 * TIME), 0.0)
+    space = space_of(lambda a: (a - 3.0) * wave + noise)
+    assert fit_equations(space, (FREE,), {"a": 1.0}, 12)["a"] == pytest.approx(3.0, rel=0.01)
+
+
 def test_a_step_to_where_there_are_no_rows_is_not_taken() -> None:
     """The slope at 1 leads to 3; beyond 2 the rows end."""
     wave = np.sin(TIME)

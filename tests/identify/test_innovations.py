@@ -45,6 +45,13 @@ def test_short_runs_allow_few_coefficients() -> None:
     assert len(prediction_error_filter(process(3, 40, 30))) <= 3
 
 
+def test_a_short_run_beside_long_ones_changes_nothing() -> None:
+    runs = process(1, 10, 2000)
+    assert np.array_equal(
+        prediction_error_filter([*runs, *process(5, 1, 11)]), prediction_error_filter(runs)
+    )
+
+
 def test_innovations_are_white_and_begin_when_the_longest_filter_is_full() -> None:
     (one,) = process(4, 1, 4000)
     table = np.column_stack([one, np.arange(4000.0)]).reshape(-1, 1)

@@ -144,7 +144,9 @@ def twice_integrated(rng: np.random.Generator, draws: int) -> Floats:
     return np.cumsum(np.cumsum(rng.standard_normal((draws, SAMPLES)), axis=1), axis=1).T / 300.0
 
 
-def windows(rng: np.random.Generator, replays: int, free: tuple[FreeParameter, ...]) -> Fit:
+def windows(
+    rng: np.random.Generator, replays: int, free: tuple[FreeParameter, ...], count: int = WINDOWS
+) -> Fit:
     """A least squares fit of what smooth inputs make, integrated twice, to windows that noise of
     the input bends; the truth is zero.
     """
@@ -152,7 +154,7 @@ def windows(rng: np.random.Generator, replays: int, free: tuple[FreeParameter, .
     start = np.column_stack([np.ones(SAMPLES), t])
     tables = [
         np.column_stack([np.sin((2.0 + k + 0.7 * w) * t + k) for k in range(4)]) * 10.0
-        for w in range(WINDOWS)
+        for w in range(count)
     ]
     noise = [twice_integrated(rng, 1)[:, 0] + rng.standard_normal(SAMPLES) for _ in tables]
     bent = [project_out(n[:, None], start)[:, 0] for n in noise]
@@ -162,7 +164,7 @@ def windows(rng: np.random.Generator, replays: int, free: tuple[FreeParameter, .
     fit = finished(
         [b - c @ found for b, c in zip(bent, columns, strict=True)],
         [-c * scales for c in tables],
-        [start] * WINDOWS,
+        [start] * count,
         free,
         {f.name: float(v) for f, v in zip(free, found, strict=True)},
     )
@@ -191,4 +193,4 @@ def test_a_chance_has_no_degrees_of_freedom_where_replays_tell_it() -> None:
     assert np.all(np.isfinite(chance))
     assert np.median(chance) > 0.1
     far = {name: -10.0 for name in zero}
-    assert chance_of_zero(windows(rng, 25, FOUR), far) < 1e-6
+    assert chance_of_zero(windows(rng, 25, FOUR, 8), far) < 1e-6

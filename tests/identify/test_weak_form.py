@@ -24,6 +24,24 @@ def test_a_parabola_has_its_exact_averages(derivative: int) -> None:
     assert found == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.parametrize("derivative", [1, 2])
+@pytest.mark.parametrize("jitter", [0.05, 0.4])
+def test_samples_at_uneven_times_show_no_rate_in_a_curvature(
+    derivative: int, jitter: float
+) -> None:
+    """A line has no second derivative and a square about the middle no first one: 5 % of a period
+    of 5 ms made 0.015 rad/s^2 of a rad/s.
+    """
+    rng = np.random.default_rng(3)
+    time = 5e-3 * (np.arange(400) + jitter * rng.uniform(-1.0, 1.0, 400))
+    chosen = np.arange(100, 300)
+    for k in chosen[::20]:
+        from_here = time - time[k]
+        values = (7.0 + 3.0 * from_here + 5.0 * from_here**2)[:, None]
+        found = weak_average(time, values, HALF_WIDTH, derivative, np.array([k]))[0, 0]
+        assert found == pytest.approx((3.0, 10.0)[derivative - 1], rel=1e-10)
+
+
 @pytest.mark.parametrize("offset", [-0.08, -0.06, 0.01, 0.05])
 def test_a_stall_anywhere_in_the_window_leaves_no_average(offset: float) -> None:
     """Also one that begins or ends at the very edge, where a single sample is left beyond."""

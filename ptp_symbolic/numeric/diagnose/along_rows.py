@@ -16,6 +16,7 @@ import numpy as np
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_needs_it
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, why_unconfirmed
 from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
+from ptp_symbolic.numeric.diagnose.findings import looked_at
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared
 from ptp_symbolic.numeric.diagnose.held_out import simulated_freely
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, in_rows_of, start_of
@@ -118,7 +119,7 @@ class _Motion:
         frequencies that were compared.
         """
         found = self.gain(candidates, member)
-        tests = len(self.task.candidates) * member.frequencies_compared
+        tests = looked_at(self.task.candidates, [member])
         return found is not None and found.share >= self.task.material and found.is_clear(tests)
 
     def is_confirmed(self, candidates: Sequence[Candidate]) -> bool:

@@ -1,5 +1,7 @@
 """What a search finds: the chosen set, what its members gain, and whether that is enough."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
@@ -61,6 +63,13 @@ class Refusals:
 def step_of(trial: Trial, candidate: Candidate, without: Trial) -> Step:
     """What `candidate` gains in `trial` over the trial `without` it."""
     return Step(candidate, gain(trial, without), p_value(trial, candidate.vanishing), without)
+
+
+def looked_at(candidates: Sequence[Candidate], added: Sequence[Candidate]) -> int:
+    """How many tests were made before some were `added`: one for every candidate, and one for every
+    frequency that those were scanned over.
+    """
+    return len(candidates) * math.prod(c.frequencies_compared for c in added)
 
 
 def is_earned(earned: Gain, p: float, tests: int, material: float) -> bool:

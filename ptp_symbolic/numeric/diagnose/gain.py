@@ -24,6 +24,7 @@ from ptp_symbolic.numeric.identify.blocks import (
 from ptp_symbolic.numeric.identify.constants import (
     ELSEWHERE,
     FALSE_ALARM,
+    FEWEST_BLOCKS,
     MOST,
     NOTHING,
     SINGULAR,
@@ -32,7 +33,7 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.innovations import innovations, prediction_error_filter
-from ptp_symbolic.numeric.identify.intervals import project_out
+from ptp_symbolic.numeric.identify.intervals import degrees_of_freedom, project_out
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import by_source
@@ -134,7 +135,10 @@ def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
     share, lower, upper = bootstrap_share(taken, smaller, 1.0 - FALSE_ALARM)
     influence = (taken - taken.mean()) / max(float(smaller.sum()), 1e-300)
     b = len(taken)
-    error = float(np.sqrt(b / max(b - 1, 1) * np.sum(influence**2)))
+    error = float(np.sqrt(b / (b - 1) * np.sum(influence**2))) if b > 1 else np.inf
+    if b < 2 * FEWEST_BLOCKS:  # percentiles of so few are too narrow
+        reach = float(stats.t.ppf(1.0 - 0.5 * FALSE_ALARM, b - 1)) * error if b > 1 else np.inf
+        lower, upper = share - reach, share + reach
     differs = taken[taken != 0.0]
     by_rank = stats.wilcoxon(differs, alternative="greater").pvalue if differs.size else 1.0
     return Gain(share, lower, upper, share / max(error, NOTHING), b - 1, float(by_rank))
@@ -144,9 +148,10 @@ def p_value(trial: Trial, zero: Mapping[str, float]) -> float:
     """Probability that parameters this far from `zero`, or further, are found where they are zero.
 
     Hotelling's T^2 (1931) of their search coordinates, with the covariance of a jackknife over
-    blocks of time under the model that has them: an effect that a few blocks show is as clear as
-    one that all show. Blocks far worse than usual weigh less, and the coordinates are those of one
-    step towards the fit with these weights (Bickel, 1975). 1 where the blocks are too few.
+    blocks of time under the model that has them, and the degrees of freedom of the coordinate that
+    the fewest blocks show (see `degrees_of_freedom`). Blocks far worse than usual weigh less, and
+    the coordinates are those of one step towards the fit with these weights (Bickel, 1975). 1 where
+    those blocks are too few.
     """
     fit = trial.fit
     own = [k for k, f in enumerate(fit.free) if f.name in zero]
@@ -158,14 +163,15 @@ def p_value(trial: Trial, zero: Mapping[str, float]) -> float:
     label = np.concatenate(labels)
     residual, jacobian, step = without_outliers(residual, jacobian, label, signals)
     shifts = leave_blocks_out(residual, jacobian, np.repeat(label, signals)).shifts[:, own]
-    b, k = shifts.shape
-    if b <= k + 1:
+    k = len(own)
+    free = float(np.min(degrees_of_freedom(shifts)))
+    if free <= k:
         return 1.0
     away = to_search(fit.free, fit.values) - to_search(fit.free, {**fit.values, **zero})
     away = (away + step)[own]
     inverse = np.linalg.pinv(jackknife_covariance(shifts), rcond=1e-10, hermitian=True)
-    statistic = float(away @ inverse @ away) * (b - k) / (k * (b - 1))
-    return float(stats.f.sf(statistic, k, b - k))
+    statistic = float(away @ inverse @ away) * (free + 1.0 - k) / (k * free)
+    return float(stats.f.sf(statistic, k, free + 1.0 - k))
 
 
 def _projected(fit: Fit) -> tuple[list[FloatArray], list[FloatArray]]:

@@ -24,7 +24,9 @@ from ptp_symbolic.numeric.identify.constants import (
     FOLDS,
     GAIN,
     MANY_RUNS,
+    MATERIAL,
     MOST,
+    NEARBY,
     POLISH,
     REWEIGHTINGS,
     ROUGH,
@@ -37,7 +39,7 @@ from ptp_symbolic.numeric.identify.finite_differences import with_finite_differe
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.intervals import project_out, reaches
 from ptp_symbolic.numeric.identify.joint_region import closest_in_ball, joint_region
-from ptp_symbolic.numeric.identify.robust_loss import weighted_median
+from ptp_symbolic.numeric.identify.robust_loss import trimmed_mean, weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import sizes
 from ptp_symbolic.numeric.identify.simulations import Effort
@@ -93,18 +95,22 @@ def left_by_best_values(
 def is_quiet(left: FloatArray, size: FloatArray, floor: Floor, trained: Fit) -> bool:
     """Whether validation runs of `size` [runs] samples show no more than noise, by what they have
     `left` [runs, ny] (see `left_by_best_values`). The median of the runs counts, for one that
-    sticks at another sample than it did is off by counts. Of many windows it sees half: beside it
+    sticks at another sample than it did is off by counts, but none may be further off than what is
+    near the floor. Of many windows all count but the worst, a MATERIAL share of the samples, and
     they may not leave more than the windows of the training runs. Windows that leave no more than
     the usual noise count alike in that: those at rest, rounded to a count that they stay at, leave
     less, and show no lack in those that move.
     """
-    if not np.all(weighted_median(left / (ABOVE_NOISE * floor.most) ** 2, size) <= 1.0):
+    squares = left / (ABOVE_NOISE * floor.most) ** 2
+    many = len(left) >= MANY_RUNS
+    usual = trimmed_mean(squares, size, MATERIAL) if many else weighted_median(squares, size)
+    if not (np.all(usual <= 1.0) and (many or np.all(squares <= NEARBY**2))):
         return False
     own = mean_squares(trained.evaluations, trained.runs)
-    if min(len(left), len(own)) < MANY_RUNS:
+    if not many or len(own) < MANY_RUNS:
         return True
-    usual = (ABOVE_NOISE * floor.level) ** 2
-    pairs = zip(np.maximum(left, usual).T, np.maximum(own, usual).T, strict=True)
+    quiet = (ABOVE_NOISE * floor.level) ** 2
+    pairs = zip(np.maximum(left, quiet).T, np.maximum(own, quiet).T, strict=True)
     return all(chance_of_larger(ours, theirs) > UNALIKE for ours, theirs in pairs)
 
 

@@ -11,13 +11,14 @@ from ptp_symbolic.numeric.diagnose.fewer_samples import is_thinned
 from ptp_symbolic.numeric.diagnose.trial import Task, huber_loss, mean_squares
 from ptp_symbolic.numeric.identify.constants import (
     MANY_RUNS,
+    MATERIAL,
     NOTHING,
     TEST_ALARM,
     TUNING,
 )
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.replays import replayed_squares
-from ptp_symbolic.numeric.identify.robust_loss import weighted_median
+from ptp_symbolic.numeric.identify.robust_loss import trimmed_mean, weighted_median
 from ptp_symbolic.numeric.identify.run_groups import sizes
 
 FloatArray = NDArray[np.float64]
@@ -41,14 +42,14 @@ def left_over(fit: Fit) -> FloatArray:
 def _robust_mean(squares: FloatArray, size: FloatArray) -> FloatArray:
     """One mean square per signal [ny] of those of all runs [runs, ny], with so many samples [runs].
 
-    Of many windows the median of the samples counts, for one in twenty begins on the wrong side of
-    a rest; of few runs, those far worse than usual count linearly.
+    Of many windows the worst are left out, a MATERIAL share of the samples, for one in twenty
+    begins on the wrong side of a rest; of few runs, those far worse than usual count linearly.
     """
     if not np.all(np.isfinite(squares)):
         return np.full(squares.shape[1], np.inf)
-    usual = weighted_median(squares, size)
     if len(squares) >= MANY_RUNS:
-        return usual
+        return trimmed_mean(squares, size, MATERIAL)
+    usual = weighted_median(squares, size)
     bounded = huber_loss(squares, TUNING**2 * np.maximum(usual, 1.0))
     return np.asarray(size @ bounded / size.sum())
 

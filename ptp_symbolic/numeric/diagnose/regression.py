@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.signatures import Signature
-from ptp_symbolic.numeric.identify.constants import DEVIATIONS, REWEIGHTINGS, SHORT
+from ptp_symbolic.numeric.identify.constants import REWEIGHTINGS, SHORT
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.equation_fit import robust_scale
+from ptp_symbolic.numeric.identify.equation_fit import huber_weight, robust_scale
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -83,7 +83,7 @@ def reweighted(found: Regression, candidates: Sequence[Candidate]) -> Regression
     for _ in range(REWEIGHTINGS):
         left = found.rows - columns @ _amounts(columns, found.rows, weight)
         scale = robust_scale(left, found.equation)
-        weight = np.minimum(1.0, DEVIATIONS * scale / np.maximum(np.abs(left), 1e-300)) / scale**2
+        weight = huber_weight(left, scale)
     return replace(found, weight=weight, scale=scale)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
-from ptp_symbolic.numeric.diagnose.findings import Step, is_earned, step_of
+from ptp_symbolic.numeric.diagnose.findings import Step, is_earned, looked_at, step_of
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise
@@ -158,7 +158,7 @@ class Seeker:
 
     def is_needed(self, step: Step) -> bool:
         """Whether what a candidate gains is earned."""
-        return self.is_earned(step.gain, step.p_value)
+        return self.is_earned(step.gain, step.p_value, [step.candidate])
 
     def is_kept(self, trial: Trial, step: Step) -> bool:
         """Whether a candidate stays in the set while the search goes on. Where more than noise is
@@ -168,9 +168,9 @@ class Seeker:
             return self.is_needed(step)
         return step.gain.share >= self.task.material
 
-    def is_earned(self, earned: Gain, p: float) -> bool:
-        """Whether a gain is material, and clear over all candidates that were looked at."""
-        return is_earned(earned, p, len(self.task.candidates), self.task.material)
+    def is_earned(self, earned: Gain, p: float, added: Sequence[Candidate]) -> bool:
+        """Whether what is `added` gains materially, and clearly over all that was looked at."""
+        return is_earned(earned, p, looked_at(self.task.candidates, added), self.task.material)
 
     def pruned(self, trial: Trial) -> tuple[Trial, list[Step]]:
         """Take out candidates until all that is left is needed, with its gains: of those that are
@@ -244,7 +244,8 @@ class Seeker:
             if number == 0 and gain(best, trial).share < MOST:
                 best = self.restarted(best)
             added = {n: v for c in best.candidates for n, v in c.vanishing.items() if n not in have}
-            if self.is_earned(gain(best, trial), p_value(best, added)):
+            new = [c for c in best.candidates if c.key not in trial.keys]
+            if self.is_earned(gain(best, trial), p_value(best, added), new):
                 return best
         return None
 
@@ -285,7 +286,7 @@ class Seeker:
                 if foreseen >= self.task.material and gain(trial, smaller).share >= MOST:
                     continue
                 smaller = self.polished(smaller)
-                if not self.is_earned(gain(trial, smaller), p_value(trial, lost)):
+                if not self.is_earned(gain(trial, smaller), p_value(trial, lost), ()):
                     trial = smaller
                     break
         return trial

@@ -200,7 +200,7 @@ def _value(estimate: Estimate, unit: str) -> dict[str, Any]:
 
 def gain_table(earned: Gain) -> dict[str, Any]:
     """A predictive gain: the share of the loss on blocks left out, with its 95 % interval."""
-    return {"share": earned.share, "ci95": [earned.lower, earned.upper]}
+    return {"share": earned.share, "ci95": [_finite(earned.lower), _finite(earned.upper)]}
 
 
 def ranking(

@@ -2,7 +2,8 @@
 
 The prediction takes the declared model for right and the noise for white: model errors leave less
 to be seen. An effect is simulated at a small amount; its response, projected off what the free
-parameters and the starts of the runs can follow, must stand out of the noise.
+parameters and the starts of the runs can follow, must stand out of the noise, and hold the share of
+the squared error below which nothing is named.
 """
 
 from dataclasses import dataclass
@@ -48,13 +49,14 @@ def visible_amounts(task: Task, start: Trial) -> list[Visible]:
         if not candidate.is_declared_value:
             simplest.setdefault(candidate.key, candidate)
     most = REACH * float(np.sqrt(len(declared)))
+    named = max(SEEN, float(np.sqrt(task.material / (1.0 - task.material) * len(declared))))
 
     def amounts(candidate: Candidate) -> list[Visible]:
         columns = response_columns(task, start, candidate, candidate.shapes[0], most)
         seen = {} if columns is None else dict(zip(columns.free, columns.table.T, strict=True))
         rows = []
         for f in candidate.defining:
-            smallest = _smallest(seen[f], declared) if f in seen else float("inf")
+            smallest = _smallest(seen[f], declared, named) if f in seen else float("inf")
             largest = None
             if candidate.is_limit(f):
                 at = np.nan if columns is None else columns.limits.get(f.name, np.nan)
@@ -77,10 +79,10 @@ def largest_limit(met: float, at: float, upper: float, smallest: float) -> float
     return float(met - cut) if cut < met else float("nan")
 
 
-def _smallest(column: FloatArray, others: FloatArray) -> float:
-    """The amount whose response, `column` [n] per unit, stands out of unit noise beside what
-    `others` [n, k] can follow.
+def _smallest(column: FloatArray, others: FloatArray, by: float = SEEN) -> float:
+    """The amount whose response, `column` [n] per unit, stands out of unit noise `by` so many
+    standard deviations beside what `others` [n, k] can follow.
     """
     size = float(np.linalg.norm(projected_off(column[:, None], others)))
     least = np.sqrt(NOTHING) * float(np.linalg.norm(column))
-    return SEEN / size if size > least else float("inf")
+    return by / size if size > least else float("inf")

@@ -22,7 +22,7 @@ ELSEWHERE = MOST * MATERIAL  # 1; share that blocks other than one must show; de
 SIMILAR = 0.9  # 1; canonical correlation of effects that may be one another; stated
 PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off; stated
 SMALL_PERCENT = 1.0  # %; change of a declared value that is called small; stated
-ABOVE_NOISE = 1.0 + MATERIAL  # 1; rms over the floor, above by what earns no name; derived
+ABOVE_NOISE = 1.1  # 1; rms over the floor from which on more than noise is left; stated
 UNALIKE = 1e-3  # 1; false alarms of the test for larger validation windows; stated level
 FEWEST_BLOCKS = 12  # 1; blocks: Student's interval is then 12 % wider than a normal one; derived
 MOST_BLOCKS = 200  # 1; blocks: the error of a standard deviation is then 5 %; derived
@@ -34,7 +34,7 @@ DRAWS = 3  # 1; pairs of states: what half of them show is missed once in 64; de
 
 # Robustness
 TUNING = 2.5  # 1; sizes of the usual block beyond which a block counts less; scaled
-SEEN = 3.29  # 1; standard deviations: found with 95 % where 5 % are false alarms; derived
+SEEN = 3.6  # 1; standard deviations, of either sign: 95 % are found, 5 % false alarms; derived
 FAR = 4.0  # 1; standard deviations that noise seldom reaches (once in 16,000); derived
 RESTING = 5.0  # 1; the same for every rate of a log (once in 1,700,000); derived
 FORGOTTEN = 0.25  # s; five time constants of drives (0.05 s), after which 0.7 % is left; derived

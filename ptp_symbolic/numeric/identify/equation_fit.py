@@ -12,7 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from ptp_symbolic.numeric.identify.constants import DEVIATIONS, FINITE, MAD_TO_SIGMA, SAME, SHORT
+from ptp_symbolic.numeric.identify.constants import (
+    DEVIATIONS,
+    FINITE,
+    MAD_TO_SIGMA,
+    NOTHING,
+    SAME,
+    SHORT,
+)
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 
@@ -32,17 +39,23 @@ class Linearised:
 
 
 def robust_scale(rows: FloatArray, equation: IntArray) -> FloatArray:
-    """Standard deviation [n] of each row, by the median of its `equation` [n] (Huber, 1981)."""
+    """Standard deviation [n] of each row, by the median of its `equation` [n] (Huber, 1981); rows
+    that leave nothing tell none: a current that is rounded is exactly zero while a drive is off.
+    """
     scale = np.ones(len(rows))
     for number in np.unique(equation):
         own = equation == number
-        scale[own] = max(MAD_TO_SIGMA * float(np.median(np.abs(rows[own]))), 1e-300)
+        size = np.abs(rows[own])
+        told = size[size > NOTHING * size.max()]
+        if told.size:
+            scale[own] = MAD_TO_SIGMA * float(np.median(told))
     return scale
 
 
-def huber_weight(rows: FloatArray, equation: IntArray) -> FloatArray:
-    """Huber's weight [n] of every row in a least squares fit: 1 / variance, less for outliers."""
-    scale = robust_scale(rows, equation)
+def huber_weight(rows: FloatArray, scale: FloatArray) -> FloatArray:
+    """Huber's weight [n] in a least squares fit of rows with the standard deviation `scale` [n]:
+    1 / variance, less for outliers.
+    """
     return np.minimum(1.0, DEVIATIONS * scale / np.maximum(np.abs(rows), 1e-300)) / scale**2
 
 
@@ -133,4 +146,4 @@ def linearised(
     slopes: list[FloatArray] = list(quotients)
     jacobian = np.column_stack(slopes) if slopes else np.zeros((len(rows), 0))
     equation, _, _ = space.labels()
-    return Linearised(rows, jacobian, huber_weight(rows, equation))
+    return Linearised(rows, jacobian, huber_weight(rows, robust_scale(rows, equation)))

@@ -20,10 +20,12 @@ FloatArray = NDArray[np.float64]
 
 def prediction_error_filter(series: Sequence[FloatArray]) -> FloatArray:
     """Coefficients [order + 1], the first 1, whose product with a sample and those before it leaves
-    its innovation, for stationary `series` [n] of one kind and of mean zero.
+    its innovation, for stationary `series` [n] of one kind and of mean zero; those too short for
+    the longest filter tell nothing.
     """
+    most = min(LAGS, max(len(s) for s in series) // FEWEST_BLOCKS)
+    series = [s for s in series if len(s) > most]
     n = sum(len(s) for s in series)
-    most = min(LAGS, *(len(s) // FEWEST_BLOCKS for s in series))
     covariance = np.array(
         [sum(float(s[k:] @ s[: len(s) - k]) for s in series) / n for k in range(most + 1)]
     )

@@ -2,8 +2,9 @@
 
 The residuals of a simulation error fit are never white: what the noise of an input leaves in an
 angle may last for a whole run. The covariance is that of a jackknife over a few long blocks of
-time, the unknown starts projected out. Intervals never get narrower than those of white noise of
-the declared size beside the noise of the inputs, as replays carry it to the outputs.
+time, the unknown starts projected out. Intervals never get narrower than those of white noise, as
+large as declared or as what is left, beside the noise of the inputs as replays carry it to the
+outputs.
 """
 
 from collections.abc import Collection, Mapping
@@ -31,9 +32,9 @@ BoolArray = NDArray[np.bool_]
 @dataclass(frozen=True)
 class Estimate:
     """A fitted value with its 95 % confidence interval; SI. `identified` is False where the
-    interval is wider than the value itself, or the data do not see the parameter at all: then the
-    interval is that of its bounds. `only_with` names parameters of which the data see a combination
-    alone, such as the sum of two viscous frictions in one joint.
+    interval reaches further from the value than its size, or the data do not see the parameter at
+    all: then the interval is that of its bounds. `only_with` names parameters of which the data see
+    a combination alone, such as the sum of two viscous frictions in one joint.
     """
 
     name: str
@@ -177,18 +178,26 @@ def _squared_reach_of_inputs(fit: Fit, inverse: FloatArray, columns: FloatArray)
     parts = zip(np.split(columns, ends[:-1]), fit.shaken, strict=True)
     every = [(c.T @ changes, max(changes.shape[1], 1)) for c, changes in parts]
     shifts = np.column_stack([inverse @ moved / np.sqrt(count) for moved, count in every]).T
-    reach = stats.t.ppf(0.975, degrees_of_freedom(shifts))
+    reach = stats.t.ppf(0.975, degrees_of_freedom(shifts, centred=False))
     return np.asarray(reach**2 * np.sum(shifts**2, axis=0))
 
 
-def degrees_of_freedom(shifts: FloatArray) -> FloatArray:
-    """Degrees of freedom [nf] of jackknife variances from the `shifts` [b, nf] of b blocks: b - 1
-    where all blocks shift a parameter alike, 1 where one alone does (moments of the squares, after
-    Satterthwaite, 1946; those of normal shifts have a kurtosis of 3).
+def degrees_of_freedom(shifts: FloatArray, *, centred: bool = True) -> FloatArray:
+    """Degrees of freedom [nf] of variances from the `shifts` [b, nf] of b blocks: b - 1 where all
+    blocks shift a parameter alike, 1 where one alone does (moments of the squares, after
+    Satterthwaite, 1946).
+
+    Of m independent normal shifts, the ratio of 3 (sum s^2)^2 to sum s^4 is m + 2, that of their
+    expectations. Those of a jackknife sum to zero (`centred`): it is m (m + 1) / (m - 1), and m - 1
+    are free.
     """
     square = shifts**2
     fourth = np.maximum(np.sum(square**2, axis=0), 1e-300)
-    equal = 3.0 * np.sum(square, axis=0) ** 2 / fourth - 2.0
+    ratio = 3.0 * np.sum(square, axis=0) ** 2 / fourth
+    equal = ratio - 2.0
+    if centred:
+        root = np.sqrt(np.maximum((ratio - 1.0) ** 2 - 4.0 * ratio, 0.0))
+        equal = 0.5 * (ratio - 1.0 + root) - 1.0
     return np.asarray(np.clip(equal, 1.0, max(len(shifts) - 1, 1)))
 
 

@@ -98,7 +98,7 @@ def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
     if count == 0:
         return Noise(least, 0.0, least)
     power = power[LOWEST:]
-    degrees = 2.0 * count / OVERLAP_CORRELATION
+    degrees = 2.0 * count / (OVERLAP_CORRELATION * _mixed())
     fits = [_profiled(power, pole, least**2, degrees) for pole in POLES]
     likelihood = np.array([f[0] for f in fits])
     best = int(np.argmax(likelihood))
@@ -153,8 +153,7 @@ def neighbour_correlation(signal: FloatArray, time: FloatArray | None = None) ->
     power = np.median([_periodogram(part)[upper] for part in parts], axis=0) / np.log(2.0)
     power /= np.mean(power)
     efficiency = np.log(2.0) ** 2  # of the median of exponential numbers beside their mean
-    mixed = SEGMENT * np.sum(_taper() ** 4) / np.sum(_taper() ** 2) ** 2  # bins, by the taper
-    degrees = 2.0 * efficiency * len(parts) / (OVERLAP_CORRELATION * mixed)
+    degrees = 2.0 * efficiency * len(parts) / (OVERLAP_CORRELATION * _mixed())
 
     def likelihood(pole: float) -> float:
         shape = _windowed(_differenced(pole))[upper]
@@ -215,6 +214,11 @@ def _periodogram(part: FloatArray) -> FloatArray:
 
 def _taper() -> FloatArray:
     return np.hanning(SEGMENT + 1)[:-1]
+
+
+def _mixed() -> float:
+    """How many bins of a periodogram count as one: the taper mixes those beside each other."""
+    return float(SEGMENT * np.sum(_taper() ** 4) / np.sum(_taper() ** 2) ** 2)
 
 
 @lru_cache(maxsize=64)

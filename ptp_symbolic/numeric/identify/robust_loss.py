@@ -36,6 +36,18 @@ def weighted_median(values: FloatArray, weight: FloatArray) -> FloatArray:
     return np.array([np.interp(at, b, v) for b, v in columns])
 
 
+def trimmed_mean(values: FloatArray, weight: FloatArray, share: float) -> FloatArray:
+    """Means [v] of the columns of `values` [k, v], whose rows count by `weight` [k], without the
+    largest that hold a `share` of all weight (Tukey and McLaughlin, 1963, at one end).
+    """
+    order = np.argsort(values, axis=0, kind="stable")
+    below = np.cumsum(weight[order], axis=0)
+    kept = np.clip((1.0 - share) * weight.sum() - (below - weight[order]), 0.0, weight[order])
+    return np.asarray(np.sum(kept * np.take_along_axis(values, order, axis=0), axis=0)) / kept.sum(
+        axis=0
+    )
+
+
 def robust_tuning(pairs: Sequence[tuple[Evaluation, Block | None]], below: float) -> float:
     """Tuning constant of the loss: the root mean square at which a block counts half.
 
