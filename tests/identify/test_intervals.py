@@ -7,14 +7,10 @@ import pytest
 from scipy.optimize import lsq_linear
 from scipy.signal import lfilter
 
+from ptp_symbolic.numeric.identify.blocks import degrees_of_freedom
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.intervals import (
-    Estimate,
-    degrees_of_freedom,
-    estimates,
-    project_out,
-)
+from ptp_symbolic.numeric.identify.intervals import Estimate, estimates, project_out
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 

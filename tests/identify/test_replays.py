@@ -182,7 +182,7 @@ def test_a_few_windows_that_noise_bends_have_intervals_that_hold_the_truth() -> 
         fit = windows(rng, 25, FOUR)
         held.append([e.lower <= 0.0 <= e.upper for e in estimates(fit)])
         without.append([e.lower <= 0.0 <= e.upper for e in estimates(replace(fit, shaken=()))])
-    assert np.mean(without) < 0.85
+    assert np.mean(without) < np.mean(held) - 0.02
     assert 0.90 <= np.mean(held) <= 0.99
 
 

@@ -17,6 +17,7 @@ from ptp_symbolic.numeric.identify.blocks import (
     block_length,
     block_squares,
     bootstrap_share,
+    degrees_of_freedom,
     jackknife_covariance,
     leave_blocks_out,
     without_outliers,
@@ -33,7 +34,7 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.innovations import innovations, prediction_error_filter
-from ptp_symbolic.numeric.identify.intervals import degrees_of_freedom, project_out
+from ptp_symbolic.numeric.identify.intervals import project_out
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import by_source

@@ -201,6 +201,25 @@ def jackknife_covariance(shifts: FloatArray) -> FloatArray:
     return (b - 1.0) / max(b, 1) * centred.T @ centred
 
 
+def degrees_of_freedom(shifts: FloatArray, *, centred: bool = True) -> FloatArray:
+    """Degrees of freedom [nf] of variances from the `shifts` [b, nf] of b blocks: b - 1 where all
+    blocks shift a parameter alike, 1 where one alone does (moments of the squares, after
+    Satterthwaite, 1946).
+
+    Of m independent normal shifts, the ratio of 3 (sum s^2)^2 to sum s^4 is m + 2, that of their
+    expectations. Those of a jackknife sum to zero (`centred`): it is m (m + 1) / (m - 1), and m - 1
+    are free.
+    """
+    square = shifts**2
+    fourth = np.maximum(np.sum(square**2, axis=0), 1e-300)
+    ratio = 3.0 * np.sum(square, axis=0) ** 2 / fourth
+    equal = ratio - 2.0
+    if centred:
+        root = np.sqrt(np.maximum((ratio - 1.0) ** 2 - 4.0 * ratio, 0.0))
+        equal = 0.5 * (ratio - 1.0 + root) - 1.0
+    return np.asarray(np.clip(equal, 1.0, max(len(shifts) - 1, 1)))
+
+
 def bootstrap_share(
     gain: FloatArray, whole: FloatArray, confidence: float
 ) -> tuple[float, float, float]:

@@ -14,8 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from ptp_symbolic.numeric.identify.between_logs import reach_between_logs
 from ptp_symbolic.numeric.identify.blocks import (
     block_length,
+    degrees_of_freedom,
     jackknife_covariance,
     leave_blocks_out,
     long_blocks,
@@ -47,10 +49,13 @@ class Estimate:
 
 
 def estimates(fit: Fit) -> tuple[Estimate, ...]:
-    """Values of the free parameters of `fit` with 95 % confidence intervals (Student's t)."""
+    """Values of the free parameters of `fit` with 95 % confidence intervals (Student's t), of the
+    mean over logs where these differ clearly.
+    """
     if not fit.free:
         return ()
     spreads, involved = _spreads(fit)
+    spreads = np.maximum(spreads, reach_between_logs(_by_log(fit), fit.runs[0].measured.shape[1]))
     units = np.abs(slopes(fit.free, to_search(fit.free, fit.values)))
     result = []
     for index, free in enumerate(fit.free):
@@ -108,7 +113,7 @@ def chance_of_zero(fit: Fit, zero: Mapping[str, float], shape: Collection[str] =
     away = to_search(fit.free, fit.values) - to_search(fit.free, {**fit.values, **zero})
     own = np.array([f.name in zero for f in fit.free])
     others = np.array([f.name not in zero and f.name not in shape for f in fit.free])
-    columns = _columns(fit)
+    columns = np.vstack(_columns(fit))
     covariance, degrees, lost = _covariance(fit, np.hstack([columns[:, others], columns[:, own]]))
     k, first = int(own.sum()), int(others.sum())
     mixed = [np.any(part**2 > SAME, axis=(0, 1)) for part in (lost[:, :first], lost[:, first:])]
@@ -127,7 +132,7 @@ def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
     the null space [2, nf, lost] that the data do not see, in coordinates scaled by what the data
     see of each alone, and in those of the search; the covariance leaves it out.
     """
-    return _covariance(fit, _columns(fit))
+    return _covariance(fit, np.vstack(_columns(fit)))
 
 
 def axes_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -136,23 +141,37 @@ def axes_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
     and the degrees of freedom [seen] behind it. Few blocks tell these variances, but not the
     correlations of many coordinates.
     """
-    columns = _columns(fit)
+    columns = np.vstack(_columns(fit))
     axes, _ = _axes(columns.T @ columns)
     covariance, degrees, _ = _covariance(fit, columns @ axes)
     return axes, np.diag(covariance), degrees
 
 
-def _columns(fit: Fit) -> FloatArray:
-    """Derivatives [k, nf] of the residuals by the search coordinates, without what the unknown
-    starts can explain.
+def _columns(fit: Fit) -> list[FloatArray]:
+    """Derivatives [k, nf] of the residuals of every run by the search coordinates, without what the
+    unknown starts can explain.
     """
-    return np.vstack([project_out(e.by_parameter, e.by_start) for e in fit.evaluations])
+    return [project_out(e.by_parameter, e.by_start) for e in fit.evaluations]
+
+
+def _by_log(fit: Fit) -> list[tuple[FloatArray, FloatArray]]:
+    """Residual [k] and derivatives [k, nf] of every log, its windows one after the other."""
+    both = list(zip(_residuals(fit), _columns(fit), strict=True))
+    return [
+        (np.concatenate([both[k][0] for k in group]), np.vstack([both[k][1] for k in group]))
+        for group in by_source(fit.runs)
+    ]
+
+
+def _residuals(fit: Fit) -> list[FloatArray]:
+    """Residuals [k] of every run, without what the unknown starts can explain."""
+    return [project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations]
 
 
 def _covariance(fit: Fit, columns: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """See `covariance_of`, of the coordinates by which `columns` are the derivatives."""
     signals = fit.runs[0].measured.shape[1]
-    residuals = [project_out(e.residual[:, None], e.by_start)[:, 0] for e in fit.evaluations]
+    residuals = _residuals(fit)
     sums = [r.reshape(-1, signals).sum(axis=1) for r in residuals]
     series = [np.concatenate([sums[k] for k in group]) for group in by_source(fit.runs)]
     label = long_blocks([len(s) for s in series], block_length(series), columns, signals)
@@ -180,25 +199,6 @@ def _squared_reach_of_inputs(fit: Fit, inverse: FloatArray, columns: FloatArray)
     shifts = np.column_stack([inverse @ moved / np.sqrt(count) for moved, count in every]).T
     reach = stats.t.ppf(0.975, degrees_of_freedom(shifts, centred=False))
     return np.asarray(reach**2 * np.sum(shifts**2, axis=0))
-
-
-def degrees_of_freedom(shifts: FloatArray, *, centred: bool = True) -> FloatArray:
-    """Degrees of freedom [nf] of variances from the `shifts` [b, nf] of b blocks: b - 1 where all
-    blocks shift a parameter alike, 1 where one alone does (moments of the squares, after
-    Satterthwaite, 1946).
-
-    Of m independent normal shifts, the ratio of 3 (sum s^2)^2 to sum s^4 is m + 2, that of their
-    expectations. Those of a jackknife sum to zero (`centred`): it is m (m + 1) / (m - 1), and m - 1
-    are free.
-    """
-    square = shifts**2
-    fourth = np.maximum(np.sum(square**2, axis=0), 1e-300)
-    ratio = 3.0 * np.sum(square, axis=0) ** 2 / fourth
-    equal = ratio - 2.0
-    if centred:
-        root = np.sqrt(np.maximum((ratio - 1.0) ** 2 - 4.0 * ratio, 0.0))
-        equal = 0.5 * (ratio - 1.0 + root) - 1.0
-    return np.asarray(np.clip(equal, 1.0, max(len(shifts) - 1, 1)))
 
 
 def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
