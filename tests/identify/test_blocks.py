@@ -13,6 +13,7 @@ from ptp_symbolic.numeric.identify.blocks import (
     jackknife_covariance,
     leave_blocks_out,
     long_blocks,
+    longest_block,
     without_outliers,
 )
 from ptp_symbolic.numeric.identify.constants import FEWEST_BLOCKS, MOST_BLOCKS
@@ -51,6 +52,16 @@ def test_several_runs_ask_for_the_blocks_of_their_total_length() -> None:
     assert found == pytest.approx(optimal_length(0.8, 16000), rel=0.4)
     offsets = np.array([[0.0], [5.0], [-9.0], [70.0]])
     assert block_length(list(runs + offsets)) == pytest.approx(found)
+
+
+def test_the_slowest_signal_asks_for_the_blocks_of_all() -> None:
+    """Two signals that remember alike, each the opposite of the other but for white noise: in their
+    sum nothing is left of that.
+    """
+    slow, white = remembering(0.8, (2, 8000), 6), remembering(0.0, (2, 8000), 8)
+    logs = [np.column_stack([s, 0.3 * w - s]) for s, w in zip(slow, white, strict=True)]
+    assert longest_block(logs) == pytest.approx(optimal_length(0.8, 16000), rel=0.4)
+    assert block_length([log.sum(axis=1) for log in logs]) < 6.0
 
 
 def test_white_noise_needs_no_blocks() -> None:

@@ -20,6 +20,7 @@ from ptp_symbolic.numeric.identify.blocks import (
     degrees_of_freedom,
     jackknife_covariance,
     leave_blocks_out,
+    longest_block,
     without_outliers,
 )
 from ptp_symbolic.numeric.identify.constants import (
@@ -37,7 +38,7 @@ from ptp_symbolic.numeric.identify.innovations import innovations, prediction_er
 from ptp_symbolic.numeric.identify.intervals import project_out
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.run_groups import by_source
+from ptp_symbolic.numeric.identify.run_groups import by_log
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -113,7 +114,7 @@ def _gain(
         (b**2 - a**2).reshape(-1, signals).sum(axis=1)
         for a, b in zip(residuals[0][0], residuals[1][0], strict=True)
     ]
-    series = [np.concatenate([difference[k] for k in group]) for group in by_source(runs)]
+    series = by_log(runs, difference)
     labels = block_labels([len(s) for s in series], block_length(series))
     label = np.concatenate(labels)
     size = np.bincount(label)
@@ -158,9 +159,8 @@ def p_value(trial: Trial, zero: Mapping[str, float]) -> float:
     own = [k for k, f in enumerate(fit.free) if f.name in zero]
     residual, jacobian = (np.concatenate(parts) for parts in _projected(fit))
     signals = fit.runs[0].measured.shape[1]
-    sums = [e.residual.reshape(-1, signals).sum(axis=1) for e in fit.evaluations]
-    series = [np.concatenate([sums[k] for k in group]) for group in by_source(fit.runs)]
-    labels = block_labels([len(s) for s in series], block_length(series))
+    logs = by_log(fit.runs, [e.residual.reshape(-1, signals) for e in fit.evaluations])
+    labels = block_labels([len(log) for log in logs], longest_block(logs))
     label = np.concatenate(labels)
     residual, jacobian, step = without_outliers(residual, jacobian, label, signals)
     shifts = leave_blocks_out(residual, jacobian, np.repeat(label, signals)).shifts[:, own]

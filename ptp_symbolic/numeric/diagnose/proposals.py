@@ -20,7 +20,7 @@ from ptp_symbolic.numeric.diagnose.declared_rows import (
 from ptp_symbolic.numeric.diagnose.late_inputs import at_best_delays
 from ptp_symbolic.numeric.diagnose.regression import (
     Regression,
-    blocks_of,
+    blocks_in_time,
     regression,
     reweighted,
 )
@@ -123,7 +123,7 @@ def _regressed(
     task: Task, space: EquationSpace, declared: Linearised, seen: Sequence[Signature]
 ) -> Regression:
     equation, run, time = space.labels()
-    block = blocks_of(run, time)
+    block = blocks_in_time(run, time)
     return regression(
         declared.rows, task.free, declared.jacobian, seen, equation, block, declared.weight
     )

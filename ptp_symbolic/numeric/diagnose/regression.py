@@ -18,7 +18,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
-def blocks_of(run: IntArray, time: FloatArray) -> IntArray:
+def blocks_in_time(run: IntArray, time: FloatArray) -> IntArray:
     """The block [n, 2] of SHORT that every row is in, of its `run` [n] and `time` [n] in s: the
     run, and the number of the block in it.
     """
@@ -26,8 +26,8 @@ def blocks_of(run: IntArray, time: FloatArray) -> IntArray:
 
 
 def block_numbers(run: IntArray, time: FloatArray) -> IntArray:
-    """The number [n] of the block of every row, as `blocks_of` tells them apart."""
-    _, number = np.unique(blocks_of(run, time), axis=0, return_inverse=True)
+    """The number [n] of the block of every row, as `blocks_in_time` tells them apart."""
+    _, number = np.unique(blocks_in_time(run, time), axis=0, return_inverse=True)
     return np.asarray(number.reshape(-1), dtype=np.int64)
 
 
@@ -37,7 +37,8 @@ class Regression:
     the columns of the signatures.
 
     `scale` [n] is the standard deviation of every row, `weight` [n] its weight in the fit,
-    `equation` [n] its equation, `block` [n, 2] the block of time that it belongs to (`blocks_of`).
+    `equation` [n] its equation, `block` [n, 2] the block of time that it belongs to (see
+    `blocks_in_time`).
     """
 
     rows: FloatArray

@@ -60,6 +60,13 @@ def block_length(series: Sequence[FloatArray]) -> float:
     return float(np.clip(length, 1.0, longest))
 
 
+def longest_block(logs: Sequence[FloatArray]) -> float:
+    """Samples in a block for residuals `logs` [n, signals]: those of the signal that asks for most
+    (see `block_length`).
+    """
+    return max(block_length(list(signal)) for signal in zip(*(log.T for log in logs), strict=True))
+
+
 def _last_correlated(correlation: FloatArray, n: int) -> int:
     """The lag after which several correlations in a row are no larger than those of noise."""
     noise = 2.0 * np.sqrt(np.log10(n) / n)

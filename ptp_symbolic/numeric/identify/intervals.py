@@ -16,16 +16,16 @@ from scipy import stats
 
 from ptp_symbolic.numeric.identify.between_logs import reach_between_logs
 from ptp_symbolic.numeric.identify.blocks import (
-    block_length,
     degrees_of_freedom,
     jackknife_covariance,
     leave_blocks_out,
     long_blocks,
+    longest_block,
 )
 from ptp_symbolic.numeric.identify.constants import NOTHING, SAME, WIDEST
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search, wrapped
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.run_groups import by_source
+from ptp_symbolic.numeric.identify.run_groups import by_log
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -156,11 +156,8 @@ def _columns(fit: Fit) -> list[FloatArray]:
 
 def _by_log(fit: Fit) -> list[tuple[FloatArray, FloatArray]]:
     """Residual [k] and derivatives [k, nf] of every log, its windows one after the other."""
-    both = list(zip(_residuals(fit), _columns(fit), strict=True))
-    return [
-        (np.concatenate([both[k][0] for k in group]), np.vstack([both[k][1] for k in group]))
-        for group in by_source(fit.runs)
-    ]
+    parts = by_log(fit.runs, _residuals(fit)), by_log(fit.runs, _columns(fit))
+    return list(zip(*parts, strict=True))
 
 
 def _residuals(fit: Fit) -> list[FloatArray]:
@@ -172,9 +169,8 @@ def _covariance(fit: Fit, columns: FloatArray) -> tuple[FloatArray, FloatArray, 
     """See `covariance_of`, of the coordinates by which `columns` are the derivatives."""
     signals = fit.runs[0].measured.shape[1]
     residuals = _residuals(fit)
-    sums = [r.reshape(-1, signals).sum(axis=1) for r in residuals]
-    series = [np.concatenate([sums[k] for k in group]) for group in by_source(fit.runs)]
-    label = long_blocks([len(s) for s in series], block_length(series), columns, signals)
+    logs = by_log(fit.runs, [r.reshape(-1, signals) for r in residuals])
+    label = long_blocks([len(log) for log in logs], longest_block(logs), columns, signals)
     residual = np.concatenate(residuals)
     inverse, lost = _inverse(columns.T @ columns)
     white = np.diag(inverse) * max(1.0, float(np.mean(residual**2)))

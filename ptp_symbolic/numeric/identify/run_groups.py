@@ -18,6 +18,11 @@ def by_source(runs: Sequence[Run]) -> list[list[int]]:
     return list(grouped.values())
 
 
+def by_log(runs: Sequence[Run], parts: Sequence[FloatArray]) -> list[FloatArray]:
+    """What belongs to every run, rows [k, ...], one after the other for the runs of each log."""
+    return [np.concatenate([parts[k] for k in group]) for group in by_source(runs)]
+
+
 def sizes(runs: Sequence[Run]) -> FloatArray:
     """Number of samples of every run [runs]."""
     return np.array([len(run.time) for run in runs], dtype=np.float64)
