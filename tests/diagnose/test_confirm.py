@@ -110,6 +110,16 @@ def test_no_effect_is_named_where_noise_is_left_and_the_others_can_do_what_it_do
     assert is_named or "can do all that it does" in str(reason)
 
 
+@pytest.mark.parametrize(("lower", "is_done"), [(-9.0, True), (0.6, True), (0.95, False)])
+def test_others_do_what_they_can_within_their_bounds(lower: float, is_done: bool) -> None:
+    """To stand in for the spring, the other would go from 1.0 to 0.6."""
+    other = free_parameter("J", 1.0, lower, 9.0)
+    columns = [np.column_stack([w, -w]) for w in waves(4)]
+    noise = [np.random.default_rng(8).standard_normal(len(c)) for c in columns]
+    fit = finished(noise, [-c for c in columns], None, (SPRING, other), {"k": 0.4, "J": 1.0})
+    assert is_done_by_others(fit, EFFECT) is is_done
+
+
 @pytest.mark.parametrize(("amount", "spoilt"), [(0.1, False), (0.5, True), (0.0, False)])
 def test_only_what_others_do_is_held_against_an_effect(amount: float, spoilt: bool) -> None:
     """A wave that nothing else makes is let be, however small: half a percent of the noise's mean

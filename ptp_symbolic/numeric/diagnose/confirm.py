@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.linear import (
     effect_of,
+    left_beside,
     projected_off,
     stacked_jacobian,
     stacked_residual,
@@ -67,15 +68,15 @@ def is_amount_known(fit: Fit, candidate: Candidate) -> bool:
 
 
 def is_done_by_others(fit: Fit, candidate: Candidate) -> bool:
-    """Whether the other parameters can do all that the candidate does, by linear prediction: a
-    small part of it is left beside them, and changes the mean square by less than errors of
-    simulations do.
+    """Whether the other parameters can do all that the candidate does, within their bounds and by
+    linear prediction: a small part of it is left beside them, and changes the mean square by less
+    than errors of simulations do.
     """
     rows = _rows_of(fit)
-    others = [k for k, f in enumerate(fit.free) if f.name not in candidate.parameters]
+    others = {f.name for f in fit.free} - set(candidate.parameters)
     effect = effect_of(fit, candidate.vanishing, rows.columns)
-    added = projected_off(effect[:, None], rows.columns[:, others])[:, 0]
-    square, left = float(added @ added), float(rows.residual @ rows.residual)
+    square = left_beside(fit, effect, others, rows.columns)
+    left = float(rows.residual @ rows.residual)
     return square < min(ELSEWHERE * float(effect @ effect), LITTLE * left)
 
 

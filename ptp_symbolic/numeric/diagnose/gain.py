@@ -35,7 +35,7 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.innovations import innovations, prediction_error_filter
-from ptp_symbolic.numeric.identify.intervals import project_out
+from ptp_symbolic.numeric.identify.intervals import chance_of, project_out
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import by_log
@@ -149,11 +149,10 @@ def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
 def p_value(trial: Trial, zero: Mapping[str, float]) -> float:
     """Probability that parameters this far from `zero`, or further, are found where they are zero.
 
-    Hotelling's T^2 (1931) of their search coordinates, with the covariance of a jackknife over
-    blocks of time under the model that has them, and the degrees of freedom of the coordinate that
-    the fewest blocks show (see `degrees_of_freedom`). Blocks far worse than usual weigh less, and
-    the coordinates are those of one step towards the fit with these weights (Bickel, 1975). 1 where
-    those blocks are too few.
+    By their search coordinates, with the covariance of a jackknife over blocks of time under the
+    model that has them (see `chance_of`, `degrees_of_freedom`). Blocks far worse than usual weigh
+    less, and the coordinates are those of one step towards the fit with these weights (Bickel,
+    1975).
     """
     fit = trial.fit
     own = [k for k, f in enumerate(fit.free) if f.name in zero]
@@ -164,15 +163,9 @@ def p_value(trial: Trial, zero: Mapping[str, float]) -> float:
     label = np.concatenate(labels)
     residual, jacobian, step = without_outliers(residual, jacobian, label, signals)
     shifts = leave_blocks_out(residual, jacobian, np.repeat(label, signals)).shifts[:, own]
-    k = len(own)
-    free = float(np.min(degrees_of_freedom(shifts)))
-    if free <= k:
-        return 1.0
     away = to_search(fit.free, fit.values) - to_search(fit.free, {**fit.values, **zero})
     away = (away + step)[own]
-    inverse = np.linalg.pinv(jackknife_covariance(shifts), rcond=1e-10, hermitian=True)
-    statistic = float(away @ inverse @ away) * (free + 1.0 - k) / (k * free)
-    return float(stats.f.sf(statistic, k, free + 1.0 - k))
+    return chance_of(away, jackknife_covariance(shifts), degrees_of_freedom(shifts))
 
 
 def _projected(fit: Fit) -> tuple[list[FloatArray], list[FloatArray]]:

@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
 
 from ptp_symbolic.numeric.identify.constants import SAME, SINGULAR
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
@@ -63,6 +64,24 @@ def made_up_for(
         moved = float(np.clip(fit.values[f.name] + unit[k] * step, f.lower, f.upper))
         values.update(dict.fromkeys(f.names, moved))
     return values
+
+
+def left_beside(fit: Fit, effect: FloatArray, kept: Collection[str], table: FloatArray) -> float:
+    """Sum of squares of what is left of an `effect` [n] once parameters `kept` do of it what they
+    can within their bounds, by linear prediction; `table` is that of `effect_of`.
+    """
+    own = [k for k, f in enumerate(fit.free) if f.name in kept]
+    unit = slopes(fit.free, to_search(fit.free, fit.values))
+    size = np.linalg.norm(table[:, own], axis=0)
+    size[size == 0.0] = 1.0
+    room = [(fit.free[k], fit.values[fit.free[k].name], unit[k]) for k in own]
+    lower = np.array([min((f.lower - v) / u, 0.0) for f, v, u in room]) * size
+    upper = np.array([max((f.upper - v) / u, 0.0) for f, v, u in room]) * size
+    whole = float(effect @ effect)
+    slack = SINGULAR * np.sqrt(whole)
+    basis, triangle = np.linalg.qr(table[:, own] / size)
+    steps = lsq_linear(triangle, basis.T @ effect, (lower - slack, upper + slack)).x
+    return float(np.sum((effect - basis @ (triangle @ steps)) ** 2)) if own else whole
 
 
 def projected_off(columns: FloatArray, away: FloatArray) -> FloatArray:

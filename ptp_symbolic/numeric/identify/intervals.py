@@ -106,22 +106,33 @@ def _interval(
 
 def chance_of_zero(fit: Fit, zero: Mapping[str, float], shape: Collection[str] = ()) -> float:
     """Probability that the parameters in `zero` are found as far from their values there as they
-    are, or further, where the truth is there: Hotelling's T^2 (1931) with the covariance of the
+    are, or further, where the truth is there (see `chance_of`), with the covariance of the
     intervals. Those named in `shape` stay as they are, all others are free. 1 where the data see
-    them only in combination with others, or where too few blocks tell.
+    them only in combination with others.
     """
     away = to_search(fit.free, fit.values) - to_search(fit.free, {**fit.values, **zero})
     own = np.array([f.name in zero for f in fit.free])
     others = np.array([f.name not in zero and f.name not in shape for f in fit.free])
     columns = np.vstack(_columns(fit))
     covariance, degrees, lost = _covariance(fit, np.hstack([columns[:, others], columns[:, own]]))
-    k, first = int(own.sum()), int(others.sum())
+    first = int(others.sum())
     mixed = [np.any(part**2 > SAME, axis=(0, 1)) for part in (lost[:, :first], lost[:, first:])]
-    left = float(degrees[first:].min()) - k + 1.0
-    if np.any(mixed[0] & mixed[1]) or left <= 0.0:
+    if np.any(mixed[0] & mixed[1]):
         return 1.0
-    inverse = np.linalg.pinv(covariance[first:, first:], rcond=NOTHING, hermitian=True)
-    square = float(away[own] @ inverse @ away[own])
+    return chance_of(away[own], covariance[first:, first:], degrees[first:])
+
+
+def chance_of(away: FloatArray, covariance: FloatArray, degrees: FloatArray) -> float:
+    """Probability that k coordinates are found so far `away` [k] from their truth, or further, with
+    a `covariance` [k, k] that has `degrees` [k] of freedom: Hotelling's T^2 (1931) with the fewest
+    of them. Where these are fewer than the coordinates, one block may tell one of these alone: each
+    counts by Student's t with its own then, and the clearest decides (Bonferroni).
+    """
+    k, left = len(away), float(degrees.min()) - len(away) + 1.0
+    if left < 1.0:
+        error = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+        return min(1.0, k * float(np.min(2.0 * stats.t.sf(np.abs(away) / error, degrees))))
+    square = float(away @ np.linalg.pinv(covariance, rcond=NOTHING, hermitian=True) @ away)
     if np.isinf(left):
         return float(stats.chi2.sf(square, k))
     return float(stats.f.sf(square * left / (k * (left + k - 1.0)), k, left))
