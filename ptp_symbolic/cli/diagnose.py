@@ -150,6 +150,8 @@ def _print_diagnosis(summary: Mapping[str, Any]) -> None:
     added = {name for effect in summary["added"] for name in effect["parameters"]}
     for effect in summary["added"]:
         _print_parameters({name: fitted[name] for name in effect["parameters"]})
+        if effect.get("confusable_with"):
+            click.echo(f"  What would tell it apart: {effect['separating_experiment']}")
     doubtful = {
         name: p
         for name, p in fitted.items()
@@ -172,8 +174,8 @@ def _print_windows(summary: Mapping[str, Any]) -> None:
         return
     count, seconds = summary["windows"]["count"], summary["windows"]["seconds"]
     click.echo(
-        f"Runs were cut into {count} windows of {seconds:.2g} s, each with a start of its own:"
-        " samples are missing between them, or errors of the start and of the inputs would rule."
+        f"Runs were cut into {count} windows of {seconds:.2g} s on average, each with a start"
+        " of its own: where samples are missing, or where errors of a start or of the inputs grow."
     )
 
 

@@ -3,10 +3,13 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.diagnose.curves import curves_of
 from ptp_symbolic.numeric.diagnose.findings import Search
+from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.remainder import hints, remainder
 from ptp_symbolic.numeric.diagnose.residual_tests import residual_tests
 from ptp_symbolic.numeric.diagnose.sizes import sizes_of
@@ -58,6 +61,7 @@ def written_up(
     errors = error_table(parts, verdict.floor)
     extended = _extended(platform, after)
     module, doubts = _module_of(extended)
+    doubts += _carried_remarks(platform, verdict.floor)
     named = [c for c in after.candidates if not c.is_declared_value]
     equations = [e for c in named for e in effect_equations(extended, c.id, c.axis)]
     left = remainder(found.proposals.space, after.values) if verdict.leaves_more else None
@@ -109,6 +113,20 @@ def _module_of(extended: Platform) -> tuple[dict[str, str], list[str]]:
         return {f"{extended.name}.py": emission.module_of(extended)}, []
     except InputError as error:
         return {}, [f"The declared and the found values exclude each other. {error}"]
+
+
+def _carried_remarks(platform: Platform, floor: Floor) -> list[str]:
+    """Inputs whose noise, estimated from the logs, leaves more in an output than its own does: of a
+    command that a controller computed from a noisy angle it is no error.
+    """
+    names = [s.signal for s in platform.signals if s.role == "input" and s.noise is None]
+    if not names or np.all(floor.carried.usual <= floor.noise):
+        return []
+    return [
+        f"The noise of {' and '.join(names)}, estimated from the logs, leaves more than that of the"
+        " outputs. Where an input is logged as it was commanded, declare `noise = 0.0` for it: then"
+        " smaller effects show."
+    ]
 
 
 def equations_tex(equations: list[dict[str, Any]]) -> str:

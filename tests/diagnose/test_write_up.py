@@ -1,11 +1,15 @@
-"""What is written where the machine that was found cannot exist as it is declared."""
+"""Remarks of a report: a machine that cannot exist as it is declared, noise of the inputs."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from ptp_symbolic.platform import read_platform
-from ptp_symbolic.workflows.write_up import _module_of
+from ptp_symbolic.numeric.diagnose.floor import Floor
+from ptp_symbolic.numeric.diagnose.left_over import Carried
+from ptp_symbolic.platform import Platform, SignalDeclaration, read_platform
+from ptp_symbolic.workflows.write_up import _carried_remarks, _module_of
 
 GIMBAL = """[platform]
 name = "gimbal"
@@ -36,3 +40,20 @@ def test_a_tensor_that_no_body_has_is_said_and_gives_no_module(
     assert [("J_yz_tilt" in text and "exclude each other" in text) for text in doubts] == (
         [] if exists else [True]
     )
+
+
+@pytest.mark.parametrize(
+    ("noise", "carried", "said"), [(None, 1.5, 1), (None, 0.5, 0), (0.0, 1.5, 0)]
+)
+def test_noise_of_an_input_that_rules_is_said_unless_it_is_declared(
+    noise: float | None, carried: float, said: int
+) -> None:
+    """A torque that a controller computes from a noisy angle is known exactly."""
+    torque = SignalDeclaration("tau_pan", "tau_pan", "N m", "input", noise=noise)
+    platform = Platform("arm", "Arm", ("pan",), 9.81, (), (), (torque,))
+    one = np.ones(1)
+    floor = Floor(one, one, Carried(carried * one, carried * one))
+    found = _carried_remarks(platform, floor)
+    assert len(found) == said
+    assert all("tau_pan" in text and "noise = 0.0" in text for text in found)
+    assert _carried_remarks(replace(platform, signals=()), floor) == []

@@ -52,9 +52,12 @@ def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -
         sentences = [f"{begin}; validation error {before} to {after}."]
         sentences += _mostly_in_one_run(errors["validate"]["after"]["without"])
         sentences += [SMALL for c in found.final.candidates if _is_small(c, found.final)][:1]
-        alike = sorted({key for keys in found.confusable.values() for key in keys})
-        if alike:
-            sentences.append(f"These logs cannot tell it from: {', '.join(alike)}.")
+        alike = {key: ", ".join(keys) for key, keys in found.confusable.items() if keys}
+        alone = len(found.final.candidates) == 1
+        sentences += [
+            f"These logs cannot tell {'it' if alone else key} from: {others}."
+            for key, others in alike.items()
+        ]
         if found.word == PARTLY:
             sentences.append(f"The floor is {floor}: a remainder is left unexplained.")
         return " ".join(sentences)
