@@ -150,7 +150,7 @@ def _print_diagnosis(summary: Mapping[str, Any]) -> None:
     added = {name for effect in summary["added"] for name in effect["parameters"]}
     for effect in summary["added"]:
         _print_parameters({name: fitted[name] for name in effect["parameters"]})
-        if effect.get("confusable_with"):
+        if effect["confusable_with"]:
             click.echo(f"  What would tell it apart: {effect['separating_experiment']}")
     doubtful = {
         name: p

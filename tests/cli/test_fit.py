@@ -148,12 +148,19 @@ def test_a_diagnosis_prints_what_the_logs_do_not_settle(capsys) -> None:
         "alpha_base": fitted(-0.6, False),
         "F_v_pan": fitted(0.4, False) | {"only_with": ["b_pan"]},
     }
-    added = [{"parameters": {"beta_base": {}, "alpha_base": {}}}]
+    added = [
+        {
+            "parameters": {"beta_base": {}, "alpha_base": {}},
+            "confusable_with": ["cable_spring@pan"],
+            "separating_experiment": "Turn further.",
+        }
+    ]
     fit = {"after": {"parameters": parameters}}
     _print_diagnosis({**diagnosis(0.3, 5e-4), "added": added, "fit": fit})
     lines = capsys.readouterr().out.splitlines()
     assert "  beta_base = 0.07 N m  [0, 1]" in lines
     assert "  alpha_base = -0.6 N m  [0, 1]  (not identified)" in lines
+    assert "  What would tell it apart: Turn further." in lines
     told = lines[lines.index("Declared parameters that these logs do not settle:") + 1 :]
     assert told[0] == "  F_c_pan = 0.2 N m  [0, 1]  (not identified)"
     assert told[1] == "  F_s_pan = 0.3 N m  [0, 1]  (at its bound)"
