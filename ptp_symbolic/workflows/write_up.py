@@ -62,6 +62,7 @@ def written_up(
     extended = _extended(platform, after)
     module, doubts = _module_of(extended)
     doubts += _carried_remarks(platform, verdict.floor)
+    doubts += _tied_remarks(platform) if verdict.leaves_more else []
     named = [c for c in after.candidates if not c.is_declared_value]
     equations = [e for c in named for e in effect_equations(extended, c.id, c.axis)]
     left = remainder(found.proposals.space, after.values) if verdict.leaves_more else None
@@ -126,6 +127,17 @@ def _carried_remarks(platform: Platform, floor: Floor) -> list[str]:
         f"The noise of {' and '.join(names)}, estimated from the logs, leaves more than that of the"
         " outputs. Where an input is logged as it was commanded, declare `noise = 0.0` for it: then"
         " smaller effects show."
+    ]
+
+
+def _tied_remarks(platform: Platform) -> list[str]:
+    """Ties that may be what is wrong: no candidate undoes one."""
+    tied = [f"{p.name} is {p.same_as}" for p in platform.parameters if p.same_as is not None]
+    if not tied:
+        return []
+    return [
+        f"That {' and that '.join(tied)}, as declared, is not put in doubt; a start of its own in"
+        " place of `same_as` has a parameter fitted."
     ]
 
 

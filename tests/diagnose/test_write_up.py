@@ -8,8 +8,8 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.left_over import Carried
-from ptp_symbolic.platform import Platform, SignalDeclaration, read_platform
-from ptp_symbolic.workflows.write_up import _carried_remarks, _module_of
+from ptp_symbolic.platform import ParameterDeclaration, Platform, SignalDeclaration, read_platform
+from ptp_symbolic.workflows.write_up import _carried_remarks, _module_of, _tied_remarks
 
 GIMBAL = """[platform]
 name = "gimbal"
@@ -57,3 +57,13 @@ def test_noise_of_an_input_that_rules_is_said_unless_it_is_declared(
     assert len(found) == said
     assert all("tau_pan" in text and "noise = 0.0" in text for text in found)
     assert _carried_remarks(replace(platform, signals=()), floor) == []
+
+
+def test_a_tie_that_may_be_wrong_is_said() -> None:
+    """Friction at rest that is declared to be that in motion is never found to be more."""
+    own = ParameterDeclaration("F_c_pan", "N m", 0.1)
+    tied = ParameterDeclaration("F_s_pan", "N m", 0.1, same_as="F_c_pan")
+    platform = Platform("arm", "Arm", ("pan",), 9.81, (), (own, tied), ())
+    (text,) = _tied_remarks(platform)
+    assert text.startswith("That F_s_pan is F_c_pan, as declared")
+    assert _tied_remarks(replace(platform, parameters=(own,))) == []
