@@ -16,6 +16,9 @@ def joint_region(fit: Fit) -> FloatArray:
     chance of 99 %: the fitted ones plus this matrix times any vector of length one at most
     (Scheffe, 1953). An axis of which few blocks tell is widened as Student's t is at 99 %.
     Directions that the data do not see are left out.
+
+    Axes count as uncorrelated, as they are beside white noise. Where all of them follow one slow
+    mode of what is left, the truth was held in 94 % for three to six values, in 86 % for ten.
     """
     axes, variances, degrees = axes_of(fit)
     tail = 0.5 * TEST_ALARM
