@@ -49,6 +49,9 @@ def test_few_blocks_have_a_students_interval_and_one_has_none() -> None:
     found = compared(1.0 - taken, np.ones(5))
     interval = stats.ttest_1samp(taken, 0.0).confidence_interval(0.95)
     assert (found.lower, found.upper) == pytest.approx((interval.low, interval.high))
+    whole = np.array([1.0, 9.0, 3.0, 200.0, 0.1])
+    steady = compared(0.6 * whole, whole)  # the same share of every block, however they differ
+    assert (steady.lower, steady.upper) == pytest.approx((0.4, 0.4))
     alone = compared(np.array([0.6]), np.array([1.0]))
     assert alone.share == pytest.approx(0.4)
     assert (alone.lower, alone.upper) == (-np.inf, np.inf)

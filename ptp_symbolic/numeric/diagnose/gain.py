@@ -135,11 +135,15 @@ def compared(larger: FloatArray, smaller: FloatArray) -> Gain:
     """
     taken = smaller - larger
     share, lower, upper = bootstrap_share(taken, smaller, 1.0 - FALSE_ALARM)
-    influence = (taken - taken.mean()) / max(float(smaller.sum()), 1e-300)
-    b = len(taken)
-    error = float(np.sqrt(b / (b - 1) * np.sum(influence**2))) if b > 1 else np.inf
+    b, whole = len(taken), max(float(smaller.sum()), 1e-300)
+
+    def error_of(influence: FloatArray) -> float:
+        return float(np.sqrt(b / (b - 1) * np.sum((influence / whole) ** 2))) if b > 1 else np.inf
+
+    error = error_of(taken - taken.mean())
     if b < 2 * FEWEST_BLOCKS:  # percentiles of so few are too narrow
-        reach = float(stats.t.ppf(1.0 - 0.5 * FALSE_ALARM, b - 1)) * error if b > 1 else np.inf
+        reach = float(stats.t.ppf(1.0 - 0.5 * FALSE_ALARM, max(b - 1, 1)))
+        reach *= error_of(taken - share * smaller)
         lower, upper = share - reach, share + reach
     differs = taken[taken != 0.0]
     by_rank = stats.wilcoxon(differs, alternative="greater").pvalue if differs.size else 1.0
