@@ -73,6 +73,7 @@ FAINT: dict[str, tuple[str, ...]] = {
     ),
     "pan_drive_dc": ("quadratic_drag", "winding_heating", "declared_value:N_pan"),
     "two_axis": ("product_of_inertia",),
+    "two_axis_servo": ("position_dependent_friction",),
 }
 MOST_LEVEL = {"product_of_inertia": 3.0}  # no body has larger products beside these moments
 
@@ -214,7 +215,7 @@ OF_BOTH_DRIVEN: tuple[tuple[str, ...], ...] = (
     ("declared_value", "R_pan"),
     ("unlisted", "wind_gust@pan"),
     ("declared_value", "m_payload"),
-    ("unlisted", "decaying_friction@tilt"),
+    ("unlisted", "switched_torque@tilt"),
     ("perfect",),
     ("slightly_wrong",),
     ("perfect",),
