@@ -4,13 +4,19 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy import stats
 from scipy.optimize import lsq_linear
 from scipy.signal import lfilter
 
 from ptp_symbolic.numeric.identify.blocks import degrees_of_freedom
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
 from ptp_symbolic.numeric.identify.fit import Fit
-from ptp_symbolic.numeric.identify.intervals import Estimate, estimates, project_out
+from ptp_symbolic.numeric.identify.intervals import (
+    Estimate,
+    chance_of,
+    estimates,
+    project_out,
+)
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 
@@ -273,4 +279,21 @@ def test_projection_leaves_what_is_orthogonal_to_the_starts() -> None:
     assert project_out(jacobian, np.zeros((50, 2))) == pytest.approx(jacobian)
     assert project_out(jacobian, nuisance[:, [0, 0]]) == pytest.approx(
         project_out(jacobian, nuisance[:, :1]), abs=1e-12
+    )
+
+
+def test_a_coordinate_that_is_clear_by_itself_is_clear_beside_one_that_a_block_tells() -> None:
+    """A hundred deviations with eleven degrees of freedom, beside one told by a single block; two
+    that trade for each other, each unclear, whose sum is certain; and nothing.
+    """
+    one, few = np.eye(2), np.array([11.0, 1.5])
+    assert chance_of(np.array([100.0, 0.0]), one, few) < 1e-10
+    trading = np.array([[1.0, -0.999], [-0.999, 1.0]])
+    assert chance_of(np.array([1.0, 1.0]), trading, np.full(2, 30.0)) < 1e-6
+    assert chance_of(np.array([1.0, 1.0]), one, np.full(2, 30.0)) > 0.3
+    rng = np.random.default_rng(4)
+    drawn = [chance_of(rng.standard_normal(3), np.eye(3), np.full(3, np.inf)) for _ in range(2000)]
+    assert 0.02 < np.mean(np.array(drawn) < 0.05) <= 0.06
+    assert chance_of(np.array([2.0]), np.eye(1), np.array([9.0])) == pytest.approx(
+        2.0 * stats.t.sf(2.0, 9.0)
     )

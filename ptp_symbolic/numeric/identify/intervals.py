@@ -124,18 +124,24 @@ def chance_of_zero(fit: Fit, zero: Mapping[str, float], shape: Collection[str] =
 
 def chance_of(away: FloatArray, covariance: FloatArray, degrees: FloatArray) -> float:
     """Probability that k coordinates are found so far `away` [k] from their truth, or further, with
-    a `covariance` [k, k] that has `degrees` [k] of freedom: Hotelling's T^2 (1931) with the fewest
-    of them. Where these are fewer than the coordinates, one block may tell one of these alone: each
-    counts by Student's t with its own then, and the clearest decides (Bonferroni).
+    a `covariance` [k, k] that has `degrees` [k] of freedom: twice the smaller of two (Bonferroni).
+
+    One is Hotelling's T^2 (1931) with the fewest degrees: coordinates that trade for each other are
+    clear together. The other is Student's t of the clearest coordinate with its own degrees, times
+    k: where one block tells one of them alone, the others may be beyond doubt.
     """
     k, left = len(away), float(degrees.min()) - len(away) + 1.0
-    if left < 1.0:
-        error = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
-        return min(1.0, k * float(np.min(2.0 * stats.t.sf(np.abs(away) / error, degrees))))
+    error = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    alone = k * float(np.min(2.0 * stats.t.sf(np.abs(away) / error, degrees)))
+    if k == 1:
+        return alone
     square = float(away @ np.linalg.pinv(covariance, rcond=NOTHING, hermitian=True) @ away)
+    together = 1.0
     if np.isinf(left):
-        return float(stats.chi2.sf(square, k))
-    return float(stats.f.sf(square * left / (k * (left + k - 1.0)), k, left))
+        together = float(stats.chi2.sf(square, k))
+    elif left > 0.0:
+        together = float(stats.f.sf(square * left / (k * (left + k - 1.0)), k, left))
+    return min(1.0, 2.0 * min(together, alone))
 
 
 def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
