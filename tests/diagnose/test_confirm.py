@@ -110,6 +110,14 @@ def test_no_effect_is_named_where_noise_is_left_and_the_others_can_do_what_it_do
     assert is_named or "can do all that it does" in str(reason)
 
 
+def test_an_effect_of_a_machine_of_which_all_is_known_is_done_by_nothing() -> None:
+    columns = [w[:, None] for w in waves(4)]
+    noise = [np.random.default_rng(8).standard_normal(len(c)) for c in columns]
+    fit = finished(noise, [-c for c in columns], None, (SPRING,), {"k": 0.4})
+    assert not is_done_by_others(fit, EFFECT)
+    assert not is_done_by_others(replace(fit, values={"k": 0.0}), EFFECT)
+
+
 @pytest.mark.parametrize(("lower", "is_done"), [(-9.0, True), (0.6, True), (0.95, False)])
 def test_others_do_what_they_can_within_their_bounds(lower: float, is_done: bool) -> None:
     """To stand in for the spring, the other would go from 1.0 to 0.6."""

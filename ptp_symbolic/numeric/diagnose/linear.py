@@ -71,17 +71,19 @@ def left_beside(fit: Fit, effect: FloatArray, kept: Collection[str], table: Floa
     can within their bounds, by linear prediction; `table` is that of `effect_of`.
     """
     own = [k for k, f in enumerate(fit.free) if f.name in kept]
+    whole = float(effect @ effect)
+    if not own or whole == 0.0:
+        return whole
     unit = slopes(fit.free, to_search(fit.free, fit.values))
     size = np.linalg.norm(table[:, own], axis=0)
     size[size == 0.0] = 1.0
     room = [(fit.free[k], fit.values[fit.free[k].name], unit[k]) for k in own]
     lower = np.array([min((f.lower - v) / u, 0.0) for f, v, u in room]) * size
     upper = np.array([max((f.upper - v) / u, 0.0) for f, v, u in room]) * size
-    whole = float(effect @ effect)
     slack = SINGULAR * np.sqrt(whole)
     basis, triangle = np.linalg.qr(table[:, own] / size)
     steps = lsq_linear(triangle, basis.T @ effect, (lower - slack, upper + slack)).x
-    return float(np.sum((effect - basis @ (triangle @ steps)) ** 2)) if own else whole
+    return float(np.sum((effect - basis @ (triangle @ steps)) ** 2))
 
 
 def projected_off(columns: FloatArray, away: FloatArray) -> FloatArray:
