@@ -117,8 +117,8 @@ def _module_of(extended: Platform) -> tuple[dict[str, str], list[str]]:
 
 
 def _carried_remarks(platform: Platform, floor: Floor) -> list[str]:
-    """Inputs whose noise, estimated from the logs, leaves more in an output than its own does: of a
-    command that a controller computed from a noisy angle it is no error.
+    """Inputs whose noise, estimated from the logs, leaves more in an output than its own does. A
+    command that a controller computed from a noisy angle looks noisy, and is known exactly.
     """
     names = [s.signal for s in platform.signals if s.role == "input" and s.noise is None]
     if not names or np.all(floor.carried.usual <= floor.noise):
@@ -132,12 +132,11 @@ def _carried_remarks(platform: Platform, floor: Floor) -> list[str]:
 
 def _tied_remarks(platform: Platform) -> list[str]:
     """Ties that may be what is wrong: no candidate undoes one."""
-    tied = [f"{p.name} is {p.same_as}" for p in platform.parameters if p.same_as is not None]
-    if not tied:
-        return []
     return [
-        f"That {' and that '.join(tied)}, as declared, is not put in doubt; a start of its own in"
-        " place of `same_as` has a parameter fitted."
+        f"{p.name} is declared the same as {p.same_as}, which is not put in doubt; with a `start`"
+        " in place of `same_as` it is fitted."
+        for p in platform.parameters
+        if p.same_as is not None
     ]
 
 

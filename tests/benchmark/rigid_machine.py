@@ -15,6 +15,7 @@ from tests.benchmark.machine import (
     push,
 )
 from tests.benchmark.rigid_truth import bodies_of, gravity_and_inertia
+from tests.benchmark.servo_runs import BOTH
 from tests.benchmark.truth_drive import drive_of, reading, torque_along
 from tests.benchmark.variation import Variation
 from tests.independent import rigid_drives
@@ -23,7 +24,6 @@ from tests.independent.rigid_runs import at_rest, replay, track
 
 STEP = 0.5e-3  # s; its error is a tenth of the finest encoder's floor
 WINDOW = 1.0  # s, of machines that a torque drives
-BOTH = ("pan", "tilt")
 DISTANT_START = "start_of_J_pan"  # kept among the values, as the platform must state it
 
 

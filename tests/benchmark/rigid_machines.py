@@ -1,6 +1,7 @@
 """The machines of rigid bodies: what is declared of each."""
 
-from tests.benchmark.rigid_machine import BOTH, Plate, RigidMachine
+from tests.benchmark.rigid_machine import Plate, RigidMachine
+from tests.benchmark.servo_runs import BOTH
 
 
 def _tilt_plate(

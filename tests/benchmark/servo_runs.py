@@ -20,7 +20,7 @@ DAMPING = 0.8
 # rad/s; a torque servo slips and sticks where friction falls with the rate, and stays above that.
 CRAWLS = {"tilt_servo": (0.03, 0.06, 0.12), "direct_drive": (0.12, 0.2, 0.35)}
 NO_LIMIT = 1e3
-JOINTS = ("pan", "tilt")
+BOTH = ("pan", "tilt")
 BODY = {"pan": "J_pan", "tilt": "J_y_tilt"}  # inertia of an axis without its payload
 
 
@@ -36,7 +36,7 @@ def _motor_servo(
         inertia = lever + values[BODY[axis]]
         inertia += values[f"J_motor_{axis}"] * values[f"N_{axis}"] ** 2
         stiffness = min(0.1 * damping**2 / inertia, 0.4 * damping / variation.period)
-        gains[JOINTS.index(axis)] = stiffness * values[f"R_{axis}"] / constant
+        gains[BOTH.index(axis)] = stiffness * values[f"R_{axis}"] / constant
         volts[number] = damping * values[f"R_{axis}"] / constant
     supply = 24.0 if variation.heavy else 12.0
     count, zero = 2 * math.pi / variation.counts, np.zeros(2)

@@ -177,6 +177,13 @@ def test_windows_that_are_alike_are_quiet(training: float, validation: float) ->
     assert quiet(after, trained)
 
 
+def test_a_quarter_of_the_windows_is_too_many_to_be_left_out() -> None:
+    """Though as many training windows leave as much: something acts there in both."""
+    scale = np.where(np.arange(48) % 4, 1.0, 5.0)
+    windows = [s * w for s, w in zip(scale, noisy(48, 1.0, 1), strict=True)]
+    assert not quiet(finished(windows[:28]), finished(windows))
+
+
 def test_windows_half_of_which_leave_more_than_the_training_runs_are_not_quiet() -> None:
     """The median alone is within its bound, and says nothing of the other half; nor does it have to
     be one half: what the worst tenth leaves is left out, whatever the others are held to.

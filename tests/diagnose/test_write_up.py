@@ -65,5 +65,5 @@ def test_a_tie_that_may_be_wrong_is_said() -> None:
     tied = ParameterDeclaration("F_s_pan", "N m", 0.1, same_as="F_c_pan")
     platform = Platform("arm", "Arm", ("pan",), 9.81, (), (own, tied), ())
     (text,) = _tied_remarks(platform)
-    assert text.startswith("That F_s_pan is F_c_pan, as declared")
+    assert text.startswith("F_s_pan is declared the same as F_c_pan")
     assert _tied_remarks(replace(platform, parameters=(own,))) == []

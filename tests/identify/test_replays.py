@@ -144,9 +144,7 @@ def twice_integrated(rng: np.random.Generator, draws: int) -> Floats:
     return np.cumsum(np.cumsum(rng.standard_normal((draws, SAMPLES)), axis=1), axis=1).T / 300.0
 
 
-def windows(
-    rng: np.random.Generator, replays: int, free: tuple[FreeParameter, ...], count: int = WINDOWS
-) -> Fit:
+def windows(rng: np.random.Generator, replays: int, free: tuple[FreeParameter, ...]) -> Fit:
     """A least squares fit of what smooth inputs make, integrated twice, to windows that noise of
     the input bends; the truth is zero.
     """
@@ -154,7 +152,7 @@ def windows(
     start = np.column_stack([np.ones(SAMPLES), t])
     tables = [
         np.column_stack([np.sin((2.0 + k + 0.7 * w) * t + k) for k in range(4)]) * 10.0
-        for w in range(count)
+        for w in range(WINDOWS)
     ]
     noise = [twice_integrated(rng, 1)[:, 0] + rng.standard_normal(SAMPLES) for _ in tables]
     bent = [project_out(n[:, None], start)[:, 0] for n in noise]
@@ -164,7 +162,7 @@ def windows(
     fit = finished(
         [b - c @ found for b, c in zip(bent, columns, strict=True)],
         [-c * scales for c in tables],
-        [start] * count,
+        [start] * WINDOWS,
         free,
         {f.name: float(v) for f, v in zip(free, found, strict=True)},
     )
@@ -182,7 +180,7 @@ def test_a_few_windows_that_noise_bends_have_intervals_that_hold_the_truth() -> 
         fit = windows(rng, 25, FOUR)
         held.append([e.lower <= 0.0 <= e.upper for e in estimates(fit)])
         without.append([e.lower <= 0.0 <= e.upper for e in estimates(replace(fit, shaken=()))])
-    assert np.mean(without) < np.mean(held) - 0.02
+    assert np.mean(without) < 0.92
     assert 0.90 <= np.mean(held) <= 0.99
 
 
@@ -193,4 +191,4 @@ def test_a_chance_has_no_degrees_of_freedom_where_replays_tell_it() -> None:
     assert np.all(np.isfinite(chance))
     assert np.median(chance) > 0.1
     far = {name: -10.0 for name in zero}
-    assert chance_of_zero(windows(rng, 25, FOUR, 8), far) < 1e-6
+    assert chance_of_zero(windows(rng, 25, FOUR), far) < 1e-6

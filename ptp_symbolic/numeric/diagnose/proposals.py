@@ -20,7 +20,6 @@ from ptp_symbolic.numeric.diagnose.declared_rows import (
 from ptp_symbolic.numeric.diagnose.late_inputs import at_best_delays
 from ptp_symbolic.numeric.diagnose.regression import (
     Regression,
-    blocks_in_time,
     regression,
     reweighted,
 )
@@ -41,7 +40,12 @@ from ptp_symbolic.numeric.identify.constants import (
     TRIED,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.equation_fit import Linearised, fit_equations, linearised
+from ptp_symbolic.numeric.identify.equation_fit import (
+    Linearised,
+    blocks_in_time,
+    fit_equations,
+    linearised,
+)
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 
 FloatArray = NDArray[np.float64]

@@ -10,19 +10,16 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.signatures import Signature
-from ptp_symbolic.numeric.identify.constants import REWEIGHTINGS, SHORT
+from ptp_symbolic.numeric.identify.constants import REWEIGHTINGS
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
-from ptp_symbolic.numeric.identify.equation_fit import huber_weight, robust_scale
+from ptp_symbolic.numeric.identify.equation_fit import (
+    blocks_in_time,
+    huber_weight,
+    robust_scale,
+)
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-
-def blocks_in_time(run: IntArray, time: FloatArray) -> IntArray:
-    """The block [n, 2] of SHORT that every row is in, of its `run` [n] and `time` [n] in s: the
-    run, and the number of the block in it.
-    """
-    return np.column_stack([run, (time // SHORT).astype(np.int64)])
 
 
 def block_numbers(run: IntArray, time: FloatArray) -> IntArray:
@@ -71,7 +68,7 @@ def regression(
         equation,
         block,
         weight,
-        robust_scale(rows, equation),
+        np.ones(len(rows)),
     )
     return reweighted(start, ())
 

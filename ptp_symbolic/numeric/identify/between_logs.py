@@ -14,15 +14,11 @@ from scipy import stats
 from ptp_symbolic.numeric.identify.blocks import (
     block_labels,
     degrees_of_freedom,
+    inverse_root,
     jackknife_covariance,
     leave_blocks_out,
 )
-from ptp_symbolic.numeric.identify.constants import (
-    ELSEWHERE,
-    FALSE_ALARM,
-    FEWEST_BLOCKS,
-    NOTHING,
-)
+from ptp_symbolic.numeric.identify.constants import ELSEWHERE, FALSE_ALARM, FEWEST_BLOCKS
 
 FloatArray = NDArray[np.float64]
 
@@ -56,15 +52,13 @@ def chance_of_scatter(logs: Sequence[tuple[FloatArray, FloatArray]], signals: in
     of its own, over blocks within: an analysis of variance (Fisher, 1925) with the degrees of
     freedom of blocks that are long enough to be independent.
     """
-    size = np.linalg.norm(np.vstack([c for _, c in logs]), axis=0)
-    unit = np.where(size > 0.0, size, 1.0)
-    information = sum((c / unit).T @ (c / unit) for _, c in logs)
-    inverse = np.linalg.pinv(information, rcond=NOTHING, hermitian=True)
+    root = inverse_root(np.vstack([c for _, c in logs]))
+    inverse = root @ root.T
     lengths = [len(r) // signals for r, _ in logs]
-    labels = block_labels(lengths, max(sum(lengths) / (2 * FEWEST_BLOCKS), 1.0))
+    labels = block_labels(lengths, sum(lengths) / (2 * FEWEST_BLOCKS))
     between, within, blocks = np.zeros(len(inverse)), np.zeros(len(inverse)), 0
     for (residual, columns), label in zip(logs, labels, strict=True):
-        influence = columns / unit @ inverse
+        influence = columns @ inverse
         moved = residual @ influence
         own = moved / np.maximum(np.sum(influence**2, axis=0), 1e-300)
         rest = influence * (residual[:, None] - influence * own)

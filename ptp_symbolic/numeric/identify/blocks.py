@@ -101,18 +101,18 @@ def long_blocks(
     by little (Ibragimov and Mueller, 2010). FEWEST_BLOCKS, or twice as many as often as needed
     until all but any one of them still see every direction, but none shorter than `length`.
     """
-    inverse_root = _inverse_root(jacobian)
+    root = inverse_root(jacobian)
     longest = sum(sizes) / FEWEST_BLOCKS
     while True:
         label = np.repeat(np.concatenate(block_labels(sizes, longest)), signals)
-        parts = [jacobian[label == block] @ inverse_root for block in range(int(label.max()) + 1)]
+        parts = [jacobian[label == block] @ root for block in range(int(label.max()) + 1)]
         share = max((float(np.linalg.norm(part, 2)) ** 2 for part in parts if part.size), default=0)
         if share <= 1.0 - ELSEWHERE or longest <= max(length, 1.0):
             return label
         longest = max(length, 0.5 * longest)
 
 
-def _inverse_root(jacobian: FloatArray) -> FloatArray:
+def inverse_root(jacobian: FloatArray) -> FloatArray:
     """Directions [nf, seen] in which the columns of `jacobian` are orthonormal."""
     size = np.linalg.norm(jacobian, axis=0)
     unit = np.where(size > 0.0, size, 1.0)

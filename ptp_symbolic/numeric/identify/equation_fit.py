@@ -38,6 +38,13 @@ class Linearised:
     weight: FloatArray
 
 
+def blocks_in_time(run: IntArray, time: FloatArray) -> IntArray:
+    """The block [n, 2] of SHORT that every row is in, of its `run` [n] and `time` [n] in s: the
+    run, and the number of the block in it.
+    """
+    return np.column_stack([run, (time // SHORT).astype(np.int64)])
+
+
 def robust_scale(rows: FloatArray, equation: IntArray) -> FloatArray:
     """Standard deviation [n] of each row, by the median of its `equation` [n] (Huber, 1981); rows
     that leave nothing tell none: a current that is rounded is exactly zero while a drive is off.
@@ -75,7 +82,7 @@ def fit_equations(
     InputError for `values` out of bounds.
     """
     equation, run, time = space.labels()
-    blocks = len(np.unique(np.column_stack([equation, run, time // SHORT]), axis=0))
+    blocks = len(np.unique(np.column_stack([equation, blocks_in_time(run, time)]), axis=0))
     overlap = len(equation) / max(blocks, 1)
     here = {f.name: float(np.clip(values[f.name], f.lower, f.upper)) for f in free}
     centre = np.array([f.start for f in free])
