@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.data import Log
-from ptp_symbolic.numeric.diagnose.along_rows import grown_along_motion
+from ptp_symbolic.numeric.diagnose.along_rows import _Motion, grown_along_motion
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.proposals import propose, start_for
@@ -30,6 +30,10 @@ Torque = Callable[[float, float], float]
 
 def spring(angle: float, rate: float) -> float:
     return -STIFFNESS * angle
+
+
+def cubic_spring(angle: float, rate: float) -> float:
+    return -STIFFNESS * angle**3
 
 
 def spring_by_speed(angle: float, rate: float) -> float:
@@ -70,12 +74,39 @@ def test_a_spring_that_is_stronger_where_it_is_fast_is_none(
         assert breaks_its_law(task, proposals.space, (found,), values, found) is breaks
 
 
-@pytest.mark.parametrize("barred", [(), ("quadratic_drag@pan",)])
-def test_a_drag_that_was_refused_is_not_taken_up_again_along_the_motion(
-    barred: tuple[str, ...], tmp_path: Path
+@pytest.mark.parametrize(
+    ("hidden", "key", "named"),
+    [
+        (spring, "cable_spring@pan", True),
+        (spring_by_speed, "cable_spring@pan", False),
+        (drag_by_speed, "quadratic_drag@pan", False),
+    ],
+)
+def test_what_breaks_its_law_is_not_taken_up_along_the_motion(
+    hidden: Torque, key: str, named: bool, tmp_path: Path
 ) -> None:
-    """Beside a second friction, it makes up in the rows for a torque cubic in the rate."""
-    with table_of(tmp_path, lambda seed: logged(drag_by_speed, seed)) as task:
+    """Beside a second friction, drag makes up in the rows for a torque cubic in the rate."""
+    with table_of(tmp_path, lambda seed: logged(hidden, seed)) as task:
         declared = fitted(task, (), declared_start(task), None)
-        grown = grown_along_motion(task, propose(task), declared, task.train, barred)
-        assert ("quadratic_drag@pan" in grown.trial.keys if grown else False) is not bool(barred)
+        grown = grown_along_motion(task, propose(task), declared, task.train)
+        assert (key in grown.trial.keys if grown else False) is named
+
+
+@pytest.mark.parametrize(("hidden", "cubic"), [(spring, False), (cubic_spring, True)])
+def test_a_fuller_form_that_earns_nothing_is_left_out_along_the_motion(
+    hidden: Torque, cubic: bool, tmp_path: Path
+) -> None:
+    with table_of(tmp_path, lambda seed: logged(hidden, seed)) as task:
+        proposals = propose(task)
+        assert proposals.space is not None and proposals.regression is not None
+        motion = _Motion(task, proposals.space, proposals.regression, proposals.start)
+        springs = [
+            s.candidate
+            for s in proposals.regression.signatures
+            if s.candidate.key == "cable_spring@pan"
+        ]
+        full = max(springs, key=lambda c: len(c.free))
+        assert "k3_cable_pan" in full.parameters
+        (found,) = motion.in_simplest_forms((full,), ())
+        assert ("k3_cable_pan" in found.parameters) is cubic
+        assert motion.in_simplest_forms((full,), (full,)) == (full,)

@@ -8,7 +8,7 @@ windows average away what is fast, such as a delay. Its values and their interva
 fit to the same rows (inverse dynamic identification: Gautier and Khalil, 1990).
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,6 +19,7 @@ from ptp_symbolic.numeric.diagnose.declared_rows import equation_space, possible
 from ptp_symbolic.numeric.diagnose.findings import looked_at
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared
 from ptp_symbolic.numeric.diagnose.held_out import simulated_freely
+from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, in_rows_of, start_of
 from ptp_symbolic.numeric.diagnose.regression import Regression, block_numbers
 from ptp_symbolic.numeric.diagnose.subsets import exchanges, gain_along_motion, larger_sets
@@ -51,18 +52,13 @@ class AlongMotion:
 
 
 def grown_along_motion(
-    task: Task,
-    found: Proposals,
-    trial: Trial,
-    runs: Sequence[Run],
-    barred: Collection[str] = (),
+    task: Task, found: Proposals, trial: Trial, runs: Sequence[Run]
 ) -> AlongMotion | None:
     """The set of a trial with what else gains along the measured motion, simulated on the training
     `runs`; None where nothing does, or where the rows do not show all of the set.
 
-    Declared values are not looked for: beside a remainder they stand in for much. Nor are those
-    whose keys are `barred`: rows have shown already that what acts is not of their law. What has
-    grown takes away a material part of the torque that the set leaves along the validation runs.
+    Declared values are not looked for: beside a remainder they stand in for much. What has grown
+    takes away a material part of the torque that the set leaves along the validation runs.
     """
     if found.regression is None or len(task.model.contacts):
         return None
@@ -76,11 +72,10 @@ def grown_along_motion(
     motion = _Motion(task, space, rows, found.start)
     while len(candidates) < len(trial.candidates) + LARGEST:
         effects = [
-            s
-            for s in larger_sets(rows, candidates)
-            if not any(c.is_declared_value or c.key in barred for c in s)
+            s for s in larger_sets(rows, candidates) if not any(c.is_declared_value for c in s)
         ]
-        grown = next((s for s in effects[:TRIED] if motion.is_confirmed(s)), None)
+        simple = (motion.in_simplest_forms(s, candidates) for s in effects[:TRIED])
+        grown = next((s for s in simple if motion.is_confirmed(s)), None)
         if grown is None:
             break
         candidates = grown
@@ -118,9 +113,27 @@ class _Motion:
         """Whether what a member of a set gains is material, and clear over all candidates and
         frequencies that were compared.
         """
-        found = self.gain(candidates, member)
+        return self._is_earned(self.gain(candidates, member), member)
+
+    def _is_earned(self, found: Gain | None, member: Candidate) -> bool:
         tests = looked_at(self.task.candidates, [member])
         return found is not None and found.share >= self.task.material and found.is_clear(tests)
+
+    def in_simplest_forms(
+        self, candidates: Sequence[Candidate], kept: Sequence[Candidate]
+    ) -> tuple[Candidate, ...]:
+        """A set with every member that is not `kept` in the simplest form beside which a fuller one
+        earns nothing: a cubic spring about a far place is a linear one as well.
+        """
+        for member in [c for c in candidates if c not in kept]:
+            every = [s.candidate for s in self.rows.signatures if s.candidate.key == member.key]
+            simpler = [form for form in every if len(form.free) < len(member.free)]
+            for form in sorted(simpler, key=lambda c: len(c.free)):
+                smaller = tuple(form if c is member else c for c in candidates)
+                if not self._is_earned(gain_along_motion(self.rows, candidates, smaller), member):
+                    candidates = smaller
+                    break
+        return tuple(candidates)
 
     def is_confirmed(self, candidates: Sequence[Candidate]) -> bool:
         """Whether every member of a set earns its place and stands the rest of what a name asks
@@ -130,7 +143,11 @@ class _Motion:
             return False
         fit = self.fitted(candidates)
         members = [with_what_needs_it(c, candidates) for c in candidates]
-        return not any(why_unconfirmed(fit, c, leaves_noise=False) for c in members)
+        if any(why_unconfirmed(fit, c, leaves_noise=False) for c in members):
+            return False
+        return not any(
+            breaks_its_law(self.task, self.space, candidates, fit.values, c) for c in candidates
+        )
 
     def alike(self, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
         """By the key of each member of a set, those that predict no worse in its place, and beside
