@@ -11,9 +11,17 @@ from ptp_symbolic.numeric.diagnose.declared_fit import _led_back
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.nested import beside_declared, declared_from
-from ptp_symbolic.numeric.diagnose.refits import is_near_floor, started_anew, strayed_from_start
+from ptp_symbolic.numeric.diagnose.refits import (
+    _with_strays_begun_anew,
+    is_near_floor,
+    started_anew,
+    strayed_from_start,
+)
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
+from ptp_symbolic.numeric.identify.constants import SHORT
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
+from ptp_symbolic.numeric.identify.linked_windows import linked
+from ptp_symbolic.numeric.identify.windows import split_run
 from tests.identify.pan_runs import COUNT, FLOOR, KNOWN, MODEL, THREE, TRUTH, make_runs
 from tests.independent.pan_drive import PanDrive
 
@@ -105,3 +113,23 @@ def test_a_set_that_is_stuck_goes_where_the_declared_model_leads_it(task: Task) 
     declared = fitted(task, (), task.fixed, None, 12)
     found = beside_declared(task, stuck, declared, NOTHING_CARRIED)
     assert leaves_white_noise(found, NOTHING_CARRIED)
+
+
+def test_a_window_that_went_astray_is_begun_where_the_one_before_ends(task: Task) -> None:
+    """Its loss is robust: left alone, it tells nothing any more, and its error stays."""
+    windows = tuple(w for run in task.train for w in split_run(MODEL, run, SHORT))
+    cut = replace(task, train=windows)
+    second = next(series[1] for series in linked(windows) if len(series) > 1)
+    right = fitted(cut, (), task.fixed, None, 4, executor=task.executor)
+    astray = [start.copy() for start in right.fit.z]
+    astray[second][1] += 0.2
+    wrong = fitted(cut, (), right.values, astray)
+    assert np.max(_rms(wrong)) > 5.0 * np.median(_rms(wrong))
+    found = _with_strays_begun_anew(cut, wrong)
+    assert np.max(_rms(found)) < 1.5 * np.median(_rms(found))
+    assert _with_strays_begun_anew(cut, found) is found
+    assert _with_strays_begun_anew(task, wrong) is wrong
+
+
+def _rms(trial: Trial) -> list[float]:
+    return [float(np.sqrt(np.mean(e.residual**2))) for e in trial.fit.evaluations]

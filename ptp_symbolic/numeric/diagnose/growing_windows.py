@@ -83,9 +83,23 @@ def starts_of(trial: Trial, executor: Executor | None, *, brief: bool = False) -
     """Start unknowns, each [nz], of the runs of a trial with what is hidden at their start in place
     (see `starts_in_place`).
     """
-    fit, z = trial.fit, trial.fit.z
-    square = mean_squares(fit.evaluations, fit.runs).mean(axis=1)
-    usual = float(weighted_median(square[:, None], sizes(fit.runs))[0])
+    fit = trial.fit
+    usual = _usual_square(trial, _squares(trial))
     return starts_in_place(
-        fit.model, fit.runs, fit.values, z, fit.tolerance, executor, brief=brief, usual=usual
+        fit.model, fit.runs, fit.values, fit.z, fit.tolerance, executor, brief=brief, usual=usual
     )
+
+
+def shares_of_usual(trial: Trial) -> FloatArray:
+    """Mean square [n] that every run of a trial leaves, in those of the usual one."""
+    square = _squares(trial)
+    return square / max(_usual_square(trial, square), 1e-300)
+
+
+def _squares(trial: Trial) -> FloatArray:
+    fit = trial.fit
+    return np.asarray(mean_squares(fit.evaluations, fit.runs).mean(axis=1), dtype=np.float64)
+
+
+def _usual_square(trial: Trial, square: FloatArray) -> float:
+    return float(weighted_median(square[:, None], sizes(trial.fit.runs))[0])

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
-from ptp_symbolic.numeric.diagnose.growing_windows import settled, starts_of
+from ptp_symbolic.numeric.diagnose.growing_windows import settled, shares_of_usual, starts_of
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.linear import (
     effect_of,
@@ -36,6 +36,7 @@ from ptp_symbolic.numeric.identify.constants import (
     SHARP,
     STEP,
     TRIED,
+    TUNING,
     WIDE_STEP,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
@@ -192,11 +193,21 @@ def to_its_end(task: Task, trial: Trial, carried: Carried) -> Trial:
             trial = ranked([trial, begun])[0]
         smooth = continued(task, trial, POLISH, executor=task.executor)
         if leaves_white_noise(smooth, carried):
-            return smooth
+            return _with_strays_begun_anew(task, smooth)
         trial = continued(task, without_misleading(smooth), POLISH, ROUGH, WIDE_STEP, task.executor)
         if is_alike(trial, smooth):
             break
     return trial
+
+
+def _with_strays_begun_anew(task: Task, trial: Trial) -> Trial:
+    """The trial, or a better end with its windows begun where the one before ends, if one of them
+    leaves so much that it hardly counts: its start went astray then while the parameters moved.
+    """
+    if not has_linked(task.train) or np.all(shares_of_usual(trial) <= TUNING**2):
+        return trial
+    z = starts_of(trial, task.executor)
+    return continued(task, trial, POLISH, executor=task.executor, z=z)
 
 
 def sharpened(task: Task, trial: Trial, carried: Carried) -> Trial:
