@@ -13,6 +13,7 @@ from scipy import stats
 
 from ptp_symbolic.numeric.diagnose.trial import Trial, huber_loss
 from ptp_symbolic.numeric.identify.blocks import (
+    SINGULAR,
     block_labels,
     block_length,
     block_squares,
@@ -29,7 +30,6 @@ from ptp_symbolic.numeric.identify.constants import (
     FEWEST_BLOCKS,
     MOST,
     NOTHING,
-    SINGULAR,
     TUNING,
 )
 from ptp_symbolic.numeric.identify.coordinates import to_search

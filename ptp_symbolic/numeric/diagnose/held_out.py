@@ -20,7 +20,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
 from ptp_symbolic.numeric.identify.blocks import huber_root
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
-    BIGGEST,
     FOLDS,
     GAIN,
     MANY_RUNS,
@@ -39,6 +38,7 @@ from ptp_symbolic.numeric.identify.finite_differences import with_finite_differe
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.intervals import project_out, reaches
 from ptp_symbolic.numeric.identify.joint_region import closest_in_ball, joint_region
+from ptp_symbolic.numeric.identify.least_squares import BIGGEST
 from ptp_symbolic.numeric.identify.robust_loss import trimmed_mean, weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import sizes

@@ -13,14 +13,8 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.linear import projected_off
 from ptp_symbolic.numeric.diagnose.regression import block_numbers
 from ptp_symbolic.numeric.diagnose.trial import Task, all_free
-from ptp_symbolic.numeric.identify.blocks import jackknife_covariance, leave_blocks_out
-from ptp_symbolic.numeric.identify.constants import (
-    FAR,
-    FEWEST_BLOCKS,
-    MATERIAL,
-    MOST,
-    SINGULAR,
-)
+from ptp_symbolic.numeric.identify.blocks import SINGULAR, jackknife_covariance, leave_blocks_out
+from ptp_symbolic.numeric.identify.constants import FAR, FEWEST_BLOCKS, MATERIAL, MOST
 from ptp_symbolic.numeric.identify.equation_fit import linearised
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.row_motion import row_motion

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from ptp_symbolic.numeric.identify.constants import SAME, SINGULAR
+from ptp_symbolic.numeric.identify.blocks import SINGULAR
+from ptp_symbolic.numeric.identify.constants import SAME
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import project_out

@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from ptp_symbolic.numeric.identify.constants import QUOTIENT
 from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_guards, contact_modes
 from ptp_symbolic.numeric.simulation.kernels.calls import call
+
+QUOTIENT = float(np.cbrt(np.finfo(float).eps))  # rad, rad/s; step of difference quotients
 
 
 class Motion(NamedTuple):

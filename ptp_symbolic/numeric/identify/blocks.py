@@ -19,13 +19,14 @@ from ptp_symbolic.numeric.identify.constants import (
     NOTHING,
     RESAMPLES,
     SEED,
-    SINGULAR,
     TUNING,
 )
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+SINGULAR = np.sqrt(np.finfo(float).eps)  # singular value of equal directions, over the largest
 
 
 def block_length(series: Sequence[FloatArray]) -> float:

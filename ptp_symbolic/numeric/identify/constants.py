@@ -89,7 +89,6 @@ ORDER = 5  # 1; differences: a motion at a tenth of the sampling rate leaves 0.6
 PIECE = 256  # samples; over which the noise of a signal is taken, good to 8 %; derived
 SEGMENT = 64  # samples; of a periodogram: poles up to 0.95 are told from white noise; tested
 LOWEST = 3  # bins; below belong to the taper (2) and to the motion; derived
-OVERLAP_CORRELATION = 19.0 / 18.0  # 1; of variances, Hann tapers that overlap by half; derived
 
 # Steps
 STEP = 0.02  # search coordinates, starts; of differences, as far as intervals reach; scaled
@@ -100,20 +99,12 @@ REACH = 3.0  # 1; size of a response over the residual, beyond which it is not l
 
 # Numerics
 ROUNDING = 1.0 / np.sqrt(12.0)  # counts; standard deviation of rounding; derived
-ROUNDING_OF_7200 = 2.0 * np.pi / 7200.0 * ROUNDING  # rad; of an encoder of 7200 counts; derived
-MAD_TO_SIGMA = 1.4826  # 1; one over 0.6745, the upper quartile of normal numbers; derived
 FINITE = 1e-3  # 1; step of difference quotients of what is nearly linear; scaled
-QUOTIENT = 1e-6  # rad, rad/s; the same of what is exact: cube root of rounding, 6e-6; derived
 SAME = 1e-3  # 1; relative difference of directions or values that count as one; scaled
 RIDGE = 1e-6  # 1; of a residual per unit column: keeps nearly equal columns apart; scaled
-SINGULAR = 1e-8  # 1; singular value of equal directions: root of rounding, 1.5e-8; derived
 NOTHING = 1e-10  # 1; share of a sum of 1e5 squares, above its rounding of 2e-11; derived
 SMALLEST_SHARE = 1e-6  # 1; of a scale from which a logarithm begins; scaled
-WIDEST = 30.0  # 1; logarithm of a factor that has no end (1e13); derived
-BIGGEST = 1e15  # 1; mean square of what cannot be simulated: below 1/rounding, 4.5e15; derived
 HALVINGS = 40  # 1; of a step to or along a relation of parameters: to 1e-12 of it; derived
-FINEST = 1e-4  # 1; of the default tolerance: 1e-8, root of rounding 1.5e-8; derived
-COARSEST = 10.0  # 1; of the default tolerance: beyond events are lost; scaled
 
 # Sequences
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried; halvings

@@ -10,16 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import stats
 from scipy.optimize import lsq_linear
 
-from ptp_symbolic.numeric.identify.constants import (
-    DEVIATIONS,
-    FINITE,
-    MAD_TO_SIGMA,
-    NOTHING,
-    SAME,
-    SHORT,
-)
+from ptp_symbolic.numeric.identify.constants import DEVIATIONS, FINITE, NOTHING, SAME, SHORT
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 
@@ -55,7 +49,7 @@ def robust_scale(rows: FloatArray, equation: IntArray) -> FloatArray:
         size = np.abs(rows[own])
         told = size[size > NOTHING * size.max()]
         if told.size:
-            scale[own] = MAD_TO_SIGMA * float(np.median(told))
+            scale[own] = float(np.median(told) / stats.norm.ppf(0.75))
     return scale
 
 

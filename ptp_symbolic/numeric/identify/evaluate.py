@@ -6,12 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import (
-    COARSEST,
-    FINEST,
-    ROUNDING_OF_7200,
-    SENSOR_ITERATIONS,
-)
+from ptp_symbolic.numeric.identify.constants import ROUNDING, SAME, SENSOR_ITERATIONS
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.element_layout import contact_guards
 from ptp_symbolic.numeric.runtime.model import Model
@@ -45,11 +40,13 @@ class Tolerance:
         """The tolerance at which angles are good to a `share` of `resolution` in rad.
 
         The default holds a count of 7200 per turn, less the rounding of it, to 1 %; the error of a
-        step goes with the tolerance.
+        step goes with the tolerance. A relative tolerance lies between the root of rounding, as
+        sums of many steps need, and where values no longer count as the same.
         """
-        factor = resolution / ROUNDING_OF_7200 * share / 0.01
-        factor = min(max(factor, FINEST), COARSEST)
-        return cls(1e-4 * factor, 1e-6 * factor)
+        usual = 2.0 * np.pi / 7200.0 * ROUNDING
+        factor = resolution / usual * share / 0.01
+        factor = min(max(factor, np.sqrt(np.finfo(float).eps) / cls.relative), SAME / cls.relative)
+        return cls(cls.relative * factor, cls.angle * factor)
 
     def absolute(self, model: Model) -> FloatArray:
         """Absolute tolerance of every state [n], in its unit."""

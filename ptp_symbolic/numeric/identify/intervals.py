@@ -22,7 +22,7 @@ from ptp_symbolic.numeric.identify.blocks import (
     long_blocks,
     longest_block,
 )
-from ptp_symbolic.numeric.identify.constants import NOTHING, SAME, WIDEST
+from ptp_symbolic.numeric.identify.constants import NOTHING, SAME
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search, wrapped
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run_groups import by_log
@@ -95,7 +95,7 @@ def _interval(
     """
     half = spread * unit if np.isfinite(spread) else np.inf
     low, high = value - half, value + half
-    if free.logarithmic and spread < WIDEST:
+    if free.logarithmic and spread < -np.log(np.finfo(float).eps):  # else it has no end
         low, high = value * np.exp(-spread), value * np.exp(spread)
     width = spread if free.logarithmic else half / max(abs(value), 1e-300)
     if free.period is None:

@@ -13,17 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.bounded_step import box, limited_step, taken
-from ptp_symbolic.numeric.identify.constants import (
-    BIGGEST,
-    FIRST_DAMPING,
-    NEARBY,
-)
+from ptp_symbolic.numeric.identify.constants import FIRST_DAMPING, NEARBY
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.requirements import Allow
 from ptp_symbolic.numeric.identify.robust_loss import Block, loss, robust_tuning, shares
 from ptp_symbolic.numeric.identify.secants import Secants
 
 FloatArray = NDArray[np.float64]
+
+BIGGEST = np.reciprocal(np.finfo(float).eps)  # beyond, a simulation has told nothing
 
 
 class Evaluate(Protocol):

@@ -20,7 +20,6 @@ from ptp_symbolic.numeric.identify.constants import (
     FAR,
     LOWEST,
     ORDER,
-    OVERLAP_CORRELATION,
     PIECE,
     POLES,
     SCORINGS,
@@ -98,7 +97,7 @@ def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
     if count == 0:
         return Noise(least, 0.0, least)
     power = power[LOWEST:]
-    degrees = 2.0 * count / (OVERLAP_CORRELATION * _mixed())
+    degrees = 2.0 * count / _mixed()
     fits = [_profiled(power, pole, least**2, degrees) for pole in POLES]
     likelihood = np.array([f[0] for f in fits])
     best = int(np.argmax(likelihood))
@@ -153,7 +152,7 @@ def neighbour_correlation(signal: FloatArray, time: FloatArray | None = None) ->
     power = np.median([_periodogram(part)[upper] for part in parts], axis=0) / np.log(2.0)
     power /= np.mean(power)
     efficiency = np.log(2.0) ** 2  # of the median of exponential numbers beside their mean
-    degrees = 2.0 * efficiency * len(parts) / (OVERLAP_CORRELATION * _mixed())
+    degrees = 2.0 * efficiency * len(parts) / _mixed()
 
     def likelihood(pole: float) -> float:
         shape = _windowed(_differenced(pole))[upper]
@@ -217,8 +216,12 @@ def _taper() -> FloatArray:
 
 
 def _mixed() -> float:
-    """How many bins of a periodogram count as one: the taper mixes those beside each other."""
-    return float(SEGMENT * np.sum(_taper() ** 4) / np.sum(_taper() ** 2) ** 2)
+    """How many bins of many periodograms count as one: the taper mixes those beside each other, and
+    stretches that overlap by half are like each other (1 + 2 r^2: Welch, 1967).
+    """
+    square, half = _taper() ** 2, SEGMENT // 2
+    alike = float(_taper()[:half] @ _taper()[half:] / np.sum(square))
+    return float((1.0 + 2.0 * alike**2) * SEGMENT * np.sum(square**2) / np.sum(square) ** 2)
 
 
 @lru_cache(maxsize=64)

@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import stats
 
 from ptp_symbolic.numeric.data.zero_order_hold import held_averages
-from ptp_symbolic.numeric.identify.constants import FAR, LITTLE, MAD_TO_SIGMA
+from ptp_symbolic.numeric.identify.constants import FAR, LITTLE
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.simulation.signals.inputs import (
     InputSignal,
@@ -74,7 +75,7 @@ def _averaged(times: FloatArray, values: FloatArray, edges: FloatArray) -> Input
     and slope, and a material share of its range.
     """
     rise = np.abs(np.diff(values))
-    usual = MAD_TO_SIGMA * float(np.median(rise)) if rise.size else 0.0
+    usual = float(np.median(rise) / stats.norm.ppf(0.75)) if rise.size else 0.0
     jumps = times[1:][rise > max(FAR * usual, LITTLE * float(np.ptp(values)))]
     at = np.union1d(edges, jumps[(jumps > edges[0]) & (jumps < edges[-1])])
     last = values[max(0, int(np.searchsorted(times, edges[-1], side="right")) - 1)]
