@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.signatures import Signature
-from ptp_symbolic.numeric.identify.constants import REWEIGHTINGS
+from ptp_symbolic.numeric.identify.constants import ROUNDS, SAME
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.equation_fit import (
     blocks_in_time,
@@ -74,14 +74,18 @@ def regression(
 
 
 def reweighted(found: Regression, candidates: Sequence[Candidate]) -> Regression:
-    """`found` with Huber's weights and scales from the residual of a set of `candidates`."""
+    """`found` with Huber's weights and scales from the residual of a set of `candidates`, once they
+    stay as they are.
+    """
     own = [s.columns for s in found.signatures if s.candidate in candidates]
     columns = np.column_stack([found.base, *own])
     weight, scale = found.weight, found.scale
-    for _ in range(REWEIGHTINGS):
+    for _ in range(ROUNDS):
         left = found.rows - columns @ _amounts(columns, found.rows, weight)
         scale = robust_scale(left, found.equation)
-        weight = huber_weight(left, scale)
+        before, weight = weight, huber_weight(left, scale)
+        if np.all(np.abs(weight - before) <= SAME * weight):
+            break
     return replace(found, weight=weight, scale=scale)
 
 

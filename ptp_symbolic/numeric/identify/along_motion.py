@@ -278,21 +278,3 @@ def torques_along(addresses, layout, motion, p, resting, ahead, ahead_rate, face
                     row = layout.gear_row[a]
                     slopes[k, a, j] += (r[row] - still[row]) / QUOTIENT
     return lacking, inertia, slopes
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def angles_behind_sensors(addresses, layout, shown, time, measured, inputs, p, signals, iterations):
-    """Joint angles [k, na] in rad at which the sensors at p [np] show what was `measured` [k, na];
-    `shown` [na] is the place of every angle among the `signals` outputs. Fixed-point iteration:
-    errors of sensors are small and smooth.
-    """
-    angles = measured.copy()
-    x, y = np.zeros(layout.states), np.zeros(signals)
-    for k in range(len(time)):
-        for _ in range(iterations):
-            for a in range(len(shown)):
-                x[layout.angle[a]] = angles[k, a]
-            call(addresses[2], time[k], x, inputs[k], p, y)
-            for a in range(len(shown)):
-                angles[k, a] += measured[k, a] - y[shown[a]]
-    return angles

@@ -52,9 +52,6 @@ SCREENED = 2  # sets, candidates; of those begun with few iterations that go on;
 REFINEMENTS = 2  # 1; Gauss-Newton steps of a proposed set; scaled
 REPLAYS = 100  # runs; replayed with noisy inputs: a standard deviation is good to 7 %; derived
 TIMES = 8  # 1; replays of every run: a mean square of 4 degrees of freedom is good to 25 %; derived
-REWEIGHTINGS = 6  # 1; of rows: weights settle to a percent; derived
-SCORINGS = 20  # 1; of a spectrum: its variance settles to a part in a thousand; derived
-SENSOR_ITERATIONS = 4  # 1; an error of 2 % of the angle is left to 2e-7 of it; derived
 GAIN = 0.1  # 1; of the error of simulations: two gains in a row below end a fit; scaled
 ROUGH = 1e-2  # 1; error of simulations over the noise, while searching; scaled
 SHARP = 0.1 * ROUGH  # 1; the same, at last; derived
@@ -104,7 +101,7 @@ SAME = 1e-3  # 1; relative difference of directions or values that count as one;
 RIDGE = 1e-6  # 1; of a residual per unit column: keeps nearly equal columns apart; scaled
 NOTHING = 1e-10  # 1; share of a sum of 1e5 squares, above its rounding of 2e-11; derived
 SMALLEST_SHARE = 1e-6  # 1; of a scale from which a logarithm begins; scaled
-HALVINGS = 40  # 1; of a step to or along a relation of parameters: to 1e-12 of it; derived
+ROUNDS = 40  # 1; after which a loop ends that has not converged; protection
 
 # Sequences
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried; halvings

@@ -6,7 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import ROUNDING, SAME, SENSOR_ITERATIONS
+from ptp_symbolic.numeric.identify.behind_sensors import NEXT_TO_NONE
+from ptp_symbolic.numeric.identify.constants import ROUNDING, ROUNDS, SAME
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.element_layout import contact_guards
 from ptp_symbolic.numeric.runtime.model import Model
@@ -132,12 +133,12 @@ def _put_behind_sensors(
         axis = signal.removeprefix("theta_")
         names = [name for name in (signal, f"theta_gear_{axis}") if name in model.state_names]
         angle_states, shown = [model.state_names.index(name) for name in names], run.outputs[column]
-        for _ in range(SENSOR_ITERATIONS):
+        for _ in range(ROUNDS):
             model.module.outputs(run.time[0], x, run.held_inputs[0], p, y)
             error = run.measured[0, column] - y[shown]
-            if error == 0.0:
-                break
             x[angle_states] += error
+            if abs(error) <= NEXT_TO_NONE:
+                break
         if len(columns):
             model.module.output_jacobian(run.time[0], x, run.held_inputs[0], p, yx, yp)
             slope = yp[shown, columns] / yx[shown, angle_states[0]]
@@ -161,11 +162,11 @@ def put_into_gap(
     m, g = np.zeros(len(model.mode_names)), np.zeros(count)
     gx, gp = np.zeros((count, len(x))), np.zeros((count, len(p)))
     at, gear = contact_guards(frictions, contact), model.module.CONTACT_ANGLES[contact][0]
-    for _ in range(SENSOR_ITERATIONS):
+    for _ in range(ROUNDS):
         model.module.guards(0.0, x, u, p, m, g)
-        if g[at] == 0.0:
-            break
         x[gear] -= g[at]
+        if abs(g[at]) <= NEXT_TO_NONE:
+            break
     model.module.guard_jacobian(0.0, x, u, p, m, gx, gp)
     known = slice(0, len(columns))
     s[gear, known] -= (gx[at] @ s[:, known] + gp[at, columns]) / gx[at, gear]

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.along_motion import (
     Motion,
-    angles_behind_sensors,
     further_states,
 )
-from ptp_symbolic.numeric.identify.constants import PARTS, SENSOR_ITERATIONS
+from ptp_symbolic.numeric.identify.behind_sensors import angles_behind_sensors
+from ptp_symbolic.numeric.identify.constants import PARTS
 from ptp_symbolic.numeric.identify.equation_rows import RunRows
 from ptp_symbolic.numeric.identify.layout import Layout, equation_addresses
 from ptp_symbolic.numeric.identify.run import Run
@@ -54,16 +54,18 @@ def angles_of(model: Model, layout: Layout, run: Run, p: FloatArray, errors: boo
     axes = model.module.AXES
     columns = [run.signals.index(f"theta_{a}") for a in axes]
     shown = [model.output_names.index(f"theta_{a}") for a in axes]
+    measured = np.ascontiguousarray(run.measured[:, columns])
+    if not errors:
+        return measured
     found: FloatArray = angles_behind_sensors(
         equation_addresses(model),
         layout,
         np.array(shown),
         run.time,
-        np.ascontiguousarray(run.measured[:, columns]),
+        measured,
         run.held_inputs,
         p,
         len(model.output_names),
-        SENSOR_ITERATIONS if errors else 0,
     )
     return found
 

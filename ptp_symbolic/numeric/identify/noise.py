@@ -22,7 +22,7 @@ from ptp_symbolic.numeric.identify.constants import (
     ORDER,
     PIECE,
     POLES,
-    SCORINGS,
+    ROUNDS,
     SEGMENT,
     TEST_ALARM,
 )
@@ -251,7 +251,8 @@ def _profiled(power: FloatArray, pole: float, least: float, degrees: float) -> t
         return _likelihood(power, np.full_like(power, white), degrees), white
     shape = _expected(pole)[LOWEST:]
     white, innovation = least, max(float(np.mean(power / shape)), 1e-300)
-    for _ in range(SCORINGS):
+    before = np.inf
+    for _ in range(ROUNDS):
         weight = 1.0 / (white + innovation * shape) ** 2
         ww, ws, ss = weight.sum(), weight @ shape, weight @ shape**2
         pw, ps = weight @ power, weight @ (power * shape)
@@ -260,8 +261,11 @@ def _profiled(power: FloatArray, pole: float, least: float, degrees: float) -> t
         innovation = max(float((ps - white * ws) / ss), 0.0)
         if innovation == 0.0:
             white = max(float(pw / ww), least)
-    likelihood = _likelihood(power, white + innovation * shape, degrees)
-    return likelihood, white + innovation / (1.0 - pole**2)
+        variance = white + innovation / (1.0 - pole**2)
+        if abs(variance - before) <= np.sqrt(np.finfo(float).eps) * variance:
+            break
+        before = variance
+    return _likelihood(power, white + innovation * shape, degrees), variance
 
 
 def _likelihood(power: FloatArray, model: FloatArray, degrees: float) -> float:

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import HALVINGS
+from ptp_symbolic.numeric.identify.constants import ROUNDS
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, limits
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 Allow = Callable[[FloatArray, FloatArray], FloatArray]
 
-QUOTIENT = np.cbrt(np.finfo(float).eps)  # search coordinates; step of difference quotients
+QUOTIENT = np.sqrt(np.finfo(float).eps)  # search coordinates; step of difference quotients
 
 
 def keep_possible(
@@ -116,7 +116,7 @@ class _Relation:
         """The nearest point at which the relation holds, within the bounds; where Newton's steps
         along the gradient find none, the last one that they reach.
         """
-        for _ in range(HALVINGS):
+        for _ in range(ROUNDS):
             if self.holds(phi):
                 break
             by, slope = self.margin(phi), self.gradient(phi)
