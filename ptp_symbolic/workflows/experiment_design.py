@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.diagnose.visibility import SEEN
 from ptp_symbolic.numeric.experiment.criteria import Worth, least_separation, precision
 from ptp_symbolic.numeric.experiment.limits import read_limits
 from ptp_symbolic.numeric.experiment.machine import Conditions, Played, play, refuse_start_outside
@@ -19,7 +20,6 @@ from ptp_symbolic.numeric.experiment.prediction import (
     predicted_spreads,
 )
 from ptp_symbolic.numeric.experiment.search import Found, search
-from ptp_symbolic.numeric.identify.constants import SEEN
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.experiment_figure import experiment_figure

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose import search, starts
+from ptp_symbolic.numeric.diagnose.candidates import FAR_OFF
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
-from ptp_symbolic.numeric.identify.constants import FAR_OFF
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from tests.diagnose.spring_table import spring_table
 

@@ -24,7 +24,7 @@ from ptp_symbolic.numeric.diagnose.subsets import (
     larger_sets,
     ranked_subsets,
 )
-from ptp_symbolic.numeric.identify.constants import FAR, FOLDS
+from ptp_symbolic.numeric.identify.constants import FAR, REPEATS
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 
@@ -88,13 +88,13 @@ def test_the_planted_set_predicts_best_and_smaller_ones_are_worse(planted: str) 
 def test_what_a_subset_loses_is_what_refits_without_each_block_mispredict() -> None:
     """As many blocks as folds: each is predicted by the seven others, and capped."""
     rng = np.random.default_rng(52)
-    found = rows_of(rng, effects(rng, "abc"), {"b": 0.7}, FOLDS)
+    found = rows_of(rng, effects(rng, "abc"), {"b": 0.7}, REPEATS)
     found.rows[::50] += 30.0
     root = np.sqrt(found.weight)[:, None]
     for subset in ranked_subsets(found, 2):
         own = [s.columns for s in found.signatures if s.candidate in subset.candidates]
         table = np.column_stack([found.base, *own])
-        for block in range(FOLDS):
+        for block in range(REPEATS):
             here = found.block[:, 1] == block
             weighted = [(m * root)[~here] for m in (table, found.rows[:, None])]
             left = found.rows[here] - table[here] @ np.linalg.lstsq(*weighted)[0][:, 0]

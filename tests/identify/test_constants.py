@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from scipy import integrate, signal, stats
 
+from ptp_symbolic.numeric.diagnose.visibility import SEEN
 from ptp_symbolic.numeric.identify import constants as c
 from ptp_symbolic.numeric.identify import noise
+from ptp_symbolic.numeric.identify.robust_loss import MANY_RUNS
 from ptp_symbolic.numeric.identify.weak_form import weak_average
 from tests.benchmark.scaled import sections
 
@@ -83,12 +85,12 @@ def neighbours() -> float:
 
 
 def rms_off() -> float:
-    """Relative standard deviation of the rms of the differences of white noise in a piece."""
+    """Relative standard deviation of the rms of the differences of white noise in four segments."""
     whole = [
         comb(2 * c.ORDER, c.ORDER + k) / comb(2 * c.ORDER, c.ORDER) for k in range(c.ORDER + 1)
     ]
     together = 1.0 + 2.0 * sum(rho**2 for rho in whole[1:])
-    return float(np.sqrt(2.0 * together / c.PIECE) / 2.0)
+    return float(np.sqrt(2.0 * together / (4 * c.SEGMENT)) / 2.0)
 
 
 @pytest.mark.parametrize(
@@ -98,18 +100,14 @@ def rms_off() -> float:
         ("MOST_BLOCKS", "5 %", 1.0 / np.sqrt(2.0 * (c.MOST_BLOCKS - 1))),
         ("REPLAYS", "7 %", 1.0 / np.sqrt(2.0 * (c.REPLAYS - 1))),
         ("RESAMPLES", "0.35 %", np.sqrt(0.025 * 0.975 / c.RESAMPLES)),
-        ("MANY_RUNS", "28 %", np.sqrt(np.pi / 2.0 / c.MANY_RUNS)),
-        ("SEEN", "95 %", stats.norm.cdf(c.SEEN - stats.norm.ppf(0.975))),
+        ("REPEATS", "25 %", np.sqrt(2.0 / (4.0 * c.REPEATS))),
         ("DEVIATIONS", "99 %", huber_efficiency(c.DEVIATIONS)),
         ("SAMPLES_PER_WINDOW", "2e-4", curvature_off(c.SAMPLES_PER_WINDOW)),
-        ("MOST_COARSE", "0.3 %", curvature_off(c.MOST_COARSE)),
         ("LEAST_SAMPLES", "6 %", curvature_off(c.LEAST_SAMPLES)),
         ("ATTENUATED", "11 %", wave_left(c.ATTENUATED)),
         ("CYCLES_APART", "3 %", 1.0 - np.sinc(c.CYCLES_APART / 2.0) ** 2),
         ("BINS_PER_CYCLE", "10 %", 1.0 - np.sinc(1.0 / c.BINS_PER_CYCLE)),
         ("ROWS_PER_WINDOW", "0.86", neighbours()),
-        ("PIECE", "8 %", rms_off()),
-        ("DRAWS", "64", 1.0 / 0.5 ** (2 * c.DRAWS)),
         ("ORDER", "0.6 %", (2.0 * np.sin(0.1 * np.pi)) ** c.ORDER / np.sqrt(252.0)),
         ("NOTHING", "2e-11", 1e5 * np.finfo(float).eps),
     ],
@@ -134,6 +132,15 @@ def test_a_spectrum_settles_in_so_many_rounds(pole: float, monkeypatch: pytest.M
     usual = noise.coloured_noise([series], 0.1).rms
     monkeypatch.setattr(noise, "ROUNDS", 20 * c.ROUNDS)
     assert usual == noise.coloured_noise([series], 0.1).rms
+
+
+def test_numbers_that_follow_are_what_their_places_say() -> None:
+    """See `white_noise`, `half_width_of`, `dependence_of`, `SEEN`, `MANY_RUNS`."""
+    assert rms_off() == pytest.approx(0.08, rel=0.1)
+    assert curvature_off(c.SAMPLES_PER_WINDOW / 2) == pytest.approx(0.003, rel=0.3)
+    assert 0.5 ** (2 * c.CYCLES) == 1.0 / 64.0
+    assert stats.norm.cdf(SEEN - stats.norm.ppf(0.975)) == pytest.approx(0.95)
+    assert pytest.approx(1.0 / 0.05) == MANY_RUNS
 
 
 @pytest.mark.parametrize(("name", "once_in"), [("FAR", 16_000), ("RESTING", 1_700_000)])

@@ -24,18 +24,14 @@ from ptp_symbolic.numeric.diagnose.proposals import Proposals, in_rows_of, start
 from ptp_symbolic.numeric.diagnose.regression import Regression, block_numbers
 from ptp_symbolic.numeric.diagnose.subsets import exchanges, gain_along_motion, larger_sets
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, all_free
-from ptp_symbolic.numeric.identify.constants import (
-    FAR,
-    LARGEST,
-    POLISH,
-    TRIED,
-)
+from ptp_symbolic.numeric.identify.constants import FAR, LARGEST, TRIED
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
 from ptp_symbolic.numeric.identify.equation_fit import fit_equations, linearised, robust_scale
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.simulations import POLISH
 
 
 @dataclass(frozen=True, eq=False)

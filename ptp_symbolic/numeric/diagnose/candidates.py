@@ -14,6 +14,7 @@ from ptp_symbolic.platform import effect_key
 
 FloatArray = NDArray[np.float64]
 
+FAR_OFF = PLAUSIBLE_FACTOR * PLAUSIBLE_FACTOR  # between the ends of what is plausible: of starts
 DECLARED_VALUE = "declared_value"
 
 

@@ -14,16 +14,9 @@ from ptp_symbolic.numeric.diagnose.linear import (
     stacked_jacobian,
     stacked_residual,
 )
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, tolerance_for
-from ptp_symbolic.numeric.identify.blocks import leave_blocks_out, without_outliers
-from ptp_symbolic.numeric.identify.constants import (
-    ELSEWHERE,
-    FALSE_ALARM,
-    LITTLE,
-    MOST,
-    SAME,
-    SHARP,
-)
+from ptp_symbolic.numeric.diagnose.trial import SHARP, Task, Trial, tolerance_for
+from ptp_symbolic.numeric.identify.blocks import ELSEWHERE, leave_blocks_out, without_outliers
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, LITTLE, MOST, SAME
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.evaluate import evaluate
 from ptp_symbolic.numeric.identify.fit import Fit

@@ -6,14 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.diagnose.candidates import FAR_OFF
 from ptp_symbolic.numeric.diagnose.trial import Task
-from ptp_symbolic.numeric.identify.constants import (
-    CYCLES,
-    DECLARED_AMOUNT,
-    FAR,
-    FAR_OFF,
-    ITERATIONS,
-)
+from ptp_symbolic.numeric.identify.constants import CYCLES, DECLARED_AMOUNT, FAR, ITERATIONS
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
 from ptp_symbolic.numeric.identify.equation_fit import fit_equations, robust_scale
 from ptp_symbolic.numeric.identify.equation_preparation import prepare_equation_space

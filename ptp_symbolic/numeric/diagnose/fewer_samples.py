@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ptp_symbolic.numeric.diagnose.trial import (
+    SHARP,
     Task,
     Trial,
     continued,
@@ -17,18 +18,12 @@ from ptp_symbolic.numeric.diagnose.trial import (
     simulated,
     tolerance_for,
 )
-from ptp_symbolic.numeric.identify.constants import (
-    LITTLE,
-    POLISH,
-    ROUGH,
-    SEARCH_PERIOD,
-    SHARP,
-    STEP,
-)
+from ptp_symbolic.numeric.identify.constants import LITTLE, ROUGH, SEARCH_PERIOD, STEP
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, evaluate, simulated_signals
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
+from ptp_symbolic.numeric.identify.simulations import POLISH
 
 
 def with_fewer_samples(task: Task, values: Mapping[str, float]) -> Task:

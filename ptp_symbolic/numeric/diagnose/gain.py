@@ -13,6 +13,7 @@ from scipy import stats
 
 from ptp_symbolic.numeric.diagnose.trial import Trial, huber_loss
 from ptp_symbolic.numeric.identify.blocks import (
+    ELSEWHERE,
     SINGULAR,
     block_labels,
     block_length,
@@ -25,7 +26,6 @@ from ptp_symbolic.numeric.identify.blocks import (
     without_outliers,
 )
 from ptp_symbolic.numeric.identify.constants import (
-    ELSEWHERE,
     FALSE_ALARM,
     FEWEST_BLOCKS,
     MOST,

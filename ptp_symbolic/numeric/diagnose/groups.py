@@ -35,11 +35,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
     keys_of,
     ranked,
 )
-from ptp_symbolic.numeric.identify.constants import (
-    MOST,
-    REACH,
-    SIMILAR,
-)
+from ptp_symbolic.numeric.identify.constants import MATERIAL, MOST, REACH
 from ptp_symbolic.numeric.identify.coordinates import to_search, to_values
 from ptp_symbolic.numeric.identify.fit import Fit
 
@@ -136,8 +132,8 @@ def overtaking(chosen: Trial, found: Sequence[Rival], material: float) -> Trial 
 
 
 def alike_along_motion(found: Proposals, chosen: Trial, member: Candidate) -> list[Candidate]:
-    """Candidates whose signature correlates above SIMILAR with that of `member`, as it is fitted,
-    apart from what the declared parameters and the other members can follow; best first.
+    """Candidates whose signature correlates above 1 - MATERIAL with that of `member`, as it is
+    fitted, apart from what the declared parameters and the other members can follow; best first.
     """
     rows = found.regression
     if rows is None:
@@ -161,7 +157,7 @@ def alike_along_motion(found: Proposals, chosen: Trial, member: Candidate) -> li
         if s.candidate.key in own:
             continue
         value = canonical_correlation(target, projected_off(s.columns * root, away))
-        if value > max(SIMILAR, correlation.get(s.candidate.key, (0.0, s.candidate))[0]):
+        if value > max(1.0 - MATERIAL, correlation.get(s.candidate.key, (0.0, s.candidate))[0]):
             correlation[s.candidate.key] = value, s.candidate
     return [c for _, c in sorted(correlation.values(), key=lambda pair: -pair[0])]
 
@@ -187,7 +183,7 @@ def confusable(chosen: Trial, found: Sequence[Rival]) -> dict[str, tuple[str, ..
 
 
 def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[Similarity]:
-    """Candidates whose response has a canonical correlation above SIMILAR with the effect of
+    """Candidates whose response has a canonical correlation above 1 - MATERIAL with the effect of
     `member` at `fit`, best first.
     """
     residual = stacked_residual(fit)
@@ -212,7 +208,7 @@ def look_alikes(task: Task, trial: Trial, fit: Fit, member: Candidate) -> list[S
         if found is None:
             return None
         correlation = canonical_correlation(target, projected_off(found.table, away))
-        if correlation < SIMILAR:
+        if correlation < 1.0 - MATERIAL:
             return None
         values = _instead(base, fit, others, residual - effect, away, found)
         return Similarity(candidate, correlation, values | dict(found.base))

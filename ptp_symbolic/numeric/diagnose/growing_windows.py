@@ -24,9 +24,8 @@ from ptp_symbolic.numeric.diagnose.trial import (
 )
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
-    GROWING,
     ITERATIONS,
-    POLISH,
+    LENGTHS,
     SEARCH_PERIOD,
     WIDE_STEP,
 )
@@ -34,18 +33,19 @@ from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run_groups import sizes
 from ptp_symbolic.numeric.identify.run_starts import starts_in_place
 from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
+from ptp_symbolic.numeric.identify.simulations import POLISH
 from ptp_symbolic.numeric.identify.windows import cut
 
 FloatArray = NDArray[np.float64]
 
 
 def growing(task: Task, *, few: bool = False) -> list[Task]:
-    """The task over windows of the lengths in GROWING that are shorter than its runs; over all of
-    them, or a `few` that tell what is usual, in pairs where one tells how the other begins.
+    """The task over windows of doubled lengths, up to 2 s, that are shorter than its runs; over all
+    of them, or a `few` that tell what is usual, in pairs where one tells how the other begins.
     """
     runs = [thinned(run, samples_within(run, SEARCH_PERIOD)) for run in task.whole]
     longest = max(float(run.time[-1] - run.time[0]) for run in task.train)
-    every = {x: cut(task.model, runs, x) for x in GROWING if x < longest}
+    every = {x: cut(task.model, runs, x) for x in LENGTHS[:1:-1] if x < longest}
     windows = [leading(w, x, 2.0 * x) if few else w for x, w in every.items()]
     return [replace(task, train=w, robust_below=np.inf) for w in windows]
 

@@ -11,6 +11,7 @@ from scipy import stats
 from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.gain import Gain, compared
 from ptp_symbolic.numeric.diagnose.trial import (
+    SHARP,
     Task,
     Trial,
     huber_loss,
@@ -20,18 +21,15 @@ from ptp_symbolic.numeric.diagnose.trial import (
 from ptp_symbolic.numeric.identify.blocks import huber_root
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
-    FOLDS,
     GAIN,
-    MANY_RUNS,
     MATERIAL,
     MOST,
     NEARBY,
-    POLISH,
+    REPEATS,
     ROUGH,
     ROUNDS,
     SAME,
     SEED,
-    SHARP,
     TUNING,
     UNALIKE,
 )
@@ -40,10 +38,10 @@ from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.intervals import project_out, reaches
 from ptp_symbolic.numeric.identify.joint_region import closest_in_ball, joint_region
 from ptp_symbolic.numeric.identify.least_squares import BIGGEST
-from ptp_symbolic.numeric.identify.robust_loss import trimmed_mean, weighted_median
+from ptp_symbolic.numeric.identify.robust_loss import MANY_RUNS, trimmed_mean, weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import sizes
-from ptp_symbolic.numeric.identify.simulations import Effort
+from ptp_symbolic.numeric.identify.simulations import POLISH, Effort
 
 FloatArray = NDArray[np.float64]
 
@@ -125,7 +123,7 @@ def chance_of_larger(ours: FloatArray, theirs: FloatArray) -> float:
     the draws, eight go as far where the chance is UNALIKE.
     """
     ranks = stats.rankdata(np.concatenate([ours, theirs]))
-    rng, count = np.random.default_rng(SEED), round(FOLDS / UNALIKE)
+    rng, count = np.random.default_rng(SEED), round(REPEATS / UNALIKE)
     sums = [rng.permutation(ranks)[: len(ours)].sum() for _ in range(count)]
     return (1.0 + np.count_nonzero(sums >= ranks[: len(ours)].sum())) / (1.0 + count)
 

@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 
-from ptp_symbolic.numeric.identify.constants import MANY_RUNS, SHORT
+from ptp_symbolic.numeric.identify.constants import SHORT
 from ptp_symbolic.numeric.identify.linked_windows import has_linked, linked
+from ptp_symbolic.numeric.identify.robust_loss import MANY_RUNS
 from ptp_symbolic.numeric.identify.run import Run
 
 

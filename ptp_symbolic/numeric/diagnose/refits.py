@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.candidates import FAR_OFF, Candidate
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.growing_windows import settled, shares_of_usual, starts_of
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise, left_over
@@ -17,6 +17,7 @@ from ptp_symbolic.numeric.diagnose.linear import (
     stacked_residual,
 )
 from ptp_symbolic.numeric.diagnose.trial import (
+    SHARP,
     Task,
     Trial,
     continued,
@@ -28,12 +29,9 @@ from ptp_symbolic.numeric.diagnose.trial import (
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
     CYCLES,
-    FAR_OFF,
     FORGOTTEN,
     NEARBY,
-    POLISH,
     ROUGH,
-    SHARP,
     STEP,
     TRIED,
     TUNING,
@@ -42,6 +40,7 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.linked_windows import has_linked
+from ptp_symbolic.numeric.identify.simulations import POLISH
 
 FloatArray = NDArray[np.float64]
 

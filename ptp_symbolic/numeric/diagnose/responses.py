@@ -23,7 +23,7 @@ from ptp_symbolic.numeric.identify.constants import (
     LARGEST_STEP,
     MOST,
     REACH,
-    RIDGE,
+    SAME,
     WIDE_STEP,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
@@ -201,7 +201,7 @@ def least(here: FloatArray, declared: FloatArray, found: Columns) -> tuple[Float
     size = np.maximum(np.linalg.norm(table, axis=0), 1e-300)
     triangle = np.asarray(np.linalg.qr(np.column_stack([table / size, here]), mode="r"))
     k = int(table.shape[1])
-    ridge = RIDGE * np.linalg.norm(triangle[:, k]) * np.eye(k)
+    ridge = SAME**2 * np.linalg.norm(triangle[:, k]) * np.eye(k)
     solved = lsq_linear(
         np.vstack([triangle[:, :k], ridge]),
         -np.concatenate([triangle[:, k], np.zeros(k)]),

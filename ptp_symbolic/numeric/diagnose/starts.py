@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.candidates import FAR_OFF, Candidate
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.linear import made_up_for, stacked_jacobian
 from ptp_symbolic.numeric.diagnose.proposals import Proposal, Proposals, start_for
@@ -24,7 +24,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
     ranked,
     simulated,
 )
-from ptp_symbolic.numeric.identify.constants import FAR_OFF, ITERATIONS, MOST, TRIED, WIDE_STEP
+from ptp_symbolic.numeric.identify.constants import ITERATIONS, MOST, TRIED, WIDE_STEP
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.fit import Fit
 

@@ -24,10 +24,10 @@ from ptp_symbolic.numeric.identify.blocks import block_labels, block_length
 from ptp_symbolic.numeric.identify.constants import (
     DEVIATIONS,
     FAR,
-    FOLDS,
     LARGEST,
     LITTLE,
     NOTHING,
+    REPEATS,
     SEED,
     TRIED,
 )
@@ -182,9 +182,9 @@ class _Folds:
         self.own = [np.arange(b - n, b) for b, n in zip(ends, sizes, strict=True)]
         blocks, label = np.unique(found.block, axis=0, return_inverse=True)
         label = label.reshape(-1)  # NumPy 2.0 gives a column
-        fold = (np.random.default_rng(SEED).permutation(len(blocks)) % FOLDS)[label]
+        fold = (np.random.default_rng(SEED).permutation(len(blocks)) % REPEATS)[label]
         order = np.argsort(fold, kind="stable")
-        ends = np.searchsorted(fold[order], np.arange(FOLDS + 1))
+        ends = np.searchsorted(fold[order], np.arange(REPEATS + 1))
         self.members = [slice(a, b) for a, b in itertools.pairwise(ends)]
         self.label, self.rows, self.scale = label[order], found.rows[order], found.scale[order]
         self.columns = np.ascontiguousarray(columns[order].T)

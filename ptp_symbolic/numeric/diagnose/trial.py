@@ -31,6 +31,7 @@ from ptp_symbolic.numeric.identify.simulations import Effort
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
+SHARP = GAIN * ROUGH  # error of simulations over the noise, at last
 Progress = Callable[[str], None]
 
 

@@ -8,9 +8,9 @@ from ptp_symbolic.numeric.diagnose.cut_runs import takes_away_most
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start, equation_space, first_fit
 from ptp_symbolic.numeric.diagnose.refits import is_near_floor
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
-from ptp_symbolic.numeric.identify.constants import POLISH
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_inputs import with_inputs
+from ptp_symbolic.numeric.identify.simulations import POLISH
 
 DRIVING = ("V", "N m", "N", "A")  # units of inputs that drive an axis
 

@@ -17,9 +17,9 @@ from ptp_symbolic.numeric.experiment.contender import (
 )
 from ptp_symbolic.numeric.experiment.criteria import compared
 from ptp_symbolic.numeric.experiment.machine import SCENARIOS, Conditions, logged, play
-from ptp_symbolic.numeric.identify.constants import POLISH
 from ptp_symbolic.numeric.identify.coordinates import slopes
 from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.simulations import POLISH
 
 FloatArray = NDArray[np.float64]
 

@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from ptp_symbolic.numeric.identify.blocks import (
+    ELSEWHERE,
     block_labels,
     degrees_of_freedom,
     inverse_root,
     jackknife_covariance,
     leave_blocks_out,
 )
-from ptp_symbolic.numeric.identify.constants import ELSEWHERE, FALSE_ALARM, FEWEST_BLOCKS
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, FEWEST_BLOCKS
 
 FloatArray = NDArray[np.float64]
 

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from scipy import linalg
 
 from ptp_symbolic.numeric.identify.constants import (
-    ELSEWHERE,
     FEWEST_BLOCKS,
+    MATERIAL,
+    MOST,
     MOST_BLOCKS,
     NOTHING,
     RESAMPLES,
@@ -26,6 +27,7 @@ from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+ELSEWHERE = MOST * MATERIAL  # share that blocks other than one must show
 SINGULAR = np.sqrt(np.finfo(float).eps)  # singular value of equal directions, over the largest
 
 

@@ -18,43 +18,35 @@ TEST_ALARM = 0.01  # 1; false alarms of one residual test; usual 99 % band (Ljun
 LAGS = 25  # samples; lags of the residual tests; usual (Ljung, 1999, 16.6)
 MATERIAL = 0.1  # 1; share of the predictive loss below which nothing earns a name; stated size
 MOST = 0.5  # 1; share that is most of a whole; definition
-ELSEWHERE = MOST * MATERIAL  # 1; share that blocks other than one must show; derived
-SIMILAR = 0.9  # 1; canonical correlation of effects that may be one another; stated
-PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off; stated
+PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off, a start by its square; stated
 SMALL_PERCENT = 1.0  # %; change of a declared value that is called small; stated
-ABOVE_NOISE = 1.1  # 1; rms over the floor from which on more than noise is left; stated
+ABOVE_NOISE = 1.0 + MATERIAL  # 1; rms over the floor from which on more than noise is left; derived
 UNALIKE = 1e-3  # 1; false alarms of the test for larger validation windows; stated level
 FEWEST_BLOCKS = 12  # 1; blocks: Student's interval is then 12 % wider than a normal one; derived
 MOST_BLOCKS = 200  # 1; blocks: the error of a standard deviation is then 5 %; derived
 RESAMPLES = 2000  # 1; draws: the 2.5 % quantile is good to 0.35 %; derived
-FOLDS = 8  # 1; parts of a cross-validation; usual (5 to 10: Hastie et al., 2009, 7.10)
+REPEATS = 8  # 1; of replays, parts of a cross-validation: 4 degrees of freedom, 25 %; derived
 DEVIATIONS = 2.0  # 1; standard deviations that hold 95 %, Huber's loss 99 % efficient; derived
 SEED = 20130801  # 1; of every draw, so that equal logs have equal answers; arbitrary
-DRAWS = 3  # 1; pairs of states: what half of them show is missed once in 64; derived
 
 # Robustness
 TUNING = 2.5  # 1; sizes of the usual block beyond which a block counts less; scaled
-SEEN = 3.6  # 1; standard deviations, of either sign: 95 % are found, 5 % false alarms; derived
 FAR = 4.0  # 1; standard deviations that noise seldom reaches (once in 16,000); derived
 RESTING = 5.0  # 1; the same for every rate of a log (once in 1,700,000); derived
 FORGOTTEN = 0.25  # s; five time constants of drives (0.05 s), after which 0.7 % is left; derived
 NEARBY = 2.0 * FAR  # 1; standard deviations from which on all windows count alike; scaled
-MANY_RUNS = 20  # 1; windows whose median stands for all: good to 28 % of their spread; derived
 MISLEADING = 0.25  # 1; share of a difference: a derivative off by it, or below it, misleads; scaled
 
 # Effort
 ITERATIONS = 4  # 1; in which a fit, or an amount, shows whether it is worth more; scaled
-CYCLES = 3  # 1; of two fits, or of weights and fits, in turn; scaled
-POLISH = CYCLES * ITERATIONS  # 1; iterations of a fit that goes to its end; derived
+CYCLES = 3  # 1; of two in turn: fits, weights and fits, states that are probed; scaled
 TRIED = 3  # 1; alternatives that are followed; scaled
 LARGEST = 3  # effects; that a set may have, or gain after the first choice; stated
 SCREENED = 2  # sets, candidates; of those begun with few iterations that go on; scaled
 REFINEMENTS = 2  # 1; Gauss-Newton steps of a proposed set; scaled
 REPLAYS = 100  # runs; replayed with noisy inputs: a standard deviation is good to 7 %; derived
-TIMES = 8  # 1; replays of every run: a mean square of 4 degrees of freedom is good to 25 %; derived
-GAIN = 0.1  # 1; of the error of simulations: two gains in a row below end a fit; scaled
+GAIN = 0.1  # 1; of an error, next to nothing: gains that end a fit, simulations at last; scaled
 ROUGH = 1e-2  # 1; error of simulations over the noise, while searching; scaled
-SHARP = 0.1 * ROUGH  # 1; the same, at last; derived
 LITTLE = 2.0 * ROUGH  # 1; change of a mean square that such errors can make; derived
 
 # Windows and rows
@@ -63,17 +55,14 @@ SEARCH_PERIOD = 5e-3  # s; between samples of a search, at most; scaled
 START_SPAN = 0.1  # s; motion that tells a rate; scaled
 ANYWHERE = 1e3  # rad/s, half gaps; beyond any start of a machine; definition
 LEAST_START = 5  # samples; of a parabola with two degrees of freedom left; derived
-ALLOWED_DRIFT = np.sqrt(3.0)  # sigma; by input noise in a window: half a count that rounds; derived
 ALLOWED_RISE = 2.0  # 1; of that drift, over the shortest window's; scaled
 ALLOWED_GROWTH = 10.0  # 1; of an error of the start in a run; scaled
 ROWS_PER_WINDOW = 8  # 1; rows overlap: neighbours correlate by 0.86; derived
 SAMPLES_PER_WINDOW = 32  # 1; torques in a window: a second derivative is off by 2e-4; derived
 LEAST_SAMPLES = 7  # samples; in a window: the same is off by 6 % unless normalised; derived
-MOST_COARSE = 16.0  # samples; in a window of usual rows: the same is off by 0.3 %; derived
 LARGEST_GAP = 0.34  # half widths; without a sample: a mean curvature is off by up to 12 %; derived
 PARTS = 2  # 1; of a sample in which states are integrated along the motion; scaled
 CALM = 5e-3  # 1; noise of an averaged acceleration over what accelerates; scaled
-FAR_OFF = 4.0  # 1; factor by which the start of a declared parameter may be off; scaled
 CYCLES_APART = 0.2  # 1/range; step of a frequency scan: a line between is dimmed by 3 %; derived
 LEAST_CYCLES = 3.0  # 1/range; slower waves with harmonics fit any slow change; scaled
 BINS_PER_CYCLE = 4.0  # 1; of the highest frequency of a scan: a bin dims it by 10 %; derived
@@ -83,7 +72,6 @@ BINS = 16  # 1; of a map of what is left, of half a gap; definition
 
 # Noise of a signal
 ORDER = 5  # 1; differences: a motion at a tenth of the sampling rate leaves 0.6 %; derived
-PIECE = 256  # samples; over which the noise of a signal is taken, good to 8 %; derived
 SEGMENT = 64  # samples; of a periodogram: poles up to 0.95 are told from white noise; tested
 LOWEST = 3  # bins; below belong to the taper (2) and to the motion; derived
 
@@ -91,22 +79,16 @@ LOWEST = 3  # bins; below belong to the taper (2) and to the motion; derived
 STEP = 0.02  # search coordinates, starts; of differences, as far as intervals reach; scaled
 WIDE_STEP = 0.1  # search coordinates; of differences while searching, over a staircase; scaled
 LARGEST_STEP = 1.0  # search coordinates; of one iteration: a factor of e; scaled
-FIRST_DAMPING = 1e-3  # 1; of the diagonal; usual (Marquardt, 1963: 1e-2)
 REACH = 3.0  # 1; size of a response over the residual, beyond which it is not linear; scaled
 
 # Numerics
 ROUNDING = 1.0 / np.sqrt(12.0)  # counts; standard deviation of rounding; derived
-FINITE = 1e-3  # 1; step of difference quotients of what is nearly linear; scaled
-SAME = 1e-3  # 1; relative difference of directions or values that count as one; scaled
-RIDGE = 1e-6  # 1; of a residual per unit column: keeps nearly equal columns apart; scaled
+SAME = 1e-3  # 1; relative difference of directions, values or weights that count as one; scaled
 NOTHING = 1e-10  # 1; share of a sum of 1e5 squares, above its rounding of 2e-11; derived
-SMALLEST_SHARE = 1e-6  # 1; of a scale from which a logarithm begins; scaled
 ROUNDS = 40  # 1; after which a loop ends that has not converged; protection
 
 # Sequences
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried; halvings
-GROWING = LENGTHS[:1:-1]  # s; lengths up to 2 s of windows that lead a fit; doublings
 AMOUNTS = tuple(2.0**k for k in range(-3, 3))  # 1; times its start, of an effect; doublings
-PLACES = np.linspace(-1.0, 1.0, 9)  # half gaps; where a gear may stand: faces, eighths; halvings
 HALF_WIDTHS = (0.08, 0.11, 0.16, 0.22)  # s; windows of rows that are tried; factors of root two
 POLES = np.concatenate([[0.0], np.linspace(0.3, 0.97, 40)])  # 1; of noise that are tried; a grid

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import SMALLEST_SHARE
+from ptp_symbolic.numeric.identify.constants import SAME
 
 FloatArray = NDArray[np.float64]
+
+SMALLEST_SHARE = SAME * SAME  # of a scale; from which on a logarithm begins
 
 
 @dataclass(frozen=True)

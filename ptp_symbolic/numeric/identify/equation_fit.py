@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy import stats
 from scipy.optimize import lsq_linear
 
-from ptp_symbolic.numeric.identify.constants import DEVIATIONS, FINITE, NOTHING, SAME, SHORT
+from ptp_symbolic.numeric.identify.constants import DEVIATIONS, NOTHING, SAME, SHORT
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 
@@ -106,7 +106,7 @@ def fit_equations(
         new = np.clip(at + step, lower, upper)
         before = here
         here = {f.name: float(v) for f, v in zip(free, new, strict=True)}
-        change = np.max(np.abs(new - at) / np.maximum(np.abs(new), 1e-3 * sigma), initial=0.0)
+        change = np.max(np.abs(new - at) / np.maximum(np.abs(new), SAME * sigma), initial=0.0)
         if change < SAME or iteration == iterations - 1:
             break
     return {name: here[f.name] for f in free for name in f.names}
@@ -136,7 +136,7 @@ def linearised(
 
     def quotient(index: int) -> FloatArray:
         f = free[index]
-        step = FINITE * max(abs(here[f.name]), FINITE * f.scale)
+        step = SAME * max(abs(here[f.name]), SAME * f.scale)
         if here[f.name] + step > f.upper:
             step = -step
         shifted = base.copy()

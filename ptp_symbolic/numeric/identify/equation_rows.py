@@ -10,7 +10,6 @@ from ptp_symbolic.numeric.identify.along_motion import Motion
 from ptp_symbolic.numeric.identify.constants import (
     CALM,
     HALF_WIDTHS,
-    MOST_COARSE,
     NOTHING,
     RESTING,
     ROWS_PER_WINDOW,
@@ -59,12 +58,13 @@ def half_width_of(
     shortest: bool = False,
 ) -> float:
     """Half width in s of the shortest usual window in which `noise` [na] in rad of the angles, in
-    measured `columns` [na] every `period` s, is small beside what accelerates the joints; with
-    `shortest` it is divided by root two as long as it is.
+    measured `columns` [na] every `period` s, is small beside what accelerates the
+    joints, and which holds at least half of SAMPLES_PER_WINDOW (a second derivative is then off by
+    0.3 %); with `shortest` it is divided by root two as long as it is.
     """
 
     def is_calm(half_width: float) -> bool:
-        if 2.0 * half_width / period < MOST_COARSE:
+        if 4.0 * half_width / period < SAMPLES_PER_WINDOW:
             return False
         gain = curvature_noise(period, half_width)
         curved = [
@@ -82,7 +82,7 @@ def half_width_of(
 
     half_width = next((w for w in HALF_WIDTHS if is_calm(w)), None)
     if half_width is None:
-        return max(HALF_WIDTHS[-1], 0.5 * MOST_COARSE * period)
+        return max(HALF_WIDTHS[-1], 0.25 * SAMPLES_PER_WINDOW * period)
     while shortest and is_calm(half_width / np.sqrt(2.0)):
         half_width /= np.sqrt(2.0)
     return float(half_width)

@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.identify.along_motion import (
     gear_pushes,
     torques_along,
 )
-from ptp_symbolic.numeric.identify.constants import FINITE, MOST
+from ptp_symbolic.numeric.identify.constants import MOST, SAME
 from ptp_symbolic.numeric.identify.equation_rows import (
     RunRows,
     every_row,
@@ -293,7 +293,7 @@ class EquationSpace:
         for j in range(inputs + further):
             if j < inputs or j in shown:
                 shifted = none.copy()
-                shifted[:, j] = FINITE
-                result[:, j] = (self._torques(0, p, shifted, part)[2][0][middle] - here) / FINITE
+                shifted[:, j] = SAME
+                result[:, j] = (self._torques(0, p, shifted, part)[2][0][middle] - here) / SAME
                 self._states.clear()
         return result

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import MISLEADING, MOST, POLISH, ROUGH, STEP
+from ptp_symbolic.numeric.identify.constants import MISLEADING, MOST, ROUGH, STEP
 from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import reaches
-from ptp_symbolic.numeric.identify.simulations import Effort, problem_of, simulations_of
+from ptp_symbolic.numeric.identify.simulations import POLISH, Effort, problem_of, simulations_of
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.bounded_step import box, limited_step, taken
-from ptp_symbolic.numeric.identify.constants import FIRST_DAMPING, NEARBY
+from ptp_symbolic.numeric.identify.constants import NEARBY, SAME
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.requirements import Allow
 from ptp_symbolic.numeric.identify.robust_loss import Block, loss, robust_tuning, shares
@@ -125,7 +125,7 @@ def minimise(
     if not np.isfinite(cost):
         why = next((e.failed for e in at.evaluations if e.failed), "not finite")
         return Optimum(at.phi, at.z, np.inf, at.evaluations, why)
-    damping, quiet = FIRST_DAMPING, 0
+    damping, quiet = SAME, 0
     for _ in range(iterations):
         refined = at
         if problem.refine is not None:

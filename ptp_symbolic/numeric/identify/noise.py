@@ -20,7 +20,6 @@ from ptp_symbolic.numeric.identify.constants import (
     FAR,
     LOWEST,
     ORDER,
-    PIECE,
     POLES,
     ROUNDS,
     SEGMENT,
@@ -35,13 +34,13 @@ def white_noise(signal: FloatArray, time: FloatArray | None = None) -> float:
     """Standard deviation of the white noise of a smooth `signal` [n], also of its rounding, in its
     unit; sampled evenly, or at `time` [n].
 
-    Squared differences of order 5, without those that are clipped; zero where the signal is too
-    short.
+    Squared differences of order 5, without those that are clipped, over pieces of four SEGMENTs,
+    each good to 8 %; zero where the signal is too short.
     """
     if len(signal) < 4 * ORDER:
         return 0.0
     square = differences(signal, time) ** 2
-    pieces = np.array_split(square, max(1, len(square) // PIECE))
+    pieces = np.array_split(square, max(1, len(square) // (4 * SEGMENT)))
     return float(np.sqrt(np.median([_clipped_mean(piece) for piece in pieces])))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.blocks import huber_root
-from ptp_symbolic.numeric.identify.constants import REPLAYS, SEED, TIMES
+from ptp_symbolic.numeric.identify.constants import REPEATS, REPLAYS, SEED
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
@@ -65,18 +65,18 @@ def replayed_squares(
     declared_noise: Sequence[float | None],
     executor: Executor | None = None,
 ) -> FloatArray:
-    """What input noise leaves in the residual of a perfect model: mean squares [TIMES, runs, ny] of
-    the replays of every run, in units of the noise of every signal (see `Run.weight`); nan where a
-    run cannot be simulated. What its unknown start can take up is projected out.
+    """What input noise leaves in the residual of a perfect model: mean squares [REPEATS, runs, ny]
+    of the replays of every run, in units of the noise of every signal (see `Run.weight`); nan where
+    a run cannot be simulated. What its unknown start can take up is projected out.
     """
 
     def squares(number: int) -> FloatArray:
         run, rng = runs[number], np.random.default_rng((SEED, number))
         noise = input_noise(run, declared_noise)
         if not np.any(noise):
-            return np.zeros((TIMES, len(run.signals)))
-        changes, by_start = replayed(model, run, p, z[number], noise, rng, TIMES)
-        left = project_out(changes, by_start).reshape(*run.measured.shape, TIMES)
+            return np.zeros((REPEATS, len(run.signals)))
+        changes, by_start = replayed(model, run, p, z[number], noise, rng, REPEATS)
+        left = project_out(changes, by_start).reshape(*run.measured.shape, REPEATS)
         return np.asarray(np.mean(left**2, axis=0).T)
 
     every = (executor.map if executor else map)(squares, range(len(runs)))

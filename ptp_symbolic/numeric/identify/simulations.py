@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import NEARBY
+from ptp_symbolic.numeric.identify.constants import CYCLES, ITERATIONS, NEARBY
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, limits, slopes, to_values
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.gap_places import residual_of
@@ -21,6 +21,7 @@ from ptp_symbolic.numeric.runtime.model import Model
 FloatArray = NDArray[np.float64]
 
 DEFAULT_TOLERANCE = Tolerance()
+POLISH = CYCLES * ITERATIONS  # iterations of a fit that goes to its end
 
 
 @dataclass(frozen=True)

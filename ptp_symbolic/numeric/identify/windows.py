@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.constants import (
-    ALLOWED_DRIFT,
     ALLOWED_GROWTH,
     ALLOWED_RISE,
+    BINS,
     LEAST_START,
     LENGTHS,
     NOTHING,
-    PLACES,
+    ROUNDING,
     SEED,
     SHORT,
     START_SPAN,
@@ -45,7 +45,8 @@ def window_length(
 ) -> float | None:
     """Longest window in s over which input noise stays near the noise of the angles, at p [np].
 
-    None where whole runs do. Where an error of the start grows tenfold, windows of 1 s at most.
+    None where whole runs do. Near is half a count, of which the noise is the rounding. Where an
+    error of the start grows tenfold, windows of 1 s at most.
     """
     every = executor.map if executor else map
     if any(every(lambda run: multiplies_errors(model, run, p, run.guess), runs)):
@@ -55,7 +56,7 @@ def window_length(
     rng = np.random.default_rng(SEED)
     grown = [_drift(model, run, p, input_noise(run, declared_noise), rng) for run in runs]
     durations = [float(run.time[-1] - run.time[0]) for run in runs]
-    allowed = max(ALLOWED_DRIFT, ALLOWED_RISE * _typical(grown, LENGTHS[-1]))
+    allowed = max(0.5 / ROUNDING, ALLOWED_RISE * _typical(grown, LENGTHS[-1]))
     for length in lengths:
         if _typical(grown, length) <= allowed:
             return None if length >= max(durations) else float(length)
@@ -128,7 +129,7 @@ def _rattles(model: Model, run: Run, p: FloatArray) -> bool:
             continue
         gear, _ = model.module.CONTACT_ANGLES[unknown.contact]
         growth = []
-        for z[index] in PLACES:
+        for z[index] in np.linspace(-1.0, 1.0, BINS // 2 + 1):
             e = evaluate(model, run, p, z, none, True, Tolerance())
             _, tangents = start_state(model, run, p, z, none)
             moved = e.by_start.reshape(*run.measured.shape, -1)[:, unknown.column, index]
