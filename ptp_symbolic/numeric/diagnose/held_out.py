@@ -21,7 +21,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
 from ptp_symbolic.numeric.identify.blocks import huber_root
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
-    GAIN,
     MATERIAL,
     MOST,
     NEARBY,
@@ -135,7 +134,7 @@ def held_out_fit(task: Task, trial: Trial) -> Fit:
 
 def simulated_freely(task: Task, runs: Sequence[Run], values: Mapping[str, float]) -> Fit:
     """Runs simulated with `values` of all parameters, nothing but their start unknowns fitted."""
-    effort = Effort(POLISH, GAIN * ROUGH, tolerance_for(task, SHARP))
+    effort = Effort(POLISH, MATERIAL * ROUGH, tolerance_for(task, SHARP))
     return fit_parameters(task.model, runs, (), dict(values), None, effort, task.executor)
 
 

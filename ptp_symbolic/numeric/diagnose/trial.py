@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.side_by_side import side_by_side
 from ptp_symbolic.numeric.identify.constants import (
-    GAIN,
     ITERATIONS,
     LITTLE,
     MATERIAL,
@@ -31,7 +30,7 @@ from ptp_symbolic.numeric.identify.simulations import Effort
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
-SHARP = GAIN * ROUGH  # error of simulations over the noise, at last
+SHARP = MATERIAL * ROUGH  # error of simulations over the noise, at last: beside ROUGH it is none
 Progress = Callable[[str], None]
 
 
@@ -139,7 +138,7 @@ def fitted(
     fixed = {name: value for name, value in task.fixed.items() if name not in names}
     tolerance = tolerance_for(task, share)
     below, straight = task.robust_below, share < ROUGH
-    effort = Effort(iterations, GAIN * share, tolerance, secants, block, below, straight)
+    effort = Effort(iterations, MATERIAL * share, tolerance, secants, block, below, straight)
     known = None if secants is None else _inherited(parent, free)
     fit = fit_parameters(task.model, task.train, free, fixed, z, effort, executor, known, earlier)
     return Trial(tuple(candidates), fit)

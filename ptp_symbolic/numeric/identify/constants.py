@@ -16,7 +16,7 @@ import numpy as np
 FALSE_ALARM = 0.05  # 1; chance of naming anything where nothing is missing; stated level
 TEST_ALARM = 0.01  # 1; false alarms of one residual test; usual 99 % band (Ljung, 1999, 16.6)
 LAGS = 25  # samples; lags of the residual tests; usual (Ljung, 1999, 16.6)
-MATERIAL = 0.1  # 1; share of the predictive loss below which nothing earns a name; stated size
+MATERIAL = 0.1  # 1; share of a whole (a loss, an error) below which nothing counts; stated size
 MOST = 0.5  # 1; share that is most of a whole; definition
 PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off, a start by its square; stated
 SMALL_PERCENT = 1.0  # %; change of a declared value that is called small; stated
@@ -45,7 +45,6 @@ LARGEST = 3  # effects; that a set may have, or gain after the first choice; sta
 SCREENED = 2  # sets, candidates; of those begun with few iterations that go on; scaled
 REFINEMENTS = 2  # 1; Gauss-Newton steps of a proposed set; scaled
 REPLAYS = 100  # runs; replayed with noisy inputs: a standard deviation is good to 7 %; derived
-GAIN = 0.1  # 1; of an error, next to nothing: gains that end a fit, simulations at last; scaled
 ROUGH = 1e-2  # 1; error of simulations over the noise, while searching; scaled
 LITTLE = 2.0 * ROUGH  # 1; change of a mean square that such errors can make; derived
 
@@ -56,15 +55,13 @@ START_SPAN = 0.1  # s; motion that tells a rate; scaled
 ANYWHERE = 1e3  # rad/s, half gaps; beyond any start of a machine; definition
 LEAST_START = 5  # samples; of a parabola with two degrees of freedom left; derived
 ALLOWED_RISE = 2.0  # 1; of that drift, over the shortest window's; scaled
-ALLOWED_GROWTH = 10.0  # 1; of an error of the start in a run; scaled
 ROWS_PER_WINDOW = 8  # 1; rows overlap: neighbours correlate by 0.86; derived
 SAMPLES_PER_WINDOW = 32  # 1; torques in a window: a second derivative is off by 2e-4; derived
 LEAST_SAMPLES = 7  # samples; in a window: the same is off by 6 % unless normalised; derived
 LARGEST_GAP = 0.34  # half widths; without a sample: a mean curvature is off by up to 12 %; derived
-PARTS = 2  # 1; of a sample in which states are integrated along the motion; scaled
 CALM = 5e-3  # 1; noise of an averaged acceleration over what accelerates; scaled
 CYCLES_APART = 0.2  # 1/range; step of a frequency scan: a line between is dimmed by 3 %; derived
-LEAST_CYCLES = 3.0  # 1/range; slower waves with harmonics fit any slow change; scaled
+LEAST_CYCLES = 3  # 1/range; slower waves are like any slow change, or a taper (2); scaled
 BINS_PER_CYCLE = 4.0  # 1; of the highest frequency of a scan: a bin dims it by 10 %; derived
 ATTENUATED = 2.0  # 1/window; of such a wave an average leaves 11 %; derived
 DECLARED_AMOUNT = 0.05  # 1; share by which a declared value is changed to see its effect; scaled
@@ -73,7 +70,6 @@ BINS = 16  # 1; of a map of what is left, of half a gap; definition
 # Noise of a signal
 ORDER = 5  # 1; differences: a motion at a tenth of the sampling rate leaves 0.6 %; derived
 SEGMENT = 64  # samples; of a periodogram: poles up to 0.95 are told from white noise; tested
-LOWEST = 3  # bins; below belong to the taper (2) and to the motion; derived
 
 # Steps
 STEP = 0.02  # search coordinates, starts; of differences, as far as intervals reach; scaled

@@ -13,7 +13,6 @@ from ptp_symbolic.numeric.identify.along_motion import (
     further_states,
 )
 from ptp_symbolic.numeric.identify.behind_sensors import angles_behind_sensors
-from ptp_symbolic.numeric.identify.constants import PARTS
 from ptp_symbolic.numeric.identify.equation_rows import RunRows
 from ptp_symbolic.numeric.identify.layout import Layout, equation_addresses
 from ptp_symbolic.numeric.identify.run import Run
@@ -116,7 +115,7 @@ def states_along(
     inputs; `measured` are their places in the layout, the rest is as in `EquationSpace`.
     """
     grid, delays = rows.grid, delays_of(model, p)
-    parts = 2 * PARTS if np.any(delays) else PARTS
+    parts = 4 if np.any(delays) else 2  # the halves of a sample, which averages need; their halves
     late = np.stack([part_averages(run, j, d, parts) for j, d in enumerate(delays)], axis=2)
     if np.any(added):
         more = [np.interp(run.time[:-1], run.time[grid], a) for a in added.T]

@@ -18,7 +18,7 @@ from scipy import optimize, stats
 
 from ptp_symbolic.numeric.identify.constants import (
     FAR,
-    LOWEST,
+    LEAST_CYCLES,
     ORDER,
     POLES,
     ROUNDS,
@@ -95,7 +95,7 @@ def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
     power, count = _spectrum(series)
     if count == 0:
         return Noise(least, 0.0, least)
-    power = power[LOWEST:]
+    power = power[LEAST_CYCLES:]
     degrees = 2.0 * count / _mixed()
     fits = [_profiled(power, pole, least**2, degrees) for pole in POLES]
     likelihood = np.array([f[0] for f in fits])
@@ -145,9 +145,10 @@ def neighbour_correlation(signal: FloatArray, time: FloatArray | None = None) ->
     Stretches that do not change at all are left out; None where too few others remain.
     """
     parts = [part for part in _segments(differences(signal, time)) if np.any(part)]
-    if len(parts) < 2 * LOWEST:
+    if len(parts) < 2 * LEAST_CYCLES:
         return None
-    upper = slice(SEGMENT // 4, -LOWEST)  # at half the rate the taper mixes a bin with its mirror
+    # At half the rate the taper mixes a bin with its mirror.
+    upper = slice(SEGMENT // 4, -LEAST_CYCLES)
     power = np.median([_periodogram(part)[upper] for part in parts], axis=0) / np.log(2.0)
     power /= np.mean(power)
     efficiency = np.log(2.0) ** 2  # of the median of exponential numbers beside their mean
@@ -248,7 +249,7 @@ def _profiled(power: FloatArray, pole: float, least: float, degrees: float) -> t
     if pole == 0.0:
         white = max(float(np.mean(power)), least)
         return _likelihood(power, np.full_like(power, white), degrees), white
-    shape = _expected(pole)[LOWEST:]
+    shape = _expected(pole)[LEAST_CYCLES:]
     white, innovation = least, max(float(np.mean(power / shape)), 1e-300)
     before = np.inf
     for _ in range(ROUNDS):

@@ -14,13 +14,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import (
-    ABOVE_NOISE,
-    BINS,
-    GAIN,
-    ITERATIONS,
-    ROUGH,
-)
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, BINS, ITERATIONS, MATERIAL, ROUGH
 from ptp_symbolic.numeric.identify.evaluate import Tolerance
 from ptp_symbolic.numeric.identify.gap_places import gears_in_place, residual_of, with_gap_places
 from ptp_symbolic.numeric.identify.least_squares import Optimum, Problem, cost_of, minimise
@@ -50,7 +44,7 @@ def starts_in_place(
     """
     if not has_linked(runs):
         return gears_in_place(model, runs, values, z, tolerance, executor)
-    effort = Effort(1 if brief else ITERATIONS, GAIN * ROUGH, tolerance)
+    effort = Effort(1 if brief else ITERATIONS, MATERIAL * ROUGH, tolerance)
     known = [[start] for start in z]
     found = fitted_starts(model, runs, values, known, effort, executor, brief=brief, usual=usual)
     return [optimum.z[0] for optimum in found]

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.constants import (
-    ALLOWED_GROWTH,
     ALLOWED_RISE,
     BINS,
     LEAST_START,
     LENGTHS,
+    MATERIAL,
     NOTHING,
     ROUNDING,
     SEED,
@@ -70,8 +70,8 @@ def _typical(grown: Sequence[tuple[FloatArray, FloatArray]], length: float) -> f
 
 
 def multiplies_errors(model: Model, run: Run, p: FloatArray, z: FloatArray) -> bool:
-    """True when a small error of a starting angle grows by `ALLOWED_GROWTH` within the run, at p
-    [np] from the start z [nz].
+    """True when a small error of a starting angle grows within the run until it is no MATERIAL
+    share of what it has become, at p [np] from the start z [nz].
     """
     none = np.zeros(0, dtype=np.int64)
     e = evaluate(model, run, p, z, none, True, Tolerance())
@@ -79,7 +79,7 @@ def multiplies_errors(model: Model, run: Run, p: FloatArray, z: FloatArray) -> b
     if e.failed:
         return True
     by_angle = e.by_start[:, angles] / np.tile(run.weight, len(run.time))[:, None]
-    return bool(np.max(np.abs(by_angle), initial=0.0) > ALLOWED_GROWTH)
+    return bool(np.max(np.abs(by_angle), initial=0.0) > 1.0 / MATERIAL)
 
 
 def _drift(
@@ -119,7 +119,7 @@ def cut_where_errors_grow(
 
 
 def _rattles(model: Model, run: Run, p: FloatArray) -> bool:
-    """True when a small error of the place of a gear in its gap moves the joint `ALLOWED_GROWTH`
+    """True when a small error of the place of a gear in its gap moves the joint ten (1 / MATERIAL)
     times as far within the run, by the geometric mean over the places in the gap: from a single
     one it scatters tenfold, for some by chance lead to a rest on a face.
     """
@@ -136,7 +136,7 @@ def _rattles(model: Model, run: Run, p: FloatArray) -> bool:
             farthest = float(np.max(np.abs(moved))) / run.weight[unknown.column]
             growth.append(farthest / max(tangents[gear, index], NOTHING))
         z[index] = unknown.guess
-        if np.mean(np.log(np.maximum(growth, NOTHING))) > np.log(ALLOWED_GROWTH):
+        if np.mean(np.log(np.maximum(growth, NOTHING))) > np.log(1.0 / MATERIAL):
             return True
     return False
 
