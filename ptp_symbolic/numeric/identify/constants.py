@@ -7,7 +7,8 @@ of those, three sets of the build half (119, a dead band; 192, a triple; 224, a 
 drive) are diagnosed with it halved and doubled (`python -m tests.benchmark constants`). All three
 are right as the table is and in every row but one: with START_SPAN halved, 224 is `unexplained`.
 
-Decisions and statistics come first, then robustness, effort, windows and rows, numerics.
+Decisions and statistics come first, then robustness, effort, windows and rows, numerics. What a
+library, the rounding of doubles, or a number of this table gives is computed where it is used.
 """
 
 import numpy as np
