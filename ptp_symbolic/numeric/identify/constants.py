@@ -17,7 +17,7 @@ import numpy as np
 FALSE_ALARM = 0.05  # 1; chance of naming anything where nothing is missing; stated level
 TEST_ALARM = 0.01  # 1; false alarms of one residual test; usual 99 % band (Ljung, 1999, 16.6)
 LAGS = 25  # samples; lags of the residual tests; usual (Ljung, 1999, 16.6)
-MATERIAL = 0.1  # 1; share of a whole (a loss, an error) below which nothing counts; stated size
+MATERIAL = 0.1  # 1; share of a loss, or error, below which nothing earns a name or counts; stated
 MOST = 0.5  # 1; share that is most of a whole; definition
 PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off, a start by its square; stated
 SMALL_PERCENT = 1.0  # %; change of a declared value that is called small; stated
@@ -55,7 +55,7 @@ SEARCH_PERIOD = 5e-3  # s; between samples of a search, at most; scaled
 START_SPAN = 0.1  # s; motion that tells a rate; scaled
 ANYWHERE = 1e3  # rad/s, half gaps; beyond any start of a machine; definition
 LEAST_START = 5  # samples; of a parabola with two degrees of freedom left; derived
-ALLOWED_RISE = 2.0  # 1; of that drift, over the shortest window's; scaled
+ALLOWED_RISE = 2.0  # 1; of the drift by input noise in a window, over the shortest one's; scaled
 ROWS_PER_WINDOW = 8  # 1; rows overlap: neighbours correlate by 0.86; derived
 SAMPLES_PER_WINDOW = 32  # 1; torques in a window: a second derivative is off by 2e-4; derived
 LEAST_SAMPLES = 7  # samples; in a window: the same is off by 6 % unless normalised; derived

@@ -244,6 +244,6 @@ def project_out(jacobian: FloatArray, nuisance: FloatArray) -> FloatArray:
     if nuisance.shape[1] == 0:
         return jacobian
     basis, triangle = np.linalg.qr(nuisance)
-    kept = np.abs(np.diag(triangle)) > 1e-10 * max(np.max(np.abs(triangle)), 1e-300)
+    kept = np.abs(np.diag(triangle)) > NOTHING * max(np.max(np.abs(triangle)), 1e-300)
     basis = basis[:, kept]
     return jacobian - basis @ (basis.T @ jacobian)
