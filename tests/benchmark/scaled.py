@@ -1,7 +1,8 @@
 """The diagnosis with chosen constants scaled: what hangs on them?
 
-The table of constants says of each where it comes from. Those that were chosen are multiplied by a
-factor, one or all of a section at once, before anything else of the package is imported.
+The table of constants says of each where it comes from. Those that nothing derives are chosen: they
+are multiplied by a factor, one or all of a section at once, before anything else of the package is
+imported.
 """
 
 import re
@@ -10,7 +11,7 @@ from types import ModuleType
 from typing import Any
 
 LINE = re.compile(r"^([A-Z_0-9]+) = (.*?)  # (.*)$")
-SCALED = "scaled"  # first word of the source of a constant that was chosen
+SOURCES = ("scaled", "stated", "usual", "tested")  # first words where nothing derives a constant
 
 
 def sections(source: str) -> dict[str, list[str]]:
@@ -21,7 +22,7 @@ def sections(source: str) -> dict[str, list[str]]:
         if line.startswith("# "):
             section = line.removeprefix("# ").lower()
         row = LINE.match(line)
-        if row and row[3].split("; ")[-1].startswith(SCALED):
+        if row and row[3].split("; ")[-1].startswith(SOURCES):
             found.setdefault(section, []).append(row[1])
     return found
 

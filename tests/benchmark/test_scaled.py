@@ -17,6 +17,7 @@ SHARE = 0.25  # 1; of a step; scaled
 # Decisions
 WIDEST = 1.5  # 1; block; scaled
 LEVEL = 0.05  # 1; chance of a false alarm; stated level
+HALF = 0.5  # 1; of a whole; definition
 """
 
 
@@ -30,7 +31,10 @@ def table(tmp_path: Path) -> ModuleType:
 
 
 def test_chosen_constants_by_section() -> None:
-    assert sections(TABLE) == {"effort": ["TRIED", "RUNG", "SHARE"], "decisions": ["WIDEST"]}
+    assert sections(TABLE) == {
+        "effort": ["TRIED", "RUNG", "SHARE"],
+        "decisions": ["WIDEST", "LEVEL"],
+    }
 
 
 def test_a_section_is_scaled_with_what_follows_from_it(table: ModuleType) -> None:
@@ -43,7 +47,7 @@ def test_counts_stay_whole_and_above_zero(table: ModuleType) -> None:
     scale_chosen(table, "effort", 0.1)
     assert (table.TRIED, table.PROPOSED, table.RUNG) == (1, 2, ((1, 1),))
     scale_chosen(table, "decisions", 0.5)
-    assert (table.TRIED, table.WIDEST) == (3, 0.75)
+    assert (table.TRIED, table.WIDEST, table.LEVEL, table.HALF) == (3, 0.75, 0.025, 0.5)
 
 
 def test_one_constant_is_scaled_alone(table: ModuleType) -> None:

@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.diagnose.verdict import (
     UP_TO_GROUP,
     Verdict,
 )
-from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, SMALL_PERCENT
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, MATERIAL
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.intervals import Estimate
 from ptp_symbolic.numeric.identify.repeatability import repeatability
@@ -116,7 +116,8 @@ def deviation(candidate: Candidate, trial: Trial) -> float:
 
 
 def _is_small(candidate: Candidate, trial: Trial) -> bool:
-    return candidate.is_declared_value and abs(deviation(candidate, trial)) < SMALL_PERCENT
+    """Whether a declared value is off by less than a material share of a material share."""
+    return candidate.is_declared_value and abs(deviation(candidate, trial)) < 100.0 * MATERIAL**2
 
 
 def repeatability_table(runs: Sequence[Run], units: Mapping[str, str]) -> dict[str, Any] | None:

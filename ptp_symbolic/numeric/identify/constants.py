@@ -1,11 +1,10 @@
 """The named numbers of fits and search: value, unit, quantity, and where each comes from.
 
 One line each, in this form: value  # unit; quantity; source. A source is a derivation (from
-rounding, from a distribution, from the definition of the quantity), a requirement of the diagnosis
-that its report states, or "scaled": then nothing better than the benchmark speaks for it. Of each
-of those, three sets of the build half (119, a dead band; 192, a triple; 224, a perfect geared
-drive) are diagnosed with it halved and doubled (`python -m tests.benchmark constants`). All three
-are right as the table is and in every row but one: with START_SPAN halved, 224 is `unexplained`.
+rounding, from a distribution, from the definition of the quantity), or "scaled", "stated", "usual",
+"tested": nothing derives the number then. Of each of those, two sets of the build half (119, a dead
+band; 224, a perfect geared drive) are diagnosed with it halved and doubled (`python -m
+tests.benchmark constants`).
 
 Decisions and statistics come first, then robustness, effort, windows and rows, numerics. What a
 library, the rounding of doubles, or a number of this table gives is computed where it is used.
@@ -20,7 +19,6 @@ LAGS = 25  # samples; lags of the residual tests; usual (Ljung, 1999, 16.6)
 MATERIAL = 0.1  # 1; share of a loss, or error, below which nothing earns a name or counts; stated
 MOST = 0.5  # 1; share that is most of a whole; definition
 PLAUSIBLE_FACTOR = 2.0  # 1; by which a declared value may be off, a start by its square; stated
-SMALL_PERCENT = 1.0  # %; change of a declared value that is called small; stated
 ABOVE_NOISE = 1.0 + MATERIAL  # 1; rms over the floor from which on more than noise is left; derived
 UNALIKE = 1e-3  # 1; false alarms of the test for larger validation windows; stated level
 FEWEST_BLOCKS = 12  # 1; blocks: Student's interval is then 12 % wider than a normal one; derived
