@@ -82,13 +82,13 @@ def test_a_spring_that_is_stronger_where_it_is_fast_is_none(
         (drag_by_speed, "quadratic_drag@pan", False),
     ],
 )
-def test_what_breaks_its_law_is_not_taken_up_along_the_motion(
+def test_what_broke_its_law_has_to_keep_it_along_the_motion(
     hidden: Torque, key: str, named: bool, tmp_path: Path
 ) -> None:
     """Beside a second friction, drag makes up in the rows for a torque cubic in the rate."""
     with table_of(tmp_path, lambda seed: logged(hidden, seed)) as task:
         declared = fitted(task, (), declared_start(task), None)
-        grown = grown_along_motion(task, propose(task), declared, task.train)
+        grown = grown_along_motion(task, propose(task), declared, task.train, [key])
         assert (key in grown.trial.keys if grown else False) is named
 
 
@@ -99,7 +99,7 @@ def test_a_fuller_form_that_earns_nothing_is_left_out_along_the_motion(
     with table_of(tmp_path, lambda seed: logged(hidden, seed)) as task:
         proposals = propose(task)
         assert proposals.space is not None and proposals.regression is not None
-        motion = _Motion(task, proposals.space, proposals.regression, proposals.start)
+        motion = _Motion(task, proposals.space, proposals.regression, proposals.start, ())
         springs = [
             s.candidate
             for s in proposals.regression.signatures

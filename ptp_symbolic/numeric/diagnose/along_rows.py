@@ -8,7 +8,7 @@ windows average away what is fast, such as a delay. Its values and their interva
 fit to the same rows (inverse dynamic identification: Gautier and Khalil, 1990).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -48,13 +48,19 @@ class AlongMotion:
 
 
 def grown_along_motion(
-    task: Task, found: Proposals, trial: Trial, runs: Sequence[Run]
+    task: Task,
+    found: Proposals,
+    trial: Trial,
+    runs: Sequence[Run],
+    lawless: Collection[str] = (),
 ) -> AlongMotion | None:
     """The set of a trial with what else gains along the measured motion, simulated on the training
     `runs`; None where nothing does, or where the rows do not show all of the set.
 
     Declared values are not looked for: beside a remainder they stand in for much. What has grown
-    takes away a material part of the torque that the set leaves along the validation runs.
+    takes away a material part of the torque that the set leaves along the validation runs. The
+    torques of those whose keys are `lawless` went with the rate in another way than by their law,
+    in a set that may have lacked more: they have to keep it in one that has grown.
     """
     if found.regression is None or len(task.model.contacts):
         return None
@@ -65,7 +71,7 @@ def grown_along_motion(
     rows = in_rows_of(task, space, found.start, candidates)
     if not set(trial.keys) <= {s.candidate.key for s in rows.signatures}:
         return None
-    motion = _Motion(task, space, rows, found.start)
+    motion = _Motion(task, space, rows, found.start, lawless)
     while len(candidates) < len(trial.candidates) + LARGEST:
         effects = [
             s for s in larger_sets(rows, candidates) if not any(c.is_declared_value for c in s)
@@ -90,13 +96,14 @@ def grown_along_motion(
 @dataclass(frozen=True, eq=False)
 class _Motion:
     """The `space` whose rows sets are fitted to, those `rows` as a regression in which sets are
-    compared, and all parameters at the `start` of every fit.
+    compared, and all parameters at the `start` of every fit; `lawless` as in `grown_along_motion`.
     """
 
     task: Task
     space: EquationSpace
     rows: Regression
     start: Mapping[str, float]
+    lawless: Collection[str]
 
     def gain(self, candidates: Sequence[Candidate], member: Candidate) -> Gain | None:
         """What a member of a set gains in the rows, with what needs it; None where they do not show
@@ -142,7 +149,9 @@ class _Motion:
         if any(why_unconfirmed(fit, c, leaves_noise=False) for c in members):
             return False
         return not any(
-            breaks_its_law(self.task, self.space, candidates, fit.values, c) for c in candidates
+            breaks_its_law(self.task, self.space, candidates, fit.values, c)
+            for c in candidates
+            if c.key in self.lawless
         )
 
     def alike(self, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from ptp_symbolic.numeric.diagnose.candidates import with_what_needs_it
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, at_bound, why_unconfirmed
-from ptp_symbolic.numeric.diagnose.findings import Step, step_of
+from ptp_symbolic.numeric.diagnose.findings import Refusals, Step, step_of
 from ptp_symbolic.numeric.diagnose.floor import (
     Floor,
     floor_of,
@@ -29,10 +29,11 @@ class Weakness(NamedTuple):
 
     step: Step
     reason: str
+    breaks_law: bool = False
 
 
 def confirmed(
-    seeker: Seeker, trial: Trial, steps: list[Step], refused: dict[str, str]
+    seeker: Seeker, trial: Trial, steps: list[Step], refused: Refusals
 ) -> tuple[Trial, list[Step], Fit]:
     """What is left of a trial when all that cannot be confirmed is taken out, noted in `refused`
     with the reason; its steps, and its fit with derivatives that are not blind.
@@ -44,7 +45,8 @@ def confirmed(
         if simpler is not None:
             trial, steps = shortened(seeker, simpler)
         elif weakness is not None:
-            refused[weakness.step.candidate.key] = weakness.reason
+            key = weakness.step.candidate.key
+            refused.note(key, weakness.reason, weakness.breaks_law)
             trial, steps = shortened(seeker, weakness.step.without)
         else:
             break
@@ -143,7 +145,7 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> Weak
         if space is not None and breaks_its_law(
             seeker.task, space, trial.candidates, trial.values, step.candidate
         ):
-            return Weakness(step, "its torque goes with the speed in another way")
+            return Weakness(step, "its torque goes with the speed in another way", breaks_law=True)
         if not quiet:
             doubt = _doubt_beside_a_remainder(seeker.task, trial, step)
             if doubt is not None:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
@@ -40,6 +40,24 @@ class Search:
     tried: Tried
     proposals: Proposals
     carried: Carried
+
+
+@dataclass(frozen=True, eq=False)
+class Refusals:
+    """Why candidates that gained are not named, by key, and the keys of those whose torque goes
+    with the speed in another way than their law.
+    """
+
+    why: dict[str, str] = field(default_factory=dict)
+    lawless: set[str] = field(default_factory=set)
+
+    def note(self, key: str, why: str, breaks_law: bool = False) -> None:
+        """Note the last reason: in another set a candidate may be refused for another one."""
+        self.why[key] = why
+        if breaks_law:
+            self.lawless.add(key)
+        else:
+            self.lawless.discard(key)
 
 
 def step_of(trial: Trial, candidate: Candidate, without: Trial) -> Step:

@@ -14,7 +14,7 @@ from ptp_symbolic.numeric.diagnose.confirmed_sets import (
     simplest_alike,
 )
 from ptp_symbolic.numeric.diagnose.fewer_samples import fitted_to_every_sample
-from ptp_symbolic.numeric.diagnose.findings import Search, Step
+from ptp_symbolic.numeric.diagnose.findings import Refusals, Search, Step
 from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
@@ -97,13 +97,13 @@ def decide(found: Search) -> Verdict:
 def _decided(found: Search) -> Verdict:
     """The verdict, with noise as white as the task of the search says."""
     task = found.task
-    refused: dict[str, str] = {}
+    refused = Refusals()
     seeker = Seeker(task, found.declared, found.proposals, found.carried, found.tried)
     seeker.follow(found.chosen)
     trial, steps, alike = _settled(seeker, found.chosen, list(found.members), refused)
     task.progress("fitting every sample, and simulating the validation runs")
     declared, *final = _to_every_sample(found, trial)
-    sets = _along_motion(seeker, trial, declared)
+    sets = _along_motion(seeker, trial, declared, sorted(refused.lawless))
     led = _near_floor(seeker, sets)
     if led is not None:
         trial, steps, alike = _settled(seeker, *shortened(seeker, led), refused)
@@ -122,7 +122,7 @@ def _to_every_sample(found: Search, trial: Trial) -> list[Trial]:
 
 
 def _settled(
-    seeker: Seeker, chosen: Trial, members: list[Step], refused: dict[str, str]
+    seeker: Seeker, chosen: Trial, members: list[Step], refused: Refusals
 ) -> tuple[Trial, list[Step], list[Rival]]:
     """What is confirmed of a chosen set, or of one that predicts better or is simpler and predicts
     as well; its steps, and the sets that it cannot be told from. What is not, is noted in `refused`
@@ -152,7 +152,7 @@ def _settled(
         if step is None:
             break
         why = "others predict as well, and more than noise is left"
-        refused[step.candidate.key] = why
+        refused.note(step.candidate.key, why)
         trial, steps, fit = confirmed(seeker, *shortened(seeker, step.without), refused)
         alike = []
     return trial, steps, alike
@@ -172,12 +172,16 @@ class _Set:
     rivals: tuple[Rival, ...]
 
 
-def _along_motion(seeker: Seeker, trial: Trial, declared: Trial) -> list[_Set]:
-    """Where a trial leaves more than noise, the set that it grows to along the measured motion."""
+def _along_motion(
+    seeker: Seeker, trial: Trial, declared: Trial, lawless: Sequence[str]
+) -> list[_Set]:
+    """Where a trial leaves more than noise, the set that it grows to along the measured motion;
+    `lawless` as in `grown_along_motion`.
+    """
     task = seeker.task
     if leaves_noise_alone(trial, floor_of(task, trial, seeker.carried)):
         return []
-    found = grown_along_motion(task, seeker.proposals, trial, declared.fit.runs)
+    found = grown_along_motion(task, seeker.proposals, trial, declared.fit.runs, lawless)
     if found is None:
         return []
     final = found.trial
@@ -195,9 +199,7 @@ def _near_floor(seeker: Seeker, sets: Sequence[_Set]) -> Trial | None:
     return seeker.polished(near[0]) if near else None
 
 
-def _judged(
-    found: Search, declared: Trial, sets: Sequence[_Set], refused: dict[str, str]
-) -> Verdict:
+def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refusals) -> Verdict:
     """The verdict for the first of `sets` that the validation runs bear out, or for none."""
     task = found.task
     before = held_out_fit(task, declared)
@@ -210,7 +212,7 @@ def _judged(
         if held_out is None or not is_taken_back(held_out, quiet, task.material):
             break
         for key in final.keys:
-            refused[key] = "takes away too little of the error of the validation runs"
+            refused.note(key, "takes away too little of the error of the validation runs")
     word = word_of(final, one.confusable, quiet and leaves_noise_alone(final, floor))
     simulated = [s.compared for s in sets if s.estimated is None]
     return Verdict(
@@ -223,7 +225,7 @@ def _judged(
         one.confusable,
         one.rivals,
         next(iter(simulated), _closest(found)) if word == UNEXPLAINED else None,
-        {key: why for key, why in refused.items() if key not in final.keys},
+        {key: why for key, why in refused.why.items() if key not in final.keys},
         floor,
         before,
         after,
