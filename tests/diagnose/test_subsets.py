@@ -24,7 +24,7 @@ from ptp_symbolic.numeric.diagnose.subsets import (
     larger_sets,
     ranked_subsets,
 )
-from ptp_symbolic.numeric.identify.constants import FAR, REPEATS
+from ptp_symbolic.numeric.identify.constants import CYCLES, FAR, REPEATS
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.curves import Floats
 
@@ -182,7 +182,7 @@ def test_outliers_count_less_and_the_scale_is_that_of_the_other_rows(
     found = regression(rows, DECLARED, base, (), equation, block, np.ones(ROWS))
     assert found.scale == pytest.approx(np.ones(ROWS), rel=0.25)
     assert np.max(found.weight[::8]) < 0.06 * np.max(found.weight)
-    monkeypatch.setattr(regression_module, "SAME", 1e-9)
+    monkeypatch.setattr(regression_module, "CYCLES", 20 * CYCLES)
     settled = regression(rows, DECLARED, base, (), equation, block, np.ones(ROWS))
     assert found.weight == pytest.approx(settled.weight, rel=0.01)
 

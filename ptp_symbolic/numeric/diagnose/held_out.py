@@ -21,13 +21,12 @@ from ptp_symbolic.numeric.diagnose.trial import (
 from ptp_symbolic.numeric.identify.blocks import huber_root
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
+    CYCLES,
     MATERIAL,
     MOST,
     NEARBY,
     REPEATS,
     ROUGH,
-    ROUNDS,
-    SAME,
     SEED,
     TUNING,
     UNALIKE,
@@ -78,14 +77,10 @@ def left_by_best_values(
         residual = project_out(e.residual[:, None], e.by_start) / noise
         scaled.append((residual[:, 0], project_out(e.by_parameter, e.by_start) @ region / noise))
     left = [residual for residual, _ in scaled]
-    roots = np.zeros(len(left))
-    for _ in range(ROUNDS):
+    for _ in range(2 * CYCLES):
         square = np.array([np.mean(r**2) for r in left])
         usual = max(float(weighted_median(square[:, None], size)[0]), 1.0)
-        before, roots = roots, huber_root(square, usual)
-        if np.all(np.abs(roots - before) <= SAME * roots):
-            break
-        weighted = list(zip(roots, scaled, strict=True))
+        weighted = list(zip(huber_root(square, usual), scaled, strict=True))
         columns = np.vstack([root * carried for root, (_, carried) in weighted])
         target = -np.concatenate([root * residual for root, (residual, _) in weighted])
         shift = closest_in_ball(columns, target)

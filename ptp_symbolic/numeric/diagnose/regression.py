@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.signatures import Signature
-from ptp_symbolic.numeric.identify.constants import ROUNDS, SAME
+from ptp_symbolic.numeric.identify.constants import CYCLES
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.equation_fit import (
     blocks_in_time,
@@ -74,18 +74,16 @@ def regression(
 
 
 def reweighted(found: Regression, candidates: Sequence[Candidate]) -> Regression:
-    """`found` with Huber's weights and scales from the residual of a set of `candidates`, once they
-    stay as they are.
+    """`found` with Huber's weights and scales from the residual of a set of `candidates`: twice as
+    many rounds as fits take, which cost more, settle the weights to a percent.
     """
     own = [s.columns for s in found.signatures if s.candidate in candidates]
     columns = np.column_stack([found.base, *own])
     weight, scale = found.weight, found.scale
-    for _ in range(ROUNDS):
+    for _ in range(2 * CYCLES):
         left = found.rows - columns @ _amounts(columns, found.rows, weight)
         scale = robust_scale(left, found.equation)
-        before, weight = weight, huber_weight(left, scale)
-        if np.all(np.abs(weight - before) <= SAME * weight):
-            break
+        weight = huber_weight(left, scale)
     return replace(found, weight=weight, scale=scale)
 
 

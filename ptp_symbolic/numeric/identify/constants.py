@@ -78,7 +78,7 @@ REACH = 3.0  # 1; size of a response over the residual, beyond which it is not l
 
 # Numerics
 ROUNDING = 1.0 / np.sqrt(12.0)  # counts; standard deviation of rounding; derived
-SAME = 1e-3  # 1; relative difference of directions, values or weights that count as one; scaled
+SAME = 1e-3  # 1; relative difference of directions or values that count as one; scaled
 NOTHING = 1e-10  # 1; share of a sum of 1e5 squares, above its rounding of 2e-11; derived
 ROUNDS = 40  # 1; after which a loop ends that has not converged; protection
 
