@@ -102,6 +102,7 @@ def rms_off() -> float:
         ("BINS_PER_CYCLE", "10 %", 1.0 - np.sinc(1.0 / c.BINS_PER_CYCLE)),
         ("ROWS_PER_WINDOW", "0.86", neighbours()),
         ("ORDER", "0.6 %", (2.0 * np.sin(0.1 * np.pi)) ** c.ORDER / np.sqrt(252.0)),
+        ("ROUNDS", "1e-12", 0.5**c.ROUNDS),
         ("NOTHING", "2e-11", 1e5 * np.finfo(float).eps),
     ],
 )

@@ -94,7 +94,7 @@ def test_a_free_friction_stops_at_a_known_one() -> None:
 
 def test_the_way_back_ends_at_bounds() -> None:
     """Sliding friction wants 10, breakaway may not exceed 2: they meet there and not above. The
-    last of the way sliding friction goes alone, by next to nothing of the 7 N m too far.
+    last of the way sliding friction goes alone, a millionth of the 7 N m too far.
     """
     free = (SLIDING, free_parameter("F_s_pan", 0.6, 0.0, 2.0))
     begin, trial = {"F_c_pan": 0.24, "F_s_pan": 0.6}, {"F_c_pan": 10.0, "F_s_pan": 1.9}

@@ -80,7 +80,7 @@ REACH = 3.0  # 1; size of a response over the residual, beyond which it is not l
 ROUNDING = 1.0 / np.sqrt(12.0)  # counts; standard deviation of rounding; derived
 SAME = 1e-3  # 1; relative difference of directions or values that count as one; scaled
 NOTHING = 1e-10  # 1; share of a sum of 1e5 squares, above its rounding of 2e-11; derived
-ROUNDS = 40  # 1; after which a loop ends that has not converged; protection
+ROUNDS = 40  # 1; at most, until a loop has converged; halvings: to 1e-12; derived
 
 # Sequences
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried; halvings

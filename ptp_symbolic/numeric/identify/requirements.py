@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import ROUNDS
+from ptp_symbolic.numeric.identify.constants import ROUNDS, SAME
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, limits
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 Allow = Callable[[FloatArray, FloatArray], FloatArray]
 
-QUOTIENT = np.sqrt(np.finfo(float).eps)  # search coordinates; step of difference quotients
+QUOTIENT = SAME * SAME  # search coordinates; step of difference quotients, and past a boundary
 
 
 def keep_possible(
@@ -93,7 +93,7 @@ class _Relation:
     def boundary(self, phi: FloatArray, step: FloatArray) -> FloatArray:
         """The farthest point along `step` at which the relation still holds."""
         kept, lost = 0.0, 1.0
-        while lost - kept > np.finfo(float).eps:
+        for _ in range(ROUNDS):  # to 1e-12 of the step
             middle = 0.5 * (kept + lost)
             kept, lost = (middle, lost) if self.holds(phi + middle * step) else (kept, middle)
         return phi + kept * step
