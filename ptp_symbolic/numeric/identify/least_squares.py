@@ -125,7 +125,7 @@ def minimise(
     if not np.isfinite(cost):
         why = next((e.failed for e in at.evaluations if e.failed), "not finite")
         return Optimum(at.phi, at.z, np.inf, at.evaluations, why)
-    damping, quiet = SAME, 0
+    damping, quiet = SAME, 0  # the first step is that of Gauss and Newton, but for next to nothing
     for _ in range(iterations):
         refined = at
         if problem.refine is not None:
