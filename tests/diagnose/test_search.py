@@ -17,9 +17,9 @@ from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
 from ptp_symbolic.numeric.diagnose.proposals import propose
-from ptp_symbolic.numeric.diagnose.search import by_effects_alone, extended
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import from_rows, taken_over
+from ptp_symbolic.numeric.diagnose.stepwise import by_effects_alone, extended
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
 from ptp_symbolic.numeric.diagnose.tried import Tried, worth_keeping
 from ptp_symbolic.numeric.identify.constants import LARGEST, MOST

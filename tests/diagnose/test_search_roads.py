@@ -15,11 +15,13 @@ from ptp_symbolic.numeric.diagnose import through_windows
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows, over_whole_runs
 from ptp_symbolic.numeric.diagnose.findings import Step
+from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
 from ptp_symbolic.numeric.diagnose.proposals import Proposal, propose, start_for
 from ptp_symbolic.numeric.diagnose.refits import is_near_floor
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.stepwise import floated
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, TRIED
 from tests.diagnose.spring_table import STIFFNESS, spring_table
@@ -242,3 +244,22 @@ def test_what_made_up_for_a_fit_that_was_stuck_is_taken_out(
         found = roads._from_declared(seeker, [made_up])
     assert not found.chosen.candidates
     assert found.declared.values["b_pan"] == pytest.approx(end.values["b_pan"], rel=1e-3)
+
+
+def test_a_stand_in_gives_way_to_the_effect_that_it_hides(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is taken out, and no candidate any more, while another is looked for."""
+    torque, spring = (alone(seeker, key) for key in ("constant_torque@pan", "cable_spring@pan"))
+    steps = [Step(torque.candidates[0], gain(torque, seeker.declared), 0.0, seeker.declared)]
+
+    def instead(among: Seeker, trial: Trial, *, briefly: bool = False) -> Trial | None:
+        free = {c.key for c in among.task.candidates}
+        return spring if trial is seeker.declared and "constant_torque@pan" not in free else None
+
+    monkeypatch.setattr(Seeker, "grown", instead)
+    found, _ = floated(seeker, torque, steps)
+    assert found.keys == ("cable_spring@pan",)
+    assert floated(seeker, spring, steps) == (spring, steps)
+    monkeypatch.setattr(Seeker, "grown", lambda *_, **__: torque)
+    assert floated(seeker, torque, steps) == (torque, steps)

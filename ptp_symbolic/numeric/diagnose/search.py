@@ -21,6 +21,7 @@ from ptp_symbolic.numeric.diagnose.proposals import (
 from ptp_symbolic.numeric.diagnose.refits import is_near_floor, refitted_in
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.starts import from_far_off, started
+from ptp_symbolic.numeric.diagnose.stepwise import by_effects_alone, extended, floated
 from ptp_symbolic.numeric.diagnose.through_windows import each_through_windows
 from ptp_symbolic.numeric.diagnose.trial import (
     Task,
@@ -30,7 +31,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
     misfits,
     ranked,
 )
-from ptp_symbolic.numeric.diagnose.tried import worth_keeping
 from ptp_symbolic.numeric.identify.constants import (
     DEVIATIONS,
     LARGEST,
@@ -174,6 +174,7 @@ def _over_other_roads(
     if other is not None:
         seeker.tried.others.append(best)
         best, steps = extended(seeker, *seeker.pruned(other))
+    best, steps = floated(seeker, best, steps)
     if begun.candidates or any(c.is_declared_value for c in best.candidates):
         best, steps = by_effects_alone(seeker, best, steps, grown)
     return best, steps
@@ -234,57 +235,3 @@ def _in_windows(seeker: Seeker, best: Trial) -> Seeker | None:
         declared = refitted_in(part, seeker.declared)
         return _seeker(part, declared, seeker.proposals)
     return None
-
-
-def extended(
-    seeker: Seeker, best: Trial, steps: list[Step], end: Trial | None = None
-) -> tuple[Trial, list[Step]]:
-    """A pruned trial with one candidate more as long as one is needed, up to the set of `end`, to
-    which none could be added before; and the `steps` of its candidates. A candidate that leads the
-    way may be dropped once others are there: then there is room for one more.
-    """
-    material = seeker.task.material
-    for rounds in range(2 * LARGEST):
-        if rounds >= LARGEST <= len(best.candidates):
-            break
-        if end is not None and best.keys == end.keys and gain(best, end).share < material:
-            break
-        seeker.tried.others[:] = worth_keeping(seeker.tried.others, best)
-        grown = seeker.grown(best)
-        if grown is None:
-            break
-        seeker.tried.others.append(best)
-        full = seeker.completed(grown)
-        if gain(grown, best).share >= MOST:  # one that gains less has been begun anew before
-            full = seeker.restarted(full)
-        pruned, fewer = seeker.pruned(full)
-        same = pruned.keys == best.keys
-        if same and ranked([best, pruned])[0] is best:
-            break
-        seeker.follow(pruned)
-        best, steps = pruned, fewer  # the same candidates too: a third may show them a better place
-    return best, steps
-
-
-def by_effects_alone(
-    seeker: Seeker, best: Trial, steps: list[Step], end: Trial | None = None
-) -> tuple[Trial, list[Step]]:
-    """The trial, or what forward selection from the declared model makes of effects alone, if that
-    fits better, or leaves only noise too with no more parameters. `end` is that of `extended`.
-
-    Declared values are known, and a few of them changed together imitate much: they scale all
-    torques of an axis that is driven by a voltage. A single one that leaves only noise is not
-    doubted here.
-    """
-    quiet = seeker.is_at_noise(best)
-    known = [c for c in best.candidates if c.is_declared_value]
-    if quiet and (not known or len(best.candidates) == 1):
-        return best, steps
-    alone = seeker.among(tuple(c for c in seeker.task.candidates if not c.is_declared_value))
-    other, fewer = extended(alone, seeker.declared, [], end)
-    no_larger = seeker.is_at_noise(other) and len(other.fit.free) <= len(best.fit.free)
-    if ranked([best, other])[0] is best and not (quiet and no_larger):
-        seeker.tried.others.append(other)
-        return best, steps
-    seeker.tried.others.append(best)
-    return other, fewer
