@@ -48,8 +48,8 @@ def floated(seeker: Seeker, best: Trial, steps: list[Step]) -> tuple[Trial, list
     if seeker.is_at_noise(best):
         return best, steps
     for step in steps:
-        others = (c for c in seeker.task.candidates if c.key != step.candidate.key)
-        grown = seeker.among(tuple(others)).grown(step.without, briefly=True)
+        others = tuple(c for c in seeker.task.candidates if c.key != step.candidate.key)
+        grown = seeker.among(others).grown(step.without, briefly=True)
         if grown is not None and gain(grown, best).share >= seeker.task.material:
             seeker.tried.others.append(best)
             return extended(seeker, *seeker.pruned(seeker.completed(grown)))

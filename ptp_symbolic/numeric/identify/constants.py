@@ -25,7 +25,7 @@ UNALIKE = 1e-3  # 1; false alarms of the test for larger validation windows; sta
 FEWEST_BLOCKS = 12  # 1; blocks: Student's interval is then 12 % wider than a normal one; derived
 MOST_BLOCKS = 200  # 1; blocks: the error of a standard deviation is then 5 %; derived
 RESAMPLES = 2000  # 1; draws: the 2.5 % quantile is good to 0.35 %; derived
-REPEATS = 8  # 1; of replays, parts of a cross-validation: 4 degrees of freedom, 25 %; derived
+REPEATS = 8  # 1; replays: 4 degrees of freedom are good to 25 %; folds (usual: 5 to 10); derived
 DEVIATIONS = 2.0  # 1; standard deviations that hold 95 %, Huber's loss 99 % efficient; derived
 SEED = 20130801  # 1; of every draw, so that equal logs have equal answers; arbitrary
 

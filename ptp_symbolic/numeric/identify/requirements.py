@@ -13,7 +13,7 @@ from ptp_symbolic.numeric.runtime.model import Model
 FloatArray = NDArray[np.float64]
 Allow = Callable[[FloatArray, FloatArray], FloatArray]
 
-QUOTIENT = SAME * SAME  # search coordinates; step of difference quotients, and past a boundary
+NUDGE = SAME * SAME  # search coordinates; step of difference quotients, and past a boundary
 
 
 def keep_possible(
@@ -86,8 +86,8 @@ class _Relation:
         slope = np.zeros(len(phi))
         for i in np.flatnonzero(self.about):
             ahead = phi.copy()
-            ahead[i] += QUOTIENT
-            slope[i] = (self.margin(ahead) - self.margin(phi)) / QUOTIENT
+            ahead[i] += NUDGE
+            slope[i] = (self.margin(ahead) - self.margin(phi)) / NUDGE
         return slope
 
     def boundary(self, phi: FloatArray, step: FloatArray) -> FloatArray:
@@ -121,7 +121,7 @@ class _Relation:
                 break
             by, slope = self.margin(phi), self.gradient(phi)
             inward = _inward(np.where(self.at_bound(phi, slope), 0.0, slope))
-            phi = np.clip(phi + inward * (QUOTIENT * abs(by) - by), *self.bounds)
+            phi = np.clip(phi + inward * (NUDGE * abs(by) - by), *self.bounds)
         return phi
 
 

@@ -14,7 +14,7 @@ from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, TUNING
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 
 FloatArray = NDArray[np.float64]
-MANY_RUNS = np.reciprocal(FALSE_ALARM)  # of which one is beyond what noise reaches, by chance
+MANY_RUNS = np.reciprocal(FALSE_ALARM)  # windows: one leaves a band of FALSE_ALARM by chance
 Block = NDArray[np.int64]  # [k]: to which block each row of a residual belongs, from 0 on
 
 
