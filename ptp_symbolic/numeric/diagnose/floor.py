@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.diagnose.fewer_samples import with_every_residual
 from ptp_symbolic.numeric.diagnose.left_over import Carried, left_over
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, mean_squares
-from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, POLES, TUNING
+from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, TUNING
 from ptp_symbolic.numeric.identify.noise import (
+    POLES,
     Noise,
     coloured_noise,
     hidden_from_differences,
@@ -96,9 +97,7 @@ def most_hidden(task: Task) -> FloatArray:
     differences of the signals show; 1 where it is declared.
     """
     signals = task.train[0].signals
-    return np.array(
-        [1.0 if s in task.declared_noise else _with_hidden(max(POLES)) for s in signals]
-    )
+    return np.array([1.0 if s in task.declared_noise else _with_hidden(POLES[-1]) for s in signals])
 
 
 def _with_hidden(pole: float) -> float:

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from scipy import optimize, stats
 
 from ptp_symbolic.numeric.identify.constants import (
+    DEVIATIONS,
     FAR,
     LEAST_CYCLES,
     ORDER,
-    POLES,
     ROUNDS,
     SEGMENT,
     TEST_ALARM,
@@ -28,6 +28,20 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.steady_noise import is_steady
 
 FloatArray = NDArray[np.float64]
+
+
+def _poles() -> tuple[float, ...]:
+    """Zero, and from the smallest correlation that a SEGMENT tells from none to a time constant of
+    half a SEGMENT, in steps of at most half the error that a SEGMENT leaves: 1 / sqrt(SEGMENT) in
+    the inverse hyperbolic tangent of a correlation, wherever it is (Fisher, 1915).
+    """
+    error = 1.0 / np.sqrt(SEGMENT)
+    first, last = DEVIATIONS * error, np.arctanh(1.0 - 2.0 / SEGMENT)
+    count = 1 + int(np.ceil((last - first) / (0.5 * error)))
+    return 0.0, *np.tanh(np.linspace(first, last, count)).tolist()
+
+
+POLES = _poles()  # of autoregressions that are tried as noise
 
 
 def white_noise(signal: FloatArray, time: FloatArray | None = None) -> float:
@@ -103,11 +117,11 @@ def coloured_noise(series: Sequence[FloatArray], least: float) -> Noise:
     allowed = likelihood >= likelihood[best] - 0.5 * float(stats.chi2.ppf(0.95, 1))
     most = max(f[1] for f, ok in zip(fits, allowed, strict=True) if ok)
     steady = any(
-        is_steady(series, float(POLES[k]), 1.0 - least**2 / fits[k][1], least)
+        is_steady(series, POLES[k], 1.0 - least**2 / fits[k][1], least)
         for k in np.flatnonzero(allowed)
     )
     rms = float(np.sqrt(fits[best][1]))
-    return Noise(rms, float(POLES[best]), float(np.sqrt(most)), steady)
+    return Noise(rms, POLES[best], float(np.sqrt(most)), steady)
 
 
 def most_in_quietest(runs: Sequence[Sequence[FloatArray]]) -> float:
@@ -117,7 +131,7 @@ def most_in_quietest(runs: Sequence[Sequence[FloatArray]]) -> float:
     Mean squares of an autoregression with pole a vary as those of n (1 - a^2) / (1 + a^2) normal
     numbers that are independent (Bartlett, 1946); a is the largest that is tried.
     """
-    pole, chance = float(max(POLES)), TEST_ALARM / max(len(runs), 1)
+    pole, chance = POLES[-1], TEST_ALARM / max(len(runs), 1)
     found = [np.inf]
     for parts in runs:
         values = np.concatenate(list(parts))
@@ -158,7 +172,7 @@ def neighbour_correlation(signal: FloatArray, time: FloatArray | None = None) ->
         shape = _windowed(_differenced(pole))[upper]
         return _likelihood(power, shape * np.mean(power / shape), degrees)
 
-    last = float(POLES[-1])
+    last = POLES[-1]
     best = optimize.minimize_scalar(lambda pole: -likelihood(pole), bounds=(0.0, last))
     allowed = -float(best.fun) - 0.5 * float(stats.chi2.ppf(0.95, 1))
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from ptp_symbolic.numeric.identify.constants import ORDER, POLES, SAME, SEGMENT, TEST_ALARM
-from ptp_symbolic.numeric.identify.noise import differences, hidden_from_differences
+from ptp_symbolic.numeric.identify.constants import ORDER, SAME, SEGMENT, TEST_ALARM
+from ptp_symbolic.numeric.identify.noise import POLES, differences, hidden_from_differences
 
 FloatArray = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ def is_missed_at_rest(
     are allowed for at 99 %.
     """
     seen = (slow / hidden_from_differences(pole)) ** 2
-    slowest, found, expected, degrees, variance = float(max(POLES)), 0.0, 0.0, 0.0, 0.0
+    slowest, found, expected, degrees, variance = POLES[-1], 0.0, 0.0, 0.0, 0.0
     for residual, signal in zip(series, simulated, strict=True):
         for first, last in stretches_at_rest(signal):
             rest = residual[first:last]
