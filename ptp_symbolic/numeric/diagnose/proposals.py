@@ -64,8 +64,9 @@ class Proposal:
 class Proposals:
     """The start of the declared model, sets to try, and candidates that the rows do not show.
 
-    `further` gives the sets to try where the best of `sets` leaves more than noise. `asked_for`
-    tells whether the rows prefer any set to none. `space` is None where the machine has no equation
+    `further` gives the sets to try where the best of `sets` leaves more than noise. `waves` are all
+    candidates with a frequency, also those of which the rows show no line. `asked_for` tells
+    whether the rows prefer any set to none. `space` is None where the machine has no equation
     space; then only the simulation searches.
     """
 
@@ -73,6 +74,7 @@ class Proposals:
     sets: tuple[Proposal, ...]
     further: Callable[[], tuple[Proposal, ...]]
     unseen: Candidates
+    waves: Candidates
     asked_for: bool
     space: EquationSpace | None
     regression: Regression | None
@@ -82,8 +84,9 @@ def propose(task: Task) -> Proposals:
     """Regress the residual torques and currents along the measured motion on all candidates."""
     start = declared_start(task)
     space = equation_space(task, start)
+    waves = tuple(c for c in task.candidates if c.locked is not None)
     if space is None:
-        return Proposals(start, (), tuple, task.candidates, False, None, None)
+        return Proposals(start, (), tuple, task.candidates, waves, False, None, None)
     values = first_fit(task, space, start)
     declared, around = _declared_rows(task, space, values), rows_around(space, values)
     candidates = at_best_delays(space, task.candidates, around, declared.weight)
@@ -104,7 +107,7 @@ def propose(task: Task) -> Proposals:
         return tuple(task.executor.map(refine, others))
 
     asked_for = bool(preferred.candidates)
-    return Proposals(values, sets, further, tuple(unseen), asked_for, space, rows)
+    return Proposals(values, sets, further, tuple(unseen), waves, asked_for, space, rows)
 
 
 def in_rows_of(

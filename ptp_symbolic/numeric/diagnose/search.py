@@ -2,7 +2,7 @@
 completed, pruned and grown until every candidate in it is needed and none outside would add to it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of, parted_task, takes_away_most
@@ -12,6 +12,7 @@ from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
+from ptp_symbolic.numeric.diagnose.output_lines import at_lines_of_outputs
 from ptp_symbolic.numeric.diagnose.proposals import (
     Proposal,
     Proposals,
@@ -48,16 +49,44 @@ def search(task: Task) -> Search:
     task.progress("fitting the declared model")
     if task.windows:
         seeker = _seeker(*over_whole_runs(task, proposals), proposals)
-        found = _soon_found(seeker)
+        seeker, found = _with_lines(seeker, _soon_found(seeker), _soon_found)
         if any(map(seeker.is_at_noise, (seeker.declared, *found))):
             return _from_declared(seeker, found)
+        task = replace(task, candidates=seeker.task.candidates)
+        proposals = seeker.proposals
         task.progress("fitting the declared model over windows")
     seeker = _seeker(*led_over_windows(task, proposals), proposals)
-    return _from_declared(seeker, _proposed(seeker))
+    found = _proposed(seeker)
+    if not task.windows:
+        seeker, found = _with_lines(seeker, found, _proposed)
+    return _from_declared(seeker, found)
 
 
 def _seeker(task: Task, declared: Trial, proposals: Proposals) -> Seeker:
     return Seeker(task, declared, proposals, carried_noise(task, declared.fit))
+
+
+def _with_lines(
+    seeker: Seeker, found: list[Trial], again: Callable[[Seeker], list[Trial]]
+) -> tuple[Seeker, list[Trial]]:
+    """The search and what it has `found`; or where that leaves more than noise, and waves draw
+    lines in the outputs, one that has them at these, and what that finds `again`.
+    """
+    every, before = [seeker.declared, *found], seeker.proposals
+    if any(map(seeker.is_at_noise, every)):
+        return seeker, found
+    seeker.task.progress("looking for waves of any frequency in the simulated outputs")
+    beside = ranked([t for t in every if all(c.locked is None for c in t.candidates)])[0]
+    placed = at_lines_of_outputs(seeker.task, before.space, beside, before.waves)
+    if not placed:
+        return seeker, found
+    keys = {c.key for c in placed}
+    others = [c for c in seeker.task.candidates if c.key not in keys]
+    task = replace(seeker.task, candidates=(*others, *placed))
+    proposals = replace(propose(task), waves=before.waves)
+    task = replace(task, candidates=placed_by_rows(task.candidates, proposals))
+    lined = Seeker(task, seeker.declared, proposals, seeker.carried, seeker.tried)
+    return lined, again(lined)
 
 
 def _proposed(seeker: Seeker) -> list[Trial]:

@@ -84,7 +84,7 @@ def signatures(
         return _signature(candidate, brought(candidate, by_key), rows, weight)
 
     rows({})
-    wanted = [c for c in candidates if c.locked is None or c.locked[0] in c.shapes[0]]
+    wanted = [c for c in candidates if c.locked is None or has_its_frequency(c)]
     run = executor.map if executor else map
     found = list(run(signature, wanted))
     space.forget()
@@ -160,7 +160,7 @@ def locked_signatures(
     found = []
     lines: dict[str, tuple[float, float, int]] = {}
     for candidate in candidates:
-        if candidate.locked is None:
+        if candidate.locked is None or has_its_frequency(candidate):
             continue
         name, _ = candidate.locked
         if candidate.key not in lines:
@@ -169,21 +169,45 @@ def locked_signatures(
                 replace(candidate, shapes=still), brought(candidate, by_key), rows, weight
             )
             lines[candidate.key] = _strongest(space, candidate, residual, weight, constant.columns)
-        frequency, lowest, compared = lines[candidate.key]
-        limits = next(f for f in candidate.free if f.name == name)
-        if not max(lowest, limits.lower) < frequency < limits.upper:
-            continue
-        line = replace(
-            limits,
-            start=frequency,
-            scale=CYCLES_APART * frequency,
-            lower=max(lowest, limits.lower),
-        )
-        free = tuple(line if f.name == name else f for f in candidate.free)
-        shapes = tuple({**shape, name: frequency} for shape in candidate.shapes)
-        placed = replace(candidate, free=free, shapes=shapes, frequencies_compared=compared)
-        found.append(_signature(placed, brought(placed, by_key), rows, weight))
+        placed = at_line(candidate, *lines[candidate.key])
+        if placed is not None:
+            found.append(_signature(placed, brought(placed, by_key), rows, weight))
     return [s for s in found if s.columns.shape[1]]
+
+
+def has_its_frequency(candidate: Candidate) -> bool:
+    """Whether the frequency of a candidate that has one is known."""
+    return candidate.locked is not None and candidate.locked[0] in candidate.shapes[0]
+
+
+def at_line(
+    candidate: Candidate, frequency: float, lowest: float, compared: int
+) -> Candidate | None:
+    """The candidate at a frequency that was found among so many `compared`, the `lowest` of which
+    is its new bound; None where the frequency is out of its bounds.
+    """
+    assert candidate.locked is not None
+    name, _ = candidate.locked
+    limits = next(f for f in candidate.free if f.name == name)
+    least = max(lowest, limits.lower)
+    if not least < frequency < limits.upper:
+        return None
+    line = replace(limits, start=frequency, scale=CYCLES_APART * frequency, lower=least)
+    free = tuple(line if f.name == name else f for f in candidate.free)
+    shapes = tuple({**shape, name: frequency} for shape in candidate.shapes)
+    return replace(candidate, free=free, shapes=shapes, frequencies_compared=compared)
+
+
+def band(
+    space: EquationSpace, candidate: Candidate, span: float, speed: float
+) -> tuple[float, float]:
+    """The lowest frequency of which a few cycles fit into a `span` of its place, in s or turns, and
+    the highest that the windows of the rows do not average away where that goes at `speed`, per s.
+    """
+    assert candidate.locked is not None
+    limits = next(f for f in candidate.free if f.name == candidate.locked[0])
+    highest = ATTENUATED / max(2.0 * space.half_width * speed, 1e-12)
+    return max(LEAST_CYCLES / max(span, 1e-12), limits.lower), min(highest, limits.upper)
 
 
 def _strongest(
@@ -212,10 +236,7 @@ def _strongest(
     turn = 2.0 * np.pi if by_angle else 1.0
     place = (place - place.min()) / turn
     span = max(float(place.max()), 1e-12)
-    slow = float(np.quantile(np.abs(speed), 0.1)) / turn
-    limits = next(f for f in candidate.free if f.name == candidate.locked[0])
-    highest = min(ATTENUATED / max(2.0 * space.half_width * slow, 1e-12), limits.upper)
-    lowest = LEAST_CYCLES / span
+    lowest, highest = band(space, candidate, span, float(np.quantile(np.abs(speed), 0.1)) / turn)
     if highest <= lowest:
         return 0.0, 0.9 * lowest, 1
     width = 1.0 / (BINS_PER_CYCLE * highest)

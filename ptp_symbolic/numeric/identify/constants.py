@@ -4,7 +4,7 @@ One line each, in this form: value  # unit; quantity; source. A source is a deri
 rounding, from a distribution, from the definition of the quantity), or "scaled", "stated", "usual",
 "tested": nothing derives the number then. Of each of those, two sets of the build half (119, a dead
 band; 224, a perfect geared drive) are diagnosed with it halved and doubled (`python -m
-tests.benchmark constants`). Both are right as the table is and in all of the 66 rows: nothing in
+tests.benchmark constants`). Both are right as the table is and in all of the 68 rows: nothing in
 them hangs on one of these numbers, within a factor of two.
 
 Decisions and statistics come first, then robustness, effort, windows and rows, numerics. What a
@@ -43,6 +43,7 @@ CYCLES = 3  # 1; of two in turn: fits, weights and fits, states that are probed;
 TRIED = 3  # 1; alternatives that are followed; scaled
 LARGEST = 3  # effects; that a set may have, or gain after the first choice; stated
 SCREENED = 2  # sets, candidates; of those begun with few iterations that go on; scaled
+SCANNED = 100  # frequencies; simulated, at most: that costs as much as all fits do; scaled
 REFINEMENTS = 2  # 1; Gauss-Newton steps of a proposed set; scaled
 REPLAYS = 100  # runs; replayed with noisy inputs: a standard deviation is good to 7 %; derived
 ROUGH = 1e-2  # 1; error of simulations over the noise, while searching; scaled
