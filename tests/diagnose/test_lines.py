@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.output_lines import _place
 from ptp_symbolic.numeric.diagnose.regression import regression
 from ptp_symbolic.numeric.diagnose.signatures import Signature, _strongest
 from ptp_symbolic.numeric.diagnose.subsets import lines
@@ -126,3 +127,15 @@ def test_a_line_beside_a_larger_effect_is_found(hiding: float) -> None:
     (line,) = lines(found, scan)
     spacing = CYCLES_APART / (2.8 / (2.0 * np.pi))
     assert line.candidate.shapes[0]["n"] == pytest.approx(18.0, abs=spacing)
+
+
+def test_how_far_and_how_fast_a_place_goes() -> None:
+    """An axis that sways goes more slowly than 0.71 of its largest rate half of the time."""
+    time = np.linspace(0.0, 20.0, 4001)
+    space: Any = space_of(time, 1.4 * np.sin(2.0 * np.pi * time / 20.0))
+    trial: Any = SimpleNamespace(fit=SimpleNamespace(runs=space.runs))
+    turns, usual, rows = _place(space, trial, locked_to("angle"))
+    assert turns == pytest.approx(2.8 / (2.0 * np.pi))
+    assert usual == pytest.approx(1.4 / 20.0 * np.sqrt(0.5), rel=5e-3)  # rates over a window
+    assert rows == 4001
+    assert _place(space, trial, locked_to("time")) == (20.0, 1.0, 4001)
