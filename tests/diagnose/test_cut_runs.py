@@ -94,7 +94,7 @@ def test_windows_that_the_fitted_model_cannot_follow_are_cut_again(task: Task) -
         free=(free_parameter("b_pan", 0.0, 0.0, 1e-9),),
         fixed=heavy,
     )
-    part, trial = led_over_windows(known, Proposals(heavy, (), tuple, (), False, None, None))
+    part, trial = led_over_windows(known, Proposals(heavy, (), tuple, (), (), False, None, None))
     assert len(part.train) == 4
     assert len(part.validate) == 4
     assert part.few == part.train
