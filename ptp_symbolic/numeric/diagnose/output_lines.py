@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.linear import projected_off, stacked_jacobian, stacked_residual
 from ptp_symbolic.numeric.diagnose.responses import response_columns
-from ptp_symbolic.numeric.diagnose.signatures import at_line, band
+from ptp_symbolic.numeric.diagnose.signatures import at_line, axes_of, band
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES_APART,
@@ -39,13 +39,13 @@ def at_lines_of_outputs(
         return ()
     for key in dict.fromkeys(c.key for c in waves):
         forms = [c for c in waves if c.key == key]
-        line = None if key in trial.keys else _strongest(task, space, trial, forms[0])
+        line = None if key in trial.keys else _line(task, space, trial, forms[0])
         placed = [at_line(form, *line) for form in forms] if line is not None else []
         found += [c for c in placed if c is not None]
     return tuple(found)
 
 
-def _strongest(
+def _line(
     task: Task, space: EquationSpace, trial: Trial, candidate: Candidate
 ) -> tuple[float, float, int] | None:
     """The frequency of the strongest line of a candidate, in Hz or cycles per turn, the lowest that
@@ -61,6 +61,9 @@ def _strongest(
     apart = int((highest - lowest) * span)
     if not rows / ROWS_PER_WINDOW < apart <= SCANNED:
         return None
+    task.progress(
+        f"simulating {candidate.key} at all frequencies, {apart} of which can be told apart"
+    )
     away = stacked_jacobian(trial.fit)
     residual = projected_off(stacked_residual(trial.fit)[:, None], away)[:, 0]
 
@@ -81,11 +84,10 @@ def _strongest(
 
 def _place(space: EquationSpace, trial: Trial, candidate: Candidate) -> tuple[float, float, int]:
     """How far the place goes that a wave is locked to, in s or turns, how fast it usually goes as
-    it moves, per s, and how many rows tell of it.
+    it moves, per s (an axis without rows: 1 rad/s), and how many rows tell of it.
     """
     assert candidate.locked is not None
-    runs, axes = trial.fit.runs, space.model.module.AXES
-    own = [axes.index(candidate.axis)] if candidate.axis else list(range(len(axes)))
+    runs, own = trial.fit.runs, axes_of(space, candidate)
     rows = int(np.isin(space.labels()[0], own).sum())
     if candidate.locked[1] == "time":
         return max(run.time[-1] for run in runs) - min(run.time[0] for run in runs), 1.0, rows
@@ -108,9 +110,7 @@ def _left(
     """
     assert candidate.locked is not None
     most = REACH * float(np.linalg.norm(residual))
-    shapes: Sequence[dict[str, float]] = [
-        {**shape, candidate.locked[0]: frequency} for shape in candidate.shapes
-    ]
+    shapes = [{**shape, candidate.locked[0]: frequency} for shape in candidate.shapes]
     found = [response_columns(task, trial, candidate, shape, most) for shape in shapes]
     tables = [columns.table for columns in found if columns is not None]
     if not tables:

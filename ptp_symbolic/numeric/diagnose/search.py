@@ -75,7 +75,6 @@ def _with_lines(
     every, before = [seeker.declared, *found], seeker.proposals
     if any(map(seeker.is_at_noise, every)):
         return seeker, found
-    seeker.task.progress("looking for waves of any frequency in the simulated outputs")
     beside = ranked([t for t in every if all(c.locked is None for c in t.candidates)])[0]
     placed = at_lines_of_outputs(seeker.task, before.space, beside, before.waves)
     if not placed:

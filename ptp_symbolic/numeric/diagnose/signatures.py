@@ -198,6 +198,12 @@ def at_line(
     return replace(candidate, free=free, shapes=shapes, frequencies_compared=compared)
 
 
+def axes_of(space: EquationSpace, candidate: Candidate) -> list[int]:
+    """Numbers of the axes on which a candidate acts: all of them where it has none of its own."""
+    axes = space.model.module.AXES
+    return [axes.index(candidate.axis)] if candidate.axis else list(range(len(axes)))
+
+
 def band(
     space: EquationSpace, candidate: Candidate, span: float, speed: float
 ) -> tuple[float, float]:
@@ -227,8 +233,7 @@ def _strongest(
     equation, _, time = space.labels()
     assert candidate.locked is not None
     by_angle = candidate.locked[1] == "angle"
-    axes = space.model.module.AXES
-    own = [axes.index(candidate.axis)] if candidate.axis else list(range(len(axes)))
+    own = axes_of(space, candidate)
     rows = np.isin(equation, own)
     place, speed = time[rows], np.ones(int(rows.sum()))
     if by_angle:
