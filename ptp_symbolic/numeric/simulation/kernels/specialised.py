@@ -77,8 +77,9 @@ class Specialised:
         self.module = module
         self.samples: dict[tuple[bytes, ...], int] = {}
         self.ready: dict[tuple[bytes, ...], IntArray] = {}
-        self.engines: list[llvm.ExecutionEngine] = []
         self.compiling = threading.Lock()
+        self.machine = _target_machine()
+        self.engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target_machine())
 
     def addresses(self, zeros: Zeros, samples: int) -> IntArray:
         """Addresses as `calls.addresses` gives them, for a run of so many `samples`."""
@@ -94,37 +95,44 @@ class Specialised:
             with global_compiler_lock:
                 own = usual.copy()
                 for name, place in SPECIALISED.items():
-                    own[place] = self._compiled(name, zeros)
+                    own[place] = self._compiled(name, f"{name}_{len(self.ready)}", zeros)
             self.ready[key] = own
         finally:
             self.compiling.release()
         return own
 
-    def _compiled(self, name: str, zeros: Zeros) -> int:
-        """The address of the function `name` compiled for `zeros`."""
+    def _compiled(self, name: str, own: str, zeros: Zeros) -> int:
+        """The address of the function `name` compiled for `zeros` as one of its `own` name.
+
+        Only its object code is kept, all of it in one engine: an engine of its own would hold a
+        hundred times as much.
+        """
         emitted = getattr(self.module, name).get_compile_result(SIGNATURES[name])
         text = str(emitted.library._get_module_for_linking())
-        code = llvm.parse_assembly(_for_zeros(text, emitted.fndesc.llvm_func_name, zeros))
+        code = llvm.parse_assembly(_for_zeros(text, emitted.fndesc.llvm_func_name, own, zeros))
         code.verify()
-        machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
-            cpu=llvm.get_host_cpu_name(),
-            features=llvm.get_host_cpu_features().flatten(),
-            opt=3,
-            jit=True,
-            codemodel="jitdefault",
-        )
         options = llvm.create_pipeline_tuning_options(speed_level=3)
         options.slp_vectorization = False
-        passes = llvm.create_pass_builder(machine, options)
+        passes = llvm.create_pass_builder(self.machine, options)
         passes.getModulePassManager().run(code, passes)
-        engine = llvm.create_mcjit_compiler(code, machine)
-        engine.finalize_object()
-        self.engines.append(engine)
-        return int(engine.get_function_address("specialised"))
+        found = llvm.ObjectFileRef.from_data(self.machine.emit_object(code))
+        self.engine.add_object_file(found)
+        self.engine.finalize_object()
+        return int(self.engine.get_function_address(own))
 
 
-def _for_zeros(text: str, symbol: str, zeros: Zeros) -> str:
-    """LLVM code of a function `specialised` that calls the one named `symbol` in `text` with copies
+def _target_machine() -> llvm.TargetMachine:
+    return llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
+        cpu=llvm.get_host_cpu_name(),
+        features=llvm.get_host_cpu_features().flatten(),
+        opt=3,
+        jit=True,
+        codemodel="jitdefault",
+    )
+
+
+def _for_zeros(text: str, symbol: str, own: str, zeros: Zeros) -> str:
+    """LLVM code of a function named `own` that calls the one named `symbol` in `text` with copies
     of x, p and c in which zeros are constants, and copies back the columns that are read.
     """
     begun = re.search(rf"^define [^\n]*@{re.escape(symbol)}\(", text, re.MULTILINE)
@@ -155,7 +163,7 @@ def _for_zeros(text: str, symbol: str, zeros: Zeros) -> str:
     return "\n".join(
         [
             *(line for line in whole if line.startswith("target")),
-            f"define i32 @specialised({listed}) {{",
+            f"define i32 @{own}({listed}) {{",
             "entry:",
             *lines,
             f"%status = call i32 @emitted({call})",
