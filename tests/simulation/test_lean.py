@@ -129,7 +129,7 @@ def test_it_is_compiled_once_and_only_where_it_pays(union, monkeypatch) -> None:
 
 @pytest.mark.skipif(not STATM.exists(), reason="memory is read as Linux tells it")
 def test_what_is_compiled_takes_little_memory(union, at_once) -> None:
-    """An engine and a target for every function took 0.9 MB each; its code takes ten kB."""
+    """In MB for every set of zeros: 2.8 with an engine for every function, 0.4 with one in all."""
 
     def resident() -> float:
         return int(STATM.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
@@ -140,4 +140,4 @@ def test_what_is_compiled_takes_little_memory(union, at_once) -> None:
         steps.append(resident())
     compiled = len(specialised.specialised(union.module).ready)
     assert compiled == 3 * warm
-    assert (steps[-1] - steps[warm - 1]) / (compiled - warm) < 1.5
+    assert (steps[-1] - steps[warm - 1]) / (compiled - warm) < 1.0

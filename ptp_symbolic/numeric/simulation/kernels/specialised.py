@@ -104,8 +104,8 @@ class Specialised:
     def _compiled(self, name: str, own: str, zeros: Zeros) -> int:
         """The address of the function `name` compiled for `zeros` as one of its `own` name.
 
-        Only its object code is kept, all of it in one engine: an engine of its own would hold a
-        hundred times as much.
+        Only its object code is kept, all of it in one engine: one of its own would hold 0.8 MB for
+        some kB of code.
         """
         emitted = getattr(self.module, name).get_compile_result(SIGNATURES[name])
         text = str(emitted.library._get_module_for_linking())
