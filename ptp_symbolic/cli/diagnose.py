@@ -57,6 +57,11 @@ def progress_line() -> Callable[[str], None]:
 @click.option(
     "--black-box", "rivals", is_flag=True, help="Compare with models that know no physics."
 )
+@click.option(
+    "--time-limit",
+    type=float,
+    help="Seconds that the search may take; default 300. The verdict and the report come on top.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print diagnosis.json instead of tables.")
 def diagnose(
     source: str,
@@ -64,6 +69,7 @@ def diagnose(
     validate: tuple[str, ...],
     out: Path,
     rivals: bool,
+    time_limit: float | None,
     as_json: bool,
 ) -> None:
     """Find the effect that a declared platform lacks, from its logs."""
@@ -75,8 +81,11 @@ def diagnose(
     check_writable(out)
     words = ["diagnose", "--platform", source, "--train", *train, "--validate", *validate]
     words += ["--black-box"] * rivals
+    words += [] if time_limit is None else ["--time-limit", f"{time_limit:g}"]
     command = shlex.join(["ptp-symbolic", *words, "--out", str(out)])
-    found = diagnose_platform(platform, train, validate, progress_line(), command, rivals)
+    found = diagnose_platform(
+        platform, train, validate, progress_line(), command, rivals, time_limit
+    )
     write_files_atomically(out, found.files)
     note_defaults(platform)
     if as_json:

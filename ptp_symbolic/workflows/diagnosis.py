@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import variants
 from ptp_symbolic.numeric.black_box.learners import require_library
 from ptp_symbolic.numeric.data import log_files, read_split_logs
@@ -16,6 +17,8 @@ from ptp_symbolic.workflows.provenance import provenance
 from ptp_symbolic.workflows.result import Output, Progress
 from ptp_symbolic.workflows.write_up import written_up
 
+TIME_LIMIT = 300.0  # s; of the search, unless another is asked for
+
 
 def diagnose_platform(
     platform: Platform,
@@ -24,13 +27,19 @@ def diagnose_platform(
     progress: Progress = lambda text: None,
     command: str | None = None,
     rivals: bool = False,
+    time_limit: float | None = None,
 ) -> Output:
     """Fit `platform` to the `train` logs, find what it lacks, judge on the `validate` logs.
 
     `command` is the command line that asks for it, for the report; with `rivals` what is found is
-    compared with models that know no physics. Raises InputError for logs and platforms that do not
-    fit each other, for a run in both, and for rivals without the library that they need.
+    compared with models that know no physics. After `time_limit`, in s (None: TIME_LIMIT), the
+    search ends with what it has tried by then; the verdict and the report follow. Raises InputError
+    for logs and platforms that do not fit each other, for a run in both, for a limit that is no
+    time, and for rivals without the library that they need.
     """
+    limit = TIME_LIMIT if time_limit is None else time_limit
+    if not limit > 0.0:
+        raise InputError(f"--time-limit: {limit:g} s is no time; give one above zero, such as 300.")
     if rivals:
         require_library()
     fitted, judging = log_files(train), log_files(validate)
@@ -44,7 +53,9 @@ def diagnose_platform(
         task = task_for(
             platform, model, train_logs, validate_logs, effect_keys(platform), executor, progress
         )
-        found = search(task)
+        found = search(task, limit)
+        if found.is_cut_short:
+            noted = (*noted, _cut_short(limit))
         verdict = decide(found)
         if verdict.leaves_more:
             noted = (*noted, *turned_inputs(found.task, found.declared))
@@ -52,3 +63,10 @@ def diagnose_platform(
         if rivals:
             beside = against_black_box(platform, task, found, verdict, validate_logs)
         return written_up(platform, task, found, verdict, noted, sources, beside)
+
+
+def _cut_short(time_limit: float) -> str:
+    return (
+        f"The search ended at its limit of {time_limit:g} s before all was tried: what is not named"
+        " may be found with a higher --time-limit."
+    )

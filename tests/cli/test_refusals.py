@@ -65,6 +65,16 @@ def test_logs(tmp_path: Path, content: str, expected: str) -> None:
     assert not out.exists()
 
 
+@pytest.mark.parametrize("limit", ["0", "-3", "nan"])
+def test_a_limit_that_is_no_time(tmp_path: Path, limit: str) -> None:
+    out = tmp_path / "out"
+    logs = ("--train", str(SAMPLE / "train"), "--validate", str(SAMPLE / "validate"))
+    arguments = ("--platform", str(SAMPLE / "platform.toml"), *logs, "--out", str(out))
+    said = refused("diagnose", *arguments, "--time-limit", limit)
+    assert f"--time-limit: {limit} s" in said and "such as 300" in said
+    assert not out.exists()
+
+
 @pytest.mark.parametrize(
     ("old", "new", "wanted"),
     [

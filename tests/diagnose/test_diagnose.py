@@ -33,6 +33,18 @@ def test_sample_made_by_mujoco_is_explained_by_base_tilt(sample) -> None:
         assert run["rmse_counts"] < 0.35
 
 
+def test_a_search_that_is_cut_short_says_so(sample) -> None:
+    """What the rows propose first is refitted and judged all the same."""
+    platform = read_platform(SAMPLE / "platform.toml")
+    short = diagnose_platform(
+        platform, [SAMPLE / "train"], [SAMPLE / "validate"], time_limit=1e-3
+    ).summary
+    assert [a["effect"] for a in short["added"]] == ["base_tilt"]
+    (remark,) = [text for text in short["remarks"] if "limit of 0.001 s" in text]
+    assert "--time-limit" in remark
+    assert not any("--time-limit" in text for text in sample.summary["remarks"])
+
+
 def test_rivals_explain_the_torque_of_a_leaning_base_and_predict_worse_in_free_motion(
     sample,
 ) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ptp_symbolic.numeric.diagnose import simpler_forms
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.gain import gain
@@ -96,11 +97,11 @@ def test_a_simpler_form_that_begins_far_off_is_fitted_to_its_end(
     full = trial(seeker, "cable_spring@pan")
     nothing = full.values | {"k1_cable_pan": 0.0, "k3_cable_pan": 0.0}
 
-    def far_off(whole: Trial, candidate: Candidate, form: Candidate) -> Trial:
+    def far_off(_: Seeker, whole: Trial, candidate: Candidate, form: Candidate) -> Trial:
         return fitted(task, [form], nothing, whole.fit.z)
 
-    monkeypatch.setattr(seeker, "begun_in_form", far_off)
-    (found,) = seeker.simplified(full).candidates
+    monkeypatch.setattr(simpler_forms, "begun_in_form", far_off)
+    (found,) = simpler_forms.simplified(seeker, full).candidates
     assert [f.name for f in found.free] == ["k1_cable_pan", "theta0_cable_pan"]
 
 

@@ -57,7 +57,7 @@ def test_what_leaves_only_noise_is_found_without_windows(
         found = roads.search(task)
     assert found.chosen.keys == ("cable_spring@pan",)
     assert found.chosen.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
-    assert not over_windows
+    assert not over_windows and not found.is_cut_short
 
 
 def test_windows_lead_where_no_set_leaves_only_noise(
@@ -68,6 +68,28 @@ def test_windows_lead_where_no_set_leaves_only_noise(
     with spring_table(tmp_path, gust=0.05, lasting=10) as task:
         roads.search(task)
     assert len(over_windows) == 1
+
+
+def test_a_search_whose_time_is_over_ends_with_what_the_rows_proposed(
+    tmp_path: Path, over_windows: list[Task]
+) -> None:
+    """Gusts hide the spring, so that a search with time goes on over windows."""
+    with spring_table(tmp_path, gust=0.05, lasting=10) as task:
+        found = roads.search(task, 1e-3)
+    assert found.is_cut_short and not over_windows
+    assert found.chosen.keys == ("cable_spring@pan",)
+    assert found.task.deadline == np.inf  # the verdict takes what time it needs
+
+
+def test_moves_of_a_search_whose_time_is_over_begin_nothing(seeker: Seeker) -> None:
+    """A torque instead of the spring, which every move would better."""
+    torque = alone(seeker, "constant_torque@pan")
+    moves = [seeker.grown(torque), seeker.exchanged(torque)]
+    assert not seeker.is_over and any(moves)
+    seeker.task = replace(seeker.task, deadline=0.0)
+    assert seeker.is_over
+    assert seeker.grown(torque) is None and seeker.exchanged(torque) is None
+    assert seeker.restarted(torque) is torque and not seeker.unseen(torque)
 
 
 def full_form(task: Task, key: str) -> Candidate:

@@ -18,6 +18,7 @@ from ptp_symbolic.numeric.diagnose.groups import Rival
 from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.simpler_forms import begun_in_form, simplified
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.identify.constants import MOST
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
@@ -119,8 +120,8 @@ def _off_bounds(seeker: Seeker, trial: Trial, fit: Fit) -> Trial | None:
         lacking = [f for f in forms(seeker.task, candidate) if {p.name for p in f.free} <= kept]
         if bound is not None and lacking:
             fullest = max(lacking, key=lambda form: len(form.free))
-            full = seeker.polished(seeker.begun_in_form(trial, candidate, fullest))
-            return seeker.simplified(full)
+            full = seeker.polished(begun_in_form(seeker, trial, candidate, fullest))
+            return simplified(seeker, full)
     return None
 
 

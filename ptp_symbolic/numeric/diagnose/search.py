@@ -2,8 +2,11 @@
 completed, pruned and grown until every candidate in it is needed and none outside would add to it.
 """
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of, parted_task, takes_away_most
 from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows, over_whole_runs
@@ -21,6 +24,7 @@ from ptp_symbolic.numeric.diagnose.proposals import (
 )
 from ptp_symbolic.numeric.diagnose.refits import is_near_floor, refitted_in
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.simpler_forms import simplified
 from ptp_symbolic.numeric.diagnose.starts import from_far_off, started
 from ptp_symbolic.numeric.diagnose.stepwise import by_effects_alone, extended, floated
 from ptp_symbolic.numeric.diagnose.through_windows import each_through_windows
@@ -40,8 +44,11 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 
 
-def search(task: Task) -> Search:
-    """Find the set of candidates that the training runs ask for."""
+def search(task: Task, time_limit: float = np.inf) -> Search:
+    """Find the set of candidates that the training runs ask for; after `time_limit`, in s, with
+    what has been tried by then.
+    """
+    task = replace(task, deadline=time.monotonic() + time_limit)
     task.progress("comparing all sets of effects along the measured motion")
     proposals = propose(task)
     task = replace(task, candidates=placed_by_rows(task.candidates, proposals))
@@ -50,7 +57,7 @@ def search(task: Task) -> Search:
     if task.windows:
         seeker = _seeker(*over_whole_runs(task, proposals), proposals)
         seeker, found = _with_lines(seeker, _soon_found(seeker), _soon_found)
-        if any(map(seeker.is_at_noise, (seeker.declared, *found))):
+        if seeker.is_over or any(map(seeker.is_at_noise, (seeker.declared, *found))):
             return _from_declared(seeker, found)
         task = replace(task, candidates=seeker.task.candidates)
         proposals = seeker.proposals
@@ -73,7 +80,7 @@ def _with_lines(
     lines in the outputs, one that has them at these, and what that finds `again`.
     """
     every, before = [seeker.declared, *found], seeker.proposals
-    if any(map(seeker.is_at_noise, every)):
+    if seeker.is_over or any(map(seeker.is_at_noise, every)):
         return seeker, found
     beside = ranked([t for t in every if all(c.locked is None for c in t.candidates)])[0]
     placed = at_lines_of_outputs(seeker.task, before.space, beside, before.waves)
@@ -97,7 +104,7 @@ def _proposed(seeker: Seeker) -> list[Trial]:
     if not proposals.asked_for and seeker.is_at_noise(best):
         return []
     found = _refitted(seeker, proposals.sets, [])
-    if not any(map(seeker.is_at_noise, (best, *found))):
+    if not (seeker.is_over or any(map(seeker.is_at_noise, (best, *found)))):
         found += _refitted(seeker, proposals.further(), found)
     return found
 
@@ -155,7 +162,8 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
     declared, before = _led_by(seeker, better), seeker.declared
     if declared is not before:
         seeker.declared = declared
-        if gain(declared, before).share >= seeker.task.material and not seeker.is_at_noise(better):
+        led_on = gain(declared, before).share >= seeker.task.material
+        if led_on and not seeker.is_over and not seeker.is_at_noise(better):
             seeker.tried.others.clear()
             return _from_declared(seeker, _proposed(seeker))
     if better is not best or declared is not before:
@@ -184,7 +192,7 @@ def _begun(seeker: Seeker, found: list[Trial]) -> tuple[Trial, list[Step]]:
     each = each_through_windows(
         task,
         seeker.declared,
-        seeker.proposals.unseen,
+        () if seeker.is_over else seeker.proposals.unseen,
         seeker.carried,
         is_white=pruned is not None,
     )
@@ -218,20 +226,21 @@ def _led_by(seeker: Seeker, trial: Trial) -> Trial:
 
 def _ended(seeker: Seeker, best: Trial, steps: list[Step]) -> Search:
     """The search that chose the trial, with each of its candidates in its simplest form."""
-    best = seeker.sharpened(seeker.simplified(best))
+    is_cut_short, best = seeker.is_over, seeker.sharpened(simplified(seeker, best))
     if seeker.is_at_noise(best):
         without = {s.candidate.key: s.without for s in steps}
     else:  # the search was brief
         without = {c.key: seeker.without(best, c) for c in best.candidates}
     members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
     return Search(
-        seeker.task,
+        replace(seeker.task, deadline=np.inf),
         seeker.declared,
         best,
         members,
         seeker.tried,
         seeker.proposals,
         seeker.carried,
+        is_cut_short,
     )
 
 
@@ -240,6 +249,8 @@ def _better_from_far_off(seeker: Seeker, best: Trial) -> Trial:
     do not tell, where that is likelier by more than noise makes of one parameter: misfits differ by
     minus twice the logarithm of the ratio of likelihoods.
     """
+    if seeker.is_over:
+        return best
     found = halving(seeker.task, from_far_off(seeker.task, seeker.proposals, best), 1)
     before, *after = misfits([best, *found])
     is_lower = bool(after) and before - after[0] > DEVIATIONS**2
@@ -251,7 +262,7 @@ def _in_windows(seeker: Seeker, best: Trial) -> Seeker | None:
     `in_windows_of`); None where it leaves only noise, where runs can be followed to their end, and
     where most of what is left stays in windows too: something else is missing then.
     """
-    if not best.candidates or seeker.is_at_noise(best):
+    if not best.candidates or seeker.is_over or seeker.is_at_noise(best):
         return None
     for cut in (parted_task, in_windows_of):
         part = cut(seeker.task, best)

@@ -1,5 +1,6 @@
-"""The moves of a search: sets are completed, pruned, grown, exchanged, made simpler by refits."""
+"""The moves of a search: sets are completed, pruned, grown, exchanged by refits."""
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -12,7 +13,6 @@ from ptp_symbolic.numeric.diagnose.nested import beside_declared
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import (
     expected_gain,
-    forms,
     fullest,
     polished,
     sharpened,
@@ -45,7 +45,10 @@ from ptp_symbolic.numeric.identify.constants import (
 
 @dataclass(eq=False)
 class Seeker:
-    """A search, with what was `tried`; `carried` is that of the trial that was `followed` last."""
+    """A search, with what was `tried`; `carried` is that of the trial that was `followed` last.
+
+    Once it `is_over`, its moves begin nothing new: they return what they were given, or nothing.
+    """
 
     task: Task
     declared: Trial
@@ -53,6 +56,11 @@ class Seeker:
     carried: Carried
     tried: Tried = field(default_factory=Tried)
     followed: Trial | None = None
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the time for the search has run out."""
+        return time.monotonic() > self.task.deadline
 
     def among(self, candidates: tuple[Candidate, ...]) -> "Seeker":
         """The search among other candidates, which knows what was tried so far."""
@@ -63,7 +71,7 @@ class Seeker:
         """The trial with each candidate that the rows cannot show, begun at its response in the
         outputs and part of the way there.
         """
-        found = responses(self.task, trial, self.proposals.unseen)
+        found = [] if self.is_over else responses(self.task, trial, self.proposals.unseen)
         return [t for r in found[:TRIED] for t in along(self.task, self.proposals, r, trial)]
 
     def follow(self, trial: Trial) -> None:
@@ -97,7 +105,7 @@ class Seeker:
         short windows: friction makes the misfit of whole runs a staircase. A set that was begun so
         is not again, unless it begins with values that the rows do not show.
         """
-        if not trial.candidates or self.is_at_noise(trial):
+        if not trial.candidates or self.is_over or self.is_at_noise(trial):
             return trial
         known = self.tried.anew.get(forms_of(trial.candidates))
         unseen = {c.key for c in self.proposals.unseen}
@@ -206,6 +214,8 @@ class Seeker:
         Where only noise is left, those are tried that the motion alone cannot show. One that
         promises far more than all others is tried before them.
         """
+        if self.is_over:
+            return None
         task = self.task
         least = MOST if briefly else LITTLE
         wanted = self.proposals.unseen if self.is_at_noise(trial) else task.candidates
@@ -253,7 +263,7 @@ class Seeker:
         """A set that fits better, with another candidate in the place of one of its own, of those
         that the rows find no worse; None where there is none.
         """
-        if self.proposals.regression is None:
+        if self.proposals.regression is None or self.is_over:
             return None
         sets = exchanges(self.proposals.regression, trial.candidates)[:TRIED]
         begun = [
@@ -264,37 +274,3 @@ class Seeker:
         self.tried.others.extend([*found, *(t for t in left if not is_near(t, [trial]))])
         best = ranked([trial, *found])[0]
         return best if best is not trial else None
-
-    def simplified(self, trial: Trial) -> Trial:
-        """Every candidate in the simplest of its forms that loses nothing clear and material. A
-        form is not fitted where linear prediction loses most, and not to its end where that
-        foresees a material loss and most is lost after some iterations.
-        """
-        for key in trial.keys:
-            candidate = next(c for c in trial.candidates if c.key == key)
-            simpler = sorted(
-                (c for c in forms(self.task, candidate) if len(c.free) < len(candidate.free)),
-                key=lambda c: len(c.free),
-            )
-            for form in simpler:
-                names = {f.name for f in form.free}
-                lost = {n: v for n, v in candidate.vanishing.items() if n not in names}
-                foreseen = expected_gain(trial, lost)
-                if foreseen > MOST:
-                    continue
-                smaller = self.begun_in_form(trial, candidate, form)
-                if foreseen >= self.task.material and gain(trial, smaller).share >= MOST:
-                    continue
-                smaller = self.polished(smaller)
-                if not self.is_earned(gain(trial, smaller), p_value(trial, lost), ()):
-                    trial = smaller
-                    break
-        return trial
-
-    def begun_in_form(self, trial: Trial, candidate: Candidate, form: Candidate) -> Trial:
-        """The trial refitted, by some iterations, with a candidate in another form."""
-        dropped = set(candidate.parameters) - set(form.parameters)
-        values = trial.values | {name: self.task.fixed[name] for name in dropped}
-        candidates = tuple(form if c is candidate else c for c in trial.candidates)
-        task, run = self.task, self.task.executor
-        return fitted(task, candidates, values, trial.fit.z, ITERATIONS, trial.fit, executor=run)

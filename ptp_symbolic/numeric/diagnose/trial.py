@@ -46,7 +46,8 @@ class Task:
     the declared noise (rms) of every input [nu] in its unit (None: as the logs show it),
     `declared_noise` names the outputs whose noise is declared, `resolution` is the noise of the
     finest angle in rad, `robust_below` that of `robust_tuning`, `material` the share of what is
-    left that earns a name; noise has no colour where it is `white`.
+    left that earns a name; noise has no colour where it is `white`. From `deadline` on, in s of
+    `time.monotonic`, a search tries nothing new.
     """
 
     model: Model
@@ -67,6 +68,7 @@ class Task:
     robust_below: float = NEARBY
     material: float = MATERIAL
     white: bool = False
+    deadline: float = np.inf
 
 
 @dataclass(frozen=True, eq=False)
