@@ -58,9 +58,9 @@ def grown_along_motion(
     `runs`; None where nothing does, or where the rows do not show all of the set.
 
     Declared values are not looked for: beside a remainder they stand in for much. What has grown
-    takes away a material part of the torque that the set leaves along the validation runs. The
-    torques of those whose keys are `lawless` went with the rate in another way than by their law,
-    in a set that may have lacked more: they have to keep it in one that has grown.
+    takes away a material part of the torque that the set leaves along the validation runs. Torques
+    go with the rate by their laws, loosely (see `breaks_its_law`). Those whose keys are `lawless`
+    went in another way in a set that may have lacked more: they keep theirs in one that has grown.
     """
     if found.regression is None or len(task.model.contacts):
         return None
@@ -149,9 +149,15 @@ class _Motion:
         if any(why_unconfirmed(fit, c, leaves_noise=False) for c in members):
             return False
         return not any(
-            breaks_its_law(self.task, self.space, candidates, fit.values, c)
+            breaks_its_law(
+                self.task,
+                self.space,
+                candidates,
+                fit.values,
+                c,
+                loosely=c.key not in self.lawless,
+            )
             for c in candidates
-            if c.key in self.lawless
         )
 
     def alike(self, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
