@@ -85,9 +85,9 @@ def test_moves_of_a_search_whose_time_is_over_begin_nothing(seeker: Seeker) -> N
     """A torque instead of the spring, which every move would better."""
     torque = alone(seeker, "constant_torque@pan")
     moves = [seeker.grown(torque), seeker.exchanged(torque)]
-    assert not seeker.is_over and any(moves)
+    assert not seeker.task.is_over and any(moves)
     seeker.task = replace(seeker.task, deadline=0.0)
-    assert seeker.is_over
+    assert seeker.task.is_over
     assert seeker.grown(torque) is None and seeker.exchanged(torque) is None
     assert seeker.restarted(torque) is torque and not seeker.unseen(torque)
 

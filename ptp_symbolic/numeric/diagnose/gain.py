@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from ptp_symbolic.numeric.diagnose.trial import Trial, huber_loss
+from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.blocks import (
     ELSEWHERE,
     SINGULAR,
@@ -36,7 +36,7 @@ from ptp_symbolic.numeric.identify.coordinates import to_search
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.innovations import innovations, prediction_error_filter
 from ptp_symbolic.numeric.identify.intervals import chance_of, project_out
-from ptp_symbolic.numeric.identify.robust_loss import weighted_median
+from ptp_symbolic.numeric.identify.robust_loss import huber_loss, weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import by_log
 

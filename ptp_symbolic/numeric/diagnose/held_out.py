@@ -14,7 +14,6 @@ from ptp_symbolic.numeric.diagnose.trial import (
     SHARP,
     Task,
     Trial,
-    huber_loss,
     mean_squares,
     tolerance_for,
 )
@@ -36,7 +35,12 @@ from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.intervals import project_out, reaches
 from ptp_symbolic.numeric.identify.joint_region import closest_in_ball, joint_region
 from ptp_symbolic.numeric.identify.least_squares import BIGGEST
-from ptp_symbolic.numeric.identify.robust_loss import MANY_RUNS, trimmed_mean, weighted_median
+from ptp_symbolic.numeric.identify.robust_loss import (
+    MANY_RUNS,
+    huber_loss,
+    trimmed_mean,
+    weighted_median,
+)
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import sizes
 from ptp_symbolic.numeric.identify.simulations import POLISH, Effort

@@ -8,11 +8,16 @@ from scipy import special, stats
 from scipy.optimize import brentq
 
 from ptp_symbolic.numeric.diagnose.fewer_samples import is_thinned
-from ptp_symbolic.numeric.diagnose.trial import Task, huber_loss, mean_squares
+from ptp_symbolic.numeric.diagnose.trial import Task, mean_squares
 from ptp_symbolic.numeric.identify.constants import MATERIAL, NOTHING, TEST_ALARM, TUNING
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.replays import replayed_squares
-from ptp_symbolic.numeric.identify.robust_loss import MANY_RUNS, trimmed_mean, weighted_median
+from ptp_symbolic.numeric.identify.robust_loss import (
+    MANY_RUNS,
+    huber_loss,
+    trimmed_mean,
+    weighted_median,
+)
 from ptp_symbolic.numeric.identify.run_groups import sizes
 
 FloatArray = NDArray[np.float64]

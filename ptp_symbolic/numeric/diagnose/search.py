@@ -57,7 +57,7 @@ def search(task: Task, time_limit: float = np.inf) -> Search:
     if task.windows:
         seeker = _seeker(*over_whole_runs(task, proposals), proposals)
         seeker, found = _with_lines(seeker, _soon_found(seeker), _soon_found)
-        if seeker.is_over or any(map(seeker.is_at_noise, (seeker.declared, *found))):
+        if seeker.task.is_over or any(map(seeker.is_at_noise, (seeker.declared, *found))):
             return _from_declared(seeker, found)
         task = replace(task, candidates=seeker.task.candidates)
         proposals = seeker.proposals
@@ -80,7 +80,7 @@ def _with_lines(
     lines in the outputs, one that has them at these, and what that finds `again`.
     """
     every, before = [seeker.declared, *found], seeker.proposals
-    if seeker.is_over or any(map(seeker.is_at_noise, every)):
+    if seeker.task.is_over or any(map(seeker.is_at_noise, every)):
         return seeker, found
     beside = ranked([t for t in every if all(c.locked is None for c in t.candidates)])[0]
     placed = at_lines_of_outputs(seeker.task, before.space, beside, before.waves)
@@ -104,7 +104,7 @@ def _proposed(seeker: Seeker) -> list[Trial]:
     if not proposals.asked_for and seeker.is_at_noise(best):
         return []
     found = _refitted(seeker, proposals.sets, [])
-    if not (seeker.is_over or any(map(seeker.is_at_noise, (best, *found)))):
+    if not (seeker.task.is_over or any(map(seeker.is_at_noise, (best, *found)))):
         found += _refitted(seeker, proposals.further(), found)
     return found
 
@@ -163,7 +163,7 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
     if declared is not before:
         seeker.declared = declared
         led_on = gain(declared, before).share >= seeker.task.material
-        if led_on and not seeker.is_over and not seeker.is_at_noise(better):
+        if led_on and not seeker.task.is_over and not seeker.is_at_noise(better):
             seeker.tried.others.clear()
             return _from_declared(seeker, _proposed(seeker))
     if better is not best or declared is not before:
@@ -192,7 +192,7 @@ def _begun(seeker: Seeker, found: list[Trial]) -> tuple[Trial, list[Step]]:
     each = each_through_windows(
         task,
         seeker.declared,
-        () if seeker.is_over else seeker.proposals.unseen,
+        seeker.proposals.unseen,
         seeker.carried,
         is_white=pruned is not None,
     )
@@ -226,7 +226,7 @@ def _led_by(seeker: Seeker, trial: Trial) -> Trial:
 
 def _ended(seeker: Seeker, best: Trial, steps: list[Step]) -> Search:
     """The search that chose the trial, with each of its candidates in its simplest form."""
-    is_cut_short, best = seeker.is_over, seeker.sharpened(simplified(seeker, best))
+    is_cut_short, best = seeker.task.is_over, seeker.sharpened(simplified(seeker, best))
     if seeker.is_at_noise(best):
         without = {s.candidate.key: s.without for s in steps}
     else:  # the search was brief
@@ -249,7 +249,7 @@ def _better_from_far_off(seeker: Seeker, best: Trial) -> Trial:
     do not tell, where that is likelier by more than noise makes of one parameter: misfits differ by
     minus twice the logarithm of the ratio of likelihoods.
     """
-    if seeker.is_over:
+    if seeker.task.is_over:
         return best
     found = halving(seeker.task, from_far_off(seeker.task, seeker.proposals, best), 1)
     before, *after = misfits([best, *found])
@@ -262,7 +262,7 @@ def _in_windows(seeker: Seeker, best: Trial) -> Seeker | None:
     `in_windows_of`); None where it leaves only noise, where runs can be followed to their end, and
     where most of what is left stays in windows too: something else is missing then.
     """
-    if not best.candidates or seeker.is_over or seeker.is_at_noise(best):
+    if not best.candidates or seeker.task.is_over or seeker.is_at_noise(best):
         return None
     for cut in (parted_task, in_windows_of):
         part = cut(seeker.task, best)

@@ -1,6 +1,5 @@
 """The moves of a search: sets are completed, pruned, grown, exchanged by refits."""
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -47,7 +46,8 @@ from ptp_symbolic.numeric.identify.constants import (
 class Seeker:
     """A search, with what was `tried`; `carried` is that of the trial that was `followed` last.
 
-    Once it `is_over`, its moves begin nothing new: they return what they were given, or nothing.
+    Once the task `is_over`, its moves begin nothing new: they return what they were given, or
+    nothing.
     """
 
     task: Task
@@ -56,11 +56,6 @@ class Seeker:
     carried: Carried
     tried: Tried = field(default_factory=Tried)
     followed: Trial | None = None
-
-    @property
-    def is_over(self) -> bool:
-        """Whether the time for the search has run out."""
-        return time.monotonic() > self.task.deadline
 
     def among(self, candidates: tuple[Candidate, ...]) -> "Seeker":
         """The search among other candidates, which knows what was tried so far."""
@@ -71,7 +66,7 @@ class Seeker:
         """The trial with each candidate that the rows cannot show, begun at its response in the
         outputs and part of the way there.
         """
-        found = [] if self.is_over else responses(self.task, trial, self.proposals.unseen)
+        found = [] if self.task.is_over else responses(self.task, trial, self.proposals.unseen)
         return [t for r in found[:TRIED] for t in along(self.task, self.proposals, r, trial)]
 
     def follow(self, trial: Trial) -> None:
@@ -105,7 +100,7 @@ class Seeker:
         short windows: friction makes the misfit of whole runs a staircase. A set that was begun so
         is not again, unless it begins with values that the rows do not show.
         """
-        if not trial.candidates or self.is_over or self.is_at_noise(trial):
+        if not trial.candidates or self.task.is_over or self.is_at_noise(trial):
             return trial
         known = self.tried.anew.get(forms_of(trial.candidates))
         unseen = {c.key for c in self.proposals.unseen}
@@ -214,7 +209,7 @@ class Seeker:
         Where only noise is left, those are tried that the motion alone cannot show. One that
         promises far more than all others is tried before them.
         """
-        if self.is_over:
+        if self.task.is_over:
             return None
         task = self.task
         least = MOST if briefly else LITTLE
@@ -263,7 +258,7 @@ class Seeker:
         """A set that fits better, with another candidate in the place of one of its own, of those
         that the rows find no worse; None where there is none.
         """
-        if self.proposals.regression is None or self.is_over:
+        if self.proposals.regression is None or self.task.is_over:
             return None
         sets = exchanges(self.proposals.regression, trial.candidates)[:TRIED]
         begun = [

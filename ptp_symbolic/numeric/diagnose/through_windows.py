@@ -39,10 +39,14 @@ def each_through_windows(
     is_white: bool,
 ) -> list[Trial]:
     """The parent with each of `candidates` but declared values, where windows lead to it (see
-    `through_windows`).
+    `through_windows`); those alone that are reached in time.
     """
     wanted = {c.key: c for c in candidates if not c.is_declared_value}
-    led = [through_windows(task, parent, c, carried, is_white=is_white) for c in wanted.values()]
+    led = [
+        through_windows(task, parent, c, carried, is_white=is_white)
+        for c in wanted.values()
+        if not task.is_over
+    ]
     return [t for t in led if t is not None]
 
 

@@ -2,6 +2,7 @@
 simulation.
 """
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
@@ -23,7 +24,7 @@ from ptp_symbolic.numeric.identify.constants import (
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter
 from ptp_symbolic.numeric.identify.evaluate import Evaluation, Tolerance, evaluate
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
-from ptp_symbolic.numeric.identify.robust_loss import weighted_median
+from ptp_symbolic.numeric.identify.robust_loss import huber_loss, weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import sizes
 from ptp_symbolic.numeric.identify.simulations import Effort
@@ -69,6 +70,11 @@ class Task:
     material: float = MATERIAL
     white: bool = False
     deadline: float = np.inf
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the time for the search has run out."""
+        return time.monotonic() > self.deadline
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,14 +245,6 @@ def misfits(trials: Sequence[Trial]) -> list[float]:
         mean = size @ bounded / size.sum()
         result.append(float(size.sum() * np.sum(np.log(np.maximum(mean, 1e-300)))))
     return result
-
-
-def huber_loss(square: FloatArray, squared_tuning: FloatArray) -> FloatArray:
-    """Huber's loss of the squares `square`, linear in their root beyond the tuning constant,
-    which comes squared; shapes broadcast.
-    """
-    linear = 2.0 * np.sqrt(squared_tuning * square) - squared_tuning
-    return np.where(square <= squared_tuning, square, linear)
 
 
 def ranked(trials: Sequence[Trial]) -> list[Trial]:

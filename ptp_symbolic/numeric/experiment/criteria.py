@@ -14,7 +14,6 @@ from itertools import combinations, permutations
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.diagnose.trial import huber_loss
 from ptp_symbolic.numeric.experiment.contender import (
     Contender,
     Refit,
@@ -26,6 +25,7 @@ from ptp_symbolic.numeric.experiment.contender import (
 from ptp_symbolic.numeric.experiment.machine import SCENARIOS, Conditions, Scenario, logged, play
 from ptp_symbolic.numeric.identify.constants import TUNING
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
+from ptp_symbolic.numeric.identify.robust_loss import huber_loss
 from ptp_symbolic.numeric.identify.run import Run
 
 FloatArray = NDArray[np.float64]

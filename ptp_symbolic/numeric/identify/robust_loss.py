@@ -1,4 +1,5 @@
-"""Cauchy's loss over blocks of a residual: windows that stand for themselves, or blocks of a run.
+"""Robust losses: Huber's, and Cauchy's over blocks of a residual, which are windows that stand for
+themselves, or blocks of a run.
 
 A window that began on the wrong side of a rest says nothing about the parameters, nor does the
 stretch of a run in which friction lets go a sample late: a mean square over all would pay for it
@@ -25,6 +26,14 @@ def blocks_of(time: FloatArray, signals: int, length: float) -> Block:
     elapsed = time - time[0]
     last = max(int(np.round(elapsed[-1] / length)), 1) - 1
     return np.repeat(np.minimum((elapsed / length).astype(np.int64), last), signals)
+
+
+def huber_loss(square: FloatArray, squared_tuning: FloatArray) -> FloatArray:
+    """Huber's loss of the squares `square`, linear in their root beyond the tuning constant,
+    which comes squared; shapes broadcast.
+    """
+    linear = 2.0 * np.sqrt(squared_tuning * square) - squared_tuning
+    return np.where(square <= squared_tuning, square, linear)
 
 
 def weighted_median(values: FloatArray, weight: FloatArray) -> FloatArray:
