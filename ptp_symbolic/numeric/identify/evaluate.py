@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.identify.behind_sensors import NEXT_TO_NONE
 from ptp_symbolic.numeric.identify.constants import ROUNDING, ROUNDS, SAME
 from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.settled_states import settle
 from ptp_symbolic.numeric.runtime.element_layout import contact_guards
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.integration import (
@@ -116,6 +117,7 @@ def start_state(
             s[:, : len(columns)] += np.outer(unknown.tangent * value, by_p[columns])
         x += unknown.tangent * value * scale
         s[:, len(columns) + index] = unknown.tangent * scale
+    settle(model, run, p, x, s, columns)
     return x, s
 
 

@@ -183,6 +183,8 @@ def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
     for number, (a, b) in enumerate(itertools.pairwise(edges)):
         piece = piece_of(run, slice(a, b + 1), number + 1)
         around = Around(run.time, run.measured, int(a))
+        if number:
+            piece = replace(piece, before=run.held_inputs[a - 1])
         windows.append(with_start(model, piece, around) if number else piece)
     return tuple(windows)
 
