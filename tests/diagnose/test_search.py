@@ -1,6 +1,4 @@
-"""The second road of the search: effects alone, where declared values were changed or more than
-noise is left; on logs whose motion is known in closed form.
-"""
+"""The second road of the search: effects alone; on logs whose motion is known in closed form."""
 
 import math
 from collections.abc import Iterator
@@ -11,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose import simpler_forms
+from ptp_symbolic.numeric.diagnose import simpler_forms, stepwise
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.gain import gain
@@ -62,6 +60,18 @@ def test_a_declared_value_beside_the_spring_is_taken_out(seeker: Seeker) -> None
     """Both leave noise alone: the set with fewer parameters is the answer."""
     larger = trial(seeker, "cable_spring@pan", "declared_value:c_x_payload")
     assert seeker.is_at_noise(larger)
+    found, _ = by_effects_alone(seeker, larger, [])
+    assert found.keys == ("cable_spring@pan",)
+
+
+def test_declared_values_are_taken_out_together_before_effects_are_searched(
+    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """None of two that make up for each other can be done without alone."""
+    declared = ("declared_value:c_x_payload", "declared_value:m_payload")
+    larger = trial(seeker, "cable_spring@pan", *declared)
+    assert seeker.is_at_noise(larger)
+    monkeypatch.setattr(stepwise, "extended", lambda *_: pytest.fail("a search for effects"))
     found, _ = by_effects_alone(seeker, larger, [])
     assert found.keys == ("cable_spring@pan",)
 

@@ -5,6 +5,7 @@ effects alone.
 from ptp_symbolic.numeric.diagnose.findings import Step
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.starts import taken_over
 from ptp_symbolic.numeric.diagnose.trial import Trial, ranked
 from ptp_symbolic.numeric.diagnose.tried import worth_keeping
 from ptp_symbolic.numeric.identify.constants import LARGEST, MOST
@@ -59,17 +60,26 @@ def floated(seeker: Seeker, best: Trial, steps: list[Step]) -> tuple[Trial, list
 def by_effects_alone(
     seeker: Seeker, best: Trial, steps: list[Step], end: Trial | None = None
 ) -> tuple[Trial, list[Step]]:
-    """The trial, or what forward selection from the declared model makes of effects alone, if that
-    fits better, or leaves only noise too with no more parameters. `end` is that of `extended`.
+    """The trial, or its effects alone where these leave only noise, or what forward selection from
+    the declared model makes of effects alone, if that fits better, or leaves only noise too with no
+    more parameters. `end` is that of `extended`.
 
     Declared values are known, and a few of them changed together imitate much: they scale all
-    torques of an axis that is driven by a voltage. A single one that leaves only noise is not
-    doubted here.
+    torques of an axis that is driven by a voltage. So they are taken out together: torque constant
+    and resistance change nothing but the viscous friction where one goes with the other, and none
+    can be done without alone then. A single one that leaves only noise is not doubted here.
     """
     quiet = seeker.is_at_noise(best)
     known = [c for c in best.candidates if c.is_declared_value]
     if quiet and (not known or len(best.candidates) == 1):
         return best, steps
+    effects = tuple(c for c in best.candidates if not c.is_declared_value)
+    if known and effects:
+        left = seeker.polished(ranked(taken_over(seeker.task, effects, best))[0])
+        if seeker.is_at_noise(left):
+            seeker.tried.others.append(best)
+            return seeker.pruned(left)
+        seeker.tried.others.append(left)
     alone = seeker.among(tuple(c for c in seeker.task.candidates if not c.is_declared_value))
     other, fewer = extended(alone, seeker.declared, [], end)
     no_larger = seeker.is_at_noise(other) and len(other.fit.free) <= len(best.fit.free)
