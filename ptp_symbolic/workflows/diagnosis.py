@@ -67,6 +67,6 @@ def diagnose_platform(
 
 def _cut_short(time_limit: float) -> str:
     return (
-        f"The search ended at its limit of {time_limit:g} s before all was tried: what is not named"
-        " may be found with a higher --time-limit."
+        f"The search came to its limit of {time_limit:g} s: what it had not tried by then may be"
+        " found with a higher --time-limit."
     )

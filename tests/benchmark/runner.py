@@ -25,7 +25,7 @@ from tests.benchmark.score import score
 from tests.benchmark.sets import generate
 from tests.benchmark.sizing import AbsorbedError
 
-TIME_OUT = 480.0  # s
+TIME_OUT = 480.0  # s; the limit of a search, 300 s, and what comes after it
 POLL = 0.25  # s between looks at the memory
 CHECKOUT = Path(__file__).resolve().parents[2]
 

@@ -30,8 +30,8 @@ class Search:
     """What the search found: the declared model, the chosen set (the same where nothing is added),
     what every member of it gains, all that was tried, and the noise of the inputs as the best model
     so far carries it to the outputs. `task` has the candidates with a frequency where a line was
-    found, and without those that have none. The search `is_cut_short` where its time ran out before
-    all was tried.
+    found, and without those that have none. The search `is_cut_short` where its time was over at
+    its end: some moves may not have been tried.
     """
 
     task: Task

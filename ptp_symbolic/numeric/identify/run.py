@@ -50,8 +50,7 @@ class Run:
 
     `outputs` [ny] gives the model output of every measured column, `counts` [ny] the size of one
     encoder count in rad or m (nan for analog signals); `start` [n] guesses the state at the first
-    sample. In a window, `before` [nu] is what the inputs were until then, and `hidden` are the
-    states beside the motion that no signal shows.
+    sample. In a window, `before` [nu] is what the inputs were until then.
     """
 
     name: str
@@ -66,7 +65,6 @@ class Run:
     start: FloatArray
     unknowns: tuple[StartUnknown, ...]
     before: FloatArray | None = None
-    hidden: tuple[int, ...] = ()
 
     @cached_property
     def stops(self) -> FloatArray:
@@ -172,26 +170,11 @@ def with_start(
                 guess=float(np.sign(rate)),
             )
         )
-    hidden: tuple[int, ...] = ()
     if around is not None:
-        hidden = _hidden(model, run)
         for state, signal in _memories_of_rest(model):
             if signal in run.signals:
                 start[state] = _rest_so_far(run, run.signals.index(signal), around)
-    return replace(run, start=start, unknowns=tuple(unknowns), hidden=hidden)
-
-
-def _hidden(model: Model, run: Run) -> tuple[int, ...]:
-    """States with a differential equation beside the motion that no signal shows, and that friction
-    does not set.
-    """
-    return tuple(
-        k
-        for k, name in enumerate(model.state_names[: model.moving])
-        if not name.startswith(("theta_", "omega_"))
-        and name not in run.signals
-        and model.zero_at_rest[k] < 0
-    )
+    return replace(run, start=start, unknowns=tuple(unknowns))
 
 
 def _memories_of_rest(model: Model) -> list[tuple[int, str]]:

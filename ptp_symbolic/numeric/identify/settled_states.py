@@ -23,18 +23,19 @@ def settle(
     s: FloatArray,
     columns: NDArray[np.int64],
 ) -> None:
-    """Put the hidden states of a window that soon forget into the state x [n] with which it begins,
-    at p [np], and their derivatives by the parameters `columns` [nc], and by all that the start
-    depends on, into its tangents s [n, nc + nz]. A run that is no window begins as it does.
+    """Put the hidden states of a window that forget all but the share SAME of what they were within
+    FORGOTTEN into the state x [n] with which it begins, at p [np], and their derivatives by the
+    parameters `columns` [nc] and by the start unknowns [nz] into its tangents s [n, nc + nz]. Their
+    own laws are linear in them. A run that is no window begins as it does.
     """
-    if run.before is None or not run.hidden:
+    if run.before is None or not (hidden := _hidden(model, run)):
         return
     n, t, u = len(x), float(run.time[0]), run.before
     m, dx = np.zeros(len(model.mode_names)), np.zeros(n)
     fx, fu, fp = np.zeros((n, n)), np.zeros((n, len(u))), np.zeros((n, len(p)))
     model.module.initial_modes(t, x, u, p, m)
     model.module.jacobian(t, x, u, p, m, fx, fu, fp)
-    fast = [k for k in run.hidden if fx[k, k] * FORGOTTEN < np.log(SAME)]
+    fast = [k for k in hidden if fx[k, k] * FORGOTTEN < np.log(SAME)]
     if not fast:
         return
     model.module.mode_derivative(t, x, u, p, m, dx)
@@ -46,3 +47,16 @@ def settle(
     change = fx[fast] @ s
     change[:, : len(columns)] += fp[fast][:, columns]
     s[fast] = -np.linalg.solve(own, change)
+
+
+def _hidden(model: Model, run: Run) -> tuple[int, ...]:
+    """States with a differential equation beside the motion that no signal shows, and that friction
+    does not set.
+    """
+    return tuple(
+        k
+        for k, name in enumerate(model.state_names[: model.moving])
+        if not name.startswith(("theta_", "omega_"))
+        and name not in run.signals
+        and model.zero_at_rest[k] < 0
+    )

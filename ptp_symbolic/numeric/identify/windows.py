@@ -182,10 +182,10 @@ def split_run(model: Model, run: Run, length: float) -> tuple[Run, ...]:
     windows = []
     for number, (a, b) in enumerate(itertools.pairwise(edges)):
         piece = piece_of(run, slice(a, b + 1), number + 1)
-        around = Around(run.time, run.measured, int(a))
         if number:
-            piece = replace(piece, before=run.held_inputs[a - 1])
-        windows.append(with_start(model, piece, around) if number else piece)
+            around = Around(run.time, run.measured, int(a))
+            piece = with_start(model, replace(piece, before=run.held_inputs[a - 1]), around)
+        windows.append(piece)
     return tuple(windows)
 
 
