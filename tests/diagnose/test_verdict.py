@@ -20,8 +20,8 @@ from ptp_symbolic.numeric.diagnose.floor import (
 from ptp_symbolic.numeric.diagnose.held_out import (
     chance_of_larger,
     held_out_gain,
+    is_borne_out,
     is_quiet,
-    is_taken_back,
 )
 from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.trial import Trial, mean_squares
@@ -261,7 +261,7 @@ def test_validation_runs_that_improve_by_less_than_is_material_take_a_name_back(
     before, after = finished([2.0 * WAVE] * 4), finished([2.0 * left * WAVE] * 4)
     earned = held_out_gain(after, before)
     assert earned.share == pytest.approx(1.0 - left**2, rel=1e-9)
-    assert is_taken_back(earned, quiet=True, material=0.1) is taken_back
+    assert is_borne_out(earned, quiet=True, unusual=False, material=0.1) is not taken_back
 
 
 @pytest.mark.parametrize(("left", "taken_back"), [(0.6, False), (0.8, True)])
@@ -270,4 +270,20 @@ def test_beside_a_remainder_in_validation_runs_a_name_takes_away_more_than_it_le
 ) -> None:
     """The share of the mean square: 64 and 36 %."""
     before, after = finished([9.0 * WAVE] * 4), finished([9.0 * left * WAVE] * 4)
-    assert is_taken_back(held_out_gain(after, before), quiet=False, material=0.1) is taken_back
+    earned = held_out_gain(after, before)
+    assert is_borne_out(earned, quiet=False, unusual=False, material=0.1) is not taken_back
+
+
+@pytest.mark.parametrize(
+    ("third", "unusual", "borne_out"), [(2.2, False, True), (2.2, True, False), (1.2, True, True)]
+)
+def test_beside_more_than_the_usual_noise_validation_runs_gain_clearly(
+    third: float, unusual: bool, borne_out: bool
+) -> None:
+    """Two of three runs go from 2 to 1.2 times their noise; if the third goes to 2.2, the t
+    statistic is 1.26, which two degrees of freedom exceed by chance in 17 %.
+    """
+    before = finished([2.0 * WAVE] * 3)
+    after = finished([1.2 * WAVE, 1.2 * WAVE, third * WAVE])
+    earned = held_out_gain(after, before)
+    assert is_borne_out(earned, quiet=True, unusual=unusual, material=0.1) is borne_out

@@ -117,10 +117,15 @@ def leaves_noise_alone(trial: Trial, floor: Floor) -> bool:
     return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.most))
 
 
+def leaves_usual_noise(trial: Trial, floor: Floor) -> bool:
+    """Whether a trial leaves no more than is usual of noise, in any signal."""
+    return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.level))
+
+
 def leaves_noise_of_inputs(trial: Trial, floor: Floor) -> bool:
     """Whether a trial leaves what is usual where the noise of the inputs leaves more than that of
     the signals. It lasts for seconds, so that some effect always follows a part of it, in every
     block of time: where nothing more is left without an effect, that shows no lack.
     """
     most_by_inputs = np.any(floor.carried.usual > floor.noise)
-    return bool(most_by_inputs and np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.level))
+    return bool(most_by_inputs and leaves_usual_noise(trial, floor))

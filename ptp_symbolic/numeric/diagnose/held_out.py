@@ -48,12 +48,19 @@ from ptp_symbolic.numeric.identify.simulations import POLISH, Effort
 FloatArray = NDArray[np.float64]
 
 
-def is_taken_back(held_out: Gain, quiet: bool, material: float) -> bool:
-    """Whether the validation runs do not bear out what the training runs named. Where they show
-    more than noise (not `quiet`), a wrong effect may imitate what is missing, so that it has to
-    take away more than it leaves, as on training runs; else a `material` share.
+def is_borne_out(held_out: Gain, quiet: bool, unusual: bool, material: float) -> bool:
+    """Whether the validation runs bear out what the training runs named: they gain a `material`
+    share by it. Where they show more than noise (not `quiet`), a wrong effect may imitate what is
+    missing, so that it has to take away more than it leaves, as on training runs.
+
+    Where all may be noise, but training runs leave an `unusual` amount of it, what their inputs
+    carry there is large by chance, or an effect is missing. Any effect follows a part of either,
+    for seconds, in blocks left out as well; the validation runs have noise of their own, and must
+    gain clearly.
     """
-    return held_out.share < (material if quiet else MOST)
+    if not quiet:
+        return held_out.share >= MOST
+    return held_out.share >= material and (not unusual or held_out.is_clear(1))
 
 
 def left_by_best_values(

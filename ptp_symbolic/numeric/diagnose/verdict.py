@@ -15,14 +15,19 @@ from ptp_symbolic.numeric.diagnose.confirmed_sets import (
 )
 from ptp_symbolic.numeric.diagnose.fewer_samples import fitted_to_every_sample
 from ptp_symbolic.numeric.diagnose.findings import Refusals, Search, Step
-from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_alone
+from ptp_symbolic.numeric.diagnose.floor import (
+    Floor,
+    floor_of,
+    leaves_noise_alone,
+    leaves_usual_noise,
+)
 from ptp_symbolic.numeric.diagnose.gain import Gain
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
 from ptp_symbolic.numeric.diagnose.held_out import (
     held_out_fit,
     held_out_gain,
+    is_borne_out,
     is_quiet,
-    is_taken_back,
     left_by_best_values,
 )
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
@@ -209,11 +214,14 @@ def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refus
         held_out = held_out_gain(after, before) if final.candidates else None
         estimated = one.estimated or estimable(final.fit, task.input_noise, task.executor)
         floor, quiet = _floor_and_quiet(task, final, after, estimated)
-        if held_out is None or not is_taken_back(held_out, quiet, task.material):
+        at_noise = leaves_noise_alone(final, floor)
+        unusual = at_noise and not leaves_usual_noise(final, floor)
+        if held_out is None or is_borne_out(held_out, quiet, unusual, task.material):
             break
+        why = "takes away too little of the error of the validation runs, or not clearly"
         for key in final.keys:
-            refused.note(key, "takes away too little of the error of the validation runs")
-    word = word_of(final, one.confusable, quiet and leaves_noise_alone(final, floor))
+            refused.note(key, why)
+    word = word_of(final, one.confusable, quiet and at_noise)
     simulated = [s.compared for s in sets if s.estimated is None]
     return Verdict(
         word,
