@@ -69,13 +69,20 @@ counts_per_revolution = 65536
 """
 
 
-def log(seed: int, stiffness: float = STIFFNESS, gust: float = 0.0, lasting: int = 1) -> Log:
-    """Six seconds under a torque that changes every half second, and under one that is not logged
-    and changes after so many samples, `gust` (rms) in N m.
+def log(
+    seed: int,
+    stiffness: float = STIFFNESS,
+    gust: float = 0.0,
+    lasting: int = 1,
+    late: int = 0,
+) -> Log:
+    """Six seconds under a torque that changes every half second, so many samples `late`, and under
+    one that is not logged and changes after so many samples, `gust` (rms) in N m.
     """
     rng = np.random.default_rng(seed)
     torque = np.repeat(rng.uniform(-0.5, 0.5, SAMPLES // 50), 50)
-    acting = torque + gust * np.repeat(rng.standard_normal(SAMPLES // lasting), lasting)
+    acting = np.concatenate([np.zeros(late), torque[: SAMPLES - late]])
+    acting += gust * np.repeat(rng.standard_normal(SAMPLES // lasting), lasting)
     flow = np.zeros((3, 3))
     flow[0, 1], flow[1] = 1.0, [-stiffness / INERTIA, -DAMPING / INERTIA, 1.0 / INERTIA]
     step = expm(PERIOD * flow)

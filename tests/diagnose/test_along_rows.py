@@ -3,10 +3,12 @@ known in closed form, under gusts that no log holds.
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from ptp_symbolic.numeric.diagnose import along_rows
 from ptp_symbolic.numeric.diagnose.along_rows import AlongMotion, grown_along_motion
 from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
@@ -15,6 +17,7 @@ from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import fitted
 from ptp_symbolic.numeric.diagnose.verdict import _near_floor, _Set
+from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.intervals import estimates
 from tests.diagnose.spring_table import DAMPING, INERTIA, PAYLOAD, STIFFNESS, spring_table
 
@@ -42,6 +45,28 @@ def test_a_spring_is_found_beside_gusts_and_the_intervals_tell_how_well(tmp_path
     assert found.trial.values["k1_cable_pan"] == intervals["k1_cable_pan"].value
     left = np.concatenate([e.residual for e in found.trial.fit.evaluations])
     assert np.sqrt(np.mean(left**2)) > 20.0
+
+
+def test_validation_runs_are_seen_in_windows_as_short_as_training_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Here the shortest that the samples allow are the usual ones, 0.11 s: others are taken."""
+    spaces: list[EquationSpace] = []
+    make = along_rows.equation_space
+
+    def noted(*given: Any, shortest: bool = False, half_width: float | None = None) -> Any:
+        space = make(*given, half_width=0.15 if shortest else half_width)
+        assert space is not None
+        spaces.append(space)
+        return space
+
+    monkeypatch.setattr(along_rows, "equation_space", noted)
+    with spring_table(tmp_path, STIFFNESS, GUST) as task:
+        declared = fitted(task, (), declared_start(task), None)
+        assert grown_along_motion(task, propose(task), declared, task.train) is not None
+    train, validate = spaces
+    assert (train.runs, validate.runs) == (task.whole, task.validate)
+    assert (train.half_width, validate.half_width) == (0.15, 0.15)
 
 
 @pytest.mark.parametrize("lasting", [1, 50, 150])

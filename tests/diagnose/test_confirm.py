@@ -58,6 +58,18 @@ def test_an_effect_that_one_run_alone_can_show_is_let_be() -> None:
     assert unstable_without(fit_of(columns, [0.0, 0.0, 0.0, 1.0]), EFFECT) is None
 
 
+@pytest.mark.parametrize(("refitted", "left_out"), [(0.05, "run 0"), (0.15, None)])
+def test_a_fit_without_a_run_is_held_against_the_one_in_which_a_bad_run_weighs_less(
+    refitted: float, left_out: str | None
+) -> None:
+    """Five logs ask for 1, a bad one for -8: -0.5 in all, and 0.18 where that weighs less. Without
+    the first, linear prediction leaves nothing of it, which a fit confirms or not.
+    """
+    fit = fit_of([waves(1)[0]] * 6, [1.0] * 5 + [-8.0])
+    again = replace(fit, values={"k": refitted})
+    assert unstable_without(fit, EFFECT, lambda name: again) == left_out
+
+
 @pytest.mark.parametrize(("second", "is_so"), [(0.3, True), (-1.3, False)])
 def test_the_part_that_has_to_lead_is_the_larger_one(second: float, is_so: bool) -> None:
     """Of two amounts the first leads, which is one; where none has to, any is right."""

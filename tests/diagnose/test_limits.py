@@ -10,9 +10,13 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose import responses
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, within_reach
+from ptp_symbolic.numeric.diagnose.confirm import is_amount_known
+from ptp_symbolic.numeric.diagnose.gain import p_value
+from ptp_symbolic.numeric.diagnose.linear import effect_of
 from ptp_symbolic.numeric.diagnose.responses import response_columns
+from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
-from tests.identify.straight import run_of
+from tests.identify.straight import finished, run_of
 
 LARGEST = 24.0  # V
 TIME = np.linspace(0.0, 1.0, 101)
@@ -34,8 +38,30 @@ MODEL = cast(
 
 
 def test_a_limit_begins_just_below_the_largest_value_of_its_axis() -> None:
-    (f,) = within_reach(LIMIT, MODEL, np.array([100.0, LARGEST])).free
+    limit = within_reach(LIMIT, MODEL, np.array([100.0, LARGEST]))
+    (f,) = limit.free
     assert 0.9 * LARGEST < f.start < LARGEST
+    assert limit.is_limit(f)
+
+
+def test_a_limit_that_cuts_little_off_is_told_from_none_by_little() -> None:
+    """From the largest value on it does nothing: at half of it, the effect is by one half, not by
+    how much less it is than the million at which it is off in the equations; and a limit that is
+    known to 70 % is not told from none.
+    """
+    limit = within_reach(LIMIT, MODEL, np.array([0.0, LARGEST]))
+    (f,) = limit.free
+    slope = np.sin(0.1 * np.arange(300))
+    rng = np.random.default_rng(5)
+    residual = rng.standard_normal(300)
+    residual -= slope * (slope @ residual) / (slope @ slope)
+    for size, told in ((0.12, False), (3.0, True)):  # sqrt(150) * 0.12 = 1.5 deviations
+        table = [size * slope[:, None]]
+        fit = finished([residual], table, None, (f,), {"u_max_pan": 0.5 * LARGEST})
+        effect = effect_of(fit, limit.vanishing, table[0])
+        assert effect == pytest.approx(-size * slope)
+        assert is_amount_known(fit, limit) is told
+        assert (p_value(Trial((limit,), fit), limit.vanishing) < 0.01) is told
 
 
 def test_other_parameters_begin_where_they_did() -> None:
@@ -65,8 +91,8 @@ def test_a_response_stays_below_what_is_asked(monkeypatch: pytest.MonkeyPatch, m
     task = cast(Any, SimpleNamespace(candidates=(limit,)))
     found = response_columns(task, trial, limit, {}, most)
     assert found is not None
-    value = found.values(np.array([-5e5]))["u_max_pan"]
+    value = found.values(np.array([-5.0]))["u_max_pan"]
     assert limit.free[0].start <= value < LARGEST
     expected = np.maximum(ramp - value, 0.0)
     assert np.linalg.norm(expected) <= most
-    assert found.table[:, 0] * (value - 1e6) == pytest.approx(expected)
+    assert found.table[:, 0] * (value - LARGEST) == pytest.approx(expected)

@@ -30,7 +30,7 @@ FREE = (
     free_parameter("d_shaft_pan", 1.0, 0.0, 100.0),
 )
 NAMES = tuple(f.name for f in FREE)
-NOTHING_CARRIED = Carried(np.zeros(2), np.zeros(2))
+NOTHING_CARRIED = Carried(*[np.zeros(2)] * 3)
 
 
 @pytest.fixture(scope="module")

@@ -208,7 +208,7 @@ def test_a_set_that_leaves_white_noise_shows_that_none_of_another_colour_is_hidd
     """
     most: list[np.ndarray] = []
     monkeypatch.setattr(through_windows, "_first_lead", lambda *a: most.append(a[-1]))
-    task, nothing = seeker.task, Carried(np.zeros(1), np.zeros(1))
+    task, nothing = seeker.task, Carried(*[np.zeros(1)] * 3)
     found = through_windows.each_through_windows(
         task, seeker.declared, task.candidates[:1], nothing, is_white=is_white
     )

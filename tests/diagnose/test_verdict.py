@@ -46,7 +46,7 @@ EFFECT = cast(Any, object())
 
 def floor(carried: float = 0.0) -> Floor:
     one = np.ones(1)
-    return Floor(one, one, Carried(carried * one, carried * one))
+    return Floor(one, one, Carried(*[carried * one] * 3))
 
 
 def quiet(after: Fit, trained: Fit, carried: float = 0.0, left: Floats | None = None) -> bool:
@@ -113,7 +113,7 @@ def test_slow_noise_is_noise_unless_it_is_known_to_be_white(white: bool) -> None
     trial = Trial((), finished(series))
     runs = trial.fit.runs
     task = SimpleNamespace(declared_noise=(), train=runs, every_sample=runs, white=white)
-    found = floor_of(cast(Any, task), trial, Carried(np.zeros(1), np.zeros(1)))
+    found = floor_of(cast(Any, task), trial, Carried(*[np.zeros(1)] * 3))
     assert leaves_noise_alone(trial, found) is not white
     assert found.level[0] == pytest.approx(1.0 if white else np.sqrt(10.0), rel=0.2)
 
@@ -135,7 +135,7 @@ def test_slow_noise_goes_on_while_the_model_rests(goes_on: bool) -> None:
     runs = tuple(replace(r, measured=m) for r, m in zip(fit.runs, shown, strict=True))
     task = SimpleNamespace(declared_noise=(), train=runs, every_sample=runs, white=False)
     trial = Trial((), replace(fit, runs=runs))
-    found = floor_of(cast(Any, task), trial, Carried(np.zeros(1), np.zeros(1)))
+    found = floor_of(cast(Any, task), trial, Carried(*[np.zeros(1)] * 3))
     assert leaves_noise_alone(trial, found) is goes_on
 
 
@@ -216,7 +216,7 @@ def test_windows_are_held_to_the_usual_noise_and_not_to_the_most_that_may_be() -
         np.ones(1),
     )
     left = mean_squares(after.evaluations, after.runs)
-    wide = Floor(one, 1.9 * one, Carried(0.0 * one, 0.0 * one))
+    wide = Floor(one, 1.9 * one, Carried(*[0.0 * one] * 3))
     assert not is_quiet(left, np.full(28, 400), wide, own)
     assert is_quiet(left, np.full(28, 400), wide, after)
 

@@ -52,7 +52,7 @@ def test_noise_of_an_input_that_rules_is_said_unless_it_is_declared(
     torque = SignalDeclaration("tau_pan", "tau_pan", "N m", "input", noise=noise)
     platform = Platform("arm", "Arm", ("pan",), 9.81, (), (), (torque,))
     one = np.ones(1)
-    floor = Floor(one, one, Carried(carried * one, carried * one))
+    floor = Floor(one, one, Carried(*[carried * one] * 3))
     found = _carried_remarks(platform, floor)
     assert len(found) == said
     assert all("tau_pan" in text and "noise = 0.0" in text for text in found)

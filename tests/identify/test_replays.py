@@ -10,6 +10,7 @@ import pytest
 
 from ptp_symbolic.numeric.diagnose.held_out import left_by_best_values
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
+from ptp_symbolic.numeric.identify.evaluate import evaluate
 from ptp_symbolic.numeric.identify.fit import Fit, fit_parameters
 from ptp_symbolic.numeric.identify.intervals import (
     chance_of_zero,
@@ -18,7 +19,9 @@ from ptp_symbolic.numeric.identify.intervals import (
     project_out,
 )
 from ptp_symbolic.numeric.identify.replays import estimable, with_input_noise
+from ptp_symbolic.numeric.identify.run_inputs import with_inputs
 from ptp_symbolic.numeric.identify.simulations import Effort
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, stack, table
 from tests.identify.curves import Floats
 from tests.identify.straight import finished
 from tests.identify.test_windows import COUNT, FREE, INERTIA, MODEL, run_of
@@ -61,6 +64,28 @@ def test_replays_change_the_residual_as_noise_of_the_input_does() -> None:
 def test_silent_inputs_leave_a_fit_as_it_is() -> None:
     fit = accelerated(1)
     assert with_input_noise(fit, (0.0, 0.0)) is fit
+
+
+def test_inputs_that_change_between_samples_are_no_noise() -> None:
+    """A torque on a clock of its own, half a sample late, next to silent: replays hold it from
+    sample to sample, which moves the angle by counts.
+    """
+    fit = accelerated(1)
+    (run,), none = fit.runs, np.zeros(0, dtype=np.int64)
+    torque = 10.0 * TORQUE * np.sin(40.0 * TIME)
+    late = replace(
+        run,
+        inputs=stack([table(TIME + 0.005, torque), constant(0.0)]),
+        held_inputs=np.column_stack([torque, 0.0 * torque]),
+    )
+    p = MODEL.parameter_vector(dict(fit.values))
+    own, held = (
+        evaluate(MODEL, r, p, fit.z[0], none, True, fit.tolerance)
+        for r in (late, with_inputs(late, late.held_inputs))
+    )
+    assert np.max(np.abs(own.residual - held.residual)) > 0.5
+    shaken = with_input_noise(replace(fit, runs=(late,), evaluations=(own,)), (1e-9, 0.0)).shaken
+    assert np.max(np.abs(shaken[0])) < 1e-3
 
 
 def test_an_interval_is_as_wide_as_noise_of_the_input_makes_it() -> None:

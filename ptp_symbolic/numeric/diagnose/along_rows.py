@@ -198,9 +198,11 @@ class _Motion:
 
     def predicts_better(self, larger: Fit, smaller: Fit) -> bool:
         """Whether the values of one fit leave materially less torque along the validation runs than
-        those of another.
+        those of another, in windows as short as those of the training runs.
         """
-        space = equation_space(self.task, self.start, self.task.validate)
+        space = equation_space(
+            self.task, self.start, self.task.validate, half_width=self.space.half_width
+        )
         if space is None:
             return False
         vector = self.task.model.parameter_vector

@@ -175,21 +175,22 @@ def _declared_value(
 
 def within_reach(candidate: Candidate, model: Model, largest: FloatArray) -> Candidate:
     """The candidate; a limit that nothing reaches where it vanishes, such as a largest voltage,
-    begins just below the `largest` value [nu] in the logs of an input of its axis and unit.
+    vanishes from the `largest` value [nu] on that an input of its axis and unit has in the logs,
+    and begins just below.
     """
-
-    def begun(f: FreeParameter) -> FreeParameter:
+    free, vanishing = [], dict(candidate.vanishing)
+    for f in candidate.free:
         sizes = [
             size
             for name, size in zip(model.input_names, largest, strict=True)
             if name.endswith(f"_{candidate.axis}") and model.units[name] == model.units[f.name]
         ]
-        if not candidate.is_limit(f) or not max(sizes, default=0.0) > 0.0:
-            return f
-        start = float(np.clip(np.exp(-WIDE_STEP) * max(sizes), f.lower, f.upper))
-        return replace(f, start=start, scale=start)
-
-    return replace(candidate, free=tuple(begun(f) for f in candidate.free))
+        met = max(sizes, default=0.0)
+        if candidate.is_limit(f) and f.lower < met < f.upper:
+            start = float(np.clip(np.exp(-WIDE_STEP) * met, f.lower, met))
+            f, vanishing[f.name] = replace(f, start=start, scale=start, upper=met), met
+        free.append(f)
+    return replace(candidate, free=tuple(free), vanishing=vanishing)
 
 
 def vanished(model: Model, declared: Sequence[str]) -> dict[str, float]:

@@ -116,7 +116,7 @@ def unstable_without(fit: Fit, candidate: Candidate, refit: Refit | None = None)
     whole = effect_of(fit, candidate.vanishing, columns) + columns[:, own] @ step[own]
     effect = projected_off(whole[:, None], columns[:, others])[:, 0]
     mine = projected_off(columns[:, own], columns[:, others])
-    square, at = float(effect @ effect), to_search(fit.free, fit.values)
+    square, at = float(effect @ effect), to_search(fit.free, fit.values) + step
     if square == 0.0:
         return None
 

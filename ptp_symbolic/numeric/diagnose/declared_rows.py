@@ -30,10 +30,11 @@ def equation_space(
     start: Mapping[str, float],
     runs: Sequence[Run] | None = None,
     shortest: bool = False,
+    half_width: float | None = None,
 ) -> EquationSpace | None:
     """The equation space of the whole training runs, or of other `runs`, in windows as short as
-    noise allows with `shortest`. None where angles are missing, states are sampled or switched, or
-    rows are too few for the free parameters.
+    noise allows with `shortest`, or of a `half_width` in s. None where angles are missing, states
+    are sampled or switched, or rows are too few for the free parameters.
     """
     vector = task.model.parameter_vector
     varied = dict(start)
@@ -56,6 +57,7 @@ def equation_space(
             others,
             vector(varied),
             shortest,
+            half_width,
         )
     except InputError:
         return None

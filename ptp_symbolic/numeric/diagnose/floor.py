@@ -117,9 +117,10 @@ def leaves_noise_alone(trial: Trial, floor: Floor) -> bool:
     return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.most))
 
 
-def leaves_usual_noise(trial: Trial, floor: Floor) -> bool:
-    """Whether a trial leaves no more than is usual of noise, in any signal."""
-    return bool(np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.level))
+def leaves_unusual_noise(trial: Trial, floor: Floor) -> bool:
+    """Whether a trial leaves so much, in any signal, as the noise of the inputs seldom does."""
+    seldom = np.hypot(floor.noise, floor.carried.seldom)
+    return bool(np.any(left_over(trial.fit) > ABOVE_NOISE * seldom))
 
 
 def leaves_noise_of_inputs(trial: Trial, floor: Floor) -> bool:
@@ -128,4 +129,4 @@ def leaves_noise_of_inputs(trial: Trial, floor: Floor) -> bool:
     block of time: where nothing more is left without an effect, that shows no lack.
     """
     most_by_inputs = np.any(floor.carried.usual > floor.noise)
-    return bool(most_by_inputs and leaves_usual_noise(trial, floor))
+    return bool(most_by_inputs and np.all(left_over(trial.fit) <= ABOVE_NOISE * floor.level))

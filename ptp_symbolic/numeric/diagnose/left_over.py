@@ -9,7 +9,13 @@ from scipy.optimize import brentq
 
 from ptp_symbolic.numeric.diagnose.fewer_samples import is_thinned
 from ptp_symbolic.numeric.diagnose.trial import Task, mean_squares
-from ptp_symbolic.numeric.identify.constants import MATERIAL, NOTHING, TEST_ALARM, TUNING
+from ptp_symbolic.numeric.identify.constants import (
+    FALSE_ALARM,
+    MATERIAL,
+    NOTHING,
+    TEST_ALARM,
+    TUNING,
+)
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.replays import replayed_squares
 from ptp_symbolic.numeric.identify.robust_loss import (
@@ -26,10 +32,12 @@ FloatArray = NDArray[np.float64]
 @dataclass(frozen=True, eq=False)
 class Carried:
     """What the noise of the inputs leaves in every signal [ny], over its noise: as a root mean
-    square that is `usual`, and the `most` of it (see `most_of`).
+    square that is `usual`, one that is exceeded at FALSE_ALARM (`seldom`), and the `most` of it, at
+    TEST_ALARM (see `bound_of`).
     """
 
     usual: FloatArray
+    seldom: FloatArray
     most: FloatArray
 
 
@@ -65,13 +73,13 @@ def carried_noise(task: Task, fit: Fit) -> Carried:
     size = sizes(runs)
     left = np.array([_robust_mean(1.0 + np.nan_to_num(squares), size) - 1.0 for squares in every])
     left = np.maximum(left, NOTHING)
-    most = np.array([most_of(column) for column in left.T])
-    return Carried(np.sqrt(np.median(left, axis=0)), np.sqrt(most))
+    bounds = [[bound_of(c, chance) for c in left.T] for chance in (FALSE_ALARM, TEST_ALARM)]
+    return Carried(np.sqrt(np.median(left, axis=0)), *np.sqrt(bounds))
 
 
-def most_of(squares: FloatArray) -> float:
-    """The bound below which a mean square stays at 99 %, from some [n] that are like it; bounds
-    from eight, which tell the scale only roughly, were exceeded by 2 to 3 %.
+def bound_of(squares: FloatArray, chance: float) -> float:
+    """The bound that a mean square exceeds with a `chance`, from some [n] that are like it; 99 %
+    bounds from eight, which tell the scale only roughly, were exceeded by 2 to 3 %.
 
     It is a sum of squares of one normal number or more: the variance of its logarithm tells how
     many, the mean of that its scale (Bartlett and Kendall, 1946), and both are known from n alone.
@@ -85,4 +93,4 @@ def most_of(squares: FloatArray) -> float:
     variance = float(np.clip(np.var(logarithms, ddof=1), spread(many), spread(0.0)))
     freedom = np.exp(brentq(lambda log: spread(log) - variance, 0.0, many))
     scale = np.exp(np.mean(logarithms) - special.digamma(0.5 * freedom)) * 0.5 * freedom
-    return float(scale * stats.f.ppf(1.0 - TEST_ALARM, freedom, len(squares) * freedom))
+    return float(scale * stats.f.isf(chance, freedom, len(squares) * freedom))

@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.diagnose.floor import (
     Floor,
     floor_of,
     leaves_noise_alone,
-    leaves_usual_noise,
+    leaves_unusual_noise,
 )
 from ptp_symbolic.numeric.diagnose.gain import Gain
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, overtaking, rivals
@@ -105,13 +105,17 @@ def _decided(found: Search) -> Verdict:
     refused = Refusals()
     seeker = Seeker(task, found.declared, found.proposals, found.carried, found.tried)
     seeker.follow(found.chosen)
-    trial, steps, alike = _settled(seeker, found.chosen, list(found.members), refused)
+    trial, steps, alike = _each_borne_out(
+        seeker, *_settled(seeker, found.chosen, list(found.members), refused), refused
+    )
     task.progress("fitting every sample, and simulating the validation runs")
     declared, *final = _to_every_sample(found, trial)
     sets = _along_motion(seeker, trial, declared, sorted(refused.lawless))
     led = _near_floor(seeker, sets)
     if led is not None:
-        trial, steps, alike = _settled(seeker, *shortened(seeker, led), refused)
+        trial, steps, alike = _each_borne_out(
+            seeker, *_settled(seeker, *shortened(seeker, led), refused), refused
+        )
         declared, *final = _to_every_sample(found, trial)
         sets = []
     if trial.candidates:
@@ -160,6 +164,25 @@ def _settled(
         refused.note(step.candidate.key, why)
         trial, steps, fit = confirmed(seeker, *shortened(seeker, step.without), refused)
         alike = []
+    return trial, steps, alike
+
+
+def _each_borne_out(
+    seeker: Seeker, trial: Trial, steps: list[Step], alike: list[Rival], refused: Refusals
+) -> tuple[Trial, list[Step], list[Rival]]:
+    """What is left of a settled set, as `_settled` gives it, once effects are taken out without
+    which the others leave no materially larger error of the validation runs.
+    """
+    while len(steps) > 1:
+        after = held_out_fit(seeker.task, trial)
+        without = [held_out_fit(seeker.task, s.without) for s in steps]
+        shares = [held_out_gain(after, before).share for before in without]
+        weakest = int(np.argmin(shares))
+        if shares[weakest] >= seeker.task.material:
+            break
+        why = "the others leave as little of the error of the validation runs"
+        refused.note(steps[weakest].candidate.key, why)
+        trial, steps, alike = _settled(seeker, *shortened(seeker, steps[weakest].without), refused)
     return trial, steps, alike
 
 
@@ -215,7 +238,7 @@ def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refus
         estimated = one.estimated or estimable(final.fit, task.input_noise, task.executor)
         floor, quiet = _floor_and_quiet(task, final, after, estimated)
         at_noise = leaves_noise_alone(final, floor)
-        unusual = at_noise and not leaves_usual_noise(final, floor)
+        unusual = at_noise and leaves_unusual_noise(final, floor)
         if held_out is None or is_borne_out(held_out, quiet, unusual, task.material):
             break
         why = "takes away too little of the error of the validation runs, or not clearly"

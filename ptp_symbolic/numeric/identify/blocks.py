@@ -38,11 +38,24 @@ def block_length(series: Sequence[FloatArray]) -> float:
     The automatic rule for the circular block bootstrap, with the corrected constant of Patton,
     Politis and White (2009): (2 G^2 / D)^(1/3) n^(1/3), lags up to where correlations are noise.
     """
+    covariance = autocovariance(series)
+    spectrum = covariance[0] + 2.0 * float(np.sum(covariance[1:]))
+    if spectrum <= 0.0:
+        return 1.0
+    sizes = [len(s) for s in series if len(s) > 3]
+    slope = 2.0 * float(np.sum(np.arange(len(covariance)) * covariance))
+    length = (2.0 * slope**2 / (4.0 / 3.0 * spectrum**2)) ** (1.0 / 3.0) * sum(sizes) ** (1.0 / 3.0)
+    return float(np.clip(length, 1.0, max(sizes)))
+
+
+def autocovariance(series: Sequence[FloatArray]) -> FloatArray:
+    """Covariance of samples of stationary `series` [n] of one kind, so many samples apart, tapered
+    to zero beyond the lag up to which it is more than noise (Politis and Romano, 1995).
+    """
     centred = [s - s.mean() for s in series if len(s) > 3]
     n = sum(len(s) for s in centred)
-    variance = sum(float(s @ s) for s in centred) / max(n, 1)
-    if variance == 0.0:
-        return 1.0
+    if not n or not any(np.any(s) for s in centred):
+        return np.zeros(1)
     longest = max(len(s) for s in centred)
     most = min(longest - 1, int(np.ceil(np.sqrt(n))) + max(5, int(np.log10(n))) + 1)
     covariance = np.array(
@@ -51,16 +64,9 @@ def block_length(series: Sequence[FloatArray]) -> float:
             for k in range(most + 1)
         ]
     )
-    correlation = covariance / covariance[0]
-    bandwidth = 2 * _last_correlated(correlation, n)
-    lags = np.arange(1, min(bandwidth, most) + 1)
-    taper = np.clip(2.0 * (1.0 - lags / max(bandwidth, 1)), 0.0, 1.0)
-    slope = 2.0 * float(np.sum(taper * lags * covariance[lags]))
-    spectrum = covariance[0] + 2.0 * float(np.sum(taper * covariance[lags]))
-    if spectrum <= 0.0:
-        return 1.0
-    length = (2.0 * slope**2 / (4.0 / 3.0 * spectrum**2)) ** (1.0 / 3.0) * n ** (1.0 / 3.0)
-    return float(np.clip(length, 1.0, longest))
+    bandwidth = max(1, 2 * _last_correlated(covariance / covariance[0], n))
+    lags = np.arange(min(bandwidth, most) + 1)
+    return np.asarray(covariance[lags] * np.clip(2.0 * (1.0 - lags / bandwidth), 0.0, 1.0))
 
 
 def longest_block(logs: Sequence[FloatArray]) -> float:

@@ -24,13 +24,15 @@ def prepare_equation_space(
     others: Sequence[FloatArray],
     varied: FloatArray,
     shortest: bool = False,
+    half_width: float | None = None,
 ) -> EquationSpace:
     """The equation space of `model` over whole `runs`.
 
     Which rows count is decided at the parameters p [np] and at `others` (see `decide_rows`);
     `varied` are parameters that differ from p in all that may be searched, to see which of them act
-    on sensors and on further states; windows are as short as noise allows with `shortest`. Raises
-    InputError for a model with sampled states, and where an axis has no angle among the signals.
+    on sensors and on further states; windows are as short as noise allows with `shortest`, or of a
+    `half_width` in s. Raises InputError for a model with sampled states, and where an axis has no
+    angle among the signals.
     """
     layout = layout_of(model)
     axes = model.module.AXES
@@ -47,7 +49,8 @@ def prepare_equation_space(
     columns = [runs[0].signals.index(f"theta_{axis}") for axis in axes]
     noise = 1.0 / runs[0].weight[columns]
     period = usual_period(runs)
-    half_width = half_width_of(runs, columns, noise, period, shortest)
+    if half_width is None:
+        half_width = half_width_of(runs, columns, noise, period, shortest)
     resting = resting_rates(runs[0].counts[columns], noise, period, 0.5 * half_width)
     frictions = set(layout.friction_axis.tolist())
     resting = np.where([a in frictions for a in range(len(axes))], resting, 0.0)

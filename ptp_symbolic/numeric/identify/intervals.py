@@ -3,8 +3,8 @@
 The residuals of a simulation error fit are never white: what the noise of an input leaves in an
 angle may last for a whole run. The covariance is that of a jackknife over a few long blocks of
 time, the unknown starts projected out. Intervals never get narrower than those of white noise, as
-large as declared or as what is left, beside the noise of the inputs as replays carry it to the
-outputs.
+large as declared or as what is left, or of noise with the colour of what is left, beside the noise
+of the inputs as replays carry it to the outputs.
 """
 
 from collections.abc import Collection, Mapping
@@ -22,6 +22,7 @@ from ptp_symbolic.numeric.identify.blocks import (
     long_blocks,
     longest_block,
 )
+from ptp_symbolic.numeric.identify.coloured_errors import coloured_variances
 from ptp_symbolic.numeric.identify.constants import NOTHING, SAME
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, slopes, to_search, wrapped
 from ptp_symbolic.numeric.identify.fit import Fit
@@ -119,20 +120,30 @@ def chance_of_zero(fit: Fit, zero: Mapping[str, float], shape: Collection[str] =
     mixed = [np.any(part**2 > SAME, axis=(0, 1)) for part in (lost[:, :first], lost[:, first:])]
     if np.any(mixed[0] & mixed[1]):
         return 1.0
-    return chance_of(away[own], covariance[first:, first:], degrees[first:])
+    seen = ~np.any(lost[:, first:] ** 2 > SAME, axis=(0, 2))
+    return chance_of(away[own], covariance[first:, first:], degrees[first:], seen)
 
 
-def chance_of(away: FloatArray, covariance: FloatArray, degrees: FloatArray) -> float:
+def chance_of(
+    away: FloatArray, covariance: FloatArray, degrees: FloatArray, seen: BoolArray | None = None
+) -> float:
     """Probability that k coordinates are found so far `away` [k] from their truth, or further, with
     a `covariance` [k, k] that has `degrees` [k] of freedom: twice the smaller of two (Bonferroni).
 
     One is Hotelling's T^2 (1931) with the fewest degrees: coordinates that trade for each other are
     clear together. The other is Student's t of the clearest coordinate with its own degrees, times
-    k: where one block tells one of them alone, the others may be beyond doubt.
+    k: where one block tells one of them alone, the others may be beyond doubt. Those that are not
+    `seen` [k] by themselves have no error of their own; of no error at all are those that nothing
+    tells: 1 where that is so of all.
     """
+    error = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    told = error > NOTHING * np.abs(away)
+    if not told.any():
+        return 1.0
+    away, covariance, degrees = away[told], covariance[np.ix_(told, told)], degrees[told]
     k, left = len(away), float(degrees.min()) - len(away) + 1.0
-    error = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
-    alone = k * float(np.min(2.0 * stats.t.sf(np.abs(away) / error, degrees)))
+    chances = np.minimum(1.0, 2.0 * k * stats.t.sf(np.abs(away) / error[told], degrees))
+    alone = float(np.min(chances if seen is None else np.where(seen[told], chances, 1.0)))
     if k == 1:
         return alone
     square = float(away @ np.linalg.pinv(covariance, rcond=NOTHING, hermitian=True) @ away)
@@ -191,13 +202,18 @@ def _covariance(fit: Fit, columns: FloatArray) -> tuple[FloatArray, FloatArray, 
     residual = np.concatenate(residuals)
     inverse, lost = _inverse(columns.T @ columns)
     white = np.diag(inverse) * max(1.0, float(np.mean(residual**2)))
-    known = white * stats.norm.ppf(0.975) ** 2 + _squared_reach_of_inputs(fit, inverse, columns)
+    ends = np.cumsum([log.size for log in logs])[:-1]
+    coloured = coloured_variances(logs, np.split(columns @ inverse, ends))
+    own = np.maximum(white, coloured) * stats.norm.ppf(0.975) ** 2
+    known = own + _squared_reach_of_inputs(fit, inverse, columns)
     shifts = leave_blocks_out(residual, columns, label).shifts
     robust, degrees = jackknife_covariance(shifts), degrees_of_freedom(shifts)
     spread = np.maximum(np.diag(robust), 1e-300)
     wider = known > spread * stats.t.ppf(0.975, degrees) ** 2
     scale = np.where(wider, np.sqrt(known / spread) / stats.norm.ppf(0.975), 1.0)
-    return robust * np.outer(scale, scale), np.where(wider, np.inf, degrees), lost
+    covariance = robust * np.outer(scale, scale)
+    np.fill_diagonal(covariance, np.where(wider, known / stats.norm.ppf(0.975) ** 2, spread))
+    return covariance, np.where(wider, np.inf, degrees), lost
 
 
 def _squared_reach_of_inputs(fit: Fit, inverse: FloatArray, columns: FloatArray) -> FloatArray:

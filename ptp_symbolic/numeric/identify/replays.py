@@ -123,14 +123,16 @@ def with_input_noise(
     replays = -(-REPLAYS // len(fit.runs))
 
     def changes(number: int) -> FloatArray:
-        run, e, found = fit.runs[number], fit.evaluations[number], []
+        run, e = fit.runs[number], fit.evaluations[number]
+        found: list[FloatArray] = []
         noise = input_noise(run, declared_noise)
         rng = np.random.default_rng((SEED, number))
-        for _ in range(replays if np.any(noise) else 0):
-            noisy = noisier(run, noise, rng)
-            other = evaluate(fit.model, noisy, p, fit.z[number], none, False, fit.tolerance)
-            if other.failed is None:
-                found.append(other.residual - e.residual)
+        held = with_inputs(run, run.held_inputs)  # inputs may change between samples in the log
+        again = [held, *(noisier(run, noise, rng) for _ in range(replays))] if np.any(noise) else []
+        z, tolerance = fit.z[number], fit.tolerance
+        ends = [evaluate(fit.model, r, p, z, none, False, tolerance) for r in again]
+        if ends and not ends[0].failed:
+            found = [o.residual - ends[0].residual for o in ends[1:] if not o.failed]
         return project_out(np.column_stack(found), e.by_start) if found else np.zeros((run.size, 0))
 
     every = list((executor.map if executor else map)(changes, range(len(fit.runs))))

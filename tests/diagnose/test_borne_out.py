@@ -1,0 +1,45 @@
+"""Every effect of a set is held to the validation runs: some are of a machine that lacks one."""
+
+from pathlib import Path
+
+import pytest
+
+from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.diagnose.declared_fit import over_whole_runs
+from ptp_symbolic.numeric.diagnose.findings import Refusals
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.proposals import propose
+from ptp_symbolic.numeric.diagnose.seeker import Seeker
+from ptp_symbolic.numeric.diagnose.trial import fitted
+from ptp_symbolic.numeric.diagnose.verdict import _each_borne_out
+from tests.diagnose.spring_table import STIFFNESS, log, table_of
+
+VALIDATION = 3  # seed of the validation run
+
+
+@pytest.mark.parametrize("still_there", [True, False])
+def test_an_effect_that_validation_runs_do_not_show_is_taken_out_of_its_set(
+    still_there: bool, tmp_path: Path
+) -> None:
+    """A spring and a delay, which is gone on the day of the validation run: the set of both takes
+    away most of the error there as well, by the spring.
+    """
+
+    def logged(seed: int) -> Log:
+        return log(seed, STIFFNESS, late=2 if still_there or seed != VALIDATION else 0)
+
+    with table_of(tmp_path, logged) as task:
+        proposals = propose(task)
+        task, declared = over_whole_runs(task, proposals)
+        seeker = Seeker(task, declared, proposals, carried_noise(task, declared.fit))
+        both = tuple(
+            min((c for c in task.candidates if c.key == key), key=lambda c: len(c.free))
+            for key in ("cable_spring@pan", "input_delay@pan")
+        )
+        start = declared.values | {f.name: f.start for c in both for f in c.free}
+        whole = seeker.polished(fitted(task, both, start, None))
+        steps = [seeker.step(whole, c) for c in both]
+        refused = Refusals()
+        found, _, _ = _each_borne_out(seeker, whole, steps, [], refused)
+    assert ("input_delay@pan" in found.keys) is still_there
+    assert ("input_delay@pan" in refused.why) is not still_there
