@@ -118,7 +118,9 @@ def leaves_noise_alone(trial: Trial, floor: Floor) -> bool:
 
 
 def leaves_unusual_noise(trial: Trial, floor: Floor) -> bool:
-    """Whether a trial leaves so much, in any signal, as the noise of the inputs seldom does."""
+    """Whether a trial leaves more, in any signal, than noise of the colour that its residual shows
+    and what the noise of the inputs seldom exceeds.
+    """
     seldom = np.hypot(floor.noise, floor.carried.seldom)
     return bool(np.any(left_over(trial.fit) > ABOVE_NOISE * seldom))
 

@@ -53,10 +53,9 @@ def is_borne_out(held_out: Gain, quiet: bool, unusual: bool, material: float) ->
     share by it. Where they show more than noise (not `quiet`), a wrong effect may imitate what is
     missing, so that it has to take away more than it leaves, as on training runs.
 
-    Where all may be noise, but training runs leave an `unusual` amount of it, what their inputs
-    carry there is large by chance, or an effect is missing. Any effect follows a part of either,
-    for seconds, in blocks left out as well; the validation runs have noise of their own, and must
-    gain clearly.
+    Where all may be noise, but training runs leave an `unusual` amount of it, the noise is large by
+    chance, or an effect is missing. Any effect follows a part of either, for seconds, in blocks
+    left out as well; the validation runs have noise of their own, and must gain clearly.
     """
     if not quiet:
         return held_out.share >= MOST
