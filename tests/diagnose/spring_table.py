@@ -104,14 +104,19 @@ def spring_table(
 
 
 @contextmanager
-def table_of(folder: Path, logged: Callable[[int], Log]) -> Iterator[Task]:
-    """The task of the platform, written to `folder`, with what is `logged` by seed."""
+def table_of(
+    folder: Path, logged: Callable[[int], Log], validation: tuple[int, ...] = (3,)
+) -> Iterator[Task]:
+    """The task of the platform, written to `folder`, with what is `logged` by seed, two logs to be
+    fitted, and others for `validation`.
+    """
     path = folder / "table.toml"
     path.write_text(PLATFORM)
     platform = read_platform(path)
     model = emission.emit(variants.with_candidates(platform))
     train, validate = (
-        prepare_runs(model, platform, [logged(seed) for seed in seeds]) for seeds in ((1, 2), (3,))
+        prepare_runs(model, platform, [logged(seed) for seed in seeds])
+        for seeds in ((1, 2), validation)
     )
     free, known = declared.free_parameters(platform, model), declared.known_values(platform, model)
     noises = {signal.signal: signal.noise for signal in platform.signals}

@@ -2,7 +2,6 @@
 twice.
 """
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
@@ -11,8 +10,11 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from ptp_symbolic.numeric.diagnose.confirmed_sets import _excusing
 from ptp_symbolic.numeric.diagnose.left_over import Carried, bound_of, carried_noise, left_over
+from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import TEST_ALARM
+from ptp_symbolic.numeric.identify.fit import Fit
 from tests.identify.straight import finished
 from tests.identify.test_replays import SIGMA, accelerated, drifts
 
@@ -20,19 +22,22 @@ NOISE = 0.004  # N m
 RUNS = 3
 
 
+def task_of(fit: Fit, *noise: float | None) -> Any:
+    """The task to fit so many equal runs, with `noise` (N m) of the torques."""
+    return SimpleNamespace(
+        model=fit.model,
+        every_sample=fit.runs,
+        train=fit.runs,
+        windows=(),
+        input_noise=noise,
+        executor=None,
+    )
+
+
 def carried(noise: float) -> Carried:
     """What `noise` of the torque (N m) leaves of so many equal runs."""
     fit = accelerated(RUNS)
-    with ThreadPoolExecutor(1) as executor:
-        task = SimpleNamespace(
-            model=fit.model,
-            every_sample=fit.runs,
-            train=fit.runs,
-            windows=(),
-            input_noise=(noise, 0.0),
-            executor=executor,
-        )
-        return carried_noise(cast(Any, task), fit)
+    return carried_noise(task_of(fit, noise, 0.0), fit)
 
 
 def test_what_inputs_carry_is_the_noise_integrated_twice() -> None:
@@ -44,6 +49,20 @@ def test_what_inputs_carry_is_the_noise_integrated_twice() -> None:
     assert 0.85 < np.mean(each <= found.seldom[0]) <= 0.99
     assert 0.9 < np.mean(each <= found.most[0]) <= 1.0
     assert found.most[1] < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("noise", "own"), [((NOISE, 0.0), True), ((0.0, 0.0), False), ((None, 0.0), False)]
+)
+def test_declared_noise_excuses_no_more_of_what_is_left_than_of_an_effect(
+    noise: tuple[float | None, float], own: bool
+) -> None:
+    """The trial itself carries it, whatever others did; what the samples show may be no noise."""
+    fit = accelerated(RUNS)
+    others = Carried(*[np.full(2, 0.1)] * 3)
+    seeker = cast(Any, SimpleNamespace(task=task_of(fit, *noise), carried=others, followed=None))
+    found = _excusing(seeker, Trial((), fit))
+    assert found is others if not own else found.usual[0] == carried(NOISE).usual[0] > 1.0
 
 
 @pytest.mark.parametrize("freedom", [1, 4, 30])

@@ -1,6 +1,7 @@
 """What is left of a set when all that cannot be confirmed is taken out, or made simpler."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -16,6 +17,7 @@ from ptp_symbolic.numeric.diagnose.floor import (
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, gain_in_innovations
 from ptp_symbolic.numeric.diagnose.groups import Rival
 from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
+from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.simpler_forms import begun_in_form, simplified
@@ -131,12 +133,13 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> Weak
     """
     floor = floor_of(seeker.task, trial, seeker.carried)
     quiet = leaves_noise_alone(trial, floor)
+    excused = replace(floor, carried=_excusing(seeker, trial))
     by_gain = sorted(steps, key=lambda s: s.gain.share)
     refit = partial(without_run, seeker.task, trial)
     for step in by_gain:
         if not seeker.is_needed(step):
             return Weakness(step, _too_little(step.gain, seeker.task.material))
-        if leaves_noise_of_inputs(step.without, floor):
+        if leaves_noise_of_inputs(step.without, excused):
             return Weakness(step, "the noise of the inputs leaves as much without it")
         member = with_what_needs_it(step.candidate, trial.candidates)
         reason = why_unconfirmed(fit, member, quiet, refit)
@@ -154,6 +157,17 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> Weak
     if not answers_to_inputs(seeker.task, trial):
         return Weakness(by_gain[0], "with it the model no longer answers to its inputs")
     return None
+
+
+def _excusing(seeker: Seeker, trial: Trial) -> Carried:
+    """What the noise of the inputs leaves, which excuses what a trial leaves, and what is left
+    without one of its candidates as well. Noise that is declared is carried by the trial itself,
+    which may carry more than others; what differences of the samples tell may be no noise.
+    """
+    noise = seeker.task.input_noise
+    if None in noise or not any(noise) or trial is seeker.followed:
+        return seeker.carried
+    return carried_noise(seeker.task, trial.fit)
 
 
 def _doubt_beside_a_remainder(task: Task, trial: Trial, step: Step) -> str | None:
