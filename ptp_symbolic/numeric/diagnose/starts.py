@@ -80,8 +80,8 @@ def from_rows(
 
 def taken_over(task: Task, kept: Sequence[Candidate], trial: Trial) -> list[Trial]:
     """The declared model with some candidates `kept` of a trial, without the others: as they are,
-    and where they take over what the others did, by linear prediction; a limit is too far from
-    where it vanishes for that.
+    and where they take over what the others did, by linear prediction; a limit is switched
+    off too far away for that.
     """
     dropped = [c for c in trial.candidates if c not in kept]
     off = {name: task.fixed[name] for c in dropped for name in c.names}

@@ -8,6 +8,7 @@ import numpy as np
 from ptp_symbolic.numeric.diagnose.along_rows import grown_along_motion
 from ptp_symbolic.numeric.diagnose.confirmed_sets import (
     confirmed,
+    denied,
     doubtful,
     leaner_rival,
     shortened,
@@ -105,17 +106,13 @@ def _decided(found: Search) -> Verdict:
     refused = Refusals()
     seeker = Seeker(task, found.declared, found.proposals, found.carried, found.tried)
     seeker.follow(found.chosen)
-    trial, steps, alike = _undenied(
-        seeker, *_settled(seeker, found.chosen, list(found.members), refused), refused
-    )
+    trial, steps, alike = _settled(seeker, found.chosen, list(found.members), refused)
     task.progress("fitting every sample, and simulating the validation runs")
     declared, *final = _to_every_sample(found, trial)
     sets = _along_motion(seeker, trial, declared, sorted(refused.lawless))
     led = _near_floor(seeker, sets)
     if led is not None:
-        trial, steps, alike = _undenied(
-            seeker, *_settled(seeker, *shortened(seeker, led), refused), refused
-        )
+        trial, steps, alike = _settled(seeker, *shortened(seeker, led), refused)
         declared, *final = _to_every_sample(found, trial)
         sets = []
     if trial.candidates:
@@ -134,8 +131,8 @@ def _settled(
     seeker: Seeker, chosen: Trial, members: list[Step], refused: Refusals
 ) -> tuple[Trial, list[Step], list[Rival]]:
     """What is confirmed of a chosen set, or of one that predicts better or is simpler and predicts
-    as well; its steps, and the sets that it cannot be told from. What is not, is noted in `refused`
-    with the reason.
+    as well, and what of it validation runs do not deny; its steps, and the sets that it cannot be
+    told from. What is not, is noted in `refused` with the reason.
     """
     trial, steps, fit = confirmed(seeker, chosen, members, refused)
     alike: list[Rival] = []
@@ -158,31 +155,15 @@ def _settled(
         trial, steps, fit, alike = simplest_alike(seeker, trial, steps, fit, alike)
         floor = floor_of(seeker.task, trial, seeker.carried)
         step = doubtful(trial, steps, confusable(trial, alike), floor)
+        why = "others predict as well, and more than noise is left"
+        if step is None:
+            step = denied(seeker.task, trial, steps)
+            why = "without it the others clearly leave less of the error of the validation runs"
         if step is None:
             break
-        why = "others predict as well, and more than noise is left"
         refused.note(step.candidate.key, why)
         trial, steps, fit = confirmed(seeker, *shortened(seeker, step.without), refused)
         alike = []
-    return trial, steps, alike
-
-
-def _undenied(
-    seeker: Seeker, trial: Trial, steps: list[Step], alike: list[Rival], refused: Refusals
-) -> tuple[Trial, list[Step], list[Rival]]:
-    """What is left of a settled set, as `_settled` gives it, once effects are taken out that the
-    validation runs deny: without one, the others clearly leave less of their error, at 5 % over all
-    of the set.
-    """
-    while len(steps) > 1:
-        after = held_out_fit(seeker.task, trial)
-        gains = [held_out_gain(held_out_fit(seeker.task, s.without), after) for s in steps]
-        weakest = min(range(len(steps)), key=lambda k: gains[k].chance)
-        if not gains[weakest].is_clear(len(steps)):
-            break
-        why = "without it the others clearly leave less of the error of the validation runs"
-        refused.note(steps[weakest].candidate.key, why)
-        trial, steps, alike = _settled(seeker, *shortened(seeker, steps[weakest].without), refused)
     return trial, steps, alike
 
 

@@ -19,8 +19,8 @@ def coloured_variances(
     residuals: Sequence[FloatArray], influences: Sequence[FloatArray]
 ) -> FloatArray:
     """Variances [nf] of sums of the samples of `residuals` [n, ny], by log, each sample times its
-    `influences` [n * ny, nf], where every signal is stationary, with the covariance of its residual
-    (generalized least squares without its weights: Aitken, 1936; see `autocovariance`).
+    `influences` [n * ny, nf], where every signal is stationary: w' R w, summed over logs and
+    signals, with w a column of influences and R the matrix of `autocovariance` by distance in time.
     """
     ny = residuals[0].shape[1]
     total = np.zeros(influences[0].shape[1])

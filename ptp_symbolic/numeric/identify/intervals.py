@@ -132,9 +132,9 @@ def chance_of(
 
     One is Hotelling's T^2 (1931) with the fewest degrees: coordinates that trade for each other are
     clear together. The other is Student's t of the clearest coordinate with its own degrees, times
-    k: where one block tells one of them alone, the others may be beyond doubt. Those that are not
-    `seen` [k] by themselves have no error of their own; of no error at all are those that nothing
-    tells: 1 where that is so of all.
+    k: where one block tells one of them alone, the others may be beyond doubt. Coordinates that are
+    not `seen` [k] alone, only in combination, have no t. One without any error is told by nothing
+    and left out; 1 where all are.
     """
     error = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     told = error > NOTHING * np.abs(away)
@@ -204,15 +204,17 @@ def _covariance(fit: Fit, columns: FloatArray) -> tuple[FloatArray, FloatArray, 
     white = np.diag(inverse) * max(1.0, float(np.mean(residual**2)))
     ends = np.cumsum([log.size for log in logs])[:-1]
     coloured = coloured_variances(logs, np.split(columns @ inverse, ends))
-    own = np.maximum(white, coloured) * stats.norm.ppf(0.975) ** 2
+    normal = stats.norm.ppf(0.975)
+    own = np.maximum(white, coloured) * normal**2
     known = own + _squared_reach_of_inputs(fit, inverse, columns)
     shifts = leave_blocks_out(residual, columns, label).shifts
     robust, degrees = jackknife_covariance(shifts), degrees_of_freedom(shifts)
     spread = np.maximum(np.diag(robust), 1e-300)
     wider = known > spread * stats.t.ppf(0.975, degrees) ** 2
-    scale = np.where(wider, np.sqrt(known / spread) / stats.norm.ppf(0.975), 1.0)
+    variance = np.where(wider, known / normal**2, spread)
+    scale = np.sqrt(variance / spread)
     covariance = robust * np.outer(scale, scale)
-    np.fill_diagonal(covariance, np.where(wider, known / stats.norm.ppf(0.975) ** 2, spread))
+    np.fill_diagonal(covariance, variance)
     return covariance, np.where(wider, np.inf, degrees), lost
 
 

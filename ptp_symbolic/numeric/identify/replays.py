@@ -19,6 +19,7 @@ from ptp_symbolic.numeric.identify.noise import white_noise
 from ptp_symbolic.numeric.identify.robust_loss import weighted_median
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_inputs import with_inputs
+from ptp_symbolic.numeric.identify.simulations import DEFAULT_TOLERANCE
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
@@ -43,15 +44,17 @@ def replayed(
     noise: FloatArray,
     rng: np.random.Generator,
     times: int = 1,
+    tolerance: Tolerance = DEFAULT_TOLERANCE,
 ) -> tuple[FloatArray, FloatArray]:
     """Changes [k * ny, times] of the weighted residuals by input noise, each from another draw, and
-    the Jacobian by the start of the run; nan where it cannot be simulated.
+    the Jacobian by the start of the run; nan where it cannot be simulated. Inputs are held from
+    sample to sample, whatever the log has in between.
     """
     none = np.zeros(0, dtype=np.int64)
-    plain = evaluate(model, with_inputs(run, run.held_inputs), p, z, none, True, Tolerance())
+    plain = evaluate(model, with_inputs(run, run.held_inputs), p, z, none, True, tolerance)
     changes = np.full((run.size, times), np.nan)
     for column in changes.T:
-        other = evaluate(model, noisier(run, noise, rng), p, z, none, False, Tolerance())
+        other = evaluate(model, noisier(run, noise, rng), p, z, none, False, tolerance)
         if not (plain.failed or other.failed):
             column[:] = other.residual - plain.residual
     return changes, plain.by_start
@@ -119,21 +122,17 @@ def with_input_noise(
     """
     if not fit.free or fit.failed:
         return fit
-    p, none = fit.model.parameter_vector(dict(fit.values)), np.zeros(0, dtype=np.int64)
+    p = fit.model.parameter_vector(dict(fit.values))
     replays = -(-REPLAYS // len(fit.runs))
 
     def changes(number: int) -> FloatArray:
-        run, e = fit.runs[number], fit.evaluations[number]
-        found: list[FloatArray] = []
+        run, rng = fit.runs[number], np.random.default_rng((SEED, number))
         noise = input_noise(run, declared_noise)
-        rng = np.random.default_rng((SEED, number))
-        held = with_inputs(run, run.held_inputs)  # inputs may change between samples in the log
-        again = [held, *(noisier(run, noise, rng) for _ in range(replays))] if np.any(noise) else []
-        z, tolerance = fit.z[number], fit.tolerance
-        ends = [evaluate(fit.model, r, p, z, none, False, tolerance) for r in again]
-        if ends and not ends[0].failed:
-            found = [o.residual - ends[0].residual for o in ends[1:] if not o.failed]
-        return project_out(np.column_stack(found), e.by_start) if found else np.zeros((run.size, 0))
+        if not np.any(noise):
+            return np.zeros((run.size, 0))
+        every, _ = replayed(fit.model, run, p, fit.z[number], noise, rng, replays, fit.tolerance)
+        simulated = every[:, np.all(np.isfinite(every), axis=0)]
+        return project_out(simulated, fit.evaluations[number].by_start)
 
     every = list((executor.map if executor else map)(changes, range(len(fit.runs))))
     square = np.concatenate([np.mean(c**2, axis=0) for c in every])
