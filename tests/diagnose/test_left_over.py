@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from ptp_symbolic.numeric.diagnose.confirmed_sets import _excusing
 from ptp_symbolic.numeric.diagnose.left_over import Carried, bound_of, carried_noise, left_over
+from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import TEST_ALARM
 from ptp_symbolic.numeric.identify.fit import Fit
@@ -61,7 +61,7 @@ def test_declared_noise_excuses_no_more_of_what_is_left_than_of_an_effect(
     fit = accelerated(RUNS)
     others = Carried(*[np.full(2, 0.1)] * 3)
     seeker = cast(Any, SimpleNamespace(task=task_of(fit, *noise), carried=others, followed=None))
-    found = _excusing(seeker, Trial((), fit))
+    found = Seeker.excusing(seeker, Trial((), fit))
     assert found is others if not own else found.usual[0] == carried(NOISE).usual[0] > 1.0
 
 

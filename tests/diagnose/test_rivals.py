@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.gain import gain
-from ptp_symbolic.numeric.diagnose.groups import Rival, _comes_near, overtaking
+from ptp_symbolic.numeric.diagnose.groups import Rival, _comes_near, overtaking, unrefuted
+from ptp_symbolic.numeric.diagnose.left_over import Carried
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from tests.identify.straight import finished
 
@@ -67,3 +69,15 @@ def test_only_another_set_that_came_near_is_not_begun_again(other: Trial, near: 
     leaves 59 % of it, 2 squared 25 %.
     """
     assert _comes_near(other, trial(1.0, "offset", "delay")) is near
+
+
+@pytest.mark.parametrize(("carried", "kept"), [(0.0, ["a"]), (0.9, ["a"]), (1.6, ["a", "b"])])
+def test_what_noise_of_the_inputs_leaves_refutes_no_rival(carried: float, kept: list[str]) -> None:
+    """The chosen set leaves the noise of the signal, three others 1.01, 1.8 and 2.5 times that:
+    1.6 times it by the inputs are 1.9 in all; less by them than by the signal excuses nothing.
+    """
+    chosen = trial(1.0)
+    others = [trial(size, key) for size, key in ((1.01, "a"), (1.8, "b"), (2.5, "c"))]
+    found = [Rival(other, gain(chosen, other)) for other in others]
+    floor = Floor(np.ones(1), np.ones(1), Carried(*[np.array([carried])] * 3))
+    assert [r.trial.keys for r in unrefuted(found, floor, 0.1)] == [(key,) for key in kept]

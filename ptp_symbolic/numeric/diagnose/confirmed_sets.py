@@ -15,10 +15,9 @@ from ptp_symbolic.numeric.diagnose.floor import (
     leaves_noise_of_inputs,
 )
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, gain_in_innovations
-from ptp_symbolic.numeric.diagnose.groups import Rival
+from ptp_symbolic.numeric.diagnose.groups import Rival, is_clearly_more
 from ptp_symbolic.numeric.diagnose.held_out import held_out_fit, held_out_gain
 from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
-from ptp_symbolic.numeric.diagnose.left_over import Carried, carried_noise
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.simpler_forms import begun_in_form, simplified
@@ -107,11 +106,12 @@ def denied(task: Task, trial: Trial, steps: Sequence[Step]) -> Step | None:
 def simplest_alike(
     seeker: Seeker, chosen: Trial, steps: list[Step], chosen_fit: Fit, alike: list[Rival]
 ) -> tuple[Trial, list[Step], Fit, list[Rival]]:
-    """Of one effect and what cannot be told from it, the one with the fewest parameters, if
+    """Of one effect and what predicts as well as it, the one with the fewest parameters, if
     that is confirmed too; with its fit from `with_finite_differences`, `chosen_fit` of the first.
     """
     unchanged = chosen, steps, chosen_fit, alike
-    best = min(alike, key=lambda r: len(r.trial.fit.free), default=None)
+    as_good = [r for r in alike if not is_clearly_more(r.gain, len(alike), seeker.task.material)]
+    best = min(as_good, key=lambda r: len(r.trial.fit.free), default=None)
     if len(steps) != 1 or best is None or len(best.trial.fit.free) >= len(chosen.fit.free):
         return unchanged
     if len(best.trial.candidates) != 1:
@@ -146,7 +146,7 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> Weak
     """
     floor = floor_of(seeker.task, trial, seeker.carried)
     quiet = leaves_noise_alone(trial, floor)
-    excused = replace(floor, carried=_excusing(seeker, trial))
+    excused = replace(floor, carried=seeker.excusing(trial))
     by_gain = sorted(steps, key=lambda s: s.gain.share)
     refit = partial(without_run, seeker.task, trial)
     for step in by_gain:
@@ -170,17 +170,6 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> Weak
     if not answers_to_inputs(seeker.task, trial):
         return Weakness(by_gain[0], "with it the model no longer answers to its inputs")
     return None
-
-
-def _excusing(seeker: Seeker, trial: Trial) -> Carried:
-    """What the noise of the inputs leaves, which excuses what a trial leaves, and what is left
-    without one of its candidates as well. Noise that is declared is carried by the trial itself,
-    which may carry more than others; what differences of the samples tell may be no noise.
-    """
-    noise = seeker.task.input_noise
-    if None in noise or not any(noise) or trial is seeker.followed:
-        return seeker.carried
-    return carried_noise(seeker.task, trial.fit)
 
 
 def _doubt_beside_a_remainder(task: Task, trial: Trial, step: Step) -> str | None:

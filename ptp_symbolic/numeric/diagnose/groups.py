@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.floor import Floor, floor_of, leaves_noise_of_inputs
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
 from ptp_symbolic.numeric.diagnose.linear import (
     canonical_correlation,
@@ -60,8 +61,8 @@ class Similarity:
 
 
 def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
-    """Sets as large as the chosen one, of which these logs do not prefer the chosen one clearly and
-    materially, those that the search has begun already among them. `fit` is its fit, from
+    """Sets as large as the chosen one that these logs do not refute (`unrefuted`), those that the
+    search has begun already among them. `fit` is the fit of the chosen one, from
     `with_finite_differences`.
 
     A few iterations tell which come near the chosen set. A set that it cannot be told from by its
@@ -102,8 +103,20 @@ def rivals(seeker: Seeker, chosen: Trial, fit: Fit) -> list[Rival]:
         ):
             found.append(seeker.polished(trial))
     compared = [Rival(trial, gain(chosen, trial)) for trial in found]
-    tests, material = len(compared), task.material
-    return [r for r in compared if not is_clearly_more(r.gain, tests, material)]
+    return unrefuted(compared, floor_of(task, chosen, seeker.excusing(chosen)), task.material)
+
+
+def unrefuted(found: Sequence[Rival], floor: Floor, material: float) -> list[Rival]:
+    """Those over which the chosen set does not predict better by a `material` share, clearly so;
+    and those that leave no more than the noise of the inputs usually does: that would be left if
+    they were true, and another set may follow a part of it.
+    """
+    return [
+        rival
+        for rival in found
+        if leaves_noise_of_inputs(rival.trial, floor)
+        or not is_clearly_more(rival.gain, len(found), material)
+    ]
 
 
 def _comes_near(other: Trial, chosen: Trial) -> bool:

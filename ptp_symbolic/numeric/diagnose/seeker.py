@@ -74,6 +74,16 @@ class Seeker:
         if trial.candidates and trial is not self.followed:
             self.followed, self.carried = trial, carried_noise(self.task, trial.fit)
 
+    def excusing(self, trial: Trial) -> Carried:
+        """What the noise of the inputs leaves, which excuses what a trial leaves, and what others
+        leave in its place as well. Noise that is declared is carried by the trial itself, which may
+        carry more than others; what differences of the samples tell may be no noise.
+        """
+        noise = self.task.input_noise
+        if None in noise or not any(noise) or trial is self.followed:
+            return self.carried
+        return carried_noise(self.task, trial.fit)
+
     def is_at_noise(self, trial: Trial) -> bool:
         """Whether a trial leaves white noise alone."""
         return leaves_white_noise(trial, self.carried)

@@ -21,6 +21,7 @@ from ptp_symbolic.numeric.identify.constants import (
     LEAST_CYCLES,
     SAME,
     STEP,
+    TRIED,
 )
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.row_motion import row_motion
@@ -150,7 +151,7 @@ def locked_signatures(
     weight: FloatArray,
 ) -> list[Signature]:
     """Signatures of candidates with a frequency by the `rows` of `space` (see `rows_around`), at
-    the strongest line of the weighted `residual` [n]; `weight` [n].
+    each of the strongest lines of the weighted `residual` [n]; `weight` [n].
 
     A full scan over the place (time, or the angle of the candidate's axis): all frequencies from a
     few cycles over the whole range to those that the windows average away. What the wave moves may
@@ -158,7 +159,7 @@ def locked_signatures(
     """
     by_key = {c.key: c for c in reversed(candidates)}
     found = []
-    lines: dict[str, tuple[float, float, int]] = {}
+    lines: dict[str, list[tuple[float, float, int]]] = {}
     for candidate in candidates:
         if candidate.locked is None or has_its_frequency(candidate):
             continue
@@ -169,9 +170,10 @@ def locked_signatures(
                 replace(candidate, shapes=still), brought(candidate, by_key), rows, weight
             )
             lines[candidate.key] = _strongest(space, candidate, residual, weight, constant.columns)
-        placed = at_line(candidate, *lines[candidate.key])
-        if placed is not None:
-            found.append(_signature(placed, brought(placed, by_key), rows, weight))
+        for line in lines[candidate.key]:
+            placed = at_line(candidate, *line)
+            if placed is not None:
+                found.append(_signature(placed, brought(placed, by_key), rows, weight))
     return [s for s in found if s.columns.shape[1]]
 
 
@@ -222,9 +224,9 @@ def _strongest(
     residual: FloatArray,
     weight: FloatArray,
     carriers: FloatArray,
-) -> tuple[float, float, int]:
-    """The frequency in Hz, or in cycles per turn, of the strongest line of the residual torques,
-    the lowest that is a line, and how many can be told from one another.
+) -> list[tuple[float, float, int]]:
+    """The frequencies in Hz, or in cycles per turn, of the strongest lines of the residual torques,
+    each with the lowest that is a line, and with how many can be told from one another.
 
     `carriers` [n, m] is what the candidate does at no frequency, orthonormal when rows count by
     `weight`: over many cycles sines and cosines on them are orthogonal too, so that the squared
@@ -243,7 +245,7 @@ def _strongest(
     span = max(float(place.max()), 1e-12)
     lowest, highest = band(space, candidate, span, float(np.quantile(np.abs(speed), 0.1)) / turn)
     if highest <= lowest:
-        return 0.0, 0.9 * lowest, 1
+        return []
     width = 1.0 / (BINS_PER_CYCLE * highest)
     bins = (place / width).astype(np.int64)
     value = residual[rows] * weight[rows]
@@ -254,4 +256,6 @@ def _strongest(
         power += np.abs(np.fft.rfft(np.bincount(bins, weights=value * carrier), count)) ** 2
     power[(frequency < lowest) | (frequency > highest)] = 0.0
     apart = max(1, int((highest - lowest) * span))
-    return float(frequency[int(np.argmax(power))]), 0.9 * lowest, apart
+    (peaks,) = np.nonzero((power[1:-1] > power[:-2]) & (power[1:-1] >= power[2:]))
+    strongest = 1 + peaks[np.argsort(-power[1 + peaks])[:TRIED]]
+    return [(float(frequency[k]), 0.9 * lowest, apart) for k in strongest]

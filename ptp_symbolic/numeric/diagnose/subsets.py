@@ -36,24 +36,32 @@ FloatArray = NDArray[np.float64]
 
 
 def lines(found: Regression, scan: Callable[[FloatArray], Sequence[Signature]]) -> list[Signature]:
-    """Signatures of the candidates with a frequency, which `scan` gives at the strongest line of a
-    residual [n].
+    """Signatures of the candidates with a frequency, all forms of one at the same; `scan` gives
+    them at the strongest lines of a residual [n].
 
     A larger effect hides a line, or looks like one of another frequency; so what the best set
-    without lines leaves is scanned too. Of two frequencies of a candidate the one counts that takes
-    away more beside that set.
+    without lines leaves is scanned too. Powers are those of a line by itself, where slow motion and
+    gaps smear it: of all frequencies of a candidate the one counts that takes away most beside that
+    set, in its simplest form, as several harmonics of a false line take away much.
     """
     best = ranked_subsets(found, LARGEST)[0].candidates
     beside = [s for s in found.signatures if s.candidate in best]
-    strongest: dict[tuple[str, int], Signature] = {}
-    least: dict[tuple[str, int], float] = {}
-    for left in (remainder(found), remainder(found, beside)) if beside else (remainder(found),):
-        for line in scan(left):
-            key = line.candidate.key, line.candidate.member
-            square = float(found.weight @ remainder(found, [*beside, line]) ** 2)
-            if square < least.get(key, np.inf):
-                strongest[key], least[key] = line, square
-    return list(strongest.values())
+    every = [*scan(remainder(found)), *(scan(remainder(found, beside)) if beside else ())]
+
+    def left(line: Signature) -> float:
+        return float(found.weight @ remainder(found, [*beside, line]) ** 2)
+
+    simplest = [s for s in every if s.candidate.member == 0]
+    strongest: dict[str, float] = {}
+    for line in sorted(simplest, key=left):
+        strongest.setdefault(line.candidate.key, _frequency(line))
+    placed = [s for s in every if _frequency(s) == strongest.get(s.candidate.key)]
+    return list({_form(s.candidate): s for s in placed}.values())
+
+
+def _frequency(line: Signature) -> float:
+    assert line.candidate.locked is not None
+    return line.candidate.shapes[0][line.candidate.locked[0]]
 
 
 @dataclass(frozen=True, eq=False)
