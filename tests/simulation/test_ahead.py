@@ -6,8 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.numeric.simulation import ahead, held_samples, hybrid
-from ptp_symbolic.numeric.simulation.ahead import HELD_SAMPLES, RUNNER, SAMPLED_RUNNER
+from ptp_symbolic.numeric.simulation import ahead, fixed_runner, held_samples, hybrid
+from ptp_symbolic.numeric.simulation.ahead import (
+    FIXED_RUNNER,
+    HELD_SAMPLES,
+    RUNNER,
+    SAMPLED_RUNNER,
+)
 
 COMPILE = ahead.COMPILE
 
@@ -75,7 +80,8 @@ def test_what_is_compiled_ahead_is_what_runs_and_leaves_its_mark(mark: Path) -> 
     assert hybrid.runner.cache_info().currsize == 1
     assert mark.exists()
     assert not ahead._mark(SAMPLED_RUNNER).exists()
-    held_samples.loop.cache_clear()
-    exec(COMPILE[HELD_SAMPLES], {})
-    assert held_samples.loop.cache_info().currsize == 1
-    assert ahead._mark(HELD_SAMPLES).exists()
+    for kernel, made in ((HELD_SAMPLES, held_samples.loop), (FIXED_RUNNER, fixed_runner.runner)):
+        made.cache_clear()
+        exec(COMPILE[kernel], {})
+        assert made.cache_info().currsize == 1
+        assert ahead._mark(kernel).exists()

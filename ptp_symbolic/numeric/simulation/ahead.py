@@ -15,11 +15,13 @@ import numba
 from ptp_symbolic.numeric.simulation.kernels.records import source_stamp
 
 RUNNER, SAMPLED_RUNNER, HELD_SAMPLES = "runner", "sampled-runner", "held-samples"
+FIXED_RUNNER = "fixed-runner"
 PACKAGE = "ptp_symbolic.numeric.simulation"
 COMPILE = {
     RUNNER: f"from {PACKAGE}.hybrid import runner; runner(False)",
     SAMPLED_RUNNER: f"from {PACKAGE}.hybrid import runner; runner(True)",
     HELD_SAMPLES: f"from {PACKAGE}.held_samples import loop; loop()",
+    FIXED_RUNNER: f"from {PACKAGE}.fixed_runner import runner; runner()",
 }
 
 _begun: dict[str, "subprocess.Popen[bytes]"] = {}
