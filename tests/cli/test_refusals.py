@@ -1,4 +1,7 @@
-"""What the user gets wrong: one line, exit code 2, nothing written."""
+"""What the user gets wrong: one line, exit code 2, nothing written.
+
+Most is asked of the command line in this process; what libraries may print is looked for in others.
+"""
 
 import subprocess
 import sys
@@ -22,6 +25,13 @@ def refused(*arguments: str) -> str:
     return done.stderr
 
 
+def refused_here(call, *arguments: str) -> str:
+    done = call(*arguments)
+    assert done.code == 2, done.err
+    assert done.err.count("\n") == 1, done.err
+    return done.err
+
+
 def changed_platform(folder: Path, old: str, new: str) -> str:
     text = (SAMPLE / "platform.toml").read_text(encoding="utf-8")
     assert old in text
@@ -41,10 +51,11 @@ def changed_platform(folder: Path, old: str, new: str) -> str:
         ('unit = "kg"', 'unit = "m"', "m_payload"),
     ],
 )
-def test_platforms(tmp_path: Path, old: str, new: str, expected: str) -> None:
+def test_platforms(call, tmp_path: Path, old: str, new: str, expected: str) -> None:
     platform, out = changed_platform(tmp_path, old, new), tmp_path / "out"
     logs = ("--train", str(SAMPLE / "train"), "--validate", str(SAMPLE / "validate"))
-    assert expected in refused("diagnose", "--platform", platform, *logs, "--out", str(out))
+    arguments = ("diagnose", "--platform", platform, *logs, "--out", str(out))
+    assert expected in refused_here(call, *arguments)
     assert not out.exists()
 
 
@@ -56,21 +67,30 @@ def test_platforms(tmp_path: Path, old: str, new: str, expected: str) -> None:
         ("\x00\x01", "text"),
     ],
 )
-def test_logs(tmp_path: Path, content: str, expected: str) -> None:
+def test_logs(call, tmp_path: Path, content: str, expected: str) -> None:
     log, out = tmp_path / "log.csv", tmp_path / "out"
     log.write_text(content, encoding="utf-8")
     platform = str(SAMPLE / "platform.toml")
     arguments = ("diagnose", "--platform", platform, "--train", str(log), "--validate", str(log))
-    assert expected in refused(*arguments, "--out", str(out))
+    assert expected in refused_here(call, *arguments, "--out", str(out))
+    assert not out.exists()
+
+
+def test_a_log_in_a_process_of_its_own(tmp_path: Path) -> None:
+    log, out = tmp_path / "log.csv", tmp_path / "out"
+    log.write_text("", encoding="utf-8")
+    platform = str(SAMPLE / "platform.toml")
+    arguments = ("diagnose", "--platform", platform, "--train", str(log), "--validate", str(log))
+    assert "empty" in refused(*arguments, "--out", str(out))
     assert not out.exists()
 
 
 @pytest.mark.parametrize("limit", ["0", "-3", "nan"])
-def test_a_limit_that_is_no_time(tmp_path: Path, limit: str) -> None:
+def test_a_limit_that_is_no_time(call, tmp_path: Path, limit: str) -> None:
     out = tmp_path / "out"
     logs = ("--train", str(SAMPLE / "train"), "--validate", str(SAMPLE / "validate"))
     arguments = ("--platform", str(SAMPLE / "platform.toml"), *logs, "--out", str(out))
-    said = refused("diagnose", *arguments, "--time-limit", limit)
+    said = refused_here(call, "diagnose", *arguments, "--time-limit", limit)
     assert f"--time-limit: {limit} s" in said and "such as 300" in said
     assert not out.exists()
 
@@ -124,9 +144,3 @@ def test_output_that_cannot_be_written(tmp_path: Path) -> None:
 def test_unknown_command_and_missing_option() -> None:
     assert "No such command" in refused("diagnoze")
     assert "--platform" in refused("diagnose")
-
-
-def test_check_says_that_all_is_up_to_date() -> None:
-    done = run("regenerate", "--check")
-    assert done.returncode == 0
-    assert "up to date" in done.stdout
