@@ -12,6 +12,7 @@ from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 from ptp_symbolic.symbolic.effects import EFFECTS, Effect
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
 from tests.effects.bases import IDS, with_effect
+from tests.effects.plain_python import as_python
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=IDS)
@@ -26,11 +27,10 @@ def test_energy_ledger_closes_in_every_mode(effect: Effect) -> None:
     flows = [sp.diff(stored, s) * r for s, r in zip(states, rates, strict=True)]
     flows.append(sp.diff(stored, TIME))
     parts = [sp.Add(*flows), ledger.power_in, ledger.dissipated, sp.Add(*map(sp.Abs, flows))]
-    for name in reversed(list(definitions)):
-        named = {sp.Symbol(name, real=True): definitions[name]}
-        parts = [part.subs(named) for part in parts]
-    symbols = sorted(set().union(*(part.free_symbols for part in parts)), key=str)
-    function = sp.lambdify(symbols, parts, "numpy")
+    named = [(sp.Symbol(name, real=True), definitions[name]) for name in definitions]
+    free = set().union(*(e.free_symbols for e in (*parts, *definitions.values())))
+    symbols = sorted(free - {symbol for symbol, _ in named}, key=str)
+    function = sp.lambdify(symbols, parts, "numpy", cse=lambda written: (named, written))
     for _ in range(60):
         modes = random_modes(equations, rng)
         values = admissible_values(equations, symbols, modes, rng)
@@ -85,7 +85,7 @@ def value_of(equations: Equations, name: str, rng: np.random.Generator) -> float
 @pytest.mark.parametrize("size", [1e-3, 1.0, 30.0])
 def test_a_dissipative_effect_takes_energy_out(effect: Effect, size: float) -> None:
     """Its own share of what the machine dissipates, with the effect at work and switched off."""
-    model, rng = emission.emit(with_effect(effect)), np.random.default_rng(5)
+    model, rng = as_python(emission.emit(with_effect(effect))), np.random.default_rng(5)
     own = {p.name: p for p in model.parameters if p.vanishes is not None}
     names = {
         n for e in assemble(with_effect(effect)).effects if e.effect is effect for n in e.parameters

@@ -18,6 +18,7 @@ from ptp_symbolic.symbolic.derivation.placement import place_effects
 from ptp_symbolic.symbolic.derivation.proof import prove_equal
 from ptp_symbolic.symbolic.effects import EFFECTS, Effect
 from tests.effects.other_units import refuse_misfit
+from tests.effects.plain_python import as_python
 
 ROTARY_ALONE = {
     "payload",
@@ -59,7 +60,7 @@ def with_effect(effect: Effect) -> Platform:
 @pytest.mark.parametrize("effect", FITTING, ids=lambda e: e.id)
 def test_other_units_give_the_same_motion(effect: Effect) -> None:
     model = emission.emit(with_effect(effect))
-    refuse_misfit(model, effect.id, "N", "m")
+    refuse_misfit(as_python(model), effect.id, "N", "m")
     for name, unit in model.units.items():
         if name not in TURNS:
             assert not re.search(r"N m|kg m|rad(?!/m)", unit), f"{name} [{unit}]"

@@ -24,6 +24,7 @@ from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.removal import without_effect
 from ptp_symbolic.symbolic.mechanics.kinematics import place_of
 from tests.effects.bases import IDS
+from tests.effects.plain_python import module_as_python
 from tests.report.latex_reading import Reader, equations_in, symbol
 from tests.report.sections import law_of, section
 
@@ -52,9 +53,7 @@ class Machine:
         self.printed = equations_in(equations_of_motion(self.equations))
         table = symbols(self.equations, platform)
         self.known = {symbol(s) for s in re.findall(r"^\$([^$]+)\$ &", table, re.MULTILINE)}
-        text = re.sub(r"^@njit.*?\n|^from numba.*?\n", "", module_text(self.equations), flags=re.M)
-        self.module: dict[str, Any] = {}
-        exec(text, self.module)
+        self.module: dict[str, Any] = vars(module_as_python(module_text(self.equations)))
 
     def names(self) -> list[str]:
         e: Equations = self.equations
