@@ -24,6 +24,8 @@ from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.effects import EFFECTS
 from tests.drawing.platforms import carriage, offset_platform, platform_of_every_kind
 
+pytestmark = pytest.mark.early
+
 PLATFORMS = {name: read_platform(name) for name in preset_names()} | {
     "axes apart, payload off both, leaning base": offset_platform(),
     "carriage": carriage(),
@@ -88,7 +90,7 @@ def test_a_platform_with_every_kind_of_effect_compiles(tmp_path: Path) -> None:
 
 
 def test_a_title_with_the_signs_of_tex_is_printed_as_it_is(tmp_path: Path) -> None:
-    named = replace(read_platform("thesis-payload"), title=r"50 % of $x_1$ & \alpha #2 {~^}")
+    named = replace(carriage(), title=r"50 % of $x_1$ & \alpha #2 {~^}")
     compile_in(tmp_path, render_derivation(named))
     assert not has_warning((tmp_path / "derivation.log").read_text(encoding="latin-1"))
     if shutil.which("pdftotext") is None:
@@ -110,7 +112,7 @@ def test_an_effect_without_a_title_and_a_reference_has_its_section(
         replace(e, title="", reference="") if e.id == "viscous_friction" else e for e in EFFECTS
     )
     monkeypatch.setattr(placement, "EFFECTS", nameless)
-    text = str(render_derivation(read_platform("thesis-payload"))["derivation.tex"])
+    text = str(render_derivation(read_platform("thesis-ideal"))["derivation.tex"])
     own = text[text.index(r"\subsection{Viscous\_friction, pan axis}") :]
     assert r"\texttt{viscous\_friction}; it names no reference." in own
     assert symbol_latex("b_pan") in own
@@ -177,8 +179,8 @@ def test_no_page_is_nearly_empty(name: str, compiled: Callable[[str], Path]) -> 
 
 
 def test_axes_that_do_not_cross_are_not_said_to() -> None:
-    platform = read_platform("thesis-payload")
-    crossing = str(rendered("thesis-payload")["derivation.tex"])
+    platform = read_platform("thesis-ideal")
+    crossing = str(rendered("thesis-ideal")["derivation.tex"])
     added = EffectDeclaration("axis_offset", None, None)
     apart = replace(platform, effects=(*platform.effects, added))
     text = str(render_derivation(apart)["derivation.tex"])
@@ -192,8 +194,8 @@ def test_the_title_has_the_checksum_of_the_module_and_the_date(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
-    platform = read_platform("thesis-payload")
-    committed = Path("generated/payload.py").read_text(encoding="utf-8")
+    platform = read_platform("thesis-ideal")
+    committed = Path("generated/ideal.py").read_text(encoding="utf-8")
     text = str(render_derivation(platform)["derivation.tex"])
     assert re.search(r'MODEL_HASH = "(\w+)"', committed)[1] in text
     assert hashlib.sha256(module_of(platform).encode()).hexdigest() in text
@@ -213,9 +215,9 @@ def test_the_machine_is_drawn_and_its_linear_models_plotted() -> None:
 
 
 def test_operating_points_can_be_chosen() -> None:
-    payload = read_platform("thesis-payload")
+    ideal = read_platform("thesis-ideal")
     points = ["theta_tilt=-30deg,omega_pan=0.5", "theta_tilt=1rad"]
-    files = render_derivation(payload, read_points(assemble(payload), points))
+    files = render_derivation(ideal, read_points(assemble(ideal), points))
     text = str(files["derivation.tex"])
     linear = text[text.index(r"\section{Linearisation}") : text.index(r"\section{Final")]
     assert r"=-30^\circ" in linear
