@@ -67,6 +67,13 @@ def pytest_sessionstart(session: pytest.Session) -> None:
             wait_until_compiled(kernel)
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put tests marked `early` first: the first process has them from the start, and others take
+    work from the end of its list. A module that is cut in two makes what it shares twice.
+    """
+    items.sort(key=lambda item: item.get_closest_marker("early") is None)
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add `--figures`."""
     parser.addoption("--figures", action="store_true", help="print the figures that proofs rest on")

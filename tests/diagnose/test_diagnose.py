@@ -10,6 +10,8 @@ import pytest
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
 
+pytestmark = pytest.mark.early
+
 SAMPLE = Path(__file__).parents[2] / "ptp_symbolic" / "samples" / "tilted_base"
 PLATFORMS = Path(__file__).parents[1] / "platforms"
 

@@ -23,6 +23,8 @@ from ptp_symbolic.thesis.response_figures import friction_of
 from ptp_symbolic.thesis.responses import response
 from ptp_symbolic.thesis.wording import text_latex
 
+pytestmark = pytest.mark.early
+
 FIGURES = (
     *(f"fig_2_{n}" for n in (*range(7, 17), 18, 19)),
     *(f"fig_5_{n}" for n in (1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 14, 15, 16, 17, 18)),
