@@ -1,5 +1,7 @@
 """Errata of the equations of motion and of the gears: symbolic identities."""
 
+from functools import cache
+
 import numpy as np
 import pint
 import sympy as sp
@@ -51,6 +53,7 @@ def damping_names() -> Item:
     )
 
 
+@cache
 def _euler_rates() -> tuple[sp.Matrix, sp.Matrix]:
     """Euler rates (theta', psi', phi') of z-y-x angles from body rates, and the matrix behind."""
     psi, theta, phi = sp.symbols("psi theta phi", real=True)
