@@ -22,7 +22,6 @@ from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_r
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.simpler_forms import begun_in_form, simplified
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
-from ptp_symbolic.numeric.identify.constants import MOST
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
 
@@ -174,17 +173,13 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> Weak
 
 def _doubt_beside_a_remainder(task: Task, trial: Trial, step: Step) -> str | None:
     """Why a step cannot be named where more than noise is left, which a wrong effect may imitate:
-    it takes away less than is left, or no material share but of slow drift. Where validation runs
-    alone show that more is left, gains on training runs promise too much: most of the error must
-    surely be taken away then.
+    it does not surely take away more than is left, or no material share but of slow drift.
     """
-    share = f"{100.0 * step.gain.share:.0f} %"
-    if step.gain.share < MOST:
-        return f"takes away {share} of the error, too little where more than noise is left"
-    if task.white and not step.gain.is_most:
-        least = 100.0 * max(step.gain.lower, 0.0)
+    if not step.gain.is_most:
+        share, least = (100.0 * max(x, 0.0) for x in (step.gain.share, step.gain.lower))
         return (
-            f"takes away {share} of the error, surely {least:.0f} %, too little beside what is left"
+            f"takes away {share:.0f} % of the error, surely {least:.0f} %, "
+            "too little where more than noise is left"
         )
     if gain_in_innovations(trial, step.without).share < task.material:
         return "takes away slow drift alone, which other effects left out may have caused as well"

@@ -90,8 +90,7 @@ def decide(found: Search) -> Verdict:
     """Confirm the chosen set, find what it cannot be told from, and judge the validation runs.
 
     Where training runs leave what noise of some colour may be, and validation runs show more, there
-    is no such noise: names are held to white noise then, and must take away most of the error
-    surely.
+    is no such noise: names are held to white noise then.
     """
     verdict = _decided(found)
     quiet = leaves_noise_alone(verdict.final, verdict.floor)
