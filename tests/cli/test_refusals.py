@@ -9,23 +9,20 @@ from pathlib import Path
 
 import pytest
 
+from tests.cli.conftest import Call, Done
+
 SAMPLE = Path(__file__).parents[2] / "ptp_symbolic" / "samples" / "tilted_base"
 CODE = "import sys; from ptp_symbolic.cli import main; sys.argv[0] = 'ptp-symbolic'; main()"
 
 
-def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", CODE, *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+def apart(*arguments: object) -> Done:
+    """What `call` does, in a process of its own."""
+    command = [sys.executable, "-c", CODE, *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    return Done(done.returncode, done.stdout, done.stderr)
 
 
-def refused(*arguments: str) -> str:
-    done = run(*arguments)
-    assert done.returncode == 2, done.stderr
-    assert done.stderr.count("\n") == 1, done.stderr
-    return done.stderr
-
-
-def refused_here(call, *arguments: str) -> str:
+def refused(call: Call, *arguments: str) -> str:
     done = call(*arguments)
     assert done.code == 2, done.err
     assert done.err.count("\n") == 1, done.err
@@ -55,7 +52,7 @@ def test_platforms(call, tmp_path: Path, old: str, new: str, expected: str) -> N
     platform, out = changed_platform(tmp_path, old, new), tmp_path / "out"
     logs = ("--train", str(SAMPLE / "train"), "--validate", str(SAMPLE / "validate"))
     arguments = ("diagnose", "--platform", platform, *logs, "--out", str(out))
-    assert expected in refused_here(call, *arguments)
+    assert expected in refused(call, *arguments)
     assert not out.exists()
 
 
@@ -68,21 +65,21 @@ def test_platforms(call, tmp_path: Path, old: str, new: str, expected: str) -> N
     ],
 )
 def test_logs(call, tmp_path: Path, content: str, expected: str) -> None:
+    assert expected in log_refused(call, tmp_path, content)
+
+
+def test_a_log_in_a_process_of_its_own(tmp_path: Path) -> None:
+    assert "empty" in log_refused(apart, tmp_path, "")
+
+
+def log_refused(call: Call, tmp_path: Path, content: str) -> str:
     log, out = tmp_path / "log.csv", tmp_path / "out"
     log.write_text(content, encoding="utf-8")
     platform = str(SAMPLE / "platform.toml")
     arguments = ("diagnose", "--platform", platform, "--train", str(log), "--validate", str(log))
-    assert expected in refused_here(call, *arguments, "--out", str(out))
+    said = refused(call, *arguments, "--out", str(out))
     assert not out.exists()
-
-
-def test_a_log_in_a_process_of_its_own(tmp_path: Path) -> None:
-    log, out = tmp_path / "log.csv", tmp_path / "out"
-    log.write_text("", encoding="utf-8")
-    platform = str(SAMPLE / "platform.toml")
-    arguments = ("diagnose", "--platform", platform, "--train", str(log), "--validate", str(log))
-    assert "empty" in refused(*arguments, "--out", str(out))
-    assert not out.exists()
+    return said
 
 
 @pytest.mark.parametrize("limit", ["0", "-3", "nan"])
@@ -90,7 +87,7 @@ def test_a_limit_that_is_no_time(call, tmp_path: Path, limit: str) -> None:
     out = tmp_path / "out"
     logs = ("--train", str(SAMPLE / "train"), "--validate", str(SAMPLE / "validate"))
     arguments = ("--platform", str(SAMPLE / "platform.toml"), *logs, "--out", str(out))
-    said = refused_here(call, "diagnose", *arguments, "--time-limit", limit)
+    said = refused(call, "diagnose", *arguments, "--time-limit", limit)
     assert f"--time-limit: {limit} s" in said and "such as 300" in said
     assert not out.exists()
 
@@ -138,9 +135,9 @@ def test_output_that_cannot_be_written(tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("", encoding="utf-8")
     arguments = ("simulate", "--platform", "thesis-ideal", "--duration", "0.1")
-    refused(*arguments, "--out", str(blocked / "out"))
+    refused(apart, *arguments, "--out", str(blocked / "out"))
 
 
 def test_unknown_command_and_missing_option() -> None:
-    assert "No such command" in refused("diagnoze")
-    assert "--platform" in refused("diagnose")
+    assert "No such command" in refused(apart, "diagnoze")
+    assert "--platform" in refused(apart, "diagnose")

@@ -80,4 +80,6 @@ def test_what_noise_of_the_inputs_leaves_refutes_no_rival(carried: float, kept: 
     others = [trial(size, key) for size, key in ((1.01, "a"), (1.8, "b"), (2.5, "c"))]
     found = [Rival(other, gain(chosen, other)) for other in others]
     floor = Floor(np.ones(1), np.ones(1), Carried(*[np.array([carried])] * 3))
-    assert [r.trial.keys for r in unrefuted(found, floor, 0.1)] == [(key,) for key in kept]
+    left = unrefuted(found, floor, 0.1)
+    assert [r.trial.keys for r in left] == [(key,) for key in kept]
+    assert [r.excused for r in left] == [False, True][: len(kept)]

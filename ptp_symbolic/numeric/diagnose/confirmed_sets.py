@@ -15,7 +15,7 @@ from ptp_symbolic.numeric.diagnose.floor import (
     leaves_noise_of_inputs,
 )
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, gain_in_innovations
-from ptp_symbolic.numeric.diagnose.groups import Rival, is_clearly_more
+from ptp_symbolic.numeric.diagnose.groups import Rival
 from ptp_symbolic.numeric.diagnose.held_out import held_out_fit, held_out_gain
 from ptp_symbolic.numeric.diagnose.law_of_rate import breaks_its_law
 from ptp_symbolic.numeric.diagnose.refits import expected_gain, forms, without_run
@@ -109,7 +109,7 @@ def simplest_alike(
     that is confirmed too; with its fit from `with_finite_differences`, `chosen_fit` of the first.
     """
     unchanged = chosen, steps, chosen_fit, alike
-    as_good = [r for r in alike if not is_clearly_more(r.gain, len(alike), seeker.task.material)]
+    as_good = [r for r in alike if not r.excused]
     best = min(as_good, key=lambda r: len(r.trial.fit.free), default=None)
     if len(steps) != 1 or best is None or len(best.trial.fit.free) >= len(chosen.fit.free):
         return unchanged

@@ -7,7 +7,7 @@ same depth; the ones that predict as well form its group.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,10 +45,15 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Rival:
-    """A set that predicts as well as the chosen one; `gain` is that of the chosen over it."""
+    """A set that may stand in the place of the chosen one; `gain` is that of the chosen over it.
+
+    It predicts as well, unless it is `excused`: the chosen one predicts better, and the noise of
+    the inputs usually leaves as much as it does.
+    """
 
     trial: Trial
     gain: Gain
+    excused: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,11 +116,11 @@ def unrefuted(found: Sequence[Rival], floor: Floor, material: float) -> list[Riv
     and those that leave no more than the noise of the inputs usually does: that would be left if
     they were true, and another set may follow a part of it.
     """
+    worse = [is_clearly_more(rival.gain, len(found), material) for rival in found]
     return [
-        rival
-        for rival in found
-        if leaves_noise_of_inputs(rival.trial, floor)
-        or not is_clearly_more(rival.gain, len(found), material)
+        replace(rival, excused=is_worse)
+        for rival, is_worse in zip(found, worse, strict=True)
+        if not is_worse or leaves_noise_of_inputs(rival.trial, floor)
     ]
 
 

@@ -159,7 +159,7 @@ def locked_signatures(
     """
     by_key = {c.key: c for c in reversed(candidates)}
     found = []
-    lines: dict[str, list[tuple[float, float, int]]] = {}
+    lines: dict[str, tuple[list[float], float, int]] = {}
     for candidate in candidates:
         if candidate.locked is None or has_its_frequency(candidate):
             continue
@@ -170,8 +170,9 @@ def locked_signatures(
                 replace(candidate, shapes=still), brought(candidate, by_key), rows, weight
             )
             lines[candidate.key] = _strongest(space, candidate, residual, weight, constant.columns)
-        for line in lines[candidate.key]:
-            placed = at_line(candidate, *line)
+        strongest, lowest, compared = lines[candidate.key]
+        for frequency in strongest:
+            placed = at_line(candidate, frequency, lowest, compared)
             if placed is not None:
                 found.append(_signature(placed, brought(placed, by_key), rows, weight))
     return [s for s in found if s.columns.shape[1]]
@@ -224,9 +225,9 @@ def _strongest(
     residual: FloatArray,
     weight: FloatArray,
     carriers: FloatArray,
-) -> list[tuple[float, float, int]]:
+) -> tuple[list[float], float, int]:
     """The frequencies in Hz, or in cycles per turn, of the strongest lines of the residual torques,
-    each with the lowest that is a line, and with how many can be told from one another.
+    the lowest that is a line, and how many can be told from one another.
 
     `carriers` [n, m] is what the candidate does at no frequency, orthonormal when rows count by
     `weight`: over many cycles sines and cosines on them are orthogonal too, so that the squared
@@ -245,7 +246,7 @@ def _strongest(
     span = max(float(place.max()), 1e-12)
     lowest, highest = band(space, candidate, span, float(np.quantile(np.abs(speed), 0.1)) / turn)
     if highest <= lowest:
-        return []
+        return [], 0.9 * lowest, 1
     width = 1.0 / (BINS_PER_CYCLE * highest)
     bins = (place / width).astype(np.int64)
     value = residual[rows] * weight[rows]
@@ -258,4 +259,4 @@ def _strongest(
     apart = max(1, int((highest - lowest) * span))
     (peaks,) = np.nonzero((power[1:-1] > power[:-2]) & (power[1:-1] >= power[2:]))
     strongest = 1 + peaks[np.argsort(-power[1 + peaks])[:TRIED]]
-    return [(float(frequency[k]), 0.9 * lowest, apart) for k in strongest]
+    return [float(f) for f in frequency[strongest]], 0.9 * lowest, apart

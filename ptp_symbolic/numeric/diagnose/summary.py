@@ -281,8 +281,10 @@ def _why(search: Search, found: Verdict, trial: Trial) -> str:
                 "every effect in it gains clearly along the measured motion, to which it is fitted"
             )
         return "every effect in it gains clearly, and none outside would add to it"
-    if any(trial.keys == rival.trial.keys for rival in found.rivals):
-        return "predicts as well as the accepted set"
+    rival = next((r for r in found.rivals if r.trial.keys == trial.keys), None)
+    if rival is not None:
+        noise = "leaves no more than the noise of the inputs usually does"
+        return noise if rival.excused else "predicts as well as the accepted set"
     refused = [f"{key} {why}" for key, why in found.refused.items() if key in trial.keys]
     if refused:
         return "; ".join(refused)

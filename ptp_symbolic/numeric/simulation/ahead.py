@@ -8,6 +8,7 @@ import atexit
 import contextlib
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numba
@@ -49,6 +50,16 @@ def wait_until_compiled(kernel: str) -> None:
     process = _begun.get(kernel)
     if process is not None:
         process.wait()
+
+
+def made_once(kernel: str, make: Callable[[], Callable[..., int]]) -> Callable[..., int]:
+    """The kernel that `make` compiles, or finds compiled, when no process that `compile_ahead`
+    began is at work on it; it is noted.
+    """
+    wait_until_compiled(kernel)
+    made = make()
+    note_compiled(kernel)
+    return made
 
 
 def note_compiled(kernel: str) -> None:

@@ -20,7 +20,7 @@ import numpy as np
 from numba import njit, types
 
 from ptp_symbolic.numeric.runtime.element_layout import contact_modes
-from ptp_symbolic.numeric.simulation.ahead import FIXED_RUNNER, note_compiled, wait_until_compiled
+from ptp_symbolic.numeric.simulation.ahead import FIXED_RUNNER, made_once
 from ptp_symbolic.numeric.simulation.events.domain import is_finite, is_outside, stop_at_bound
 from ptp_symbolic.numeric.simulation.events.impacts import SETTLING, SPRUNG
 from ptp_symbolic.numeric.simulation.events.modes import largest_violation, settle
@@ -272,7 +272,4 @@ def compiled_runner(sources: int) -> Callable[..., int]:
 @lru_cache(maxsize=1)
 def runner() -> Callable[..., int]:
     """The runner, compiled when it is first needed, or begun before by `compile_ahead`."""
-    wait_until_compiled(FIXED_RUNNER)
-    run = compiled_runner(source_stamp())
-    note_compiled(FIXED_RUNNER)
-    return run
+    return made_once(FIXED_RUNNER, lambda: compiled_runner(source_stamp()))

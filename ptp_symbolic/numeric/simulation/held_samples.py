@@ -12,7 +12,7 @@ from numba import njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from ptp_symbolic.numeric.simulation.ahead import HELD_SAMPLES, note_compiled, wait_until_compiled
+from ptp_symbolic.numeric.simulation.ahead import HELD_SAMPLES, made_once
 from ptp_symbolic.numeric.simulation.events.location import fill_violations
 from ptp_symbolic.numeric.simulation.kernels.records import (
     KERNEL,
@@ -100,10 +100,7 @@ def compiled_loop(sources: int) -> Callable[..., int]:
 @lru_cache(maxsize=1)
 def loop() -> Callable[..., int]:
     """The loop, compiled when it is first needed, or begun before by `compile_ahead`."""
-    wait_until_compiled(HELD_SAMPLES)
-    made = compiled_loop(source_stamp())
-    note_compiled(HELD_SAMPLES)
-    return made
+    return made_once(HELD_SAMPLES, lambda: compiled_loop(source_stamp()))
 
 
 @lru_cache(maxsize=1)

@@ -14,8 +14,7 @@ from ptp_symbolic.numeric.simulation.advance import advance, advance_by_samples
 from ptp_symbolic.numeric.simulation.ahead import (
     RUNNER,
     SAMPLED_RUNNER,
-    note_compiled,
-    wait_until_compiled,
+    made_once,
 )
 from ptp_symbolic.numeric.simulation.events.crossing import jump_by_delay
 from ptp_symbolic.numeric.simulation.events.transition import enter
@@ -168,7 +167,4 @@ def runner(sampled: bool) -> Callable[..., int]:
     needed: half a minute once on a new machine, or begun before by `compile_ahead`.
     """
     kernel = SAMPLED_RUNNER if sampled else RUNNER
-    wait_until_compiled(kernel)
-    run = compiled_runner(source_stamp(), sampled)
-    note_compiled(kernel)
-    return run
+    return made_once(kernel, lambda: compiled_runner(source_stamp(), sampled))
