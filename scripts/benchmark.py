@@ -12,6 +12,7 @@ the best of several. How to read the table:
   the same run for the final state alone, "ledger" that with outputs and an energy ledger. Ours and
   every peer run at the loosest tolerance of a list that stays below 1e-8 (the error of a peer is
   that at its own steps); a peer keeps no outputs, and its ratio is to "final".
+- "log of 50,000 rows": a CSV file read and checked, beside numpy's loadtxt, which only reads it.
 - "sensitivities": time with six parameters over time without, and their largest relative error.
 
 `--all` adds the slower peers; `scripts/work_precision.py` draws error over time for all of them.
@@ -28,6 +29,7 @@ from typing import Any
 
 import numpy as np
 from event_peers import simulate_with_scipy
+from log_reading import log_reading
 from rich.console import Console
 from rich.table import Table
 from right_hand_side import right_hand_side
@@ -261,6 +263,7 @@ def main() -> None:
         *drive_cases(arguments.all),
         *sampled_controller(),
         *sensitivities(),
+        *log_reading(),
     ]
     if arguments.json:
         print(json.dumps(rows, indent=2))

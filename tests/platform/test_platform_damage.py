@@ -1,7 +1,6 @@
 """A platform file with damaged bytes is read or refused; it never ends in a traceback."""
 
 import math
-import time
 from pathlib import Path
 
 import pytest
@@ -41,10 +40,8 @@ def test_a_damaged_file_is_read_or_refused_in_one_line(
         assert all(math.isfinite(parameter.value) for parameter in platform.parameters)
 
 
-def test_a_long_dotted_key_does_not_hang(tmp_path: Path) -> None:
+def test_a_long_dotted_key_is_refused_before_it_is_parsed(tmp_path: Path) -> None:
     path = tmp_path / "bench.toml"
     path.write_text("a" + ".a" * 400_000 + " = 1\n", encoding="utf-8")
-    start = time.perf_counter()
     with pytest.raises(InputError, match="line has more than 500 characters"):
         read_platform(path)
-    assert time.perf_counter() - start < 2
