@@ -254,6 +254,11 @@ def test_files_and_folders_are_read_in_order_with_names_of_their_own(tmp_path: P
     assert [log.name for log in logs] == ["train/crawl", "step", "validate/crawl"]
     for log in logs:
         assert_good(log)
+    for name in ("one/train/a.csv", "two/train/a.csv"):
+        (tmp_path / name).parent.mkdir(parents=True)
+        write(tmp_path, GOOD, name)
+    logs = read_logs([tmp_path / "one" / "train", tmp_path / "two" / "train"], PLATFORM)
+    assert [log.name for log in logs] == ["one/train/a", "two/train/a"]
 
 
 def test_lists_without_logs_or_with_one_twice_are_refused(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from tests.identify.straight import finished
 
 RNG = np.random.default_rng(7)
-LEFT = RNG.normal(size=(6, 60))
+LEFT = 3.0 * RNG.normal(size=(6, 60))  # more than noise
 SLOPES = list(RNG.normal(size=(6, 60, 1)))  # by one parameter, which has nothing to do with it
 FREE = (free_parameter("J", 1.0, 0.1, 10.0),)
 TASK = cast(Any, SimpleNamespace(material=0.1))

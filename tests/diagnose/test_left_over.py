@@ -10,11 +10,14 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from ptp_symbolic.numeric.diagnose import left_over as module
+from ptp_symbolic.numeric.diagnose.confirmed_sets import _examined
 from ptp_symbolic.numeric.diagnose.left_over import Carried, bound_of, carried_noise, left_over
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.trial import Trial
-from ptp_symbolic.numeric.identify.constants import TEST_ALARM
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, TEST_ALARM
 from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.intervals import chance_of_zero
 from tests.identify.straight import finished
 from tests.identify.test_replays import SIGMA, accelerated, drifts
 
@@ -98,3 +101,55 @@ def test_many_windows_count_without_the_worst_tenth_and_few_runs_by_their_mean()
     failed = finished([wave])
     gone = replace(failed.evaluations[0], failed="stopped")
     assert left_over(replace(failed, evaluations=(gone,))) == pytest.approx([np.inf])
+
+
+def test_a_replay_that_cannot_be_simulated_leaves_what_the_others_of_its_run_leave(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Half of the replays of every run fail; of one run all do, and it tells nothing."""
+    squares = np.random.default_rng(64).chisquare(4, (8, 3, 1)) / 4.0
+    fit = finished([np.zeros(50)] * 3)
+
+    def bounds(table: np.ndarray[Any, Any], runs: int) -> list[float]:
+        monkeypatch.setattr(module, "replayed_squares", lambda *_: table)
+        part = replace(fit, runs=fit.runs[:runs])
+        found = carried_noise(task_of(part, 1.0, 0.0), part)
+        return [float(b[0]) for b in (found.usual, found.seldom, found.most)]
+
+    failed = squares.copy()
+    failed[::2] = np.nan
+    assert bounds(failed, 3) == pytest.approx(bounds(squares, 3), rel=0.5)
+    alone = squares.copy()
+    alone[:, 2] = np.nan
+    assert bounds(alone, 3) == pytest.approx(bounds(squares[:, :2], 2), rel=1e-12)
+    assert bounds(np.full_like(squares, np.nan), 3)[2] < 1e-4
+
+
+@pytest.mark.parametrize(("noise", "known"), [(0.0, True), (NOISE, False)])
+def test_an_amount_is_known_no_better_than_the_noise_of_the_inputs_allows(
+    noise: float, known: bool
+) -> None:
+    """Beside more than noise: the inertia is five percent off where it would vanish, and noise of
+    the torque as large as that shifts it by more.
+    """
+    fit = accelerated(RUNS)
+    rng = np.random.default_rng(65)
+    noisy = [
+        replace(e, residual=e.residual + 3.0 * rng.standard_normal(e.residual.size))
+        for e in fit.evaluations
+    ]
+    trial = Trial((), replace(fit, evaluations=tuple(noisy)))
+    task = task_of(fit, noise, 0.0)
+    task.white, task.declared_noise = True, frozenset()
+    seeker = cast(Any, SimpleNamespace(task=task, carried=Carried(*[np.zeros(2)] * 3)))
+    examined = _examined(seeker, trial)
+    zero = {"J_pan": fit.values["J_pan"] * 1.05}
+    assert (chance_of_zero(examined, zero) < FALSE_ALARM) is known
+
+
+def test_a_fit_that_leaves_noise_alone_is_examined_without_replays() -> None:
+    fit = accelerated(RUNS)
+    task = task_of(fit, NOISE, 0.0)
+    task.white, task.declared_noise = True, frozenset()
+    seeker = cast(Any, SimpleNamespace(task=task, carried=Carried(*[np.zeros(2)] * 3)))
+    assert _examined(seeker, Trial((), fit)).shaken == ()

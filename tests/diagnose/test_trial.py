@@ -39,3 +39,13 @@ def test_a_failed_simulation_ranks_last() -> None:
     good, failed = trial([WAVE]), trial([np.full(60, np.nan)])
     assert misfits([failed, good])[0] == np.inf
     assert ranked([failed, good])[0] is good
+
+
+def test_an_axis_that_rests_does_not_decide() -> None:
+    """What one leaves of an angle at rest is a rounding of zero; the other signal is better."""
+    better = [np.column_stack([1.0 * WAVE, 0.0 * WAVE])] * 4
+    worse = [np.column_stack([1.2 * WAVE, 1e-15 * WAVE])] * 4
+    first, second = misfits([trial(better), trial(worse)])
+    assert second - first == pytest.approx(240 * np.log(1.44), rel=1e-12)
+    first, second = misfits([trial(worse), trial([t[:, ::-1] for t in worse])])
+    assert first == pytest.approx(second)

@@ -20,6 +20,7 @@ def run_of(samples: int, signals: int = 1, inputs: Floats | None = None, name: s
     held = np.zeros((samples, 1)) if inputs is None else inputs
     return Run(
         name,
+        name.partition("#")[0],
         np.arange(samples) / 50.0,
         stack([constant(0.0)] * held.shape[1]),
         held,

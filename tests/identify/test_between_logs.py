@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy import stats
 from scipy.signal import lfilter
 
 from ptp_symbolic.numeric.identify.between_logs import chance_of_scatter
@@ -81,3 +82,33 @@ def test_a_log_that_alone_tells_a_parameter_stands_for_all() -> None:
     ]
     (one,) = estimates(finished(noise, [-c[:, None] for c in loud], None, FREE, {"a": 0.0}))
     assert one.upper - one.lower < 2.0 * 2.4 / np.sqrt(float(loud[0] @ loud[0]))
+
+
+@pytest.mark.parametrize("lengths", [(300, 300, 3000), (300, 300, 300, 300, 6000)])
+def test_logs_of_unequal_length_count_by_what_they_tell(lengths: tuple[int, ...]) -> None:
+    """Beside the textbook's analysis of variance for white noise, which every sample of a log tells
+    a variance of: blocks tell it less well, so that fewer differences are found.
+    """
+    rng = np.random.default_rng(13)
+
+    def found(scatter: float) -> tuple[float, float]:
+        columns = [np.sin(0.1 * np.arange(n) + rng.uniform(0.0, 6.0)) for n in lengths]
+        left = [scatter * rng.standard_normal() * c + rng.standard_normal(len(c)) for c in columns]
+        whole = np.concatenate(columns)
+        value = float(whole @ np.concatenate(left) / (whole @ whole))
+        left = [r - value * c for r, c in zip(left, columns, strict=True)]
+        own = [float(c @ r / (c @ c)) for c, r in zip(columns, left, strict=True)]
+        between = sum(o**2 * float(c @ c) for o, c in zip(own, columns, strict=True))
+        within = sum(
+            float(np.sum((r - o * c) ** 2)) for o, c, r in zip(own, columns, left, strict=True)
+        )
+        free = len(lengths) - 1, sum(lengths) - len(lengths)
+        peer = float(stats.f.sf(between / free[0] / (within / free[1]), *free))
+        pairs = [(r, c[:, None]) for r, c in zip(left, columns, strict=True)]
+        return float(chance_of_scatter(pairs, 1)[0]), peer
+
+    alike = np.mean([np.array(found(0.0)) < 0.05 for _ in range(300)], axis=0)
+    assert 0.02 <= alike[0] <= 0.09
+    for scatter in (0.1, 0.2):
+        ours, peer = np.mean([np.array(found(scatter)) < 0.05 for _ in range(300)], axis=0)
+        assert 0.7 * peer <= ours <= 1.1 * peer

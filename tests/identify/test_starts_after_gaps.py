@@ -28,9 +28,10 @@ def test_what_follows_a_gap_is_told_to_rounding(first: int) -> None:
     """The lost parts end all over the cycle of a drive that crosses its gap twice a period."""
     (whole,) = make_runs(PanDrive(), [sine()], 3).runs
     kept = np.r_[0:first, first + LONG : len(whole.time)]
-    log = Log("sine", whole.time[kept], whole.held_inputs[kept], whole.measured[kept])
+    log = Log("sine#3", whole.time[kept], whole.held_inputs[kept], whole.measured[kept])
     parts = prepare_runs(MODEL, PLATFORM, [log])
-    assert [run.name for run in parts] == ["sine#1", "sine#2"]
+    assert [run.name for run in parts] == ["sine#3#1", "sine#3#2"]
+    assert [run.source for run in parts] == ["sine#3"] * 2
     judged = fit_parameters(MODEL, parts, (), {**KNOWN, **TRUTH}, None, FINE_STEPS)
     after = judged.evaluations[1].residual.reshape(parts[1].measured.shape)[:, 1]
     assert np.sqrt(np.mean(after**2)) * FLOOR < 1.15 * FLOOR

@@ -257,6 +257,7 @@ def test_without_a_length_or_shorter_than_one_runs_stay_whole() -> None:
     assert cut(MODEL, runs, None) == runs
     assert split_run(MODEL, runs[0], 8.0) == (runs[0],)
     assert [r.name for r in cut(MODEL, runs, 2.0)] == ["run#1", "run#2", "run"]
+    assert [r.source for r in cut(MODEL, runs, 2.0)] == ["run"] * 3
 
 
 def test_signals_that_the_model_lacks_or_that_have_no_size_are_refused() -> None:

@@ -105,7 +105,7 @@ def read_inputs(
 def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...]:
     """Read logs from files and folders; a folder stands for all logs in it, sorted by name.
 
-    Logs of the same file name are told apart by their folder (`train/crawl`). Raises InputError as
+    Logs of the same file name are told apart by their folders (`train/crawl`). Raises InputError as
     `read_log` does, for a folder without logs, and for a log that is given twice.
     """
     files = log_files(paths)
@@ -113,14 +113,24 @@ def read_logs(paths: Iterable[Path | str], platform: Platform) -> tuple[Log, ...
     for file, place in zip(files, places, strict=True):
         if places.count(place) > 1:
             raise InputError(f"{file}: is given twice; name each log once.")
-    names = [name_of(file) for file in files]
-    logs = []
-    for file, name in zip(files, names, strict=True):
-        log = read_log(file, platform)
-        if names.count(name) > 1:
-            log = replace(log, name=f"{parts_of(file)[0].resolve().parent.name}/{name}")
-        logs.append(log)
-    return tuple(logs)
+    named = zip(files, _names(files), strict=True)
+    return tuple(replace(read_log(file, platform), name=name) for file, name in named)
+
+
+def _names(files: Sequence[Path]) -> list[str]:
+    """Names of logs, those of the same file name with as many folders as tell them apart."""
+    own = [name_of(file) for file in files]
+    folders = [parts_of(file)[0].resolve().parent.parts for file in files]
+    names = list(own)
+    for depth in range(1, max(map(len, folders), default=0)):
+        alike = [own.count(name) > 1 for name in own]
+        names = [
+            "/".join([*folder[-depth:], name]) if several else name
+            for name, folder, several in zip(own, folders, alike, strict=True)
+        ]
+        if len(set(names)) == len(names):
+            break
+    return names
 
 
 def log_files(paths: Iterable[Path | str]) -> list[Path]:

@@ -129,7 +129,8 @@ def unstable_without(fit: Fit, candidate: Candidate, refit: Refit | None = None)
             continue
         if holds(left.shifts[number]):
             continue
-        if refit is None or not holds(to_search(fit.free, refit(name).values) - at):
+        anew = None if refit is None else refit(name)
+        if anew is None or anew.failed or not holds(to_search(fit.free, anew.values) - at):
             return name
     return None
 

@@ -24,6 +24,7 @@ from ptp_symbolic.numeric.diagnose.simpler_forms import begun_in_form, simplifie
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.identify.finite_differences import with_finite_differences
 from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.identify.replays import estimable
 
 
 class Weakness(NamedTuple):
@@ -38,9 +39,9 @@ def confirmed(
     seeker: Seeker, trial: Trial, steps: list[Step], refused: Refusals
 ) -> tuple[Trial, list[Step], Fit]:
     """What is left of a trial when all that cannot be confirmed is taken out, noted in `refused`
-    with the reason; its steps, and its fit with derivatives that are not blind.
+    with the reason; its steps, and its fit with all that is asked of it (see `_examined`).
     """
-    fit = with_finite_differences(trial.fit, seeker.task.executor)
+    fit = _examined(seeker, trial)
     while trial.candidates:
         simpler = _off_bounds(seeker, trial, fit)
         weakness = _weakness(seeker, trial, steps, fit) if simpler is None else None
@@ -52,8 +53,18 @@ def confirmed(
             trial, steps = shortened(seeker, weakness.step.without)
         else:
             break
-        fit = with_finite_differences(trial.fit, seeker.task.executor)
+        fit = _examined(seeker, trial)
     return trial, steps, fit
+
+
+def _examined(seeker: Seeker, trial: Trial) -> Fit:
+    """The fit of a trial with derivatives that are not blind; where more than noise is left, so
+    that amounts must be known, with what the noise of the inputs changes as well.
+    """
+    task = seeker.task
+    if leaves_noise_alone(trial, floor_of(task, trial, seeker.carried)):
+        return with_finite_differences(trial.fit, task.executor)
+    return estimable(trial.fit, task.input_noise, task.executor)
 
 
 def shortened(seeker: Seeker, trial: Trial) -> tuple[Trial, list[Step]]:
@@ -106,7 +117,7 @@ def simplest_alike(
     seeker: Seeker, chosen: Trial, steps: list[Step], chosen_fit: Fit, alike: list[Rival]
 ) -> tuple[Trial, list[Step], Fit, list[Rival]]:
     """Of one effect and what predicts as well as it, the one with the fewest parameters, if
-    that is confirmed too; with its fit from `with_finite_differences`, `chosen_fit` of the first.
+    that is confirmed too; with its fit from `_examined`, `chosen_fit` of the first.
     """
     unchanged = chosen, steps, chosen_fit, alike
     as_good = [r for r in alike if not r.excused]
@@ -116,7 +127,7 @@ def simplest_alike(
     if len(best.trial.candidates) != 1:
         return unchanged
     (candidate,) = best.trial.candidates
-    fit = with_finite_differences(best.trial.fit, seeker.task.executor)
+    fit = _examined(seeker, best.trial)
     step = step_of(best.trial, candidate, steps[0].without)
     if _weakness(seeker, best.trial, [step], fit) is not None:
         return unchanged

@@ -90,7 +90,15 @@ def gain_in_innovations(larger: Trial, smaller: Trial) -> Gain:
         prediction_error_filter([r.reshape(-1, signals)[:, k] for r in parts[0][0]])
         for k in range(signals)
     ]
-    return _gain(runs, [_in_innovations(*part, filters) for part in parts])
+    white = [_in_innovations(*part, filters) for part in parts]
+    squares = [_mean_square(residuals, signals) for residuals in (white[0][0], parts[0][0])]
+    return _gain(runs, white, squares[0] / squares[1])
+
+
+def _mean_square(residuals: Sequence[FloatArray], signals: int) -> FloatArray:
+    """Mean square [signals] of the residuals [k * signals] of all runs, above zero."""
+    every = np.concatenate(residuals).reshape(-1, signals)
+    return np.maximum(np.mean(every**2, axis=0), 1e-300)
 
 
 def _in_innovations(
@@ -106,9 +114,15 @@ def _in_innovations(
 
 
 def _gain(
-    runs: Sequence[Run], residuals: Sequence[tuple[list[FloatArray], list[FloatArray]]]
+    runs: Sequence[Run],
+    residuals: Sequence[tuple[list[FloatArray], list[FloatArray]]],
+    noise: FloatArray | float = 1.0,
 ) -> Gain:
-    """The gain of the first of two models, given by residuals and Jacobians of the same runs."""
+    """The gain of the first of two models, given by residuals and Jacobians of the same runs.
+
+    Signals count by what the first leaves in them, or by the mean square `noise` [signals] of
+    theirs where it leaves less: the angle of an axis that rests is told to no better.
+    """
     signals = runs[0].measured.shape[1]
     difference = [
         (b**2 - a**2).reshape(-1, signals).sum(axis=1)
@@ -119,7 +133,7 @@ def _gain(
     label = np.concatenate(labels)
     size = np.bincount(label)
     squares, told = zip(*(_predicted_squares(p, label, signals) for p in residuals), strict=True)
-    scale = np.maximum(weighted_median(squares[0], size.astype(np.float64)), 1e-300)
+    scale = np.maximum(weighted_median(squares[0], size.astype(np.float64)), noise)
     judged = size * np.logical_and(*told)
     losses = [
         judged * huber_loss(s / scale, np.full(signals, TUNING**2)).sum(axis=1) for s in squares

@@ -17,7 +17,7 @@ from ptp_symbolic.numeric.diagnose.trial import (
     mean_squares,
     tolerance_for,
 )
-from ptp_symbolic.numeric.identify.blocks import huber_root
+from ptp_symbolic.numeric.identify.blocks import block_length, huber_root
 from ptp_symbolic.numeric.identify.constants import (
     ABOVE_NOISE,
     CYCLES,
@@ -42,7 +42,7 @@ from ptp_symbolic.numeric.identify.robust_loss import (
     weighted_median,
 )
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.numeric.identify.run_groups import sizes
+from ptp_symbolic.numeric.identify.run_groups import by_source, sizes
 from ptp_symbolic.numeric.identify.simulations import POLISH, Effort
 
 FloatArray = NDArray[np.float64]
@@ -145,11 +145,28 @@ def simulated_freely(task: Task, runs: Sequence[Run], values: Mapping[str, float
 
 def held_out_gain(after: Fit, before: Fit) -> Gain:
     """The share of the mean square error of validation runs or windows that is taken away (Huber's
-    loss: those far worse than usual count linearly).
+    loss: those far worse than usual count linearly). Windows of one log count together as long as
+    what they gain is correlated (see `block_length`).
     """
     size = sizes(after.runs)
     squares = [mean_squares(fit.evaluations, fit.runs) for fit in (after, before)]
     usual = np.min([weighted_median(s, size) for s in squares], axis=0)
     tuning = TUNING**2 * np.maximum(usual, 1.0)
     losses = [size * huber_loss(np.minimum(s, BIGGEST), tuning).sum(axis=1) for s in squares]
-    return compared(losses[0], losses[1])
+    blocks = _independent(after.runs, losses[1] - losses[0])
+    return compared(*[np.asarray(np.bincount(blocks, loss), dtype=np.float64) for loss in losses])
+
+
+def _independent(runs: Sequence[Run], taken: FloatArray) -> NDArray[np.int64]:
+    """The block [runs] of every run or window: those of one log together as long as what is `taken`
+    [runs] from them is correlated.
+    """
+    groups = by_source(runs)
+    mean = taken / sizes(runs)
+    length = block_length([mean[group] for group in groups])
+    label, first = np.zeros(len(runs), dtype=np.int64), 0
+    for group in groups:
+        count = max(1, round(len(group) / length))
+        label[group] = first + np.arange(len(group)) * count // len(group)
+        first += count
+    return label

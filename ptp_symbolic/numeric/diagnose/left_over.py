@@ -65,16 +65,30 @@ def carried_noise(task: Task, fit: Fit) -> Carried:
     """What the noise of the inputs leaves, by the model of `fit`.
 
     All runs are replayed some times, and what is left of them beyond noise of their signals is
-    summed up as a fit is; the median counts as usual.
+    summed up as a fit is; the median counts as usual. A replay that cannot be simulated leaves what
+    the others of its run leave, and a run without any tells nothing.
     """
     p = task.model.parameter_vector(dict(fit.values))
     runs = task.every_sample if is_thinned(task, fit) else fit.runs
     every = replayed_squares(task.model, runs, fit.z, p, task.input_noise, task.executor)
-    size = sizes(runs)
-    left = np.array([_robust_mean(1.0 + np.nan_to_num(squares), size) - 1.0 for squares in every])
+    simulated, size = _simulated(every, sizes(runs))
+    left = np.array([_robust_mean(1.0 + squares, size) - 1.0 for squares in simulated])
     left = np.maximum(left, NOTHING)
     bounds = [[bound_of(c, chance) for c in left.T] for chance in (FALSE_ALARM, TEST_ALARM)]
     return Carried(np.sqrt(np.median(left, axis=0)), *np.sqrt(bounds))
+
+
+def _simulated(squares: FloatArray, size: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Mean squares [replays, told, ny] of the runs of which any replay was simulated, from those of
+    all runs [replays, runs, ny], nan where one was not; and their `size` [told].
+    """
+    known = np.ma.masked_invalid(squares)
+    medians = np.ma.median(known, axis=0)
+    told = ~np.any(np.ma.getmaskarray(medians), axis=1)
+    if not told.any():
+        return np.zeros_like(squares), size
+    filled = np.where(np.ma.getmaskarray(known), np.ma.getdata(medians), squares)
+    return filled[:, told], size[told]
 
 
 def bound_of(squares: FloatArray, chance: float) -> float:

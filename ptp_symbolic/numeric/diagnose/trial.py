@@ -42,7 +42,7 @@ class Task:
     `whole` are the training runs as they were logged, `every_sample` the same or their windows, and
     `train` these with as many samples as the search needs (see `fewer_samples`); `windows` some
     short and some longer ones (none where `train` are windows already), `few` those windows that
-    tell what a set is worth, `validate` the runs that only the report sees. `free` are the
+    tell what a set is worth, `validate` the runs that are never fitted. `free` are the
     declared free parameters, `fixed` the values of all others (candidates vanish). `input_noise` is
     the declared noise (rms) of every input [nu] in its unit (None: as the logs show it),
     `declared_noise` names the outputs whose noise is declared, `resolution` is the noise of the
@@ -228,7 +228,8 @@ def mean_squares(evaluations: Sequence[Evaluation], runs: Sequence[Run]) -> Floa
 
 def misfits(trials: Sequence[Trial]) -> list[float]:
     """One number per trial to rank them by: n log(mean square), summed over the signals, so that no
-    signal outweighs another by its unit (likelihood with unknown variances: Bard, 1974, 4.9).
+    signal outweighs another by its unit (likelihood with unknown variances: Bard, 1974, 4.9). What
+    is left is told to no better than simulations are good to (`ROUGH`).
 
     Runs or windows far worse than usual count only linearly (Huber's loss); "usual" is that of the
     best trial.
@@ -243,7 +244,7 @@ def misfits(trials: Sequence[Trial]) -> list[float]:
             continue
         bounded = huber_loss(square, TUNING**2 * np.maximum(usual, 1.0))
         mean = size @ bounded / size.sum()
-        result.append(float(size.sum() * np.sum(np.log(np.maximum(mean, 1e-300)))))
+        result.append(float(size.sum() * np.sum(np.log(np.maximum(mean, ROUGH**2)))))
     return result
 
 

@@ -22,6 +22,7 @@ from ptp_symbolic.numeric.identify.blocks import (
 from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, FEWEST_BLOCKS
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 
 def reach_between_logs(logs: Sequence[tuple[FloatArray, FloatArray]], signals: int) -> FloatArray:
@@ -50,25 +51,34 @@ def chance_of_scatter(logs: Sequence[tuple[FloatArray, FloatArray]], signals: in
     """The chance [nf] that logs differ so much, or more, in every parameter where they are alike.
 
     How much each sample moves a parameter is summed over every log, and, once each log has a value
-    of its own, over blocks within: an analysis of variance (Fisher, 1925) with the degrees of
-    freedom of blocks that are long enough to be independent.
+    of its own, over blocks within: an analysis of variance (Fisher, 1925). A sum of white noise has
+    a variance in proportion to the information in its log, or block, less its part in the value
+    that was taken out. Blocks are long enough to be independent; unequal ones have the degrees of
+    freedom of so many equal ones (Satterthwaite, 1946).
     """
     root = inverse_root(np.vstack([c for _, c in logs]))
     inverse = root @ root.T
     lengths = [len(r) // signals for r, _ in logs]
     labels = block_labels(lengths, sum(lengths) / (2 * FEWEST_BLOCKS))
-    between, within, blocks = np.zeros(len(inverse)), np.zeros(len(inverse)), 0
+    between, sums, expected = np.zeros(len(inverse)), [], []
     for (residual, columns), label in zip(logs, labels, strict=True):
         influence = columns @ inverse
-        moved = residual @ influence
-        own = moved / np.maximum(np.sum(influence**2, axis=0), 1e-300)
-        rest = influence * (residual[:, None] - influence * own)
+        moved, known = residual @ influence, np.maximum(np.sum(influence**2, axis=0), 1e-300)
+        rest = influence * (residual[:, None] - influence * moved / known)
         parts = np.repeat(label - label[0], signals)
-        sums = np.array([np.bincount(parts, column) for column in rest.T])
-        between, within = between + moved**2, within + np.sum(sums**2, axis=1)
-        blocks += sums.shape[1]
-    free = len(logs) - 1, blocks - len(logs)
-    if free[1] < 1:
-        return np.ones(len(inverse))
-    ratio = between / free[0] / np.maximum(within, 1e-300) * free[1] / blocks * len(logs)
-    return np.asarray(stats.f.sf(ratio, *free))
+        of_block = _sums(influence**2, parts)
+        between += moved**2 / known
+        sums.append(_sums(rest, parts))
+        expected.append(of_block * (1.0 - of_block / known))
+    variances = np.maximum(np.concatenate(expected), 0.0)
+    whole = np.maximum(np.sum(variances, axis=0), 1e-300)
+    equal = whole**2 / np.maximum(np.sum(variances**2, axis=0), 1e-300)
+    free = len(logs) - 1, equal - len(logs)
+    variance = np.sum(np.concatenate(sums) ** 2, axis=0) / whole
+    ratio = between / free[0] / np.maximum(variance, 1e-300)
+    return np.where(free[1] < 1.0, 1.0, stats.f.sf(ratio, free[0], np.maximum(free[1], 1.0)))
+
+
+def _sums(columns: FloatArray, parts: IntArray) -> FloatArray:
+    """Sums [parts, nf] of the rows of `columns` [k, nf] in each of the `parts` [k]."""
+    return np.array([np.bincount(parts, column) for column in columns.T]).T

@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 
 FloatArray = NDArray[np.float64]
 
-WINDOW = "#"  # between the name of a log and the number of a window of it
+WINDOW = "#"  # between the name of a log and the number of a window in the name of that
 
 
 @dataclass(frozen=True)
@@ -48,12 +48,14 @@ class StartUnknown:
 class Run:
     """One run or window: time [k] in s, inputs [k, nu], measured [k, ny], `weight` [ny] (1/sigma).
 
+    `source` is the name of the log that it is of, its own `name` that or one for the window alone.
     `outputs` [ny] gives the model output of every measured column, `counts` [ny] the size of one
     encoder count in rad or m (nan for analog signals); `start` [n] guesses the state at the first
     sample. In a window, `before` [nu] is what the inputs were until then.
     """
 
     name: str
+    source: str
     time: FloatArray
     inputs: InputTable
     held_inputs: FloatArray
@@ -70,11 +72,6 @@ class Run:
     def stops(self) -> FloatArray:
         """Times [s] in s of the samples, and of the jumps of delayed inputs in between."""
         return self.inputs.with_stops(self.time)
-
-    @property
-    def source(self) -> str:
-        """Name of the log that the run, or the window, is of."""
-        return self.name.partition(WINDOW)[0]
 
     @property
     def size(self) -> int:

@@ -49,7 +49,10 @@ def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple
         ]
     )
     return tuple(
-        _prepare(model, outputs, piece, order, counts, sigma, underway=number > 0)
+        replace(
+            _prepare(model, outputs, piece, order, counts, sigma, underway=number > 0),
+            source=log.name,
+        )
         for log in logs
         for number, piece in enumerate(_pieces(log, counts))
     )
@@ -92,6 +95,7 @@ def _prepare(
     steps = log.steps or [(log.time, column) for column in log.inputs.T]
     run = Run(
         name=log.name,
+        source=log.name,
         time=np.ascontiguousarray(log.time),
         inputs=stack([table(*steps[k]) for k in order]),
         held_inputs=np.ascontiguousarray(log.inputs[:, order]),
