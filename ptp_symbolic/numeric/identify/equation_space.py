@@ -47,7 +47,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 Torques = tuple[FloatArray, FloatArray, FloatArray]  # see `torques_along`
-Key = tuple[int, bytes, int]  # run, what changes, whether anything is added
+Key = tuple[int, bytes, bytes]  # run, what changes, what is added
 
 
 @dataclass(eq=False)
@@ -161,7 +161,7 @@ class EquationSpace:
         def averaged() -> FloatArray:
             return np.column_stack([cell_averages(run, j, d, grid) for j, d in enumerate(delays)])
 
-        return self._inputs.of((number, delays.tobytes(), 0), averaged, self._asked_for(delays))
+        return self._inputs.of((number, delays.tobytes(), b""), averaged, self._asked_for(delays))
 
     def _motion(self, number: int, p: FloatArray) -> MeasuredMotion:
         """The measured motion, errors of the sensors at p taken out."""
@@ -175,7 +175,7 @@ class EquationSpace:
 
         changing = p[self.sensing]
         return self._motions.of(
-            (number, changing.tobytes(), 0), measured, self._asked_for(changing)
+            (number, changing.tobytes(), b""), measured, self._asked_for(changing)
         )
 
     def _further(
@@ -187,7 +187,7 @@ class EquationSpace:
             none = np.zeros((len(added), 0)), np.zeros((samples, 0)), np.zeros((0, 0, 0))
             return FurtherStates(*none)
         changing = p[self.moving | self.sensing]
-        key = (number, changing.tobytes(), int(np.any(added)))
+        key = (number, changing.tobytes(), added.tobytes() if np.any(added) else b"")
         places = [place for _, place in self.measured]
         integrated = partial(
             states_along,
@@ -295,5 +295,4 @@ class EquationSpace:
                 shifted = none.copy()
                 shifted[:, j] = SAME
                 result[:, j] = (self._torques(0, p, shifted, part)[2][0][middle] - here) / SAME
-                self._states.clear()
         return result
