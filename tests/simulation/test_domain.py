@@ -88,6 +88,7 @@ def test_an_evaluation_of_a_fit_that_leaves_the_domain_has_failed() -> None:
         held = np.full((len(time), 1), volts)
         run = Run(
             "log",
+            "log",
             time,
             stack([table(time, held[:, 0], "hold")]),
             held,
