@@ -1,4 +1,4 @@
-"""Logs arrive in SI and in the platform's order, fast, and a bad file is refused with its line."""
+"""Logs arrive in SI and in the platform's order, and a bad file is refused with its line."""
 
 from pathlib import Path
 
@@ -218,7 +218,7 @@ def test_a_platform_without_signals_of_a_role_is_refused(tmp_path: Path) -> None
     assert read_log(path, free).inputs.shape == (12, 0)
 
 
-def test_an_error_far_into_a_long_log_is_found_quickly(
+def test_an_error_far_into_a_long_log_is_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("ptp_symbolic.numeric.data.csv_table._CHUNK", 1000)

@@ -244,12 +244,10 @@ def test_windows_of_one_log_that_gain_alike_count_together(pole: float) -> None:
     rng, clear = np.random.default_rng(63), 0
     for _ in range(150):
         drawn = lfilter([1.0], [1.0, -pole], rng.standard_normal((4, 60)))[:, 10:]
-        taken = 0.2 * drawn / np.sqrt(np.mean(drawn**2))
+        taken = 0.1 * drawn / np.sqrt(np.mean(drawn**2))
         after, before = (
-            finished(
-                [np.full(4, np.sqrt(s)) for s in (1.0 + sign * 0.5 * taken).clip(0.01).ravel()]
-            )
-            for sign in (-1.0, 1.0)
+            finished([np.full(4, np.sqrt(square)) for square in (1.0 + change).ravel()])
+            for change in (-taken, taken)
         )
         runs = tuple(replace(r, source=f"log {k // 50}") for k, r in enumerate(after.runs))
         found = held_out_gain(replace(after, runs=runs), replace(before, runs=runs))

@@ -18,8 +18,8 @@ SHOWN = tuple(s for s in PLATFORM.signals if s.signal != "i_pan")
 
 
 def test_an_input_lacks_the_same_whatever_was_asked_before() -> None:
-    """Voltage over torque is R / (N K_t). Rows with their own torque have currents of their own:
-    asked with those, the voltage was wrong by the factor of the one to a step of it.
+    """0.1 N m too much are 0.1 R / (N K_t) = 0.036 V too much. Asked a second time, with currents
+    kept from rows with that voltage, 0.001 V was the answer.
     """
     time = 0.005 * np.arange(800)
     volts = EMF * RATE + KNOWN["R_pan"] * (FRICTION + LOAD + DRAG) / EMF

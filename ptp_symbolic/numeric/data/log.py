@@ -121,9 +121,9 @@ def _names(files: Sequence[Path]) -> list[str]:
     """Names of logs, those of the same file name with as many folders as tell them apart."""
     own = [name_of(file) for file in files]
     folders = [parts_of(file)[0].resolve().parent.parts for file in files]
-    names = list(own)
+    alike = [own.count(name) > 1 for name in own]
+    names = own
     for depth in range(1, max(map(len, folders), default=0)):
-        alike = [own.count(name) > 1 for name in own]
         names = [
             "/".join([*folder[-depth:], name]) if several else name
             for name, folder, several in zip(own, folders, alike, strict=True)

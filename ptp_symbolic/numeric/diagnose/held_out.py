@@ -159,7 +159,7 @@ def held_out_gain(after: Fit, before: Fit) -> Gain:
 
 def _independent(runs: Sequence[Run], taken: FloatArray) -> NDArray[np.int64]:
     """The block [runs] of every run or window: those of one log together as long as what is `taken`
-    [runs] from them is correlated.
+    [runs] from them is correlated, however few blocks that leaves.
     """
     groups = by_source(runs)
     mean = taken / sizes(runs)

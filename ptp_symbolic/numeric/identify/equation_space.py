@@ -47,7 +47,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 Torques = tuple[FloatArray, FloatArray, FloatArray]  # see `torques_along`
-Key = tuple[int, bytes, bytes]  # run, what changes, what is added
+Key = tuple[int, bytes]  # run, what changes or is added
 
 
 @dataclass(eq=False)
@@ -161,7 +161,7 @@ class EquationSpace:
         def averaged() -> FloatArray:
             return np.column_stack([cell_averages(run, j, d, grid) for j, d in enumerate(delays)])
 
-        return self._inputs.of((number, delays.tobytes(), b""), averaged, self._asked_for(delays))
+        return self._inputs.of((number, delays.tobytes()), averaged, self._asked_for(delays))
 
     def _motion(self, number: int, p: FloatArray) -> MeasuredMotion:
         """The measured motion, errors of the sensors at p taken out."""
@@ -174,9 +174,7 @@ class EquationSpace:
             )
 
         changing = p[self.sensing]
-        return self._motions.of(
-            (number, changing.tobytes(), b""), measured, self._asked_for(changing)
-        )
+        return self._motions.of((number, changing.tobytes()), measured, self._asked_for(changing))
 
     def _further(
         self, number: int, p: FloatArray, along: MeasuredMotion, added: FloatArray
@@ -187,7 +185,7 @@ class EquationSpace:
             none = np.zeros((len(added), 0)), np.zeros((samples, 0)), np.zeros((0, 0, 0))
             return FurtherStates(*none)
         changing = p[self.moving | self.sensing]
-        key = (number, changing.tobytes(), added.tobytes() if np.any(added) else b"")
+        key = (number, changing.tobytes() + added.tobytes())
         places = [place for _, place in self.measured]
         integrated = partial(
             states_along,

@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 
 FloatArray = NDArray[np.float64]
 
-WINDOW = "#"  # between the name of a log and the number of a window in the name of that
+WINDOW = "#"  # in the name of a window, between that of its log and its number
 
 
 @dataclass(frozen=True)

@@ -49,10 +49,7 @@ def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple
         ]
     )
     return tuple(
-        replace(
-            _prepare(model, outputs, piece, order, counts, sigma, underway=number > 0),
-            source=log.name,
-        )
+        _prepare(model, outputs, piece, order, counts, sigma, log.name, underway=number > 0)
         for log in logs
         for number, piece in enumerate(_pieces(log, counts))
     )
@@ -89,13 +86,14 @@ def _prepare(
     order: list[int],
     counts: FloatArray,
     sigma: FloatArray,
+    source: str,
     *,
     underway: bool,
 ) -> Run:
     steps = log.steps or [(log.time, column) for column in log.inputs.T]
     run = Run(
         name=log.name,
-        source=log.name,
+        source=source,
         time=np.ascontiguousarray(log.time),
         inputs=stack([table(*steps[k]) for k in order]),
         held_inputs=np.ascontiguousarray(log.inputs[:, order]),
