@@ -48,6 +48,20 @@ class Member:
 
 
 @dataclass(frozen=True)
+class Structure:
+    """How a platform that lacks an effect is rebuilt with it, where no value makes it vanish.
+
+    `needs` are quantities that a declared effect must define on the axis. Of the effects named in
+    `in_place_of`, one must be declared on the axis: the effect takes its place. Those named in
+    `along_with` come with it where they are not declared.
+    """
+
+    needs: tuple[str, ...] = ()
+    in_place_of: tuple[str, ...] = ()
+    along_with: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Effect:
     """A physical effect, complete in one file.
 
@@ -55,7 +69,8 @@ class Effect:
     has nothing to act on; `requires`: what its parameters must fulfil. `dissipative`: its torques
     only take energy out, which tests verify. `structural`: no parameter value makes it vanish (a
     motor, a body): declared, never searched for; nor is one that is `declared_only`. `sites`: where
-    on its axis it may sit, if there is a choice. `has` tells which of its parameters it has at a
+    on its axis it may sit, if there is a choice. A diagnosis rebuilds platforms with it as its
+    `structure` says (None: it does not). `has` tells which of its parameters it has at a
     place. `members` are nested versions of it, the simplest first and the whole last; where
     `first_leads`, what the others add to the first can only be smaller. Other `kinds` share its
     id; this is the usual one. `linear` has the texts that are others on a linear joint, where they
@@ -86,6 +101,7 @@ class Effect:
     kinds: tuple["Effect", ...] = ()
     linear: Mapping[str, str] | None = field(default=None, hash=False)
     instead_on_linear: str = ""
+    structure: Structure | None = None
 
     def __post_init__(self) -> None:
         for parameter in self.parameters:
