@@ -4,17 +4,15 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.models import variants
 from ptp_symbolic.numeric.black_box.learners import require_library
 from ptp_symbolic.numeric.data import log_files, read_split_logs
-from ptp_symbolic.numeric.diagnose.search import search
 from ptp_symbolic.numeric.diagnose.turned_inputs import turned_inputs
-from ptp_symbolic.numeric.diagnose.verdict import decide
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.against_black_box import against_black_box
-from ptp_symbolic.workflows.preparation import effect_keys, look_at, model_of, task_for, workers
+from ptp_symbolic.workflows.preparation import look_at, workers
 from ptp_symbolic.workflows.provenance import provenance
 from ptp_symbolic.workflows.result import Output, Progress
+from ptp_symbolic.workflows.structure_choice import Logs, chosen_structure
 from ptp_symbolic.workflows.write_up import written_up
 
 TIME_LIMIT = 300.0  # s; of the search, unless another is asked for
@@ -47,22 +45,20 @@ def diagnose_platform(
     read = {"train": (fitted, train_logs), "validate": (judging, validate_logs)}
     sources = provenance(platform, read, command)
     noted = look_at(platform, train_logs, (*train_logs, *validate_logs), progress)
-    progress("deriving the equations of the platform and its candidates")
-    model = model_of(variants.with_candidates(platform))
     with workers() as executor:
-        task = task_for(
-            platform, model, train_logs, validate_logs, effect_keys(platform), executor, progress
-        )
-        found = search(task, limit)
-        if found.is_cut_short:
+        logs = Logs(tuple(train_logs), tuple(validate_logs), executor, progress)
+        choice = chosen_structure(platform, logs, limit)
+        chosen = choice.chosen
+        if chosen.found.is_cut_short or choice.terms.found.is_cut_short:
             noted = (*noted, _cut_short(limit))
-        verdict = decide(found)
-        if verdict.leaves_more:
-            noted = (*noted, *turned_inputs(found.task, found.declared))
+        if chosen.verdict.leaves_more:
+            noted = (*noted, *turned_inputs(chosen.found.task, chosen.found.declared))
         beside = None
         if rivals:
-            beside = against_black_box(platform, task, found, verdict, validate_logs)
-        return written_up(platform, task, found, verdict, noted, sources, beside)
+            beside = against_black_box(
+                chosen.platform, chosen.task, chosen.found, chosen.verdict, validate_logs
+            )
+        return written_up(platform, choice, noted, sources, beside)
 
 
 def _cut_short(time_limit: float) -> str:

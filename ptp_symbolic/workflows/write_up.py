@@ -8,7 +8,6 @@ import numpy as np
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.diagnose.curves import curves_of
-from ptp_symbolic.numeric.diagnose.findings import Search
 from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.remainder import hints, remainder
 from ptp_symbolic.numeric.diagnose.residual_tests import residual_tests
@@ -22,8 +21,7 @@ from ptp_symbolic.numeric.diagnose.summary import (
     ranking,
     repeatability_table,
 )
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial
-from ptp_symbolic.numeric.diagnose.verdict import Verdict
+from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.replays import estimable
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, platform_text
@@ -35,13 +33,12 @@ from ptp_symbolic.report.pdf import with_pdf
 from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, json_text, windows_table
+from ptp_symbolic.workflows.structure_choice import Choice
 
 
 def written_up(
     platform: Platform,
-    task: Task,
-    found: Search,
-    verdict: Verdict,
+    choice: Choice,
     noted: Sequence[str],
     sources: Mapping[str, Any],
     beside: Mapping[str, Any] | None = None,
@@ -49,6 +46,8 @@ def written_up(
     """What was found, as data and as files; `sources` say what it rests on (see `provenance`), and
     `beside` how rivals do that know no physics.
     """
+    chosen = choice.chosen
+    task, found, verdict = chosen.task, chosen.found, chosen.verdict
     after = verdict.final
     intervals = {e.name: e for e in estimates(verdict.estimated)}
     before = verdict.estimated
@@ -59,7 +58,7 @@ def written_up(
         "validate": (verdict.before, verdict.after),
     }
     errors = error_table(parts, verdict.floor)
-    extended = _extended(platform, after)
+    extended = _extended(chosen.platform, after)
     module, doubts = _module_of(extended)
     doubts += _carried_remarks(platform, verdict.floor)
     doubts += _tied_remarks(platform) if verdict.leaves_more else []
@@ -73,7 +72,7 @@ def written_up(
         "summary": headline(verdict, errors, sizes_of(after, intervals)),
         "fitted_to": "torques" if verdict.is_along_motion else "outputs",
         "added": added_effects(verdict, after, intervals),
-        "ranking": ranking(found, verdict, task.candidates),
+        "ranking": _ranking(choice),
         "error": errors,
         "repeatability": repeatability_table(task.whole, task.model.units),
         "residual_tests": residual_tests(verdict.after, task.model.input_names),
@@ -104,6 +103,34 @@ def written_up(
     files |= changes.result()  # pdflatex runs beside the drawing
     files["diagnosis.json"] = json_text(summary)
     return Output(summary, files)
+
+
+def _ranking(choice: Choice) -> list[dict[str, Any]]:
+    """Structures first, then sets of terms of the chosen structure and of the declared one, then
+    what was not tried, and why.
+    """
+    rows = list(choice.rows)
+    outcomes = [choice.chosen] if choice.chosen.structure is None else [choice.chosen, choice.terms]
+    for outcome in outcomes:
+        sets = ranking(outcome.found, outcome.verdict, outcome.task.candidates)
+        if outcome is not choice.chosen:
+            sets = [{**row, "accepted": False} for row in sets]
+        rows += [{**row, "structure": list(outcome.keys)} for row in sets]
+    rows += [
+        {
+            "effect": effect,
+            "axis": axis or None,
+            "structure": [],
+            "gain": None,
+            "gain_along_motion": None,
+            "train_error_after": None,
+            "parameters": {},
+            "accepted": False,
+            "why": why,
+        }
+        for (effect, _, axis), why in ((key.partition("@"), w) for key, w in choice.untried.items())
+    ]
+    return rows
 
 
 def _module_of(extended: Platform) -> tuple[dict[str, str], list[str]]:
@@ -152,8 +179,11 @@ def equations_tex(equations: list[dict[str, Any]]) -> str:
 def _extended(platform: Platform, after: Trial) -> Platform:
     """`platform` with the accepted effects, and every fitted value as the new start."""
     bounds = {p.name: p for p in after.fit.model.parameters}
+    have = {(e.effect, e.axis) for e in platform.effects}
     added = [
-        EffectDeclaration(c.id, c.axis, None) for c in after.candidates if not c.is_declared_value
+        EffectDeclaration(c.id, c.axis, None)
+        for c in after.candidates
+        if not c.is_declared_value and (c.id, c.axis) not in have
     ]
     fitted = [
         ParameterDeclaration(

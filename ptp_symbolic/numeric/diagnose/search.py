@@ -44,9 +44,10 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 
 
-def search(task: Task, time_limit: float = np.inf) -> Search:
+def search(task: Task, time_limit: float = np.inf, *, brief: bool = False) -> Search:
     """Find the set of candidates that the training runs ask for; after `time_limit`, in s, with
-    what has been tried by then.
+    what has been tried by then. A `brief` search ends with what is found soon: enough to tell
+    whether any set leaves as little as a model that leaves noise alone.
     """
     task = replace(task, deadline=time.monotonic() + time_limit)
     task.progress("comparing all sets of effects along the measured motion")
@@ -59,6 +60,8 @@ def search(task: Task, time_limit: float = np.inf) -> Search:
         seeker, found = _with_lines(seeker, _soon_found(seeker), _soon_found)
         if seeker.task.is_over or any(map(seeker.is_at_noise, (seeker.declared, *found))):
             return _from_declared(seeker, found)
+        if brief:
+            return _ended(seeker, *seeker.pruned(ranked([seeker.declared, *found])[0]))
         task = replace(task, candidates=seeker.task.candidates)
         proposals = seeker.proposals
         task.progress("fitting the declared model over windows")
@@ -66,6 +69,8 @@ def search(task: Task, time_limit: float = np.inf) -> Search:
     found = _proposed(seeker)
     if not task.windows:
         seeker, found = _with_lines(seeker, found, _proposed)
+    if brief and not any(map(seeker.is_at_noise, (seeker.declared, *found))):
+        return _ended(seeker, *seeker.pruned(ranked([seeker.declared, *found])[0]))
     return _from_declared(seeker, found)
 
 

@@ -15,13 +15,16 @@ _PART = re.compile(r"(\w+_)(sin|cos)(\d?)(_\w+)")  # a part of a wave of `harmon
 def sizes_of(after: Trial, intervals: Mapping[str, Estimate]) -> dict[str, str]:
     """How large every named effect of the trial `after` is, by its key: of the parameters that
     switch it on the one that is clearest of zero, of a wave the amplitude, with its number of
-    cycles where that was found; angles in degrees.
+    cycles where that was found, of what nothing switches off its first one; angles in degrees.
     """
     units, found = after.fit.model.units, {}
     for c in after.candidates:
-        if c.is_declared_value or not c.defining:
+        if c.is_declared_value or not c.free:
             continue
-        free = max(c.defining, key=lambda f: _clear_of_zero(intervals[f.name], c.vanishing[f.name]))
+        shown = c.defining or c.free[:1]
+        free = max(
+            shown, key=lambda f: _clear_of_zero(intervals[f.name], c.vanishing.get(f.name, 0.0))
+        )
         name, value = _amplitude(free.name, c, intervals)
         found[c.key] = f"{name} = {_written(value, units[free.name])}"
         if c.locked is not None:

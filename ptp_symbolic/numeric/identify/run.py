@@ -151,7 +151,8 @@ def with_start(
         joint_rate = states[joint].replace("theta_", "omega_", 1)
         rate = start[states.index(joint_rate)]
         seen = run.signals.index(states[joint]) if states[joint] in run.signals else None
-        reach = ANYWHERE if wound or rate != 0.0 else 1.0
+        winds_up = (wound or rate != 0.0) and model.contacts[contact, 0] == 0
+        reach = ANYWHERE if winds_up else 1.0
         if joint_rate in spread:
             turning = states[gear].replace("theta_", "omega_", 1)
             unknowns.append(_unknown(states, turning, [turning], ANYWHERE, spread[joint_rate]))

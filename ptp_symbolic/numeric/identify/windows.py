@@ -30,6 +30,7 @@ from ptp_symbolic.numeric.identify.evaluate import Tolerance, evaluate, start_st
 from ptp_symbolic.numeric.identify.first_rate import Around
 from ptp_symbolic.numeric.identify.replays import input_noise, propagated_noise, replayed
 from ptp_symbolic.numeric.identify.run import WINDOW, Run, with_start
+from ptp_symbolic.numeric.identify.sample_averages import thinned
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import part_of_held
 
@@ -202,3 +203,25 @@ def piece_of(run: Run, part: slice, number: int) -> Run:
         held_inputs=np.ascontiguousarray(run.held_inputs[part]),
         measured=np.ascontiguousarray(run.measured[part]),
     )
+
+
+def parted_like(model: Model, runs: Sequence[Run], pattern: Sequence[Run]) -> tuple[Run, ...]:
+    """Runs in the windows, and with the samples, of the runs of another model of the same logs."""
+    found = []
+    for other in pattern:
+        first_time, last_time = other.time[0], other.time[-1]
+        run = next(
+            r
+            for r in runs
+            if r.source == other.source and r.time[0] <= first_time and last_time <= r.time[-1]
+        )
+        first, last = np.searchsorted(run.time, [first_time, last_time])
+        piece = run
+        if last - first + 1 < len(run.time):
+            piece = replace(piece_of(run, slice(first, last + 1), 0), name=other.name)
+        if first > 0:
+            around = Around(run.time, run.measured, int(first))
+            piece = with_start(model, replace(piece, before=run.held_inputs[first - 1]), around)
+        every = round((len(piece.time) - 1) / max(len(other.time) - 1, 1))
+        found.append(thinned(piece, every))
+    return tuple(found)

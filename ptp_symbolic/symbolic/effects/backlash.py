@@ -9,7 +9,7 @@ is finite, does not take part in a strike.
 from dataclasses import replace
 
 from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution, Play
-from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.effect import Effect, Structure
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.symbols import ZERO
@@ -25,10 +25,17 @@ GAP = Parameter(
     starts=(0.005, 0.02),
     linear={"default": 1e-4, "starts": (2e-5, 1e-4)},
 )
-OPEN_LINEAR = {"default": 1e-4, "lower": 1e-7}
-OPEN_GAP = replace(GAP, lower=1e-6, vanishes=None, starts=(), linear=OPEN_LINEAR)
+OPEN_LINEAR = {**GAP.linear, "lower": 1e-7}  # type: ignore[dict-item]
+OPEN_GAP = replace(GAP, lower=1e-6, vanishes=None, linear=OPEN_LINEAR)
 RESTITUTION = Parameter(
     "e_gap_{axis}", "1", 0.5, 0.0, 1.0, "restitution: speed apart after a strike, per speed before"
+)
+
+
+DRIVE = ("winding_resistance_{axis}",)
+EXPERIMENT = (
+    "Reverse slowly with and without a known preload torque on the joint: backlash disappears under"
+    " preload, presliding does not."
 )
 
 
@@ -56,6 +63,8 @@ def _kind(
         contribute=contribute,
         structural=True,
         splits_axis=True,
+        structure=Structure(needs=DRIVE) if bounces else None,
+        separating_experiment=EXPERIMENT,
     )
 
 
@@ -67,8 +76,8 @@ BACKLASH = Effect(
     parameters=(GAP,),
     contribute=_contribute,
     needs=("half_gap_{axis}",),
-    separating_experiment="Reverse slowly with and without a known preload torque on the joint:"
-    " backlash disappears under preload, presliding does not.",
+    structure=Structure(needs=DRIVE, along_with=("shaft_compliance",)),
+    separating_experiment=EXPERIMENT,
     kinds=(
         _kind("elastic_impact", "backlash with elastic impact", "Newton's restitution", True),
         _kind(

@@ -4,12 +4,20 @@ It has no backlash, its teeth being preloaded.
 """
 
 from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Shaft, State, Switch
-from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.effect import Effect, Structure
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place, active
 
 PARAMETERS = (
-    Parameter("k1_drive_{axis}", "N m/rad", 5000.0, 1e-3, 1e9, "stiffness at no twist"),
+    Parameter(
+        "k1_drive_{axis}",
+        "N m/rad",
+        5000.0,
+        1e-3,
+        1e9,
+        "stiffness at no twist",
+        starts=(100.0, 3000.0),
+    ),
     Parameter("k3_drive_{axis}", "N m/rad^3", 1e7, 0.0, 1e15, "torque per cube of the twist"),
     Parameter("d_drive_{axis}", "N m s/rad", 1.0, 0.0, 1e6, "damping of the twist"),
     Parameter("k_hyst_{axis}", "N m/rad", 2000.0, 1e-6, 1e9, "stiffness of what slips inside"),
@@ -46,6 +54,7 @@ HARMONIC_DRIVE = Effect(
     structural=True,
     splits_axis=True,
     dissipative=True,
+    structure=Structure(needs=("winding_resistance_{axis}",)),
     separating_experiment="Lock the motor and load the joint in slow loops of several sizes: the"
     " twist stiffens, and every loop leaves an area.",
     instead_on_linear="it turns on both sides: declare shaft_compliance",

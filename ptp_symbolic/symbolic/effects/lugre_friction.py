@@ -4,7 +4,7 @@ import sympy as sp
 
 from ptp_symbolic.platform import SITES
 from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, State
-from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.effect import Effect, Structure
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.symbols import real
@@ -51,5 +51,6 @@ LUGRE_FRICTION = Effect(
     contribute=_contribute,
     sites=SITES,
     structural=True,
+    structure=Structure(in_place_of=("csvs_friction",)),
     separating_experiment="Swing below breakaway: bristles return elastically, dry friction stays.",
 )

@@ -6,7 +6,7 @@ which of them have slipped (presliding hysteresis with nonlocal memory).
 
 from ptp_symbolic.platform import SITES
 from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, State, Switch
-from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.effect import Effect, Structure
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place, active
 from ptp_symbolic.symbolic.symbols import ZERO
@@ -52,6 +52,7 @@ MAXWELL_SLIP_FRICTION = Effect(
     structural=True,
     dissipative=True,
     sites=SITES,
+    structure=Structure(in_place_of=("csvs_friction",), along_with=("viscous_friction",)),
     separating_experiment="Swing below breakaway in loops within loops: each inner loop closes, and"
     " the outer one goes on as if it had not been.",
 )

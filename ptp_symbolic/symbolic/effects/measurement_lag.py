@@ -7,13 +7,21 @@ outputs. An axis may have one of each.
 from dataclasses import replace
 
 from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution, State
-from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.effect import Effect, Structure
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.symbols import real
 
 PARAMETERS = (
-    Parameter("t_lag_{axis}", "s", 1e-3, 1e-6, 10.0, "time constant of the filter of the {axis}"),
+    Parameter(
+        "t_lag_{axis}",
+        "s",
+        1e-3,
+        1e-6,
+        10.0,
+        "time constant of the filter of the {axis}",
+        starts=(3e-3, 3e-2),
+    ),
 )
 
 
@@ -52,6 +60,7 @@ def _kind(kind: str, signal: str, unit: str) -> Effect:
         parameters=(given,),
         contribute=contribute,
         needs=(f"reading_{signal}_{{axis}}",),
+        structure=Structure(needs=(f"reading_{signal}_{{axis}}",)),
         kinds=(),
         separating_experiment="Log a step of the input beside the encoder: the reading follows the"
         " motion with one time constant, a delay shifts it whole.",
@@ -66,6 +75,7 @@ MEASUREMENT_LAG = Effect(
     parameters=PARAMETERS,
     contribute=_contribute,
     structural=True,
+    structure=Structure(),
     separating_experiment="Turn steadily at several rates past an index mark: the reading is behind"
     " in proportion to the rate.",
 )

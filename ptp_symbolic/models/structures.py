@@ -1,0 +1,185 @@
+"""Platforms one structure away from a declared one: rebuilt with an effect that brings states or
+modes, or replaces a law, and that no value of a parameter makes vanish.
+
+Which there are follows from the effects, each of which says how it is built in (`Structure`).
+"""
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.models.variants import candidate_effects
+from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, effect_key
+from ptp_symbolic.symbolic.derivation.placement import (
+    available_quantities,
+    parameters_of,
+    place_effects,
+    readings,
+)
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effects import EFFECTS
+
+Site = tuple[Effect, str | None]  # an effect, of one of its kinds, and its axis
+
+
+@dataclass(frozen=True)
+class Rebuilt:
+    """A platform one structure away from the declared one.
+
+    `added` are the effects that it has more, the one it is named after first; `removed` those whose
+    place they take. `starts` are values of the parameters that came with them, from which a fit
+    begins. Every effect `provides` mechanisms: where that of another structure has all of these,
+    it contains this one.
+    """
+
+    title: str
+    platform: Platform
+    added: tuple[EffectDeclaration, ...]
+    removed: tuple[EffectDeclaration, ...]
+    starts: tuple[Mapping[str, float], ...]
+    provides: frozenset[str]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of the added effects, e.g. ``backlash@pan``."""
+        return tuple(effect_key(e.effect, e.axis) for e in self.added)
+
+
+def structures(platform: Platform) -> tuple[tuple[Rebuilt, ...], dict[str, str]]:
+    """`platform` rebuilt with every effect of the catalogue that says how, on every axis that has
+    what it needs; and, by key, why other effects are no candidates of a diagnosis.
+    """
+    found: list[Rebuilt] = []
+    terms = {(e.effect, e.axis) for e in candidate_effects(platform)}
+    declared = {(e.effect, e.axis) for e in platform.effects}
+    untried: dict[str, str] = {}
+    for effect, axis in _everywhere(platform):
+        key = effect_key(effect.id, axis)
+        if (effect.id, axis) in declared | terms:
+            continue
+        try:
+            why = _lacking(platform, effect, axis)
+            if why is None:
+                found.append(_rebuilt(platform, effect, axis))
+        except InputError as error:
+            why = f"the platform cannot be rebuilt with it: {error}"
+        if why is not None:
+            untried.setdefault(key, why)
+    tried = {key for each in found for key in each.keys}
+    return tuple(found), {key: why for key, why in untried.items() if key not in tried}
+
+
+def _everywhere(platform: Platform) -> Iterator[Site]:
+    """Every kind of every effect of the catalogue, on every axis."""
+    for each in EFFECTS:
+        for effect in (each, *each.kinds):
+            for axis in platform.axes if effect.on_axis else (None,):
+                yield effect, axis
+
+
+def _lacking(platform: Platform, effect: Effect, axis: str | None) -> str | None:
+    """Why an effect that is no term of `platform` is no structure of it either; None if it is."""
+    if platform.linear_axes and effect.instead_on_linear:
+        return f"not tried: on a linear joint {effect.instead_on_linear}"
+    if effect.structure is None:
+        if effect.searched:
+            missing = _missing(platform, effect.needs, axis)
+            return f"not tried: it acts on {missing}, which no declared effect defines"
+        return "not tried: it is declared, never searched for"
+    missing = _missing(platform, effect.structure.needs, axis)
+    if missing:
+        return f"not tried: it needs {missing}, which no declared effect defines"
+    if effect.structure.in_place_of and not _removed(platform, effect, axis):
+        replaced = " or ".join(effect.structure.in_place_of)
+        return f"not tried: it takes the place of {replaced}, which is not declared on this axis"
+    return None
+
+
+def _missing(platform: Platform, needs: tuple[str, ...], axis: str | None) -> str:
+    placed = place_effects(platform)
+    available = available_quantities(placed) | readings(platform, placed)
+    return " and ".join(
+        name for name in (need.format(axis=axis) for need in needs) if name not in available
+    )
+
+
+def _removed(platform: Platform, effect: Effect, axis: str | None) -> tuple[EffectDeclaration, ...]:
+    """The declared effects whose place `effect` takes."""
+    own = effect.structure.in_place_of if effect.structure else ()
+    return tuple(e for e in platform.effects if e.effect in own and e.axis == axis)
+
+
+def _rebuilt(platform: Platform, effect: Effect, axis: str | None) -> Rebuilt:
+    """`platform` with `effect`, what comes along with it, and all of their parameters that are not
+    declared free. Raises InputError where what is declared beside cannot do with it.
+    """
+    removed = _removed(platform, effect, axis)
+    kept = tuple(e for e in platform.effects if e not in removed)
+    have = {(e.effect, e.axis) for e in kept}
+    along = effect.structure.along_with if effect.structure else ()
+    added = (
+        EffectDeclaration(effect.id, axis, next((e.site for e in removed), None), effect.kind),
+        *(EffectDeclaration(other, axis, None) for other in along if (other, axis) not in have),
+    )
+    bare = replace(platform, effects=(*kept, *added), parameters=())
+    placed = place_effects(bare)
+    own, said = parameters_of(placed), {p.name for p in platform.parameters}
+    new = {(e.effect, e.axis) for e in added}
+    fresh = [
+        p
+        for each, place in placed
+        if (each.id, place.axis) in new
+        for p in each.parameters_at(place)
+        if p.name not in said
+    ]
+    grid = [p.starts or (p.default,) for p in fresh]
+    names = [p.name for p in fresh]
+    parameters = (
+        *(_within(p, own[p.name]) for p in platform.parameters if p.name in own),
+        *(
+            ParameterDeclaration(p.name, p.unit, values[0], free=True)
+            for p, values in zip(fresh, grid, strict=True)
+        ),
+    )
+    rebuilt = replace(bare, parameters=parameters)
+    place_effects(rebuilt)
+    return Rebuilt(
+        effect.title,
+        rebuilt,
+        added,
+        removed,
+        tuple(dict(zip(names, point, strict=True)) for point in itertools.product(*grid)),
+        _mechanisms(rebuilt, new),
+    )
+
+
+def _within(declared: ParameterDeclaration, own: Parameter) -> ParameterDeclaration:
+    """A declared parameter within the bounds of the effect that owns it now."""
+
+    def inside(value: float | None) -> float | None:
+        return None if value is None else min(max(value, own.lower), own.upper)
+
+    return replace(
+        declared,
+        value=min(max(declared.value, own.lower), own.upper),
+        lower=inside(declared.lower),
+        upper=inside(declared.upper),
+    )
+
+
+def _mechanisms(platform: Platform, added: set[tuple[str, str | None]]) -> frozenset[str]:
+    """What the effects `added` to `platform` bring, by kind and axis: shafts, gaps, what they
+    change.
+    """
+    found: set[str] = set()
+    for effect, place in place_effects(platform):
+        if (effect.id, place.axis) in added:
+            given = effect.turning_contribution_at(place)
+            found |= {f"shaft {s.axis}" for s in given.shafts}
+            found |= {f"play {p.axis}" for p in given.plays}
+            found |= {f"change {name}" for name in given.changes}
+            found |= {f"friction {f.axis}" for f in given.frictions}
+            found |= {f"torque {rate}" for rate in given.torques}
+    return frozenset(found)

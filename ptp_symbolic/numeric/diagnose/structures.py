@@ -1,0 +1,219 @@
+"""Structures compared: the declared platform and those one structure away from it, each fitted to
+the same logs by a model of its own.
+
+A structure has no value of a parameter at which it vanishes, so that no derivative tells what it
+would gain. It is fitted, and predicts blocks left out better than the declared structure or does
+not; with what else the logs lack it is judged as any term is.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs
+from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows, over_whole_runs
+from ptp_symbolic.numeric.diagnose.findings import is_earned
+from ptp_symbolic.numeric.diagnose.floor import floor_of, leaves_noise_alone
+from ptp_symbolic.numeric.diagnose.gain import Gain, gain
+from ptp_symbolic.numeric.diagnose.left_over import carried_noise
+from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose
+from ptp_symbolic.numeric.diagnose.refits import refitted_in
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, misfits, ranked
+from ptp_symbolic.numeric.identify.intervals import estimates
+from ptp_symbolic.numeric.identify.run import Run
+from ptp_symbolic.numeric.identify.windows import parted_like
+
+
+@dataclass(frozen=True, eq=False)
+class FittedStructure:
+    """A structure fitted to the training runs, no term added; `added` are its effects with the
+    parameters that they brought (none for the declared structure), `provides` its mechanisms.
+    """
+
+    title: str
+    added: tuple[Candidate, ...]
+    provides: frozenset[str]
+    task: Task
+    trial: Trial
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of the added effects."""
+        return tuple(c.key for c in self.added)
+
+    @property
+    def is_quiet(self) -> bool:
+        """Whether it leaves noise alone."""
+        if self.trial.fit.failed:
+            return False
+        carried = carried_noise(self.task, self.trial.fit)
+        return leaves_noise_alone(self.trial, floor_of(self.task, self.trial, carried))
+
+
+@dataclass(frozen=True, eq=False)
+class Begun:
+    """A structure fitted as far as whole runs lead from its starts, with what leads further."""
+
+    fitted: FittedStructure
+    proposals: Proposals
+    led: bool = False
+
+    def led_on(self) -> "Begun":
+        """The structure led over windows, where whole runs leave more than noise."""
+        if self.led or self.fitted.is_quiet:
+            return self
+        task, trial = led_over_windows(self.fitted.task, self.proposals)
+        trial = ranked([trial, self.fitted.trial])[0] if _alike(trial, self.fitted.trial) else trial
+        return replace(self, fitted=replace(self.fitted, task=task, trial=trial), led=True)
+
+
+def _alike(one: Trial, other: Trial) -> bool:
+    return [r.size for r in one.fit.runs] == [r.size for r in other.fit.runs]
+
+
+def begin_structure(
+    title: str,
+    keys: Sequence[str],
+    provides: frozenset[str],
+    task: Task,
+    starts: Sequence[Mapping[str, float]],
+) -> Begun:
+    """The structure of `task`, fitted from the best of `starts` (of the parameters that the effects
+    named in `keys` bring) and from the declared start: to whole runs, or a few iterations where
+    these are windows.
+    """
+    proposals = propose(task)
+    values = [proposals.start, *({**proposals.start, **start} for start in starts)]
+    begun = [fitted(task, (), v, None, executor=task.executor) for v in values]
+    rough = halving(task, begun, 1) or begun[:1]
+    proposals = replace(proposals, start=rough[0].values)
+    trial = rough[0]
+    if task.windows:
+        task, trial = over_whole_runs(task, proposals)
+    return Begun(FittedStructure(title, effects_of(task, keys), provides, task, trial), proposals)
+
+
+def effects_of(task: Task, keys: Sequence[str]) -> tuple[Candidate, ...]:
+    """The effects named in `keys` as candidates that nothing switches off, in their order."""
+    free = {f.name: f for f in task.free}
+    own = {e.key: e for e in task.model.effects}
+    return tuple(
+        Candidate(
+            effect.id,
+            effect.axis,
+            effect.title,
+            effect.separating_experiment,
+            tuple(free[name] for name in effect.parameters if name in free),
+            {},
+        )
+        for effect in (own[key] for key in keys)
+    )
+
+
+def on_runs_of(task: Task, trial: Trial, pattern: Sequence[Run]) -> Trial:
+    """The trial fitted to the windows and samples of other runs of the same logs."""
+    own = [(run.source, run.time[0], len(run.time)) for run in trial.fit.runs]
+    if own == [(run.source, run.time[0], len(run.time)) for run in pattern]:
+        return trial
+    runs = parted_like(task.model, task.whole, pattern)
+    return refitted_in(replace(task, every_sample=runs, train=runs, windows=()), trial)
+
+
+def gain_over(one: FittedStructure, other: FittedStructure) -> Gain:
+    """What the first of two structures predicts better than the second."""
+    return gain(one.trial, on_runs_of(other.task, other.trial, one.trial.fit.runs))
+
+
+def by_fit(declared: FittedStructure, found: Sequence[FittedStructure]) -> list[FittedStructure]:
+    """The structures that predict a material share better than the declared one, the best fit
+    first; those with fewer parameters before those that predict no material share better.
+    """
+    better = [
+        s
+        for s in found
+        if not s.trial.fit.failed and gain_over(s, declared).share >= declared.task.material
+    ]
+    cost = {id(s): _misfit(s, declared) for s in better}
+    left, ordered = sorted(better, key=lambda s: cost[id(s)]), []
+    while left:
+        best = left[0]
+        simpler = [s for s in left[1:] if _size(s) < _size(best) and not is_better(best, s)]
+        best = min(simpler, key=_size, default=best)
+        ordered.append(best)
+        left.remove(best)
+    return ordered
+
+
+def is_better(one: FittedStructure, other: FittedStructure) -> bool:
+    """Whether the first of two structures predicts a material share better, clearly so."""
+    earned = gain_over(one, other)
+    return earned.share >= one.task.material and earned.is_clear(1)
+
+
+def _size(structure: FittedStructure) -> int:
+    return len(structure.trial.fit.free)
+
+
+def _misfit(structure: FittedStructure, declared: FittedStructure) -> float:
+    """How badly a structure fits, in the windows of the declared one."""
+    pattern = declared.trial.fit.runs
+    return misfits([declared.trial, on_runs_of(structure.task, structure.trial, pattern)])[1]
+
+
+def alternatives(
+    chosen: FittedStructure, found: Sequence[FittedStructure]
+) -> list[FittedStructure]:
+    """Structures that the chosen one does not predict clearly better than; one that contains it
+    holds nothing more that these logs ask for.
+    """
+    return [
+        s
+        for s in found
+        if s is not chosen
+        and not s.trial.fit.failed
+        and not chosen.provides <= s.provides
+        and not is_better(chosen, s)
+    ]
+
+
+def is_told(effect: Candidate, trial: Trial) -> bool:
+    """Whether the logs tell any parameter of an effect that a trial has."""
+    own = [e for e in estimates(trial.fit) if e.name in effect.parameters]
+    return any(e.identified and not e.at_bound for e in own)
+
+
+def named_effects(structure: FittedStructure, trial: Trial) -> tuple[Candidate, ...]:
+    """The effects of a structure, as a trial that has it tells them: one that came along with the
+    first, and of which the logs tell nothing, is a part of it.
+    """
+    first, *along = structure.added
+    told = [c for c in along if is_told(c, trial)]
+    parts = [f for c in along if c not in told for f in c.free]
+    return (replace(first, free=(*first.free, *parts)), *told)
+
+
+def why_rejected(
+    structure: FittedStructure,
+    task: Task,
+    trial: Trial,
+    without: Trial,
+    quiet: bool,
+    tests: int,
+) -> tuple[Gain, str | None]:
+    """What the structure gains in `trial` (with what was found beside it) over the best model
+    `without` it, and why that earns no name; None where it does. `quiet` says that the trial leaves
+    noise alone, `tests` how many structures were compared.
+    """
+    earned = gain(trial, without)
+    share, least = (100.0 * max(x, 0.0) for x in (earned.share, earned.lower))
+    if not is_earned(earned, 1.0, tests, task.material):
+        return earned, f"takes away {share:.0f} % of the error, surely {least:.0f} %: may be chance"
+    if not quiet and not earned.is_most:
+        why = f"takes away {share:.0f} % of the error, surely {least:.0f} %"
+        return earned, f"{why}, too little where more than noise is left"
+    first = structure.added[0]
+    if not is_told(first, trial):
+        return earned, f"no parameter of {first.key} can be told from these logs"
+    if not answers_to_inputs(replace(task, train=trial.fit.runs), trial):
+        return earned, "with it the model no longer answers to its inputs"
+    return earned, None
