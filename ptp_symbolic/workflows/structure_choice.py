@@ -132,11 +132,9 @@ def _rest(
 def _begun(platform: Platform, rebuilt: Rebuilt | None, logs: Logs) -> Begun:
     model = model_of(platform)
     task = task_for(platform, model, logs.train, logs.validate, (), logs.executor, logs.progress)
-    title, keys, provides, starts = "as declared", (), frozenset[str](), ()
-    if rebuilt is not None:
-        title, keys, provides = rebuilt.title, rebuilt.keys, rebuilt.provides
-        starts = rebuilt.starts
-    return begin_structure(title, keys, provides, task, starts)
+    if rebuilt is None:
+        return begin_structure("as declared", (), frozenset(), task, ())
+    return begin_structure(rebuilt.title, rebuilt.keys, rebuilt.provides, task, rebuilt.starts)
 
 
 def _all_fitted(
