@@ -6,6 +6,7 @@ import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 from ptp_symbolic.errors import InputError
@@ -13,6 +14,7 @@ from ptp_symbolic.models import variants
 from ptp_symbolic.models.structures import Rebuilt, structures
 from ptp_symbolic.numeric.data import Log
 from ptp_symbolic.numeric.diagnose.findings import Search
+from ptp_symbolic.numeric.diagnose.floor import floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, is_clearly_more
 from ptp_symbolic.numeric.diagnose.held_out import held_out_gain, is_borne_out, simulated_freely
@@ -30,7 +32,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
     why_rejected,
 )
 from ptp_symbolic.numeric.diagnose.summary import gain_table
-from ptp_symbolic.numeric.diagnose.trial import Task, ranked
+from ptp_symbolic.numeric.diagnose.trial import Task, misfits, ranked
 from ptp_symbolic.numeric.diagnose.verdict import (
     PARTLY,
     UNEXPLAINED,
@@ -77,6 +79,30 @@ class Outcome:
 
 
 @dataclass(frozen=True, eq=False)
+class Searched:
+    """A structure with the search for terms in it, brief or whole; what it ends with is decided
+    when it is asked for.
+    """
+
+    platform: Platform
+    structure: FittedStructure | None
+    task: Task
+    found: Search
+
+    @property
+    def is_quiet(self) -> bool:
+        """Whether the chosen set leaves noise alone."""
+        trial = self.found.chosen
+        return leaves_noise_alone(trial, floor_of(self.found.task, trial, self.found.carried))
+
+    @cached_property
+    def outcome(self) -> Outcome:
+        """What it ends with."""
+        verdict = decide(self.found)
+        return Outcome(self.platform, self.structure, self.task, self.found, verdict)
+
+
+@dataclass(frozen=True, eq=False)
 class Choice:
     """The chosen outcome, `terms` (the outcome of the declared structure), a row for every
     structure, and why candidates were not tried, by key.
@@ -90,10 +116,13 @@ class Choice:
 
 def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choice:
     """Fit the declared platform, and where it leaves more than noise every structure one step away
-    from it; search for terms in it and in the best of them, and choose. Every search ends after its
-    share of `time_limit` in s.
+    from it; search for terms in it and in the best of them, and choose. The search ends after
+    `time_limit` in s.
+
+    Every search is brief at first. The whole one follows where no answer is found soon: of the
+    structure that fits best, and of the declared one where that is beaten by little.
     """
-    begun = time.monotonic()
+    end = time.monotonic() + time_limit
     every, untried = structures(platform)
     logs.progress("fitting the declared structure")
     declared = _begun(platform, None, logs).led_on().fitted
@@ -102,25 +131,47 @@ def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choic
         logs.progress(f"fitting {len(every)} structures one step away")
         found, failed = _all_fitted(every, logs)
         untried = {**untried, **failed}
-    order = by_fit(declared, [s for _, s in found])
-    quiet = [s for s in order if s.is_quiet]
-    followed = quiet[:1] or order[:FOLLOWED]
-
-    def left(parts: int) -> float:
-        return max(time_limit - (time.monotonic() - begun), 1.0) / parts
-
-    logs.progress("searching for terms of the declared structure")
-    terms = _outcome(platform, None, logs, left(1 + len(followed)), brief=bool(quiet))
-    outcomes = []
-    for number, structure in enumerate(followed):
-        rebuilt = next(r for r, s in found if s is structure)
-        logs.progress(f"searching for terms beside {' + '.join(structure.keys)}")
-        share = left(len(followed) - number)
-        outcomes.append(_outcome(rebuilt.platform, structure, logs, share))
     others = [s for _, s in found]
-    chosen, refused = _chosen(terms, outcomes, others, logs)
+    order = by_fit(declared, others)
+    platforms = {id(s): rebuilt.platform for rebuilt, s in found}
+
+    def searched(structure: FittedStructure | None, brief: bool) -> Searched:
+        name = " + ".join(structure.keys) if structure else ""
+        logs.progress(f"searching for terms beside {name or 'what is declared'}")
+        there = platforms[id(structure)] if structure else platform
+        limit = max(end - time.monotonic(), 1.0)
+        return _searched(there, structure, logs, limit, brief=brief)
+
+    terms = searched(None, brief=bool(order))
+    quiet = [s for s in order if s.is_quiet][:1]
+    followed = [
+        searched(s, brief=True) for s in quiet or ([] if terms.is_quiet else order[:FOLLOWED])
+    ]
+    if order and not terms.is_quiet:
+        best = _best_fit([terms, *followed])
+        if best is not terms and not best.is_quiet:
+            whole = searched(best.structure, brief=False)
+            followed = [whole if s is best else s for s in followed]
+            best = whole
+        if best is terms or not _is_far_ahead(best, terms):
+            terms = searched(None, brief=False)
+    chosen, refused = _chosen(terms.outcome, [s.outcome for s in followed], others, logs)
     rows = tuple(_row(s, declared, chosen, refused) for s in [*order, *_rest(others, order)])
-    return Choice(chosen, terms, rows, untried)
+    return Choice(chosen, terms.outcome, rows, untried)
+
+
+def _best_fit(searches: Sequence[Searched]) -> Searched:
+    """The search that ends with the best fit, in the windows of the first one."""
+    pattern = searches[0].found.chosen.fit.runs
+    trials = [on_runs_of(s.found.task, s.found.chosen, pattern) for s in searches]
+    cost = misfits(trials)
+    return searches[min(range(len(cost)), key=lambda k: cost[k])]
+
+
+def _is_far_ahead(one: Searched, other: Searched) -> bool:
+    """Whether the first surely takes away most of what the second leaves."""
+    trial = one.found.chosen
+    return gain(trial, on_runs_of(other.found.task, other.found.chosen, trial.fit.runs)).is_most
 
 
 def _rest(
@@ -160,14 +211,14 @@ def _all_fitted(
     return [(r, b.fitted) for r, b in begun], failed
 
 
-def _outcome(
+def _searched(
     platform: Platform,
     structure: FittedStructure | None,
     logs: Logs,
     time_limit: float,
     *,
-    brief: bool = False,
-) -> Outcome:
+    brief: bool,
+) -> Searched:
     """Search for terms in a structure, begun at the values that it was fitted with."""
     begun = platform
     if structure is not None:
@@ -180,8 +231,7 @@ def _outcome(
     task = replace(
         task, free=tuple(replace(f, declared_start=declared_starts[f.name]) for f in task.free)
     )
-    found = search(task, time_limit, brief=brief)
-    return Outcome(platform, structure, task, found, decide(found))
+    return Searched(platform, structure, task, search(task, time_limit, brief=brief))
 
 
 def _chosen(
@@ -200,6 +250,9 @@ def _chosen(
         quiet = outcome.verdict.word not in (PARTLY, UNEXPLAINED)
         task = outcome.found.task
         earned, why = why_rejected(structure, task, final, without, quiet, len(others))
+        unconfirmed = on_runs_of(terms.found.task, terms.found.chosen, final.fit.runs)
+        if why is None and is_clearly_more(gain(unconfirmed, final), 1, task.material):
+            why = f"{' + '.join(terms.found.chosen.keys)} predicts better, but is not confirmed"
         if why is None:
             named = _with_structure(outcome, terms, earned, others, logs)
             if _is_borne_out(named, terms, quiet):

@@ -1,0 +1,83 @@
+"""Which structures a diagnosis tries follows from the effects and the platform, and nothing is left
+out in silence.
+"""
+
+from dataclasses import replace
+
+import pytest
+
+from ptp_symbolic.models.structures import structures
+from ptp_symbolic.models.variants import candidate_effects
+from ptp_symbolic.platform import EffectDeclaration, Platform, effect_key, read_platform
+from ptp_symbolic.symbolic.effects import EFFECTS
+
+BODIES = [("rigid_bodies", None), ("payload", None)]
+SERVO = [("dc_motor", "pan"), ("csvs_friction", "pan"), ("viscous_friction", "pan")]
+
+
+def platform_of(*effects: tuple[str, str | None]) -> Platform:
+    """A pan axis with some effects, all parameters at their defaults."""
+    declared = tuple(EffectDeclaration(effect, axis, None) for effect, axis in effects)
+    bare = read_platform("thesis-ideal")
+    return replace(bare, axes=("pan",), effects=declared, parameters=(), signals=())
+
+
+def keys_of(platform: Platform) -> list[tuple[str, ...]]:
+    return [s.keys for s in structures(platform)[0]]
+
+
+def test_a_motor_on_a_rigid_gear_may_have_a_shaft_a_gap_or_both() -> None:
+    found = keys_of(platform_of(*BODIES, *SERVO))
+    assert ("shaft_compliance@pan",) in found
+    assert ("backlash@pan", "shaft_compliance@pan") in found
+    assert ("backlash@pan",) in found, "rigid faces with restitution need no shaft"
+    assert ("harmonic_drive@pan",) in found
+
+
+def test_a_declared_shaft_makes_the_gap_a_term_and_no_structure() -> None:
+    platform = platform_of(*BODIES, *SERVO, ("shaft_compliance", "pan"))
+    assert ("backlash", "pan") in {(e.effect, e.axis) for e in candidate_effects(platform)}
+    assert not any("backlash@pan" in keys for keys in keys_of(platform))
+
+
+def test_an_axis_without_a_motor_has_nothing_for_a_shaft_to_follow() -> None:
+    platform = platform_of(*BODIES, ("csvs_friction", "pan"))
+    found, untried = structures(platform)
+    assert not any("shaft_compliance@pan" in s.keys for s in found)
+    assert "winding_resistance_pan" in untried["shaft_compliance@pan"]
+
+
+def test_bristles_take_the_place_of_dry_friction_and_keep_its_values() -> None:
+    platform = platform_of(*BODIES, *SERVO)
+    (lugre,) = [s for s in structures(platform)[0] if s.keys == ("lugre_friction@pan",)]
+    effects = {e.effect for e in lugre.platform.effects}
+    assert "lugre_friction" in effects and "csvs_friction" not in effects
+    assert [e.effect for e in lugre.removed] == ["csvs_friction"]
+
+
+def test_friction_that_needs_the_one_replaced_is_a_reason_not_a_crash() -> None:
+    platform = platform_of(*BODIES, *SERVO, ("direction_dependent_friction", "pan"))
+    found, untried = structures(platform)
+    assert ("lugre_friction@pan",) not in [s.keys for s in found]
+    assert "direction_dependent_friction" in untried["lugre_friction@pan"]
+
+
+@pytest.mark.parametrize(
+    "effects", [BODIES, [*BODIES, *SERVO], [*BODIES, *SERVO, ("shaft_compliance", "pan")]]
+)
+def test_no_effect_is_left_out_in_silence(effects: list[tuple[str, str | None]]) -> None:
+    platform = platform_of(*effects)
+    found, untried = structures(platform)
+    known = {effect_key(e.effect, e.axis) for e in platform.effects}
+    known |= {effect_key(e.effect, e.axis) for e in candidate_effects(platform)}
+    known |= {key for s in found for key in s.keys} | set(untried)
+    assert {effect_key(e.id, "pan" if e.on_axis else None) for e in EFFECTS} <= known
+    assert all(untried.values())
+
+
+def test_what_contains_another_structure_provides_all_that_it_does() -> None:
+    found = {s.keys: s for s in structures(platform_of(*BODIES, *SERVO))[0]}
+    shaft = found["shaft_compliance@pan",].provides
+    assert shaft < found["backlash@pan", "shaft_compliance@pan"].provides
+    assert shaft <= found["harmonic_drive@pan",].provides
+    assert not shaft <= found["measurement_lag@pan",].provides
