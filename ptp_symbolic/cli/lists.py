@@ -102,7 +102,7 @@ def _described(kind: Any) -> dict[str, Any]:
             {
                 "quantity": need.format(axis="<axis>"),
                 "from": effects_that_define(need.format(axis=AXES[0]), AXES)
-                or [f"[signals.{need.removeprefix('reading_').format(axis='<axis>')}]"],
+                or _from_the_machine(need),
             }
             for need in kind.needs
         ],
@@ -118,6 +118,13 @@ def _described(kind: Any) -> dict[str, Any]:
             for p in kind.parameters_at(place)
         ],
     }
+
+
+def _from_the_machine(need: str) -> list[str]:
+    """Where a quantity comes from that no effect defines: a signal, or the input of the axis."""
+    if need.startswith("reading_"):
+        return [f"[signals.{need.removeprefix('reading_').format(axis='<axis>')}]"]
+    return ["the torque input of an axis without a motor"]
 
 
 def _as_row(parameter: Mapping[str, Any]) -> dict[str, str]:

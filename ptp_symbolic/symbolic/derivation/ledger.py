@@ -24,9 +24,7 @@ def energy_ledger(
 
     A potential that depends on time (a base that moves) takes in its partial derivative by time.
     """
-    powers = (
-        kinematics.torque(a) * kinematics.rate(a) for a in axes if a not in contributions.driven
-    )
+    powers = (contributions.input_torque(axis) * kinematics.rate(axis) for axis in axes)
     total = Ledger(rigid.kinetic + rigid.potential, sum(powers, ZERO))
     for contribution, is_loss in zip(
         contributions.by_effect, contributions.dissipative, strict=True
