@@ -253,9 +253,7 @@ def _transmitted(axis: str, contributions: Iterable[Contribution]) -> sp.Expr:
     return quantity_symbol(TORQUES[0].format(axis=axis))
 
 
-def input_torques(
-    axes: Iterable[str], contributions: Sequence[Contribution]
-) -> dict[str, sp.Expr]:
+def input_torques(axes: Iterable[str], contributions: Sequence[Contribution]) -> dict[str, sp.Expr]:
     """The quantities of the torque inputs: of the joints without a drive or a prescribed motion."""
     driven = {drive.axis for c in contributions for drive in c.drives}
     driven |= {kinematics.place_of(rate) for c in contributions for rate in c.prescribed}

@@ -1,6 +1,7 @@
 """The catalogue of effects: one file each, listed here in the order of the catalogue."""
 
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effects.actuator_lag import ACTUATOR_LAG
 from ptp_symbolic.symbolic.effects.axis_offset import AXIS_OFFSET
 from ptp_symbolic.symbolic.effects.backlash import BACKLASH
 from ptp_symbolic.symbolic.effects.base_motion import BASE_MOTION
@@ -39,6 +40,7 @@ from ptp_symbolic.symbolic.effects.shear_thinning_friction import SHEAR_THINNING
 from ptp_symbolic.symbolic.effects.temperature_dependent_friction import (
     TEMPERATURE_DEPENDENT_FRICTION,
 )
+from ptp_symbolic.symbolic.effects.torque_saturation import TORQUE_SATURATION
 from ptp_symbolic.symbolic.effects.viscous_friction import VISCOUS_FRICTION
 from ptp_symbolic.symbolic.effects.voltage_offset import VOLTAGE_OFFSET
 from ptp_symbolic.symbolic.effects.voltage_saturation import VOLTAGE_SATURATION
@@ -79,6 +81,8 @@ EFFECTS: tuple[Effect, ...] = (
     VOLTAGE_OFFSET,
     VOLTAGE_SATURATION,
     WINDING_HEATING,
+    TORQUE_SATURATION,
+    ACTUATOR_LAG,
     CABLE_SPRING,
     CONSTANT_TORQUE,
     INPUT_DELAY,
