@@ -16,6 +16,7 @@ from ptp_symbolic.symbolic.effects.directional_load_friction import DIRECTIONAL_
 from ptp_symbolic.symbolic.effects.drive_deadband import DRIVE_DEADBAND
 from ptp_symbolic.symbolic.effects.encoder_eccentricity import ENCODER_ECCENTRICITY
 from ptp_symbolic.symbolic.effects.encoder_quantization import ENCODER_QUANTIZATION
+from ptp_symbolic.symbolic.effects.friction_drift import FRICTION_DRIFT
 from ptp_symbolic.symbolic.effects.gear_eccentricity import GEAR_ECCENTRICITY
 from ptp_symbolic.symbolic.effects.harmonic_drive import HARMONIC_DRIVE
 from ptp_symbolic.symbolic.effects.input_delay import INPUT_DELAY
@@ -37,6 +38,7 @@ from ptp_symbolic.symbolic.effects.rate_dependent_breakaway import RATE_DEPENDEN
 from ptp_symbolic.symbolic.effects.rigid_bodies import RIGID_BODIES
 from ptp_symbolic.symbolic.effects.shaft_compliance import SHAFT_COMPLIANCE
 from ptp_symbolic.symbolic.effects.shear_thinning_friction import SHEAR_THINNING_FRICTION
+from ptp_symbolic.symbolic.effects.stribeck_exponent import STRIBECK_EXPONENT
 from ptp_symbolic.symbolic.effects.temperature_dependent_friction import (
     TEMPERATURE_DEPENDENT_FRICTION,
 )
@@ -63,6 +65,8 @@ EFFECTS: tuple[Effect, ...] = (
     DIRECTIONAL_LOAD_FRICTION,
     POSITION_DEPENDENT_FRICTION,
     RATE_DEPENDENT_BREAKAWAY,
+    STRIBECK_EXPONENT,
+    FRICTION_DRIFT,
     SHEAR_THINNING_FRICTION,
     TEMPERATURE_DEPENDENT_FRICTION,
     QUADRATIC_DRAG,
