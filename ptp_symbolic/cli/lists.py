@@ -121,10 +121,12 @@ def _described(kind: Any) -> dict[str, Any]:
 
 
 def _from_the_machine(need: str) -> list[str]:
-    """Where a quantity comes from that no effect defines: a signal, or the input of the axis."""
+    """Where a quantity comes from that no effect defines: a signal, or the axis itself."""
     if need.startswith("reading_"):
         return [f"[signals.{need.removeprefix('reading_').format(axis='<axis>')}]"]
-    return ["the torque input of an axis without a motor"]
+    if need.startswith(("input_torque_", "command_torque_")):
+        return ["the torque input of an axis without a motor"]
+    return ["the transmission of the axis"]
 
 
 def _as_row(parameter: Mapping[str, Any]) -> dict[str, str]:

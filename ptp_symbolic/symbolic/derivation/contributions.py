@@ -253,6 +253,22 @@ def _transmitted(axis: str, contributions: Iterable[Contribution]) -> sp.Expr:
     return quantity_symbol(TORQUES[0].format(axis=axis))
 
 
+def machine_quantities(axes: Iterable[str], contributions: Sequence[Contribution]) -> set[str]:
+    """Names of the quantities on the axes that are there whatever effect defines others: torque
+    inputs, torques that reach a joint (but by its prescribed motion, or rigid backlash), and the
+    errors of gears (of a shaft that may have play, or of a motor without a shaft).
+    """
+    axes = tuple(axes)
+    found = set(input_torques(axes, contributions))
+    prescribed = {kinematics.place_of(rate) for c in contributions for rate in c.prescribed}
+    loose = {play.axis for c in contributions for play in c.plays}
+    found |= {f"transmitted_torque_{a}" for a in axes if a not in prescribed | loose}
+    true = {axis for axis in axes for c in contributions if f"half_gap_{axis}" in c.quantities}
+    split = loose | {shaft.axis for c in contributions for shaft in c.shafts}
+    true |= {drive.axis for c in contributions for drive in c.drives} - split
+    return found | {f"transmission_error_{axis}" for axis in true}
+
+
 def input_torques(axes: Iterable[str], contributions: Sequence[Contribution]) -> dict[str, sp.Expr]:
     """The quantities of the torque inputs: of the joints without a drive or a prescribed motion."""
     driven = {drive.axis for c in contributions for drive in c.drives}

@@ -12,7 +12,7 @@ from ptp_symbolic.platform import (
     naming_file,
 )
 from ptp_symbolic.platform.units import compatible
-from ptp_symbolic.symbolic.derivation.contributions import TORQUES, input_torques, sensors_on
+from ptp_symbolic.symbolic.derivation.contributions import TORQUES, machine_quantities, sensors_on
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
@@ -128,10 +128,10 @@ def _declared(parameter: Parameter, declarations: dict[str, ParameterDeclaration
 
 
 def available_quantities(placed: list[tuple[Effect, Place]]) -> set[str]:
-    """Names of the quantities that the placed effects define, and of those of torque inputs."""
+    """Names of the quantities that the placed effects define, and of the machine's own."""
     added = [effect.turning_contribution_at(place) for effect, place in placed]
     axes = {axis for _, place in placed for axis in place.axes}
-    return {name for own in added for name in own.quantities} | input_torques(axes, added).keys()
+    return {name for own in added for name in own.quantities} | machine_quantities(axes, added)
 
 
 def definitions(placed: list[tuple[Effect, Place]]) -> dict[str, set[str]]:
