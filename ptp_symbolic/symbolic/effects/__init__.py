@@ -42,6 +42,7 @@ from ptp_symbolic.symbolic.effects.stribeck_exponent import STRIBECK_EXPONENT
 from ptp_symbolic.symbolic.effects.temperature_dependent_friction import (
     TEMPERATURE_DEPENDENT_FRICTION,
 )
+from ptp_symbolic.symbolic.effects.torque_proportional_loss import TORQUE_PROPORTIONAL_LOSS
 from ptp_symbolic.symbolic.effects.torque_saturation import TORQUE_SATURATION
 from ptp_symbolic.symbolic.effects.viscous_friction import VISCOUS_FRICTION
 from ptp_symbolic.symbolic.effects.voltage_offset import VOLTAGE_OFFSET
@@ -63,6 +64,7 @@ EFFECTS: tuple[Effect, ...] = (
     DIRECTION_DEPENDENT_FRICTION,
     LOAD_DEPENDENT_FRICTION,
     DIRECTIONAL_LOAD_FRICTION,
+    TORQUE_PROPORTIONAL_LOSS,
     POSITION_DEPENDENT_FRICTION,
     RATE_DEPENDENT_BREAKAWAY,
     STRIBECK_EXPONENT,
