@@ -180,6 +180,7 @@ def collect(
     for axis in axes:
         values[f"transmitted_torque_{axis}"] = _transmitted(axis, contributions)
         values[f"transmission_error_{axis}"] = ZERO
+        values[f"motor_lead_{axis}"] = sp.Integer(1)  # rate over that before a gear that runs true
         values[f"reading_{kinematics.angle(axis)}"] = kinematics.angle(axis)
     for word in ("reading", "measured"):
         values.update({f"{word}_{sensor.name}": sensor.value for sensor in sensors})
