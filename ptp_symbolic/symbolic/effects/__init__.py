@@ -16,6 +16,7 @@ from ptp_symbolic.symbolic.effects.directional_load_friction import DIRECTIONAL_
 from ptp_symbolic.symbolic.effects.drive_deadband import DRIVE_DEADBAND
 from ptp_symbolic.symbolic.effects.encoder_eccentricity import ENCODER_ECCENTRICITY
 from ptp_symbolic.symbolic.effects.encoder_quantization import ENCODER_QUANTIZATION
+from ptp_symbolic.symbolic.effects.end_stop import END_STOP
 from ptp_symbolic.symbolic.effects.friction_drift import FRICTION_DRIFT
 from ptp_symbolic.symbolic.effects.gear_eccentricity import GEAR_ECCENTRICITY
 from ptp_symbolic.symbolic.effects.harmonic_drive import HARMONIC_DRIVE
@@ -90,6 +91,7 @@ EFFECTS: tuple[Effect, ...] = (
     TORQUE_SATURATION,
     ACTUATOR_LAG,
     CABLE_SPRING,
+    END_STOP,
     CONSTANT_TORQUE,
     INPUT_DELAY,
     ENCODER_ECCENTRICITY,
