@@ -24,9 +24,9 @@ UPPER, LOWER = (
         FAR,
         f"angle at which the {name} stop of the {{axis}} is met",
         vanishes=far,
-        starts=(0.0,),
+        starts=(start,),
     )
-    for name, far in (("upper", FAR), ("lower", -FAR))
+    for name, far, start in (("upper", FAR, 0.5), ("lower", -FAR, 0.0))
 )
 OF_DAMPING = "damping of the {axis} stops: share of the spring's torque per rate"
 STIFFNESS = (1e3, 1e-3, 1e9, "stiffness of the {axis} stops")
