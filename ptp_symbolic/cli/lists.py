@@ -102,7 +102,7 @@ def _described(kind: Any) -> dict[str, Any]:
             {
                 "quantity": need.format(axis="<axis>"),
                 "from": effects_that_define(need.format(axis=AXES[0]), AXES)
-                or [f"[signals.{need.removeprefix('reading_').format(axis='<axis>')}]"],
+                or _from_the_machine(need),
             }
             for need in kind.needs
         ],
@@ -118,6 +118,15 @@ def _described(kind: Any) -> dict[str, Any]:
             for p in kind.parameters_at(place)
         ],
     }
+
+
+def _from_the_machine(need: str) -> list[str]:
+    """Where a quantity comes from that no effect defines: a signal, or the axis itself."""
+    if need.startswith("reading_"):
+        return [f"[signals.{need.removeprefix('reading_').format(axis='<axis>')}]"]
+    if need.startswith(("input_torque_", "command_torque_")):
+        return ["the torque input of an axis without a motor"]
+    return ["the transmission of the axis"]
 
 
 def _as_row(parameter: Mapping[str, Any]) -> dict[str, str]:

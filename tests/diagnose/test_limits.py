@@ -32,7 +32,13 @@ MODEL = cast(
     Any,
     SimpleNamespace(
         input_names=("voltage_tilt", "voltage_pan"),
-        units={"voltage_tilt": "V", "voltage_pan": "V", "u_max_pan": "V", "u0": "V"},
+        units={
+            "voltage_tilt": "V",
+            "voltage_pan": "V",
+            "u_max_pan": "V",
+            "u0": "V",
+            "k_stop_pan": "N m/rad",
+        },
     ),
 )
 
@@ -96,3 +102,32 @@ def test_a_response_stays_below_what_is_asked(monkeypatch: pytest.MonkeyPatch, m
     expected = np.maximum(ramp - value, 0.0)
     assert np.linalg.norm(expected) <= most
     assert found.table[:, 0] * (value - LARGEST) == pytest.approx(expected)
+
+
+STOPS = Candidate(
+    "end_stop",
+    "pan",
+    "stops",
+    "",
+    (
+        free_parameter("theta_stop_upper_pan", 0.5, -1e4, 1e4),
+        free_parameter("theta_stop_lower_pan", 0.0, -1e4, 1e4),
+        free_parameter("k_stop_pan", 100.0, 1e-3, 1e9),
+    ),
+    {"theta_stop_upper_pan": 1e4, "theta_stop_lower_pan": -1e4},
+)
+
+
+@pytest.mark.parametrize("ends", [(-0.3, 0.9), (0.4, 0.9), (-2.0, -1.0), (0.0, 1.0)])
+def test_a_stop_vanishes_at_the_end_of_the_measured_angles(ends: tuple[float, float]) -> None:
+    """Whatever their sign: an angle has no zero of its own, unlike a voltage."""
+    angles = {"pan": ends, "tilt": (-50.0, 50.0)}
+    limit = within_reach(STOPS, MODEL, np.array([100.0, LARGEST]), angles)
+    upper, lower, stiffness = limit.free
+    vanishing = limit.vanishing[lower.name], limit.vanishing[upper.name]
+    assert vanishing == pytest.approx(ends, abs=1e-5)
+    assert ends[0] < lower.start < upper.start < ends[1]
+    assert limit.is_limit(upper)
+    assert limit.is_limit(lower)
+    assert stiffness == STOPS.free[2]
+    assert (limit.met_at(lower), limit.met_at(upper)) == vanishing

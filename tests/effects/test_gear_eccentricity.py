@@ -1,11 +1,16 @@
-"""Gear out of true: the joint leads and lags the gear once per turn, and no energy is lost."""
+"""Gear out of true: the joint leads and lags the gear once per turn, and no energy is lost; on a
+rigid gear the motor's inertia and lever change with the angle.
+"""
 
 import numpy as np
 import pytest
+import sympy as sp
+from scipy.integrate import solve_ivp
 
 from ptp_symbolic import simulate
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant
 from ptp_symbolic.platform import EffectDeclaration, Platform
 
 EFFECTS = (
@@ -95,3 +100,98 @@ def test_energy_stays_while_the_load_rattles(model: Model) -> None:
     energy = J_GEAR / 2 * found["omega_gear_pan"] ** 2 + J_LOAD / 2 * found["omega_pan"] ** 2
     assert energy + K / 2 * beyond**2 == pytest.approx([J_GEAR / 2 * 4.0] * len(gear), abs=1e-6)
     assert len(found.events) > 4
+
+
+RIGID = Platform(
+    "rigid wheel",
+    "Pan axis on a rigid gear out of true",
+    ("pan",),
+    9.81,
+    (
+        EFFECTS[0],
+        *(e for e in EFFECTS if e.effect in ("viscous_friction", "dc_motor", "gear_eccentricity")),
+    ),
+    (),
+    (),
+)
+N, J_MOTOR, K_T, R, L, B = 50.0, 4e-5, 0.0724, 12.9, 6.9e-3, 0.02
+LARGE = {"g_sin": 0.12, "g_cos": -0.05, "g_sin2": 0.03, "g_cos3": 0.02}
+MOTOR = {
+    "J_pan": J_LOAD,
+    "b_pan": B,
+    "N_pan": N,
+    "J_motor_pan": J_MOTOR,
+    "K_t_pan": K_T,
+    "R_pan": R,
+    "L_pan": L,
+} | {f"{name}_pan": value for name, value in LARGE.items()}
+
+
+def lagrangian_motion(
+    volts: float, start: tuple[float, float, float], times: np.ndarray
+) -> np.ndarray:
+    """Angle, rate, current, and the energies supplied and lost [5, n], by Lagrange's equation of a
+    load and a rotor at the angle N (theta - e(theta)), in SymPy's own mechanics, and SciPy.
+    """
+    t = sp.Symbol("t")
+    theta = sp.Function("theta")(t)
+    current, q, w = sp.symbols("i q w")
+    lead = (
+        LARGE["g_sin"] * sp.sin(theta)
+        + LARGE["g_cos"] * sp.cos(theta)
+        + LARGE["g_sin2"] * sp.sin(2 * theta)
+        + LARGE["g_cos3"] * sp.cos(3 * theta)
+    )
+    rotor = N * (theta - lead)
+    kinetic = J_LOAD * theta.diff(t) ** 2 / 2 + J_MOTOR * rotor.diff(t) ** 2 / 2
+    work = K_T * current * rotor.diff(theta) - B * theta.diff(t)
+    lagrange = (kinetic.diff(theta.diff(t)).diff(t) - kinetic.diff(theta) - work).expand()
+    slope = sp.solve(lagrange, theta.diff(t, 2))[0]
+    plain = {theta.diff(t): w, theta: q}
+    acceleration, turning = (
+        sp.lambdify((q, w, current), e.subs(plain)) for e in (slope, rotor.diff(t))
+    )
+
+    def slopes(_: float, y: np.ndarray) -> list[float]:
+        angle, rate, amps = y[:3]
+        voltage = volts - R * amps - K_T * turning(angle, rate, amps)
+        lost = R * amps**2 + B * rate**2
+        return [rate, acceleration(angle, rate, amps), voltage / L, volts * amps, lost]
+
+    begin = [*start, 0.0, 0.0]
+    span = (float(times[0]), float(times[-1]))
+    solved = solve_ivp(slopes, span, begin, t_eval=times, rtol=1e-11, atol=1e-12, method="LSODA")
+    return np.asarray(solved.y)
+
+
+@pytest.fixture(scope="module")
+def rigid() -> Model:
+    return emission.emit(RIGID)
+
+
+@pytest.mark.parametrize("volts", [12.0, -7.0])
+def test_a_rigid_motor_turns_as_lagrange_says(rigid: Model, volts: float) -> None:
+    times = np.linspace(0.0, 4.0, 81)
+    start = {"theta_pan": 0.4, "omega_pan": -1.0, "i_pan": 0.2}
+    found = simulate(rigid, times, {"u_pan": constant(volts)}, MOTOR, start, rtol=1e-10, atol=1e-11)
+    angle, rate, current, supplied, lost = lagrangian_motion(volts, (0.4, -1.0, 0.2), times)
+    assert np.ptp(angle) > 2.0 * np.pi
+    assert found["theta_pan"] == pytest.approx(angle, abs=1e-7)
+    assert found["omega_pan"] == pytest.approx(rate, abs=1e-7)
+    assert found["i_pan"] == pytest.approx(current, abs=1e-7)
+    assert found.supplied == pytest.approx(supplied, abs=1e-6)
+    assert found.dissipated == pytest.approx(lost, abs=1e-6)
+
+
+def test_a_stiff_shaft_turns_the_joint_as_a_rigid_gear_does(model: Model, rigid: Model) -> None:
+    """The same small amplitudes, with a shaft and without: apart by the square of the error."""
+    shared = {"J_pan": J_LOAD, "b_pan": B, "N_pan": N, "J_motor_pan": J_MOTOR}
+    shared |= {"g_sin_pan": SIN, "g_cos_pan": COS}
+    stiff = {"k_shaft_pan": 1e5, "d_shaft_pan": 100.0, "gap_pan": 0.0}
+    times, driven = np.linspace(0.0, 3.0, 61), {"u_pan": constant(6.0)}
+    begins = {"theta_pan": COS}
+    behind = simulate(model, times, driven, shared | stiff, begins)["theta_pan"]
+    true = simulate(rigid, times, driven, shared | {"g_sin_pan": 0.0, "g_cos_pan": 0.0}, begins)
+    direct = simulate(rigid, times, driven, shared, begins)["theta_pan"]
+    assert np.max(np.abs(direct - true["theta_pan"])) > 0.01
+    assert direct == pytest.approx(behind, abs=4e-4)

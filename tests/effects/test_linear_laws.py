@@ -84,11 +84,13 @@ def test_what_needs_a_joint_that_turns_is_refused_by_name(effect: str) -> None:
 
 
 def test_a_search_on_a_linear_axis_proposes_what_a_linear_axis_can_have() -> None:
-    found = {e.effect for e in variants.candidate_effects(carriage(*GEARED))}
-    assert found == {e.id for e in EFFECTS if e.searched} - ROTARY_ALONE - {"csvs_friction"}
-    declared = len(GEARED)
-    everything = assemble(variants.with_candidates(carriage(*GEARED)))
-    assert len(everything.effects) == len(found) + declared
+    found = set()
+    for base in (BARE, GEARED):
+        proposed = {e.effect for e in variants.candidate_effects(carriage(*base))}
+        everything = assemble(variants.with_candidates(carriage(*base)))
+        assert len(everything.effects) == len(proposed) + len(base)
+        found |= proposed
+    assert found == {e.id for e in EFFECTS if e.searched} - ROTARY_ALONE
 
 
 def test_three_derivations_agree_on_newtons_second_law() -> None:

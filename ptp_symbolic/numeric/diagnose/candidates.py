@@ -3,12 +3,13 @@
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.identify.constants import PLAUSIBLE_FACTOR, WIDE_STEP
-from ptp_symbolic.numeric.identify.coordinates import FreeParameter, free_parameter
+from ptp_symbolic.numeric.identify.coordinates import SMALLEST_SHARE, FreeParameter, free_parameter
 from ptp_symbolic.numeric.runtime.model import EffectInstance, Model, ModelParameter
 from ptp_symbolic.platform import effect_key
 
@@ -16,6 +17,7 @@ FloatArray = NDArray[np.float64]
 
 FAR_OFF = PLAUSIBLE_FACTOR * PLAUSIBLE_FACTOR  # between the ends of what is plausible: of starts
 DECLARED_VALUE = "declared_value"
+STOP_START = 0.02  # of the range of an angle: from its end to the stop with which a search begins
 
 
 @dataclass(frozen=True)
@@ -73,8 +75,17 @@ class Candidate:
         return tuple(f for f in self.free if f.name in self.vanishing)
 
     def is_limit(self, f: FreeParameter) -> bool:
-        """Whether a parameter limits something: it vanishes at its upper bound, out of reach."""
-        return self.vanishing.get(f.name) == f.upper
+        """Whether a parameter limits something: it vanishes at its upper bound, out of reach, or at
+        its lower one, as an angle at which a stop is met; amounts of effects do so at zero.
+        """
+        zero = self.vanishing.get(f.name)
+        return zero == f.upper or zero == f.lower != 0.0
+
+    def met_at(self, f: FreeParameter) -> float:
+        """The value of a limit from which on it does nothing in the logs (see `within_reach`)."""
+        if f.logarithmic:
+            return float(f.start * np.exp(WIDE_STEP))
+        return self.vanishing[f.name]
 
 
 def with_what_needs_it(candidate: Candidate, candidates: Sequence[Candidate]) -> Candidate:
@@ -173,13 +184,25 @@ def _declared_value(
     ]
 
 
-def within_reach(candidate: Candidate, model: Model, largest: FloatArray) -> Candidate:
+def within_reach(
+    candidate: Candidate,
+    model: Model,
+    largest: FloatArray,
+    angles: Mapping[str, tuple[float, float]] = MappingProxyType({}),
+) -> Candidate:
     """The candidate; a limit that nothing reaches where it vanishes, such as a largest voltage,
     vanishes from the `largest` value [nu] on that an input of its axis and unit has in the logs,
-    and begins just below.
+    and begins just below. One of either sign limits the angle of its axis: it vanishes from the end
+    on of what that measures in the logs, lowest and highest by axis in `angles`, and begins within.
     """
     free, vanishing = [], dict(candidate.vanishing)
     for f in candidate.free:
+        if candidate.is_limit(f) and f.lower < 0.0:
+            if (ends := angles.get(str(candidate.axis))) is not None:
+                f = _at_end(f, vanishing[f.name], *ends)
+                vanishing[f.name] = f.upper if vanishing[f.name] > 0.0 else f.lower
+            free.append(f)
+            continue
         sizes = [
             size
             for name, size in zip(model.input_names, largest, strict=True)
@@ -191,6 +214,17 @@ def within_reach(candidate: Candidate, model: Model, largest: FloatArray) -> Can
             f, vanishing[f.name] = replace(f, start=start, scale=start, upper=met), met
         free.append(f)
     return replace(candidate, free=tuple(free), vanishing=vanishing)
+
+
+def _at_end(f: FreeParameter, zero: float, lowest: float, highest: float) -> FreeParameter:
+    """A limit of an angle that vanishes at `zero`, out of reach, with the end of what is measured
+    as its bound: it begins inside of that by a small share of the range.
+    """
+    inside = STOP_START * max(highest - lowest, SMALLEST_SHARE)
+    if zero > 0.0:
+        return replace(f, start=highest - inside, scale=inside, upper=highest)
+    end = lowest or -SMALLEST_SHARE  # an amount vanishes at zero, a limit does not
+    return replace(f, start=lowest + inside, scale=inside, lower=end)
 
 
 def vanished(model: Model, declared: Sequence[str]) -> dict[str, float]:

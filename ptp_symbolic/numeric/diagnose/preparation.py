@@ -58,7 +58,8 @@ def task_of(
     pieces = cut(model, train, length)
     largest = np.max([np.max(np.abs(run.held_inputs), axis=0) for run in train], axis=0)
     found = find_candidates(model, declared, known) if declared else ()
-    candidates = tuple(within_reach(c, model, largest) for c in found)
+    angles = _reached_angles(model, train)
+    candidates = tuple(within_reach(c, model, largest, angles) for c in found)
     return Task(
         model,
         train,
@@ -88,6 +89,21 @@ def _refuse_short(window: float, runs: Sequence[Run]) -> None:
             f"fit.window: {window:g} s holds fewer than {least} samples of these logs, one every"
             f" {period:.3g} s; give at least {least * period:.3g} s."
         )
+
+
+def _reached_angles(model: Model, runs: Sequence[Run]) -> dict[str, tuple[float, float]]:
+    """Lowest and highest measured angle in rad of the axes (m of a linear joint)."""
+    found: dict[str, tuple[float, float]] = {}
+    for axis in model.module.AXES:
+        measured = [
+            run.measured[:, k]
+            for run in runs
+            for k, signal in enumerate(run.signals)
+            if signal == f"theta_{axis}"
+        ]
+        if measured:
+            found[axis] = (float(min(map(np.min, measured))), float(max(map(np.max, measured))))
+    return found
 
 
 def _finest_angle(runs: Sequence[Run]) -> float:

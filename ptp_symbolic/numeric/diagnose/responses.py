@@ -24,7 +24,6 @@ from ptp_symbolic.numeric.identify.constants import (
     MOST,
     REACH,
     SAME,
-    WIDE_STEP,
 )
 from ptp_symbolic.numeric.identify.coordinates import FreeParameter, to_search
 from ptp_symbolic.numeric.identify.simulations import all_values
@@ -145,7 +144,11 @@ def response_columns(
     if not kept:
         return None
     table = np.column_stack([change / amount for _, amount, change in kept])
-    limits = {f.name: f.upper + amount for f, amount, _ in kept if candidate.is_limit(f)}
+    limits = {
+        f.name: candidate.vanishing[f.name] + amount
+        for f, amount, _ in kept
+        if candidate.is_limit(f)
+    }
     return Columns(candidate, tuple(f for f, _, _ in kept), table, base, limits)
 
 
@@ -163,7 +166,7 @@ def _column(
     can be simulated or nothing changes. A limit comes closer to the largest value that it meets.
     """
     zero = candidate.vanishing[f.name]
-    largest = f.start * np.exp(WIDE_STEP)
+    largest = candidate.met_at(f) if candidate.is_limit(f) else 0.0
     amount = f.start - zero
     if candidate.is_declared_value:
         amount = min(DECLARED_AMOUNT * abs(f.start), 0.5 * (f.upper - f.start))

@@ -16,7 +16,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.linear import projected_off, stacked_jacobian
 from ptp_symbolic.numeric.diagnose.responses import response_columns
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
-from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MOST, NOTHING, REACH, WIDE_STEP
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MOST, NOTHING, REACH
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
 
 FloatArray = NDArray[np.float64]
@@ -62,9 +62,9 @@ def visible_amounts(task: Task, start: Trial) -> list[Visible]:
         for f in candidate.defining:
             smallest = _smallest(seen[f], declared, named) if f in seen else float("inf")
             largest = None
-            if candidate.is_limit(f):
+            if candidate.is_limit(f) and f.logarithmic:
                 at = np.nan if columns is None else columns.limits.get(f.name, np.nan)
-                largest = largest_limit(f.start * np.exp(WIDE_STEP), at, f.upper, smallest)
+                largest = largest_limit(candidate.met_at(f), at, f.upper, smallest)
                 smallest = float("inf")
             rows.append(Visible(candidate.key, f.name, smallest, largest))
         return rows

@@ -149,8 +149,7 @@ def _mechanics(
     mass = sp.diag(rigid.mass_matrix, sp.zeros(len(gears)))
     forcing = sp.Matrix([*rigid.forcing, *([0] * len(gears))])
     row = {symbol: index for index, symbol in enumerate(rates)}
-    free = [axis for axis in joints if axis not in contributions.driven]
-    torques = [(kinematics.rate(axis), kinematics.torque(axis)) for axis in free]
+    torques = [(kinematics.rate(axis), contributions.input_torque(axis)) for axis in joints]
     torques += [torque for t in transmissions for torque in t.torques]
     torques += [torque for c in contributions.by_effect for torque in c.torques.items()]
     for drive in contributions.drives:

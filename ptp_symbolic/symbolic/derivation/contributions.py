@@ -29,6 +29,7 @@ GRAVITY_QUANTITIES = ("gravity_tilt", "gravity_azimuth")
 BASE_ACCELERATION = tuple(f"base_acceleration_{k}" for k in "xyz")
 AXIS_OFFSET = "tilt_axis_offset"  # of the tilt axis from the pan axis, along x, in m
 PLATFORM_QUANTITIES = (*GRAVITY_QUANTITIES, *BASE_ACCELERATION)
+TORQUES = ("input_torque_{axis}", "command_torque_{axis}")  # each from the next, then the input
 
 
 @dataclass(frozen=True)
@@ -96,11 +97,9 @@ class Contributions:
         """Acceleration inputs of joint rates whose motion is prescribed."""
         return {rate: i for c in self.by_effect for rate, i in c.prescribed.items()}
 
-    @property
-    def driven(self) -> set[str]:
-        """Axes that take no torque as input: with a drive, or with a prescribed motion."""
-        prescribed = {kinematics.place_of(rate) for rate in self.prescribed}
-        return prescribed | {drive.axis for drive in self.drives}
+    def input_torque(self, axis: str) -> sp.Expr:
+        """Torque in N m that the input of `axis` puts on its joint; zero where it takes none."""
+        return self.resolve(self.values.get(quantity_symbol(TORQUES[0].format(axis=axis)), ZERO))
 
     def drive_rate(self, drive: Drive) -> sp.Symbol:
         """The rate that `drive` works on: of the gear output if it has its own, else the joint."""
@@ -177,9 +176,11 @@ def collect(
     linear = {str(place.axis) for _, place in placed if place.linear}
     sensors = tuple(s for s in sensors_on(axes, contributions, linear) if s.name in measured)
     values: dict[str, sp.Expr] = {name: ZERO for name in PLATFORM_QUANTITIES}
+    values |= input_torques(axes, contributions)
     for axis in axes:
         values[f"transmitted_torque_{axis}"] = _transmitted(axis, contributions)
         values[f"transmission_error_{axis}"] = ZERO
+        values[f"motor_lead_{axis}"] = sp.Integer(1)  # rate over that before a gear that runs true
         values[f"reading_{kinematics.angle(axis)}"] = kinematics.angle(axis)
     for word in ("reading", "measured"):
         values.update({f"{word}_{sensor.name}": sensor.value for sensor in sensors})
@@ -250,4 +251,32 @@ def _transmitted(axis: str, contributions: Iterable[Contribution]) -> sp.Expr:
         for drive in contribution.drives:
             if drive.axis == axis:
                 return drive.torque
-    return kinematics.torque(axis)
+    return quantity_symbol(TORQUES[0].format(axis=axis))
+
+
+def machine_quantities(axes: Iterable[str], contributions: Sequence[Contribution]) -> set[str]:
+    """Names of the quantities on the axes that are there whatever effect defines others: torque
+    inputs, torques that reach a joint (but by its prescribed motion, or rigid backlash), and the
+    errors of gears (of a shaft that may have play, or of a motor without a shaft).
+    """
+    axes = tuple(axes)
+    found = set(input_torques(axes, contributions))
+    prescribed = {kinematics.place_of(rate) for c in contributions for rate in c.prescribed}
+    loose = {play.axis for c in contributions for play in c.plays}
+    found |= {f"transmitted_torque_{a}" for a in axes if a not in prescribed | loose}
+    true = {axis for axis in axes for c in contributions if f"half_gap_{axis}" in c.quantities}
+    split = loose | {shaft.axis for c in contributions for shaft in c.shafts}
+    true |= {drive.axis for c in contributions for drive in c.drives} - split
+    return found | {f"transmission_error_{axis}" for axis in true}
+
+
+def input_torques(axes: Iterable[str], contributions: Sequence[Contribution]) -> dict[str, sp.Expr]:
+    """The quantities of the torque inputs: of the joints without a drive or a prescribed motion."""
+    driven = {drive.axis for c in contributions for drive in c.drives}
+    driven |= {kinematics.place_of(rate) for c in contributions for rate in c.prescribed}
+    found: dict[str, sp.Expr] = {}
+    for axis in axes:
+        if axis not in driven:
+            acting, command = (name.format(axis=axis) for name in TORQUES)
+            found |= {acting: quantity_symbol(command), command: kinematics.torque(axis)}
+    return found

@@ -142,8 +142,7 @@ def _driven_by(
     axis = kinematics.place_of(rate)
     if axis in contributions.split_axes:
         return ZERO, contributions.resolve(quantity(f"shaft_torque_{axis}"))
-    free = axis in kinematics.AXES and axis not in contributions.driven
-    return ZERO, kinematics.torque(axis) if free else ZERO
+    return ZERO, contributions.input_torque(axis)
 
 
 def _refuse_second(friction: Friction, frictions: Iterable[Friction]) -> None:

@@ -24,9 +24,7 @@ def energy_ledger(
 
     A potential that depends on time (a base that moves) takes in its partial derivative by time.
     """
-    powers = (
-        kinematics.torque(a) * kinematics.rate(a) for a in axes if a not in contributions.driven
-    )
+    powers = (contributions.input_torque(axis) * kinematics.rate(axis) for axis in axes)
     total = Ledger(rigid.kinetic + rigid.potential, sum(powers, ZERO))
     for contribution, is_loss in zip(
         contributions.by_effect, contributions.dissipative, strict=True
@@ -42,9 +40,11 @@ def ledger_of(
     contribution: Contribution, rate_of: Callable[[Drive], sp.Symbol], is_loss: bool = False
 ) -> Ledger:
     """The ledger of one effect, without its frictions and shafts; `rate_of` tells on which rate a
-    drive works. What its torques take out counts as dissipated if it `is_loss`, else as power in.
+    drive works. What its torques take out counts as dissipated if it `is_loss`, else as power in,
+    but for what the effect itself says to be `dissipated`.
     """
-    stored, power_in, dissipated = contribution.potential + contribution.stored, ZERO, ZERO
+    stored, dissipated = contribution.potential + contribution.stored, contribution.dissipated
+    power_in = dissipated
     for drive in contribution.drives:
         stored += drive.stored + drive.inertia * rate_of(drive) ** 2 / 2
         power_in += drive.power_in

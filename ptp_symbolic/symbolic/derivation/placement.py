@@ -12,7 +12,7 @@ from ptp_symbolic.platform import (
     naming_file,
 )
 from ptp_symbolic.platform.units import compatible
-from ptp_symbolic.symbolic.derivation.contributions import sensors_on
+from ptp_symbolic.symbolic.derivation.contributions import TORQUES, machine_quantities, sensors_on
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
@@ -128,12 +128,10 @@ def _declared(parameter: Parameter, declarations: dict[str, ParameterDeclaration
 
 
 def available_quantities(placed: list[tuple[Effect, Place]]) -> set[str]:
-    """Names of the quantities that the placed effects define."""
-    return {
-        name
-        for effect, place in placed
-        for name in effect.turning_contribution_at(place).quantities
-    }
+    """Names of the quantities that the placed effects define, and of the machine's own."""
+    added = [effect.turning_contribution_at(place) for effect, place in placed]
+    axes = {axis for _, place in placed for axis in place.axes}
+    return {name for own in added for name in own.quantities} | machine_quantities(axes, added)
 
 
 def definitions(placed: list[tuple[Effect, Place]]) -> dict[str, set[str]]:
@@ -192,6 +190,11 @@ def _check_needs(platform: Platform, placed: list[tuple[Effect, Place]]) -> None
             if name not in available:
                 bringing = " or ".join(effects_that_define(name, place.axes, place.linear))
                 on_axis = "" if place.axis is None else f" on axis '{place.axis}'"
+                if name in (own.format(axis=place.axis) for own in TORQUES):
+                    raise InputError(
+                        f"Effect '{effect.id}' acts on the torque input of axis '{place.axis}',"
+                        " which a motor or a prescribed motion replaces; remove one of them."
+                    )
                 next_step = (
                     f"declare {bringing}{on_axis} too, or remove it"
                     if bringing

@@ -30,6 +30,7 @@ BASE, COMMAND, MOTOR, GEAR, SHAFT, JOINT, BODY, SENSOR = (
     "sensor",
 )
 OF_READINGS = ("reading_", "measured_")
+OF_INPUTS = ("input_torque_", "command_torque_")
 OF_GEARS = ("transmission_error_", "transmitted_torque_")
 
 
@@ -128,6 +129,8 @@ def _of_quantity(
         yield Site(BASE)
     elif name.startswith(OF_READINGS):
         yield Site(SENSOR, place.axis)
+    elif name.startswith(OF_INPUTS):
+        yield Site(COMMAND, place.axis)
     elif name.startswith(OF_GEARS):
         yield Site(GEAR, place.axis)
     for (_, there), contribution in zip(placed, added, strict=True):

@@ -1,6 +1,7 @@
 """The catalogue of effects: one file each, listed here in the order of the catalogue."""
 
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effects.actuator_lag import ACTUATOR_LAG
 from ptp_symbolic.symbolic.effects.axis_offset import AXIS_OFFSET
 from ptp_symbolic.symbolic.effects.backlash import BACKLASH
 from ptp_symbolic.symbolic.effects.base_motion import BASE_MOTION
@@ -15,6 +16,8 @@ from ptp_symbolic.symbolic.effects.directional_load_friction import DIRECTIONAL_
 from ptp_symbolic.symbolic.effects.drive_deadband import DRIVE_DEADBAND
 from ptp_symbolic.symbolic.effects.encoder_eccentricity import ENCODER_ECCENTRICITY
 from ptp_symbolic.symbolic.effects.encoder_quantization import ENCODER_QUANTIZATION
+from ptp_symbolic.symbolic.effects.end_stop import END_STOP
+from ptp_symbolic.symbolic.effects.friction_drift import FRICTION_DRIFT
 from ptp_symbolic.symbolic.effects.gear_eccentricity import GEAR_ECCENTRICITY
 from ptp_symbolic.symbolic.effects.harmonic_drive import HARMONIC_DRIVE
 from ptp_symbolic.symbolic.effects.input_delay import INPUT_DELAY
@@ -36,9 +39,12 @@ from ptp_symbolic.symbolic.effects.rate_dependent_breakaway import RATE_DEPENDEN
 from ptp_symbolic.symbolic.effects.rigid_bodies import RIGID_BODIES
 from ptp_symbolic.symbolic.effects.shaft_compliance import SHAFT_COMPLIANCE
 from ptp_symbolic.symbolic.effects.shear_thinning_friction import SHEAR_THINNING_FRICTION
+from ptp_symbolic.symbolic.effects.stribeck_exponent import STRIBECK_EXPONENT
 from ptp_symbolic.symbolic.effects.temperature_dependent_friction import (
     TEMPERATURE_DEPENDENT_FRICTION,
 )
+from ptp_symbolic.symbolic.effects.torque_proportional_loss import TORQUE_PROPORTIONAL_LOSS
+from ptp_symbolic.symbolic.effects.torque_saturation import TORQUE_SATURATION
 from ptp_symbolic.symbolic.effects.viscous_friction import VISCOUS_FRICTION
 from ptp_symbolic.symbolic.effects.voltage_offset import VOLTAGE_OFFSET
 from ptp_symbolic.symbolic.effects.voltage_saturation import VOLTAGE_SATURATION
@@ -59,8 +65,11 @@ EFFECTS: tuple[Effect, ...] = (
     DIRECTION_DEPENDENT_FRICTION,
     LOAD_DEPENDENT_FRICTION,
     DIRECTIONAL_LOAD_FRICTION,
+    TORQUE_PROPORTIONAL_LOSS,
     POSITION_DEPENDENT_FRICTION,
     RATE_DEPENDENT_BREAKAWAY,
+    STRIBECK_EXPONENT,
+    FRICTION_DRIFT,
     SHEAR_THINNING_FRICTION,
     TEMPERATURE_DEPENDENT_FRICTION,
     QUADRATIC_DRAG,
@@ -79,7 +88,10 @@ EFFECTS: tuple[Effect, ...] = (
     VOLTAGE_OFFSET,
     VOLTAGE_SATURATION,
     WINDING_HEATING,
+    TORQUE_SATURATION,
+    ACTUATOR_LAG,
     CABLE_SPRING,
+    END_STOP,
     CONSTANT_TORQUE,
     INPUT_DELAY,
     ENCODER_ECCENTRICITY,

@@ -36,10 +36,12 @@ PARAMETERS = (*MOTOR, RATIO)
 
 
 def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Contribution:
-    """Voltage-driven motor that turns `ratio` times as fast as the gear output of `place`.
+    """Voltage-driven motor that turns `ratio` times as fast as the gear output of `place`, or by
+    `motor_lead_<axis>` faster where the gear between does not run true.
 
     `damping` in N m s/rad acts on the rotor. The parameters of the motor are those of `dc_motor`.
     """
+    ratio = ratio * place.quantity("motor_lead_{axis}")
     inductance, resistance, constant, rotor = place.symbols(MOTOR)
     current = real(f"i_{place.axis}")
     applied = real(f"u_{place.axis}")

@@ -1,4 +1,11 @@
-"""A gear that does not run true: its output leads and lags once per turn."""
+"""A gear that does not run true: its output leads and lags once per turn.
+
+Before a flexible shaft the error twists the shaft. Without one the motor lags and leads the joint,
+by the error at the joint's own angle: its inertia seen there, the lever of its torque and its back
+EMF change with the angle. The two agree but for the square of the error.
+"""
+
+import sympy as sp
 
 from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
@@ -38,7 +45,12 @@ NUMBER = wave_number("n_gear_{axis}")
 
 def _contribute(place: Place) -> Contribution:
     error = wave(place, AMPLITUDES, place.gear_angle, NUMBER)
-    return Contribution(changes={f"transmission_error_{place.axis}": Change(addition=error)})
+    changes = {f"transmission_error_{place.axis}": Change(addition=error)}
+    if place.own_axis in place.shafts:
+        return Contribution(changes=changes)
+    slope = place.parameter("gear_error_slope_{axis}")
+    changes[f"motor_lead_{place.axis}"] = Change(addition=-slope)
+    return Contribution(changes=changes, terms={slope: sp.diff(error, place.gear_angle)})
 
 
 GEAR_ECCENTRICITY = Effect(
@@ -48,7 +60,7 @@ GEAR_ECCENTRICITY = Effect(
     parameters=(*(p for pair in AMPLITUDES for p in pair), NUMBER),
     has=has_wave_number,
     contribute=_contribute,
-    needs=("half_gap_{axis}",),
+    needs=("transmission_error_{axis}",),
     members=harmonic_members(AMPLITUDES, (NUMBER.name,)),
     first_leads=True,
     separating_experiment="Compare an encoder on the motor with the one on the joint over a full"

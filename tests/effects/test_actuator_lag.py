@@ -1,0 +1,74 @@
+"""An actuator of first order: its step response, its gain and phase, and the work that it does."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from ptp_symbolic import simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine, ramp
+from ptp_symbolic.platform import EffectDeclaration, Platform
+
+BODY = EffectDeclaration("rigid_bodies", None, None)
+J, B, T = 0.05, 0.3, 0.02
+LAG = {"J_pan": J, "t_actuator_pan": T}
+
+
+def machine(*effects: str) -> Model:
+    own = tuple(EffectDeclaration(e, "pan", None) for e in effects)
+    return emission.emit(
+        Platform("lag", "Pan axis behind a lag", ("pan",), 9.81, (BODY, *own), (), ())
+    )
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return machine("actuator_lag")
+
+
+@pytest.mark.parametrize("torque", [0.8, -0.05])
+def test_a_step_comes_up_as_an_exponential(model: Model, torque: float) -> None:
+    found = simulate(model, 0.2, {"tau_pan": constant(torque)}, LAG)
+    up = 1.0 - np.exp(-found.t / T)
+    assert found["tau_actuator_pan"] == pytest.approx(torque * up, rel=1e-6, abs=1e-10)
+    assert found["omega_pan"] == pytest.approx(torque / J * (found.t - T * up), rel=1e-6, abs=1e-9)
+    assert found.supplied == pytest.approx(J / 2 * found["omega_pan"] ** 2, abs=1e-7)
+
+
+def test_a_sine_comes_through_smaller_and_late(model: Model) -> None:
+    """Gain 1/sqrt(1 + (w T)^2) and phase -atan(w T), once the start is forgotten."""
+    frequency = 12.0
+    found = simulate(
+        model, np.linspace(0.0, 1.0, 401), {"tau_pan": multisine([0.7], [frequency])}, LAG
+    )
+    late = found.t > 20.0 * T
+    angle = 2.0 * math.pi * frequency
+    wave = 0.7 * np.sin(angle * found.t - math.atan(angle * T)) / math.hypot(1.0, angle * T)
+    assert found["tau_actuator_pan"][late] == pytest.approx(wave[late], abs=1e-6)
+
+
+def test_the_actuator_lags_a_command_that_ends_at_a_ceiling() -> None:
+    """SciPy integrates the two first-order equations and the powers; torque and motion agree."""
+    limit, slope = 0.5, 10.0
+    model = machine("viscous_friction", "torque_saturation", "actuator_lag")
+    values = LAG | {"b_pan": B, "tau_max_pan": limit}
+    times = np.linspace(0.0, 0.4, 41)
+    found = simulate(model, times, {"tau_pan": ramp(0.0, 4.0, 0.0, 0.4)}, values, rtol=1e-9)
+
+    def slopes(t: float, y: np.ndarray) -> list[float]:
+        torque, rate = y[:2]
+        command = min(slope * t, limit)
+        return [(command - torque) / T, (torque - B * rate) / J, torque * rate, B * rate**2]
+
+    own = solve_ivp(
+        slopes, (0.0, 0.4), np.zeros(4), t_eval=times, rtol=1e-11, atol=1e-12, max_step=1e-3
+    )
+    for values_found, expected in zip(
+        (found["tau_actuator_pan"], found["omega_pan"], found.supplied, found.dissipated),
+        own.y,
+        strict=True,
+    ):
+        assert values_found == pytest.approx(expected, abs=1e-6)
