@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform
+from ptp_symbolic.symbolic.derivation.contributions import TORQUES
 from ptp_symbolic.symbolic.derivation.placement import (
     available_quantities,
     place_effects,
@@ -41,14 +42,16 @@ def with_candidates(platform: Platform) -> Platform:
 
 
 def torque_driven(platform: Platform) -> Platform:
-    """`platform` with torques on its joints: without motors, shafts, and what acts on those alone.
+    """`platform` with torques on its joints: without motors, shafts, what acts on those alone, and
+    what lies between a torque and its command.
 
     Friction at the gear output then acts on the joint.
     """
     kept = []
     for effect, place in place_effects(platform):
         added = effect.turning_contribution_at(place)
-        if not (added.drives or added.shafts or added.plays or added.prescribed):
+        inputs = {name.format(axis=place.axis) for name in TORQUES} & added.changes.keys()
+        if not (added.drives or added.shafts or added.plays or added.prescribed or inputs):
             kept.append((effect, replace(place, shafts=frozenset())))
     while True:
         available = available_quantities(kept)

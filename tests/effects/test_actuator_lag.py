@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from ptp_symbolic import simulate
+from ptp_symbolic import inverse_dynamics, simulate
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine, ramp
@@ -48,6 +48,13 @@ def test_a_sine_comes_through_smaller_and_late(model: Model) -> None:
     angle = 2.0 * math.pi * frequency
     wave = 0.7 * np.sin(angle * found.t - math.atan(angle * T)) / math.hypot(1.0, angle * T)
     assert found["tau_actuator_pan"][late] == pytest.approx(wave[late], abs=1e-6)
+
+
+def test_inverse_dynamics_gives_the_torque_that_acts() -> None:
+    own = tuple(EffectDeclaration(e, "pan", None) for e in ("torque_saturation", "actuator_lag"))
+    platform = Platform("lag", "Pan axis behind a lag", ("pan",), 9.81, (BODY, *own), (), ())
+    motion = ([[0.0]], [[1.0]], [[2.0]])
+    assert inverse_dynamics(platform, motion, {"J_pan": J}) == pytest.approx(np.array([[2.0 * J]]))
 
 
 def test_the_actuator_lags_a_command_that_ends_at_a_ceiling() -> None:

@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.identify.constants import PLAUSIBLE_FACTOR, WIDE_STEP
+from ptp_symbolic.numeric.identify.constants import PLAUSIBLE_FACTOR, STEP, WIDE_STEP
 from ptp_symbolic.numeric.identify.coordinates import SMALLEST_SHARE, FreeParameter, free_parameter
 from ptp_symbolic.numeric.runtime.model import EffectInstance, Model, ModelParameter
 from ptp_symbolic.platform import effect_key
@@ -17,7 +17,6 @@ FloatArray = NDArray[np.float64]
 
 FAR_OFF = PLAUSIBLE_FACTOR * PLAUSIBLE_FACTOR  # between the ends of what is plausible: of starts
 DECLARED_VALUE = "declared_value"
-STOP_START = 0.02  # of the range of an angle: from its end to the stop with which a search begins
 
 
 @dataclass(frozen=True)
@@ -220,7 +219,7 @@ def _at_end(f: FreeParameter, zero: float, lowest: float, highest: float) -> Fre
     """A limit of an angle that vanishes at `zero`, out of reach, with the end of what is measured
     as its bound: it begins inside of that by a small share of the range.
     """
-    inside = STOP_START * max(highest - lowest, SMALLEST_SHARE)
+    inside = STEP * max(highest - lowest, SMALLEST_SHARE)
     if zero > 0.0:
         return replace(f, start=highest - inside, scale=inside, upper=highest)
     end = lowest or -SMALLEST_SHARE  # an amount vanishes at zero, a limit does not

@@ -232,6 +232,8 @@ def mathml_of(expression: sp.Expr) -> str:
     written = written.xreplace({real(name): sp.Symbol(letter) for name, letter in LETTERS.items()})
     text = str(mathml(written, printer="presentation", order="lex"))
     text = text.replace("<mi>dc</mi>", "<mi>Δc</mi>").replace("<mi>dF</mi>", "<mi>ΔF</mi>")
+    for mark, entity in ((">", "&gt;"), ("<", "&lt;")):  # which SymPy's printer writes as they are
+        text = text.replace(f"<mo>{mark}</mo>", f"<mo>{entity}</mo>")
     return text.replace("<mo>-</mo>", "<mo>−</mo>")
 
 
