@@ -14,6 +14,7 @@ from scipy import signal, stats
 from ptp_symbolic.numeric.diagnose.linear import projected_off
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import (
+    CYCLES,
     FAR,
     LEAST_CYCLES,
     MATERIAL,
@@ -120,10 +121,12 @@ def further_hints(trial: Trial, space: EquationSpace | None) -> list[str]:
     of its equation `space` (None: of its outputs), and of its simulated angles.
     """
     found: list[str] = []
-    if space is None:
+    if space is None and not trial.fit.failed:
         found += _said_of_outputs(trial)
-    else:
+    if space is not None:
         found += _said_of_rows(trial, space)
+    if trial.fit.failed:
+        return found
     for column, name in enumerate(trial.fit.runs[0].signals):
         if name.startswith("theta_"):
             found += _said_of_angle(trial, column, name.removeprefix("theta_"))
@@ -143,7 +146,8 @@ def _said_of_rows(trial: Trial, space: EquationSpace) -> list[str]:
         unit = "N" if model.is_linear(name) else "N m"
         beside, given = _beside(space, axis)
         logs = _by_log(space, axis, left[own], beside, given)
-        found += _said_change(change_at_one_time(logs), "torque that is left on " + name, unit)
+        what = f"residual {'force' if unit == 'N' else 'torque'} of {name}"
+        found += _said_change(change_at_one_time(logs), what, unit)
         for column, signal_name in enumerate(model.input_names):
             levels, beyond = _beyond(space, axis, column)
             acts = float(np.mean(_response(space, p, column)[own] - left[own]))
@@ -310,7 +314,9 @@ def change_at_one_time(logs: Sequence[LogRows]) -> Change | None:
     for centre, _ in times:
         reach = [log for log in logs if _trimmed(log.time)[0] <= centre <= _trimmed(log.time)[1]]
         close = [(t, size) for t, size in times if abs(t - centre) <= near]
-        share = np.mean([min(2.0 * near / (1.0 - 2.0 * TRIM) / np.ptp(r.time), 1.0) for r in reach])
+        share = np.mean(
+            [min(2.0 * near / max(np.ptp(_trimmed(r.time)), 1e-300), 1.0) for r in reach]
+        )
         chance = len(times) * float(stats.binom.sf(len(close) - 1, len(reach), share))
         enough = len(close) >= max(3, NEARLY_ALL * len(reach))
         if not enough or chance > TEST_ALARM or _inputs_change(reach, centre, near):
@@ -396,8 +402,11 @@ def resonance(runs: Sequence[Recorded]) -> Resonance | None:
     spectra = [f for f in found if f is not None]
     if len(spectra) < 3:
         return None
-    frequency = spectra[0][0]
-    excess = np.array([s[1] for s in spectra])  # nan where noise or an input covers the residual
+    shared = min(len(s[0]) for s in spectra)  # up to the coarsest sampling
+    frequency = spectra[0][0][:shared]
+    excess = np.array(
+        [s[1][:shared] for s in spectra]
+    )  # nan where noise or an input covers the residual
     quantile = np.array([s[2] for s in spectra])
     shown = excess > np.maximum(quantile, DOUBLED)[:, None]
     count, seen = shown.sum(axis=0), np.isfinite(excess).sum(axis=0)
@@ -432,13 +441,12 @@ def _spectrum(
     frequency = np.asarray(np.fft.rfftfreq(samples, period), dtype=np.float64)
     power = np.einsum("k,kfc->fc", weight / weight.sum(), np.array(every))
     noise = float(np.mean([r.noise**2 for r in own]))
-    over = np.log(np.maximum(power, 1e-300))
-    residual = _over_background(frequency, over[:, 0])
+    over = _over_background(frequency, np.log(np.maximum(power, 1e-300)))
+    residual, given = over[:, 0], over[:, 1:]
     covered = power[:, 0] < ABOVE_FLOOR * 2.0 * period * noise
     count = float(np.nan_to_num(runs[0].count))  # at one speed, all rounding is in one line
     covered |= power[:, 0] * HANN_WIDTH / length < (ROUNDING * count) ** 2
-    for k in range(1, over.shape[1]):
-        covered |= _over_background(frequency, over[:, k]) > DOUBLED
+    covered |= np.any(given > DOUBLED, axis=1)
     degrees = 2.0 * weight.sum() / (1.0 + 2.0 / 36.0)  # halves of Hann windows share a sixth
     quantile = float(np.log(stats.chi2.ppf(0.95, degrees) / stats.chi2.median(degrees)))
     inside = np.isfinite(residual)
@@ -449,26 +457,27 @@ def _spectrum(
 
 
 def _over_background(frequency: FloatArray, power: FloatArray) -> FloatArray:
-    """Log power [f] minus a straight line in log frequency through what lies within a factor of
-    BACKGROUND, without the line itself (least absolute deviations); nan at the ends.
+    """Log power [f, c] minus a straight line in log frequency through what lies within a factor of
+    BACKGROUND, without the line itself (least absolute deviations, by weights in turn; an octave
+    counts alike at all frequencies); nan at the ends.
     """
-    result = np.full(len(power), np.nan)
+    result = np.full(power.shape, np.nan)
     place = np.log(np.maximum(frequency, 1e-300))
-    lowest = max(LEAST_CYCLES - 1, 1) * frequency[1]
-    for k, f in enumerate(frequency):
-        if f < BACKGROUND * lowest or f * BACKGROUND > frequency[-1]:
-            continue
+    lowest = BACKGROUND * max(LEAST_CYCLES - 1, 1) * frequency[1]
+    for k in np.flatnonzero((frequency >= lowest) & (BACKGROUND * frequency <= frequency[-1])):
         far = np.abs(place - place[k])
         near = (far < 1.001 * np.log(BACKGROUND)) & (far > np.log(CORE))
-        columns = np.column_stack([np.ones(int(near.sum())), place[near] - place[k]])
-        weight = 1.0 / frequency[near]
-        line = np.zeros(2)
-        for _ in range(4):
-            root = np.sqrt(weight)
-            line = np.linalg.lstsq(columns * root[:, None], power[near] * root, rcond=None)[0]
-            away = np.abs(power[near] - columns @ line)
-            weight = 1.0 / frequency[near] / np.maximum(away, MATERIAL)
-        result[k] = power[k] - line[0]
+        x, y = (place[near] - place[k])[:, None], power[near]
+        octave = 1.0 / frequency[near][:, None]
+        weight = octave * np.ones_like(y)
+        for _ in range(CYCLES):
+            weight = weight / weight.sum(axis=0)
+            middle, mean = np.sum(weight * x, axis=0), np.sum(weight * y, axis=0)
+            apart = x - middle
+            slope = np.sum(weight * apart * y, axis=0) / np.sum(weight * apart**2, axis=0)
+            away = np.abs(y - mean - slope * apart)
+            weight = octave / np.maximum(away, MATERIAL)
+        result[k] = power[k] - (mean - slope * middle)
     return result
 
 
@@ -480,8 +489,9 @@ def lost_motion(runs: Sequence[Recorded]) -> LostMotion | None:
     bends the residual there and has no such distance. Significant by Student's one-sided test at
     0.1 % where half of all lags lie within half the median: a shaft or stiction lags by the torque.
     """
-    lags = np.array([lag for run in runs for lag in _lags(run)])
-    if len(lags) < LEAST_REVERSALS or len({r.log for r in runs if _lags(r)}) < 2:
+    every = [(run.log, lag) for run in runs for lag in _lags(run)]
+    lags = np.array([lag for _, lag in every])
+    if len(lags) < LEAST_REVERSALS or len({log for log, _ in every}) < 2:
         return None
     middle = float(np.median(lags))
     lower, upper = np.quantile(lags, [0.25, 0.75])
