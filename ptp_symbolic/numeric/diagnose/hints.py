@@ -15,6 +15,7 @@ from ptp_symbolic.numeric.diagnose.linear import projected_off
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
+    FALSE_ALARM,
     FAR,
     LEAST_CYCLES,
     MATERIAL,
@@ -31,8 +32,9 @@ FloatArray = NDArray[np.float64]
 
 TRIM = 0.1  # 1; share of a log at either end in which no change is looked for; usual (Andrews 1993)
 TIMES = 81  # 1; of a log at which a change is looked for: steps of 1 % of it; derived
-NEARLY_ALL = 0.8  # 1; share of the logs that are nearly all; stated
-APART = 0.025  # 1; of the duration of a log: times of a change that agree; stated
+NEARLY_ALL = 0.7  # 1; share of the logs that are nearly all; stated
+APART = 0.04  # 1; of the duration of a log: times of a change that agree; stated
+LEAST_DEGREES = 4.0  # 1; of freedom: the variance is then good to a factor of two; derived
 SHOWN = 0.25  # 1; square of a step that the motion leaves unexplained, so that it shows; stated
 SEGMENT_TIME = 2.0  # s; of a periodogram, resolves 0.5 Hz; halved for windows below twice; stated
 BACKGROUND = 2.0  # 1; factor of frequency on either side of a line, its background; stated
@@ -195,7 +197,7 @@ def _said_change(change: Change | None, what: str, unit: str) -> list[str]:
     return [
         f"The {what} steps at {change.time:.3g} s (within {change.interval:.2g} s) in"
         f" {change.shown} of {change.logs} logs, by {change.size:.3g} {unit} (one step per log at"
-        " 1 %, their agreement at 1 %): something is switched on or off there."
+        " 5 %, their agreement at 1 %): something is switched on or off there."
     ]
 
 
@@ -302,7 +304,7 @@ def _response(space: EquationSpace, p: FloatArray, column: int) -> FloatArray:
 def change_at_one_time(logs: Sequence[LogRows]) -> Change | None:
     """The time at which the residual of nearly all logs steps, where their inputs do not.
 
-    Every log has its own test for one step at an unknown time, at 1 % (Andrews, 1993), beside
+    Every log has its own test for one step at an unknown time, at 5 % (Andrews, 1993), beside
     what follows motion and inputs; the times have to agree more closely than 1 % of independent
     ones would (binomial). Blind where fewer than three logs reach the time.
     """
@@ -365,13 +367,14 @@ def _step_of(time: FloatArray, left: FloatArray, beside: FloatArray) -> tuple[fl
     gain = np.where(square > SHOWN * raw, size**2 * square, 0.0)
     best = int(np.argmax(gain))
     noise, independent = _long_run(rest - size[best] * steps[:, best])
-    if independent < 2 * (beside.shape[1] + 2) or noise == 0.0:
+    degrees = independent - beside.shape[1] - 1.0
+    if degrees < LEAST_DEGREES or noise == 0.0:
         return none
-    b = float(np.sqrt(gain[best] / noise))
+    b = float(np.sqrt(gain[best] / noise * degrees / independent))
     odds = 2.0 * np.log((1.0 - TRIM) / TRIM)
     density = float(stats.norm.pdf(b))
     chance = density * (4.0 / b + (b - 1.0 / b) * odds) if b > 1.0 else 1.0
-    return (float(times[best]), float(size[best])) if chance <= TEST_ALARM else none
+    return (float(times[best]), float(size[best])) if chance <= FALSE_ALARM else none
 
 
 def _long_run(rest: FloatArray) -> tuple[float, float]:
