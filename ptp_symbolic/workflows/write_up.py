@@ -9,6 +9,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.diagnose.curves import curves_of
 from ptp_symbolic.numeric.diagnose.floor import Floor
+from ptp_symbolic.numeric.diagnose.hints import further_hints
 from ptp_symbolic.numeric.diagnose.remainder import hints, remainder
 from ptp_symbolic.numeric.diagnose.residual_tests import residual_tests
 from ptp_symbolic.numeric.diagnose.sizes import sizes_of
@@ -64,7 +65,9 @@ def written_up(
     doubts += _tied_remarks(platform) if verdict.leaves_more else []
     named = [c for c in after.candidates if not c.is_declared_value]
     equations = [e for c in named for e in effect_equations(extended, c.id, c.axis)]
-    left = remainder(found.proposals.space, after.values) if verdict.leaves_more else None
+    space = found.proposals.space
+    left = remainder(space, after.values) if verdict.leaves_more else None
+    further = further_hints(after, space) if verdict.leaves_more else []
     summary = {
         "schema_version": SCHEMA_VERSION,
         "platform": {"name": platform.name, "title": platform.title},
@@ -83,7 +86,7 @@ def written_up(
         "held_out": None if verdict.held_out is None else gain_table(verdict.held_out),
         "refused": dict(verdict.refused),
         "remainder": left,
-        "hints": hints(left),
+        "hints": [*hints(left), *further],
         "black_box": None if beside is None else dict(beside),
         "windows": windows_table(found.task),
         "material": task.material,
