@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.benchmark.effects import Shape
+from tests.benchmark.structures import Structure
 from tests.benchmark.machine import (
     CURRENT_NOISE,
     Floats,
@@ -207,7 +208,7 @@ class Yardstick:
         self.widening = np.hypot(1.0, carried * noise / unit)
         return noise
 
-    def threshold(self, shape: Shape) -> float:
+    def threshold(self, shape: Shape | Structure) -> float:
         """Size at which the effect is just visible.
 
         Raises AbsorbedError where that is beyond its limit, or takes a torque that dwarfs friction.
