@@ -180,6 +180,8 @@ def _rigid_variation(seed: int, draft: Draft) -> Variation:
         variation = for_faint_effects(variation)
     if any(one.effect == SMALL_DEVIATIONS for one in planted):
         variation = for_small_deviations(variation)
+        if machine.startswith("rigid_pan"):
+            variation = for_faint_effects(variation)
     if kind != "structure_null":
         return variation
     return DelayedVariation(

@@ -19,7 +19,13 @@ from tests.benchmark.logs import write_logs
 from tests.benchmark.machine import Machine, Recording, Run, angle_floor
 from tests.benchmark.machines import MACHINES
 from tests.benchmark.sizing import AbsorbedError, Yardstick
-from tests.benchmark.structures import SHAFT, SMALL_DEVIATIONS, STRUCTURES, VISIBLE_FLOORS, Structure
+from tests.benchmark.structures import (
+    SHAFT,
+    SMALL_DEVIATIONS,
+    STRUCTURES,
+    VISIBLE_FLOORS,
+    Structure,
+)
 from tests.benchmark.unlisted import DECLARED_VALUE, UNLISTED, shape_of
 
 MOST_DRAWS = 6

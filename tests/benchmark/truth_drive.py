@@ -71,7 +71,12 @@ _LIMITS = {
     "stop_lower": ("theta_stop_lower", -NO_LIMIT),
 }
 _MAY_BE_ABSENT_AS = {"dwell_time": 1.0, "heating_time": 1.0, "stribeck_exponent": 2.0}
-_MAY_BE_ABSENT_AS |= {"viscous_exponent": 1.0, "decay_time": 1.0, "wrap_angle": 1.0, "loss_angle": 1.0}
+_MAY_BE_ABSENT_AS |= {
+    "viscous_exponent": 1.0,
+    "decay_time": 1.0,
+    "wrap_angle": 1.0,
+    "loss_angle": 1.0,
+}
 
 
 def _numbered(name: str, number: int, axis: str) -> str:

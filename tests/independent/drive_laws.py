@@ -129,15 +129,25 @@ def loss_slope(drive: Any, rate: float, wound: float) -> float:
 
 
 @numba.njit(cache=True)
-def linear_shaft(drive: Any, twist: float, rate: float) -> float:
-    """Torque in N m of a shaft that pulls as it pushes; beyond a gap it cannot pull."""
+def shaft_contact(drive: Any, twist: float, rate: float) -> int:
+    """Flank on which a shaft presses: 1, -1, or 0 in the gap and where it would have to pull; 2
+    without a gap, where it pulls as it pushes.
+    """
     if drive.gap == 0.0:
-        return drive.k_shaft * twist + drive.d_shaft * rate
-    side = 1.0 if twist > 0.0 else -1.0
+        return 2
+    side = 1 if twist > 0.0 else -1
     depth = side * twist - 0.5 * drive.gap
-    if depth <= 0.0:
+    presses = drive.k_shaft * depth + drive.d_shaft * side * rate > 0.0
+    return side if depth > 0.0 and presses else 0
+
+
+@numba.njit(cache=True)
+def shaft_torque(drive: Any, twist: float, rate: float, contact: int) -> float:
+    """Torque in N m of a shaft on the load in a contact."""
+    if contact == 0:
         return 0.0
-    return side * max(0.0, drive.k_shaft * depth + drive.d_shaft * side * rate)
+    rest = 0.0 if contact == 2 else 0.5 * contact * drive.gap
+    return drive.k_shaft * (twist - rest) + drive.d_shaft * rate
 
 
 @numba.njit(cache=True)

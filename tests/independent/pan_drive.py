@@ -227,9 +227,7 @@ def _face_met(y: Floats, drive: Any) -> int:
 
 
 @numba.njit(cache=True)
-def _leaves_contact(
-    t: float, y: Floats, push: float, contact: int, slip: int, drive: Any
-) -> bool:
+def _leaves_contact(t: float, y: Floats, push: float, contact: int, slip: int, drive: Any) -> bool:
     """Whether the contact no longer fits the state."""
     if drive.k_shaft != 0.0 or drive.gap == 0.0:
         return _touching(y, drive) != contact

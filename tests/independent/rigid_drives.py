@@ -5,7 +5,7 @@ classical Runge-Kutta takes steps of 0.25 ms; a mode change is located by bisect
 stands exactly still: its friction is whatever balances it, up to the breakaway torque. A joint is
 driven by a torque or by a voltage through a motor that is rigidly geared to it, or by a flexible
 shaft with or without a gap: then the motor at its gear output is a body of its own without dry
-friction, and contact and loss of contact are not located but met within a step.
+friction, and contacts are modes that are located as well.
 """
 
 import math
@@ -27,9 +27,10 @@ from tests.independent.drive_laws import (
     breakaway,
     cogging_torque,
     joint_torque,
-    linear_shaft,
     loss_slope,
     loss_torque,
+    shaft_contact,
+    shaft_torque,
     sliding_friction,
     winding,
     wrap_slope,
@@ -72,6 +73,7 @@ FRAME = np.dtype(
         ("dry", np.int64, 2),
         ("voltage_driven", np.int64),
         ("flexible", np.int64, 2),
+        ("contact", np.int64, 2),
         # What acts from outside within a sample: inputs, torques at time zero and their slopes.
         ("input", float, 2),
         ("push", float, 2),
@@ -113,7 +115,8 @@ def joints(
 def motor_torque(k: int, y: Floats, drives: Any, frame: Any) -> float:
     """Torque in N m of the drive on joint `k`."""
     if frame.flexible[k] == 1:
-        return linear_shaft(drives[k], y[k, GEAR] - y[k, ANGLE], y[k, GEAR_RATE] - y[k, RATE])
+        twist, rate = y[k, GEAR] - y[k, ANGLE], y[k, GEAR_RATE] - y[k, RATE]
+        return shaft_torque(drives[k], twist, rate, frame.contact[k])
     if frame.voltage_driven == 1:
         return drives[k].N * drives[k].K_t * y[k, CURRENT]
     limit = drives[k].torque_limit
@@ -201,7 +204,8 @@ def _beside(y: Floats, k: int, drive: Any, frame: Any, out: Floats) -> None:
         out[place] = 0.0
     if frame.flexible[k] == 1:
         twist, rate = y[k, GEAR] - y[k, ANGLE], y[k, GEAR_RATE] - y[k, RATE]
-        torque = drive.N * drive.K_t * y[k, CURRENT] - linear_shaft(drive, twist, rate)
+        shaft = shaft_torque(drive, twist, rate, frame.contact[k])
+        torque = drive.N * drive.K_t * y[k, CURRENT] - shaft
         out[GEAR], out[GEAR_RATE] = y[k, GEAR_RATE], torque / (drive.J_motor * drive.N**2)
     if drive.actuator_lag != 0.0:
         out[DRIVEN] = (frame.input[k] - y[k, DRIVEN]) / drive.actuator_lag
@@ -241,10 +245,19 @@ def _breaks_away(t: float, y: Floats, k: int, rest: Floats, drives: Any, frame: 
 
 
 @numba.njit(cache=True)
+def _contact(k: int, y: Floats, drives: Any) -> int:
+    """Contact of the shaft of joint `k`."""
+    twist, rate = y[k, GEAR] - y[k, ANGLE], y[k, GEAR_RATE] - y[k, RATE]
+    return shaft_contact(drives[k], twist, rate)
+
+
+@numba.njit(cache=True)
 def _leaves_mode(t: float, y: Floats, slip: Any, rest: Floats, drives: Any, frame: Any) -> bool:
     """Whether a sliding joint has reversed or a stuck joint carries more than it can."""
     stuck = False
     for k in range(2):
+        if frame.flexible[k] == 1 and _contact(k, y, drives) != frame.contact[k]:
+            return True
         if frame.dry[k] == 1 and slip[k] == 0:
             stuck = True
         elif frame.dry[k] == 1 and slip[k] * y[k, RATE] < -DEAD_BAND:
@@ -290,6 +303,8 @@ def _choose_mode(t: float, y: Floats, slip: Any, rest: Floats, drives: Any, fram
         if frame.dry[k] == 1 and slip[k] * y[k, RATE] < 0.0:
             y[k, RATE] = 0.0
             rest[k] = t
+        if frame.flexible[k] == 1:
+            frame.contact[k] = _contact(k, y, drives)
     for mode in MODES:
         if _fits(t, y, mode, rest, drives, frame):
             slip[:] = mode
@@ -327,6 +342,9 @@ def advance(
     """
     t, end = span
     events = 0
+    for k in range(2):
+        if frame.flexible[k] == 1:
+            frame.contact[k] = _contact(k, y, drives)
     if _leaves_mode(t, y, slip, rest, drives, frame):
         _choose_mode(t, y, slip, rest, drives, frame)
     while end - t > EVENT_TOLERANCE:
