@@ -1,8 +1,9 @@
 """Is an answer right? Judged from the truth and the diagnosis alone.
 
 A named effect is honest if it is in the truth, or if one of its `confusable_with` is, or if the
-truth allows it: a shaft beside a gap, for example, too stiff to need a name. An answer with any dishonest name is *wrong*. What *right* means depends on the kind of the set; an answer
-that is neither is *missed*.
+truth allows it: a shaft beside a gap, for example, too stiff to need a name. An answer with any
+dishonest name is *wrong*. What *right* means depends on the kind of the set; an answer that is
+neither is *missed*.
 """
 
 import math

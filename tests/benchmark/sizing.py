@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.benchmark.effects import Shape
-from tests.benchmark.structures import Structure
 from tests.benchmark.machine import (
     CURRENT_NOISE,
     Floats,
@@ -23,6 +22,7 @@ from tests.benchmark.machine import (
     Values,
     angle_floor,
 )
+from tests.benchmark.structures import Structure
 from tests.benchmark.variation import Variation
 
 RELATIVE_STEP = 1e-3  # of a parameter, for finite differences
