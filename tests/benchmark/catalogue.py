@@ -12,8 +12,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from tests.benchmark import plan
+from tests.benchmark.delays import DelayedVariation
 from tests.benchmark.effects import WHOLE_PLATFORM
-from tests.benchmark.entry import Entry, Planted
+from tests.benchmark.entry import OF_STRUCTURES, Entry, Planted
+from tests.benchmark.structures import SMALL_DEVIATIONS, STIFF_SHAFT
 from tests.benchmark.unlisted import DECLARED_VALUE
 from tests.benchmark.variation import (
     Variation,
@@ -87,6 +89,40 @@ def _drafts() -> Iterator[Draft]:
     for machine, effect in plan.SHORT_ARCS:
         yield machine, "short_arc", (_planted(machine, effect, SHORT_ARC_LEVEL),)
     yield from _both_driven()
+    yield from _structures()
+    yield from _structure_nulls()
+
+
+def _strata(between: tuple[float, float], count: int, seed: int) -> list[float]:
+    """Sizes even in their logarithm, one in each of `count` parts of the range, in random order."""
+    rng = np.random.default_rng([seed, 9])
+    places = (rng.permutation(count) + rng.uniform(0.1, 0.9, count)) / count
+    low, high = np.log(between)
+    return [float(f"{size:.4g}") for size in np.exp(low + places * (high - low))]
+
+
+def _structures() -> Iterator[Draft]:
+    """Hidden structures in the sizes of their own or in thresholds, some with a listed term."""
+    for number, (structure, (between, places)) in enumerate(plan.STRUCTURES.items()):
+        sizes = _strata(between, len(places), 500 + number)
+        terms = _levels(600 + number, len(places), COMBINED_LEVELS)
+        for (machine, axis, *beside), size, level in zip(places, sizes, terms, strict=True):
+            planted = [Planted(structure, axis, size)]
+            for name in beside:
+                effect, _, where = name.partition("@")
+                whole = effect in WHOLE_PLATFORM
+                planted.append(Planted(effect, None if whole else where or axis, level))
+            yield machine, "structure_pair" if beside else "structure", tuple(planted)
+
+
+def _structure_nulls() -> Iterator[Draft]:
+    """Machines that are declared rigid and are."""
+    for machine, (perfect, deviating, stiff) in plan.STRUCTURE_NULLS.items():
+        yield from itertools.repeat((machine, "structure_null", ()), perfect)
+        small = (Planted(SMALL_DEVIATIONS, None, 1.0),)
+        yield from itertools.repeat((machine, "structure_null", small), deviating)
+        shaft = (Planted(STIFF_SHAFT, plan.MACHINE_AXIS[machine], plan.STIFF),) if stiff else ()
+        yield from itertools.repeat((machine, "structure_null", shaft), stiff)
 
 
 def _both_driven() -> Iterator[Draft]:
@@ -105,6 +141,8 @@ def _both_driven() -> Iterator[Draft]:
 def _variation(seed: int, draft: Draft, far: bool) -> Variation:
     """The surroundings of a set: by chance, but for what its effects need."""
     machine, kind, planted = draft
+    if kind in OF_STRUCTURES:
+        return _rigid_variation(seed, draft)
     fine = machine == "direct_drive" or kind == "short_arc"
     variation = draw_variation(seed, fine, far, kind == "short_arc")
     without = [
@@ -120,6 +158,35 @@ def _variation(seed: int, draft: Draft, far: bool) -> Variation:
     if kind == "slightly_wrong":
         variation = for_small_deviations(variation)
     return dataclasses.replace(variation, without=tuple(without))
+
+
+def _rigid_variation(seed: int, draft: Draft) -> Variation:
+    """The surroundings of a machine that is declared rigid: 200 Hz, at most 3 counts of noise."""
+    machine, kind, planted = draft
+    variation = draw_variation(seed, machine == "direct_drive")
+    rng = np.random.default_rng([seed, 10])
+    noise = 0.0 if variation.noise_kind == "none" else round(float(rng.uniform(0.0, 3.0)), 3)
+    counts = min(variation.counts, plan.MOST_COUNTS)
+    for one in planted:
+        if one.effect in plan.FINE_BEYOND and one.axis == "pan":
+            value, above = plan.FINE_BEYOND[one.effect]
+            if (one.level > value) == above:
+                counts, noise = plan.MOST_COUNTS, 0.1 * noise
+    variation = dataclasses.replace(
+        variation, period=plan.RIGID_PERIOD, repeat=False, noise_counts=noise, counts=counts
+    )
+    faint = plan.FAINT.get(machine.replace("rigid_pan", "pan_drive"), ())
+    if any(one.effect in faint for one in planted):
+        variation = for_faint_effects(variation)
+    if any(one.effect == SMALL_DEVIATIONS for one in planted):
+        variation = for_small_deviations(variation)
+        if machine.startswith("rigid_pan"):
+            variation = for_faint_effects(variation)
+    if kind != "structure_null":
+        return variation
+    return DelayedVariation(
+        **dataclasses.asdict(variation), delays=str(rng.choice(["", "known", "free"]))
+    )
 
 
 def catalogue() -> tuple[Entry, ...]:

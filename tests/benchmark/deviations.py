@@ -69,7 +69,8 @@ def _on_axis(
     friction = _waves(rng, axis, ("f_sin", "f_cos"), 3)
     yield Shape(friction, guess=0.02, limit=0.3)
     yield Shape({f"mu_load_{axis}": 1.0}, guess=0.005, limit=0.01)
-    yield Shape({f"t_delay_{axis}": 1.0}, guess=1e-4, limit=3e-4)
+    late = f"t_delay_{axis}"
+    yield Shape({late: 1.0}, {late: values.get(late, 0.0)}, guess=1e-4, limit=3e-4)
     yield Shape({f"gust_torque_{axis}": 1.0}, guess=0.01 * coulomb, limit=0.3 * coulomb)
     if f"gap_{axis}" in values:
         yield Shape(_waves(rng, axis, ("g_sin", "g_cos"), 2), guess=2e-4, limit=5e-3)

@@ -42,7 +42,9 @@ class Shape:
 
 @dataclass(frozen=True)
 class Scene:
-    """Where an effect is planted: machine, values, axis, largest command and rate, chance."""
+    """Where an effect is planted: machine, values, axis, largest command and rate, chance, least
+    and largest angle.
+    """
 
     machine: Machine
     values: Values
@@ -50,6 +52,7 @@ class Scene:
     peak: float
     fastest: float
     rng: np.random.Generator
+    reach: tuple[float, float] = (0.0, 0.0)
 
     def sign(self) -> float:
         """Plus or minus one."""

@@ -13,12 +13,18 @@ KINDS = (
     "unlisted",
     "slightly_wrong",
     "short_arc",
+    "structure",
+    "structure_pair",
+    "structure_null",
 )
+OF_STRUCTURES = KINDS[-3:]  # of machines that are declared rigid
 
 
 @dataclass(frozen=True)
 class Planted:
-    """A hidden effect: its name, its axis (None for the whole platform), its size in thresholds."""
+    """A hidden effect: its name, its axis (None for the whole platform), its size in thresholds, or
+    in its own unit where a structure has one.
+    """
 
     effect: str
     axis: str | None

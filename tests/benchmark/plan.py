@@ -4,6 +4,8 @@ A place is (machine, axis); effects of the whole platform have the axis None. Pl
 stays invisible at every sane size are left out; the reasons stand in `ABSENT`.
 """
 
+import math
+
 Place = tuple[str, str | None]
 
 _PAN: Place = ("pan_drive", "pan")
@@ -179,6 +181,8 @@ MACHINE_AXIS = {
     "pan_drive_dc": "pan",
     "tilt_servo": "tilt",
     "direct_drive": "pan",
+    "rigid_pan": "pan",
+    "rigid_pan_dc": "pan",
 }
 PERFECT_PER_MACHINE = 6
 FAR_EVERY = 3  # one perfect machine in three starts far from its values
@@ -221,3 +225,117 @@ OF_BOTH_DRIVEN: tuple[tuple[str, ...], ...] = (
     ("perfect",),
     ("slightly_wrong",),
 )
+
+# Machines that are declared rigid. Of every structure: its least and largest size, in its own unit
+# (N m/rad, rad, restitution) or in thresholds; then the places with the terms beside it.
+Places = tuple[tuple[str, ...], ...]
+_RIGID, _RIGID_DC = ("rigid_pan", "pan"), ("rigid_pan_dc", "pan")
+STRUCTURES: dict[str, tuple[tuple[float, float], Places]] = {
+    "shaft_compliance": (
+        (30.0, 2e4),
+        (
+            _RIGID,
+            _RIGID_DC,
+            (*_RIGID, "base_tilt"),
+            (*_RIGID_DC, "cable_spring"),
+            _RIGID,
+            _RIGID_DC,
+            ("tilt_servo", "tilt"),
+            ("two_axis_servo", "tilt"),
+            ("two_axis_servo", "pan"),
+            (*_RIGID, "direction_dependent_friction"),
+            _RIGID,
+            _RIGID_DC,
+            (*_RIGID, "voltage_offset"),
+            ("tilt_servo", "tilt", "constant_torque"),
+        ),
+    ),
+    "backlash": (
+        (math.pi / 7200, math.radians(3.0)),
+        (
+            _RIGID,
+            _RIGID_DC,
+            _RIGID,
+            (*_RIGID_DC, "direction_dependent_friction"),
+            (*_RIGID, "base_tilt"),
+            _RIGID_DC,
+            ("tilt_servo", "tilt"),
+            _RIGID,
+            (*_RIGID, "constant_torque"),
+            _RIGID_DC,
+        ),
+    ),
+    "shaft_and_gap": (
+        (math.radians(0.1), math.radians(3.0)),
+        (
+            _RIGID,
+            _RIGID_DC,
+            (*_RIGID, "cogging"),
+            (*_RIGID_DC, "base_tilt"),
+            _RIGID,
+            ("tilt_servo", "tilt"),
+        ),
+    ),
+    "elastic_impact": (
+        (0.2, 0.9),
+        (_RIGID, _RIGID_DC, (*_RIGID, "cable_spring"), _RIGID_DC, _RIGID),
+    ),
+    "lugre_friction": (
+        (3e-4, 1e-2),
+        (_RIGID, _RIGID_DC, (*_RIGID_DC, "base_tilt"), _RIGID, _RIGID_DC),
+    ),
+    "measurement_lag": (
+        (0.6, 8.0),
+        (_RIGID, ("tilt_servo", "tilt"), ("direct_drive", "pan", "base_tilt")),
+    ),
+    "actuator_lag": (
+        (0.8, 8.0),
+        (
+            ("direct_drive", "pan"),
+            ("two_axis", "tilt"),
+            ("two_axis", "pan", "base_tilt"),
+            _RIGID,
+        ),
+    ),
+    "voltage_ceiling": ((1.0, 6.0), (_RIGID, (*_RIGID_DC, "cable_spring"))),
+    "torque_saturation": (
+        (0.8, 6.0),
+        (("direct_drive", "pan"), ("two_axis", "tilt"), ("direct_drive", "pan", "cable_spring")),
+    ),
+    "torque_proportional_loss": (
+        (0.8, 6.0),
+        (
+            ("tilt_servo", "tilt"),
+            ("tilt_servo", "tilt", "voltage_offset"),
+            ("tilt_servo", "tilt"),
+        ),
+    ),
+    "end_stop": (
+        (0.02, 0.4),
+        (
+            ("direct_drive", "pan"),
+            ("two_axis", "tilt"),
+            ("direct_drive", "pan", "base_tilt"),
+            ("two_axis", "pan"),
+            ("two_axis", "tilt", "constant_torque@pan"),
+        ),
+    ),
+}
+# Perfect, with small deviations, with a shaft so stiff that it does not show.
+STRUCTURE_NULLS: dict[str, tuple[int, int, int]] = {
+    "rigid_pan": (6, 4, 3),
+    "rigid_pan_dc": (5, 3, 3),
+    "tilt_servo": (4, 2, 0),
+    "direct_drive": (3, 1, 0),
+    "two_axis": (2, 1, 0),
+    "two_axis_servo": (2, 1, 0),
+}
+STIFF = 1e6  # N m/rad
+RIGID_PERIOD = 0.005  # s
+MOST_COUNTS = 65_536
+# Sizes of structures above (True) or below which a fine encoder with little noise is needed.
+FINE_BEYOND = {
+    "shaft_compliance": (250.0, True),
+    "backlash": (4e-3, False),
+    "lugre_friction": (4e-3, False),
+}

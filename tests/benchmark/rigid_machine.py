@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tests.benchmark import declarations, servo_runs
+from tests.benchmark.delays import draw_delays, free_delays, with_delays
 from tests.benchmark.machine import (
     SHIFT_SIZE,
     Declared,
@@ -23,6 +24,7 @@ from tests.independent.drive import as_records
 from tests.independent.rigid_runs import at_rest, replay, track
 
 STEP = 0.5e-3  # s; its error is a tenth of the finest encoder's floor
+FINE_STEP = 0.1e-3  # s, where a shaft, a gap or an end stop is hidden
 WINDOW = 1.0  # s, of machines that a torque drives
 DISTANT_START = "start_of_J_pan"  # kept among the values, as the platform must state it
 
@@ -84,10 +86,15 @@ class RigidMachine:
         if self._frees_pan_inertia(variation):
             true[DISTANT_START] = plate.known["J_pan"] * declarations.far(rng)
         absent = self._absent(variation)
-        return plate.known | {k: v for k, v in true.items() if k not in absent}
+        true = {k: v for k, v in true.items() if k not in absent}
+        return plate.known | true | draw_delays(rng, self.axes, variation)
 
     def free(self, variation: Variation) -> tuple[str, ...]:
         """The declared free parameters."""
+        return self._fitted(variation) + free_delays(self.axes, variation)
+
+    def _fitted(self, variation: Variation) -> tuple[str, ...]:
+        """The free parameters but for delays."""
         names = list(self.plate_of(variation).starts)
         if self._frees_pan_inertia(variation):
             names.append("J_pan")
@@ -95,7 +102,7 @@ class RigidMachine:
 
     def declared(self, values: Values, variation: Variation) -> Declared:
         """The platform as TOML data."""
-        plate, free = self.plate_of(variation), self.free(variation)
+        plate, free = self.plate_of(variation), self._fitted(variation)
         starts = dict(plate.starts)
         if self._frees_pan_inertia(variation):
             starts["J_pan"] = values[DISTANT_START]
@@ -116,12 +123,13 @@ class RigidMachine:
             else:
                 signals |= declarations.torque_signals(axis, variation)
         platform = {"name": self.name, "title": self.name.replace("_", " "), "axes": [*self.axes]}
-        return {
+        declared = {
             "platform": platform,
             "effects": effects,
             "parameters": owned,
             "signals": signals,
         }
+        return with_delays(declared, values, self.axes, variation)
 
     def runs(
         self, rng: np.random.Generator, values: Values, variation: Variation
@@ -136,7 +144,14 @@ class RigidMachine:
     def _joints(self, values: Values) -> rigid_drives.Joints:
         """The simulator of the machine."""
         pan, tilt = (drive_of(values, axis) if axis in self.axes else None for axis in BOTH)
-        return rigid_drives.joints(bodies_of(values, self.axes), pan, tilt, self.voltage_driven)
+        flexible = ("k_shaft_pan" in values, "k_shaft_tilt" in values)
+        bodies = bodies_of(values, self.axes)
+        return rigid_drives.joints(bodies, pan, tilt, self.voltage_driven, flexible)
+
+    def _step(self, values: Values) -> float:
+        """Step of the simulator in s."""
+        stiff = any(name.startswith(("k_shaft_", "k_stop_")) for name in values)
+        return FINE_STEP if stiff else STEP
 
     def _places(self) -> list[int]:
         """Columns of the axes in the simulator."""
@@ -161,7 +176,7 @@ class RigidMachine:
             pushes,
             start,
             run.period,
-            STEP,
+            self._step(values),
         )
         return Recording(run, inputs[:, self._places()], states)
 
@@ -188,15 +203,16 @@ class RigidMachine:
                 starts[moving, place, rigid_drives.RATE] += SHIFT_SIZE
         given = recording.inputs if inputs is None else inputs
         pushes = self._both(push(values, run, self.axes))
-        machine = self._joints(values)
-        return replay(machine, self._both(given), pushes, starts, window, run.period, STEP)
+        machine, step = self._joints(values), self._step(values)
+        return replay(machine, self._both(given), pushes, starts, window, run.period, step)
 
     def readings(self, values: Values, states: Floats, variation: Variation) -> Floats:
         """Angles as the encoders read them, then the currents if they are logged."""
-        columns = [
-            reading(values, axis, states[:, place, rigid_drives.ANGLE])
-            for axis, place in zip(self.axes, self._places(), strict=True)
-        ]
+        columns = []
+        for axis, place in zip(self.axes, self._places(), strict=True):
+            late = values.get(f"t_lag_{axis}", 0.0) > 0.0
+            shown = rigid_drives.LAGGED if late else rigid_drives.ANGLE
+            columns.append(reading(values, axis, states[:, place, shown]))
         if self.voltage_driven and variation.current:
             columns += [states[:, place, rigid_drives.CURRENT] for place in self._places()]
         return np.column_stack(columns)

@@ -1,8 +1,9 @@
 """Is an answer right? Judged from the truth and the diagnosis alone.
 
-A named effect is honest if it is in the truth, or if one of its `confusable_with` is. An answer
-with any dishonest name is *wrong*. What *right* means depends on the kind of the set; an answer
-that is neither is *missed*.
+A named effect is honest if it is in the truth, or if one of its `confusable_with` is, or if the
+truth allows it: a shaft beside a gap, for example, too stiff to need a name. An answer with any
+dishonest name is *wrong*. What *right* means depends on the kind of the set; an answer that is
+neither is *missed*.
 """
 
 import math
@@ -64,11 +65,16 @@ def _is_right(kind: str, verdict: str, complete: bool) -> bool:
     """Whether an answer without a dishonest name is right; `complete`: every truth is named."""
     if kind == "perfect":
         return verdict == "nothing_missing"
-    if kind == "slightly_wrong":
+    if kind in ("slightly_wrong", "structure_null"):
         return verdict in UNTOLD
     if kind == "unlisted":
         return verdict in OPEN_END
     return complete and verdict in TOLD
+
+
+def _deviates(truth: Data) -> bool:
+    """Whether the machine has many small deviations from its model."""
+    return truth["kind"] == "slightly_wrong" or bool(truth.get("small_deviations"))
 
 
 def score(truth: Data, diagnosis: Data | None) -> Score:
@@ -77,7 +83,8 @@ def score(truth: Data, diagnosis: Data | None) -> Score:
         return Score("missed", False, "none", (), (), (), ())
     listed: list[Key] = list(zip(truth["effects"], truth["axes"], strict=True))
     verdict = str(diagnosis["verdict"])
-    deviating = set(truth["hidden"]) if truth["kind"] == "slightly_wrong" else set()
+    allowed = [read_key(text) for text in truth.get("allowed", ())]
+    deviating = set(truth["hidden"]) if _deviates(truth) else set()
     named, dishonest, small, covered, direct = [], [], [], set(), set()
     for one in diagnosis["added"]:
         key: Key = (one["effect"], one["axis"])
@@ -87,7 +94,7 @@ def score(truth: Data, diagnosis: Data | None) -> Score:
         direct |= hits
         hits |= {other for other in listed if any(same(other, member) for member in group)}
         covered |= hits
-        if not hits:
+        if not hits and not any(same(free, other) for free in allowed for other in (key, *group)):
             dishonest.append(write_key(key))
             if deviating & set(one["parameters"]):
                 small.append(write_key(key))
@@ -134,7 +141,7 @@ def intervals(truth: Data, diagnosis: Data) -> Iterator[Interval]:
 
     None where the truth holds what no model can: its parameters have no true value there.
     """
-    if truth["kind"] in ("unlisted", "slightly_wrong"):
+    if truth["kind"] == "unlisted" or _deviates(truth):
         return
     tables = [(False, diagnosis["fit"]["after"]["parameters"])]
     tables += [(True, one["parameters"]) for one in diagnosis["added"]]

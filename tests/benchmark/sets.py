@@ -14,11 +14,18 @@ import tomlkit
 
 from tests.benchmark import deviations
 from tests.benchmark.effects import Numbers, Scene, Shape
-from tests.benchmark.entry import Entry, Planted
+from tests.benchmark.entry import OF_STRUCTURES, Entry, Planted
 from tests.benchmark.logs import write_logs
 from tests.benchmark.machine import Machine, Recording, Run, angle_floor
 from tests.benchmark.machines import MACHINES
 from tests.benchmark.sizing import AbsorbedError, Yardstick
+from tests.benchmark.structures import (
+    SHAFT,
+    SMALL_DEVIATIONS,
+    STRUCTURES,
+    VISIBLE_FLOORS,
+    Structure,
+)
 from tests.benchmark.unlisted import DECLARED_VALUE, UNLISTED, shape_of
 
 MOST_DRAWS = 6
@@ -29,11 +36,15 @@ MOST_INPUT_NOISE = {True: 0.01, False: 0.01}  # V where voltage-driven, N m else
 
 @dataclass
 class Hidden:
-    """What a set hides: all parameters, those to be told, and a record per effect."""
+    """What a set hides: all parameters, those to be told, and a record per effect; of structures
+    also what they are called, each with axis and level, and what may be named beside them.
+    """
 
     values: Numbers = field(default_factory=dict)
     told: Numbers = field(default_factory=dict)
     records: list[dict[str, Any]] = field(default_factory=list)
+    named: list[tuple[str, str | None, float]] = field(default_factory=list)
+    allowed: list[str] = field(default_factory=list)
 
 
 def generate(entry: Entry, folder: Path) -> dict[str, Any]:
@@ -82,7 +93,8 @@ def _record(machine: Machine, values: Numbers, runs: Sequence[Run]) -> list[Reco
 
 def _hide(entry: Entry, machine: Machine, yardstick: Yardstick, draw: int) -> Hidden:
     """The hidden parameters, sized on the machine without them."""
-    if entry.kind == "slightly_wrong":
+    deviate = any(planted.effect == SMALL_DEVIATIONS for planted in entry.planted)
+    if entry.kind == "slightly_wrong" or deviate:
         rng = np.random.default_rng([entry.seed, 5, draw])
         values, record = deviations.scaled(machine, yardstick, rng)
         return Hidden(values, {}, [record])
@@ -90,15 +102,67 @@ def _hide(entry: Entry, machine: Machine, yardstick: Yardstick, draw: int) -> Hi
     for number, planted in enumerate(entry.planted):
         rng = np.random.default_rng([entry.seed, 5, draw, number])
         axis = planted.axis or machine.axes[0]
-        peak, fastest = _extremes(yardstick, machine.axes.index(axis))
-        scene = Scene(machine, yardstick.values, axis, peak, fastest, rng)
+        scene = Scene(
+            machine,
+            yardstick.values,
+            axis,
+            *_extremes(yardstick, machine.axes.index(axis)),
+            rng,
+            _reach(yardstick, machine.axes.index(axis)),
+        )
+        if planted.effect in STRUCTURES:
+            _hide_structure(hidden, planted, STRUCTURES[planted.effect](scene), yardstick, entry)
+            continue
         shape = shape_of(planted.effect, scene)
         size, record = _size(planted, shape, yardstick, entry.variation.period)
         parameters = shape.values(size)
         hidden.values |= parameters
         hidden.told |= {k: v for k, v in parameters.items() if k not in shape.untold}
         hidden.records.append(record)
+        hidden.named.append((planted.effect, planted.axis, record["level"]))
     return hidden
+
+
+def _hide_structure(
+    hidden: Hidden, planted: Planted, shape: Structure, yardstick: Yardstick, entry: Entry
+) -> None:
+    """Add a structure in the size that is asked for, in its own unit or in thresholds."""
+    if shape.natural:
+        seen = yardstick.seen(shape.values(planted.level), False)
+        size, level = planted.level, seen.floors / VISIBLE_FLOORS
+        record: dict[str, Any] = {"effect": planted.effect, "axis": planted.axis, "level": level}
+        record |= {"size": size, "response_floors": seen.floors}
+    else:
+        size, record = _size(planted, shape, yardstick, entry.variation.period)
+    parameters = shape.values(size)
+    effects, allowed, told = list(shape.effects), list(shape.allowed), list(shape.told)
+    shaft = {k: v for k, v in parameters.items() if k.startswith(("k_shaft_", "d_shaft_"))}
+    if "backlash" in effects and shaft:
+        alone = record["shaft_floors"] = yardstick.seen(shaft, False).floors
+        if alone < 1.0 and SHAFT in effects:
+            effects.remove(SHAFT)
+            allowed.append(SHAFT)
+        elif alone >= VISIBLE_FLOORS and SHAFT in allowed:
+            effects.append(SHAFT)
+            allowed.remove(SHAFT)
+    if SHAFT in effects:
+        told += ["k_shaft", "d_shaft"]
+    elif shaft:
+        told = [letters for letters in told if not letters.endswith("_shaft")]
+    names = {f"{letters}_{planted.axis}" for letters in told}
+    hidden.values |= parameters
+    hidden.told |= {name: value for name, value in parameters.items() if name in names}
+    hidden.records.append(record)
+    hidden.named += [(effect, planted.axis, record["level"]) for effect in effects]
+    hidden.allowed += [f"{effect}@{planted.axis}" for effect in allowed]
+
+
+def _reach(yardstick: Yardstick, joint: int) -> tuple[float, float]:
+    """Least and largest angle of a joint in rad in the training runs."""
+    machine, made = yardstick.machine, yardstick.recordings
+    read = [machine.readings(yardstick.values, one.states, yardstick.variation) for one in made]
+    angles = np.concatenate([columns[:, joint] for columns in read])
+    return float(angles.min()), float(angles.max())
 
 
 def _extremes(yardstick: Yardstick, joint: int) -> tuple[float, float]:
@@ -107,13 +171,13 @@ def _extremes(yardstick: Yardstick, joint: int) -> tuple[float, float]:
     for made in yardstick.recordings:
         read = yardstick.machine.readings(yardstick.values, made.states, yardstick.variation)
         rate = np.abs(np.diff(read[:, joint])) / made.run.period
-        peak = max(peak, float(np.max(np.abs(made.inputs))))
+        peak = max(peak, float(np.max(np.abs(made.inputs[:, joint]))))
         fastest = max(fastest, float(np.max(rate)))
     return peak, fastest
 
 
 def _size(
-    planted: Planted, shape: Shape, yardstick: Yardstick, period: float
+    planted: Planted, shape: Shape | Structure, yardstick: Yardstick, period: float
 ) -> tuple[float, dict[str, Any]]:
     """The size that the level asks for, cut at the limit, and what is to be told of it."""
     threshold = yardstick.threshold(shape)
@@ -151,7 +215,7 @@ def _truth(
     variation = entry.variation
     listed = [planted for planted in entry.planted if planted.effect not in UNLISTED]
     free = machine.free(variation)
-    return {
+    truth = {
         "id": entry.id,
         "machine": entry.machine,
         "kind": entry.kind,
@@ -173,6 +237,13 @@ def _truth(
         "input_noise": noise,
         "variation": asdict(variation),
     }
+    if entry.kind in OF_STRUCTURES:
+        truth["effects"] = [effect for effect, _, _ in hidden.named]
+        truth["axes"] = [axis for _, axis, _ in hidden.named]
+        truth["level"] = [level for _, _, level in hidden.named]
+        truth["allowed"] = hidden.allowed
+        truth["small_deviations"] = any(one.effect == SMALL_DEVIATIONS for one in entry.planted)
+    return truth
 
 
 def _write_platform(

@@ -22,6 +22,7 @@ from tests.benchmark.machine import (
     Values,
     angle_floor,
 )
+from tests.benchmark.structures import Structure
 from tests.benchmark.variation import Variation
 
 RELATIVE_STEP = 1e-3  # of a parameter, for finite differences
@@ -207,7 +208,7 @@ class Yardstick:
         self.widening = np.hypot(1.0, carried * noise / unit)
         return noise
 
-    def threshold(self, shape: Shape) -> float:
+    def threshold(self, shape: Shape | Structure) -> float:
         """Size at which the effect is just visible.
 
         Raises AbsorbedError where that is beyond its limit, or takes a torque that dwarfs friction.

@@ -10,11 +10,13 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from tests.benchmark.entry import KINDS, Entry
+from tests.benchmark.entry import KINDS, OF_STRUCTURES, Entry
 from tests.benchmark.runner import read_set
 from tests.benchmark.score import Score, clopper_pearson, intervals, read_key, same, score
+from tests.benchmark.structures import VISIBLE_FLOORS
 
 Row = dict[str, Any]
+ORDERED_LAST = ("all ", "too faint", "null")  # of the rows of structures
 
 
 @dataclass(frozen=True)
@@ -95,6 +97,37 @@ def effect_rows(results: Sequence[Result]) -> list[Row]:
     return rows
 
 
+def structure_rows(results: Sequence[Result]) -> list[Row]:
+    """A row per hidden structure that is visible, alone or beside a term; then all that are alone,
+    beside a term or too faint, and the machines that lack nothing, by what little they hide.
+    """
+    groups: dict[str, list[Result]] = {}
+    for result in results:
+        kind, planted = result.truth["kind"], result.truth["planted"]
+        if kind == "structure_null":
+            if result.truth["small_deviations"]:
+                names = ["null, small deviations"]
+            else:
+                names = ["null, stiff shaft" if planted else "null, perfect"]
+        elif kind in OF_STRUCTURES:
+            if planted[0]["response_floors"] < VISIBLE_FLOORS:
+                names = ["too faint"]
+            elif kind == "structure":
+                names = [planted[0]["effect"], "all alone"]
+            else:
+                names = [f"{planted[0]['effect']} and a term", "all with a term"]
+        else:
+            continue
+        for name in names:
+            groups.setdefault(name, []).append(result)
+    rows = []
+    for name in sorted(groups, key=lambda one: (one.startswith(ORDERED_LAST), one)):
+        chosen = groups[name]
+        answers = [result.score.answer for result in chosen]
+        rows.append(_row(name, answers, sum(one.score.group for one in chosen), chosen))
+    return rows
+
+
 def coverage(results: Sequence[Result]) -> dict[str, Any]:
     """Share of the 95 % intervals of right answers that hold the true value, and what misses."""
     found = [
@@ -147,6 +180,7 @@ def figures(results: Sequence[Result]) -> dict[str, Any]:
     return {
         "kinds": kind_rows(results),
         "effects": effect_rows(results),
+        "structures": structure_rows(results),
         "coverage": coverage(results),
         "failures": failures(results),
     }
@@ -190,7 +224,7 @@ def _coverage_lines(data: dict[str, Any]) -> list[str]:
 def show(data: dict[str, Any], title: str) -> None:
     """Print the tables on the terminal."""
     console = Console(width=max(TERMINAL_COLUMNS, Console().width))
-    for name in ("kinds", "effects"):
+    for name in filter(data.get, ("kinds", "effects", "structures")):
         table = Table(*HEADINGS, title=f"{title}: {name}")
         for row in data[name]:
             table.add_row(*_cells(row))
@@ -216,7 +250,7 @@ def _failure_line(row: Row) -> str:
 def markdown(data: dict[str, Any], title: str) -> str:
     """The tables as markdown."""
     lines = [f"# {title}", ""]
-    for name in ("kinds", "effects"):
+    for name in filter(data.get, ("kinds", "effects", "structures")):
         lines += [f"## {name}", "", "| " + " | ".join(HEADINGS) + " |"]
         lines.append("|" + "---|" * len(HEADINGS))
         lines += ["| " + " | ".join(_cells(row)) + " |" for row in data[name]]

@@ -43,6 +43,9 @@ LEAN = ("base_tilt", None)
         ("slightly_wrong", "nothing_missing", "right"),
         ("slightly_wrong", "unexplained", "right"),
         ("slightly_wrong", "partly_explained", "missed"),
+        ("structure_null", "nothing_missing", "right"),
+        ("structure_null", "unexplained", "right"),
+        ("structure_null", "explained", "missed"),
         ("unlisted", "unexplained", "right"),
         ("unlisted", "nothing_missing", "missed"),
         ("unlisted", "explained", "missed"),
@@ -52,7 +55,7 @@ def test_answers_without_a_name(kind: str, verdict: str, expected: str) -> None:
     assert score(truth(kind), answer(verdict)).answer == expected
 
 
-@pytest.mark.parametrize("kind", ["perfect", "slightly_wrong", "unlisted"])
+@pytest.mark.parametrize("kind", ["perfect", "slightly_wrong", "structure_null", "unlisted"])
 def test_a_name_where_there_is_none_is_wrong(kind: str) -> None:
     result = score(truth(kind), answer("explained", (*SPRING, ("base_tilt",))))
     assert result.answer == "wrong"
@@ -90,6 +93,20 @@ def test_the_axis_counts_where_it_is_told() -> None:
     group = answer("explained", ("constant_torque", "pan", ("constant_torque@tilt",)))
     assert score(two, group).group
     assert score(two, answer("explained", ("cogging", "pan", ("constant_torque",)))).group
+
+
+def test_a_stiff_shaft_beside_a_gap_may_be_named_and_need_not_be() -> None:
+    gap, shaft = ("backlash", "pan"), ("shaft_compliance", "pan")
+    stiff = truth("structure", gap) | {"allowed": ["shaft_compliance@pan"]}
+    for named in ((gap,), (gap, shaft)):
+        result = score(stiff, answer("explained", *((*one, ()) for one in named)))
+        assert (result.answer, result.dishonest) == ("right", ())
+    alone = score(stiff, answer("explained", (*shaft, ())))
+    assert (alone.answer, alone.dishonest) == ("missed", ())
+    elsewhere = score(stiff, answer("explained", (*gap, ()), ("shaft_compliance", "tilt", ())))
+    assert elsewhere.answer == "wrong"
+    told = truth("structure", gap, shaft)
+    assert score(told, answer("explained", (*gap, ()))).answer == "missed"
 
 
 def test_every_effect_of_a_pair_must_be_named() -> None:

@@ -53,9 +53,30 @@ _SAME = {
     "wrap_torque": "wrap_torque",
     "wrap_angle": "wrap_angle",
     "contact_softness": "contact_softness",
+    "actuator_lag": "t_actuator",
+    "measurement_lag": "t_lag",
+    "restitution": "e_gap",
+    "bristle_stiffness": "sigma0",
+    "bristle_damping": "sigma1",
+    "stop_stiffness": "k_stop",
+    "stop_damping": "c_stop",
+    "loss_mean": "mu_avg",
+    "loss_difference": "mu_dif",
+    "loss_angle": "h_loss",
+}
+_LIMITS = {
+    "voltage_limit": ("u_max", NO_LIMIT),
+    "torque_limit": ("tau_max", NO_LIMIT),
+    "stop_upper": ("theta_stop_upper", NO_LIMIT),
+    "stop_lower": ("theta_stop_lower", -NO_LIMIT),
 }
 _MAY_BE_ABSENT_AS = {"dwell_time": 1.0, "heating_time": 1.0, "stribeck_exponent": 2.0}
-_MAY_BE_ABSENT_AS |= {"viscous_exponent": 1.0, "decay_time": 1.0, "wrap_angle": 1.0}
+_MAY_BE_ABSENT_AS |= {
+    "viscous_exponent": 1.0,
+    "decay_time": 1.0,
+    "wrap_angle": 1.0,
+    "loss_angle": 1.0,
+}
 
 
 def _numbered(name: str, number: int, axis: str) -> str:
@@ -108,9 +129,10 @@ def drive_of(values: Values, axis: str) -> Drive:
         asymmetry = values.get(f"a_{name}_{axis}", 0.0)
         fields[f"{name}_forward"] = level * (1.0 + asymmetry)
         fields[f"{name}_backward"] = level * (1.0 - asymmetry)
+    for field, (name, without) in _LIMITS.items():
+        fields[field] = float(values.get(f"{name}_{axis}", without))
     return Drive(
         **fields,
-        voltage_limit=float(values.get(f"u_max_{axis}", NO_LIMIT)),
         cogging=_cogging(values, axis),
         friction_by_angle=_harmonics(values, "f_sin", "f_cos", axis, 3),
         transmission=_harmonics(values, "g_sin", "g_cos", axis, 2),

@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 Rows = tuple[tuple[float, float, float], ...]
 
 _NO_HARMONIC = (0.0, 0.0, 1.0)
-NO_LIMIT = 1e6  # V
+NO_LIMIT = 1e6  # V, N m or rad
 
 
 class Drive(NamedTuple):
@@ -25,6 +25,11 @@ class Drive(NamedTuple):
     1 + friction_ripple (1 - cos(n theta - phase)) / 2 + friction_by_angle. Breakaway grows by
     1 + dwell_gain ln(1 + rest / dwell_time); resistance by heat, with
     heating_time d(heat)/dt = heating_gain R i^2 - heat.
+    A shaft without stiffness is rigid; its gap, if any, lies between rigid faces that an impact
+    leaves with `restitution` times the speed. Bristles (LuGre) stand in for the set-valued dry
+    friction where they have a stiffness. End stops press with k depth (1 + c depth_rate). A loss in
+    proportion to the transmitted torque T takes mean |T| z + difference T z^2, with
+    loss_angle dz/d(theta) = sign - z.
     Rows of `cogging` are (amplitude, cycles per turn, phase); rows of `friction_by_angle`,
     `transmission` and `encoder` are (sine part, cosine part, harmonic of the angle).
     """
@@ -82,6 +87,19 @@ class Drive(NamedTuple):
     voltage_deadband: float = 0.0
     voltage_limit: float = NO_LIMIT
     delay: float = 0.0  # s, of the held input
+    actuator_lag: float = 0.0  # s, of the voltage or torque behind the held input
+    measurement_lag: float = 0.0  # s, of the encoder
+    torque_limit: float = NO_LIMIT
+    restitution: float = 0.0
+    bristle_stiffness: float = 0.0
+    bristle_damping: float = 0.0
+    stop_upper: float = NO_LIMIT
+    stop_lower: float = -NO_LIMIT
+    stop_stiffness: float = 0.0
+    stop_damping: float = 0.0  # s/rad
+    loss_mean: float = 0.0
+    loss_difference: float = 0.0
+    loss_angle: float = 1.0
     cogging: Rows = (_NO_HARMONIC,) * 3
     friction_by_angle: Rows = (_NO_HARMONIC,) * 3
     transmission: Rows = (_NO_HARMONIC,) * 2

@@ -104,6 +104,65 @@ def breakaway(
 
 
 @numba.njit(cache=True)
+def bristle_friction(drive: Any, rate: float, bend: float) -> tuple[float, float]:
+    """LuGre friction in N m without its viscous part, and the slope of the bend in rad/s."""
+    coulomb, static, stribeck = drive.F_c_forward, drive.F_s_forward, drive.v_s_forward
+    if rate < 0.0:
+        coulomb, static, stribeck = drive.F_c_backward, drive.F_s_backward, drive.v_s_backward
+    ratio = rate / stribeck
+    level = coulomb + (static - coulomb) * math.exp(-ratio * ratio)
+    bending = rate - drive.bristle_stiffness * abs(rate) / level * bend
+    return drive.bristle_stiffness * bend + drive.bristle_damping * bending, bending
+
+
+@numba.njit(cache=True)
+def loss_torque(drive: Any, transmitted: float, wound: float) -> float:
+    """Torque lost in proportion to the one transmitted; `wound` is its state between -1 and 1."""
+    loss = drive.loss_mean * abs(transmitted) * wound
+    return loss + drive.loss_difference * transmitted * wound * wound
+
+
+@numba.njit(cache=True)
+def loss_slope(drive: Any, rate: float, wound: float) -> float:
+    """Slope of the state of the loss in 1/s."""
+    return (rate - abs(rate) * wound) / drive.loss_angle
+
+
+@numba.njit(cache=True)
+def shaft_contact(drive: Any, twist: float, rate: float) -> int:
+    """Flank on which a shaft presses: 1, -1, or 0 in the gap and where it would have to pull; 2
+    without a gap, where it pulls as it pushes.
+    """
+    if drive.gap == 0.0:
+        return 2
+    side = 1 if twist > 0.0 else -1
+    depth = side * twist - 0.5 * drive.gap
+    presses = drive.k_shaft * depth + drive.d_shaft * side * rate > 0.0
+    return side if depth > 0.0 and presses else 0
+
+
+@numba.njit(cache=True)
+def shaft_torque(drive: Any, twist: float, rate: float, contact: int) -> float:
+    """Torque in N m of a shaft on the load in a contact."""
+    if contact == 0:
+        return 0.0
+    rest = 0.0 if contact == 2 else 0.5 * contact * drive.gap
+    return drive.k_shaft * (twist - rest) + drive.d_shaft * rate
+
+
+@numba.njit(cache=True)
+def stop_torque(drive: Any, angle: float, rate: float) -> float:
+    """Torque in N m of the end stops, after Hunt and Crossley; they never pull."""
+    if angle > drive.stop_upper:
+        depth = angle - drive.stop_upper
+        return -max(0.0, drive.stop_stiffness * depth * (1.0 + drive.stop_damping * rate))
+    if angle < drive.stop_lower:
+        depth = drive.stop_lower - angle
+        return max(0.0, drive.stop_stiffness * depth * (1.0 - drive.stop_damping * rate))
+    return 0.0
+
+
+@numba.njit(cache=True)
 def joint_torque(drive: Any, t: float, angle: float, rate: float, wrap: float) -> float:
     """Torque on the joint from all that hangs on it, but for friction of the drive."""
     stretch = angle - drive.theta0_cable
@@ -123,6 +182,8 @@ def joint_torque(drive: Any, t: float, angle: float, rate: float, wrap: float) -
         lever = drive.base_shake_sine * math.sin(angle) + drive.base_shake_cosine * math.cos(angle)
         shake = 2.0 * math.pi * drive.base_shake_frequency * t + drive.base_shake_phase
         torque += lever * math.sin(shake)
+    if drive.stop_stiffness != 0.0:
+        torque += stop_torque(drive, angle, rate)
     return torque
 
 

@@ -40,13 +40,19 @@ def _join(values: Any) -> str:
 
 
 def load(parameters: Mapping[str, float], gravity: Floats) -> Any:
-    """MuJoCo's model of the platform; `gravity` [3] in m/s^2 in world axes.
+    """MuJoCo's model of the platform, see `model_text`."""
+    import mujoco
+
+    return mujoco.MjModel.from_xml_string(model_text(parameters, gravity))
+
+
+def model_text(parameters: Mapping[str, float], gravity: Floats) -> str:
+    """MuJoCo's XML of the platform; `gravity` [3] in m/s^2 in world axes.
 
     Parameters as in the project: J_pan, J_x_tilt, J_xy_tilt, m_payload, c_x_payload, dc_x_payload,
     J_x_payload, beta_base, alpha_base. Tilt body and payload are one body: its tensor is about the
     payload's centre of mass, as the tilt body alone is a rotor.
     """
-    import mujoco
 
     def of(name: str) -> float:
         return float(parameters.get(name, 0.0))
@@ -57,7 +63,7 @@ def load(parameters: Mapping[str, float], gravity: Floats) -> Any:
     half = math.sin(beta / 2)
     base = (math.cos(beta / 2), -half * math.sin(alpha), half * math.cos(alpha), 0.0)
     centre = [of(f"c_{k}_payload") + of(f"dc_{k}_payload") for k in "xyz"]
-    text = _MODEL.format(
+    return _MODEL.format(
         gravity=_join(gravity),
         base=_join(base),
         pan=of("J_pan"),
@@ -65,7 +71,6 @@ def load(parameters: Mapping[str, float], gravity: Floats) -> Any:
         payload=of("m_payload"),
         tensor=_join(tensor),
     )
-    return mujoco.MjModel.from_xml_string(text)
 
 
 def mass_and_bias(model: Any, theta: Floats, omega: Floats) -> tuple[Floats, Floats]:

@@ -1,6 +1,8 @@
 """Voltage-driven pan axis with true sticking and a gap, event by event: a truth for fits and tests.
 
 Motor current, gear output with set-valued CSVS friction, dead zone whose contact cannot pull, load.
+Without a gap the shaft pulls as it pushes; without stiffness it is rigid, and a gap then lies
+between rigid faces, which impacts part and contact holds together while it presses.
 Between events the motion is smooth: Dormand and Prince's pair of orders 5 and 4 (J. Comput. Appl.
 Math. 6, 1980) at a tight tolerance; events are bisected to 1e-12 s and landed on their far side.
 Beside the declared drive it holds effects that a test can plant; at their defaults they vanish.
@@ -15,11 +17,13 @@ from numpy.typing import NDArray
 from tests.independent.drive import Drive, as_records
 from tests.independent.drive_laws import (
     breakaway,
+    bristle_friction,
     cogging_torque,
     harmonics,
     harmonics_slope,
     joint_torque,
     sliding_friction,
+    viscous,
     winding,
     wrap_slope,
 )
@@ -28,7 +32,10 @@ Floats = NDArray[np.float64]
 PanDrive = Drive
 
 LOAD_ANGLE, LOAD_RATE, GEAR_ANGLE, GEAR_RATE, CURRENT, HEAT, WRAP = range(7)
-STATES = 7
+DRIVEN, LAGGED, BEND = range(7, 10)  # lagged voltage, lagged reading, bend of bristles
+STATES = 10
+BOTH_WAYS = 2  # contact of a shaft without a gap, which pulls as well; 1 and -1 are flanks
+SLOWEST_REBOUND = 1e-6  # rad/s; slower ones stay in contact
 DEAD_BAND = 1e-13  # rad/s; rounding right after breakaway must not count as a reversal
 EVENT_TOLERANCE = 1e-12  # s
 LONGEST_STEP = 5e-4  # s
@@ -73,6 +80,8 @@ def _flank_torque(depth: float, closing: float, drive: Any) -> float:
 @numba.njit(cache=True)
 def _touching(y: Floats, drive: Any) -> int:
     """Flank that presses: 1, -1, or 0 in the gap and where the damped contact would pull."""
+    if drive.gap == 0.0:
+        return BOTH_WAYS
     twist, rate = _twist(y, drive)
     for side in (1, -1):
         depth = side * twist - 0.5 * drive.gap
@@ -87,6 +96,8 @@ def _contact_torque(y: Floats, contact: int, drive: Any) -> float:
     if contact == 0:
         return 0.0
     twist, rate = _twist(y, drive)
+    if contact == BOTH_WAYS:
+        return drive.k_shaft * twist + drive.d_shaft * rate
     return contact * _flank_torque(contact * twist - 0.5 * drive.gap, contact * rate, drive)
 
 
@@ -98,19 +109,68 @@ def _gear_torque(y: Floats, shaft: float, drive: Any) -> float:
 
 
 @numba.njit(cache=True)
+def _bonded(contact: int, drive: Any) -> bool:
+    """Whether load and gear are one rigid body."""
+    return contact != 0 and drive.k_shaft == 0.0
+
+
+@numba.njit(cache=True)
+def _joined_torque(t: float, y: Floats, push: float, slip: int, drive: Any) -> float:
+    """Torque in N m from the rigid body of load and gear on the load alone."""
+    load = push + joint_torque(drive, t, y[LOAD_ANGLE], y[LOAD_RATE], y[WRAP])
+    if slip == 0:
+        return -load
+    gear = _gear_torque(y, 0.0, drive) - _friction(t, y, slip, 0.0, drive)
+    return (gear * drive.J_load - load * drive.J_motor * drive.N**2) / (
+        drive.J_load + drive.J_motor * drive.N**2
+    )
+
+
+@numba.njit(cache=True)
+def _friction(t: float, y: Floats, slip: int, load: float, drive: Any) -> float:
+    """Friction in N m at the gear output while it slides, or of its bristles."""
+    if drive.bristle_stiffness == 0.0:
+        return sliding_friction(drive, t, y[GEAR_RATE], slip, y[GEAR_ANGLE], load)
+    coefficient = drive.F_v_forward if y[GEAR_RATE] >= 0.0 else drive.F_v_backward
+    dry = bristle_friction(drive, y[GEAR_RATE], y[BEND])[0]
+    return dry + viscous(drive, coefficient, y[GEAR_RATE])
+
+
+@numba.njit(cache=True)
+def _lags(y: Floats, u: float, drive: Any, out: Floats) -> float:
+    """Slopes of all that lags behind, into `out`; the voltage in V that arrives for a held `u`."""
+    out[DRIVEN], out[LAGGED], out[BEND] = 0.0, 0.0, 0.0
+    if drive.measurement_lag != 0.0:
+        out[LAGGED] = (y[LOAD_ANGLE] - y[LAGGED]) / drive.measurement_lag
+    if drive.bristle_stiffness != 0.0:
+        out[BEND] = bristle_friction(drive, y[GEAR_RATE], y[BEND])[1]
+    if drive.actuator_lag == 0.0:
+        return u
+    out[DRIVEN] = (u - y[DRIVEN]) / drive.actuator_lag
+    return y[DRIVEN]
+
+
+@numba.njit(cache=True)
 def _slope(
     t: float, y: Floats, u: float, push: float, contact: int, slip: int, drive: Any, out: Floats
 ) -> None:
-    """Time derivative of the state [7] in a fixed mode, into `out`; `push` in N m on the load."""
-    shaft = _contact_torque(y, contact, drive)
+    """Time derivative of the state [10] in a fixed mode, into `out`; `push` in N m on the load."""
+    rigid = _bonded(contact, drive)
+    if rigid:
+        shaft = _joined_torque(t, y, push, slip, drive)
+    else:
+        shaft = _contact_torque(y, contact, drive)
     load = shaft + push + joint_torque(drive, t, y[LOAD_ANGLE], y[LOAD_RATE], y[WRAP])
     out[LOAD_ANGLE], out[GEAR_ANGLE] = y[LOAD_RATE], y[GEAR_RATE]
     out[LOAD_RATE] = load / drive.J_load
     out[GEAR_RATE] = 0.0
-    if slip != 0:
-        friction = sliding_friction(drive, t, y[GEAR_RATE], slip, y[GEAR_ANGLE], shaft)
-        torque = _gear_torque(y, shaft, drive) - friction
+    if rigid:
+        out[GEAR_RATE] = out[LOAD_RATE] if slip != 0 else 0.0
+        out[LOAD_RATE] = out[GEAR_RATE]
+    elif slip != 0:
+        torque = _gear_torque(y, shaft, drive) - _friction(t, y, slip, shaft, drive)
         out[GEAR_RATE] = torque / (drive.J_motor * drive.N**2)
+    u = _lags(y, u, drive, out)
     out[CURRENT], out[HEAT] = winding(drive, u, y[GEAR_RATE], y[CURRENT], y[HEAT])
     out[WRAP] = wrap_slope(drive, y[LOAD_RATE], y[WRAP])
 
@@ -119,7 +179,7 @@ def _slope(
 def _step(
     t: float, y: Floats, drawn: Any, contact: int, slip: int, drive: Any, h: float
 ) -> tuple[Floats, float]:
-    """State [7] after one step of order 5, and the largest difference to order 4.
+    """State [10] after one step of order 5, and the largest difference to order 4.
 
     `drawn` = (voltage in V, push on the load in N m at time zero, its slope in N m/s).
     """
@@ -144,9 +204,12 @@ def _step(
 
 
 @numba.njit(cache=True)
-def _holds(t: float, y: Floats, contact: int, rest_since: float, drive: Any) -> int:
+def _holds(t: float, y: Floats, push: float, contact: int, rest_since: float, drive: Any) -> int:
     """Zero if dry friction holds the gear at rest, else the side to which it breaks away."""
-    shaft = _contact_torque(y, contact, drive)
+    if _bonded(contact, drive):
+        shaft = _joined_torque(t, y, push, 0, drive)
+    else:
+        shaft = _contact_torque(y, contact, drive)
     torque = _gear_torque(y, shaft, drive)
     side = 1 if torque > 0.0 else -1
     limit = breakaway(drive, t, side, t - rest_since, y[GEAR_ANGLE], shaft)
@@ -154,29 +217,100 @@ def _holds(t: float, y: Floats, contact: int, rest_since: float, drive: Any) -> 
 
 
 @numba.njit(cache=True)
-def _leaves_mode(
-    t: float, y: Floats, contact: int, slip: int, rest_since: float, drive: Any
-) -> bool:
-    """Whether flank or friction mode no longer fits the state."""
-    if _touching(y, drive) != contact:
-        return True
-    if slip != 0:
-        return slip * y[GEAR_RATE] < -DEAD_BAND
-    return _holds(t, y, contact, rest_since, drive) != 0
+def _face_met(y: Floats, drive: Any) -> int:
+    """Rigid face that gear and load run into: 1, -1, or 0."""
+    twist, rate = _twist(y, drive)
+    for side in (1, -1):
+        if side * twist - 0.5 * drive.gap > 0.0 and side * rate > 0.0:
+            return side
+    return 0
 
 
 @numba.njit(cache=True)
-def _choose_mode(t: float, y: Floats, mode: Any, memory: Floats, drive: Any) -> None:
+def _leaves_contact(t: float, y: Floats, push: float, contact: int, slip: int, drive: Any) -> bool:
+    """Whether the contact no longer fits the state."""
+    if drive.k_shaft != 0.0 or drive.gap == 0.0:
+        return _touching(y, drive) != contact
+    if contact == 0:
+        return _face_met(y, drive) != 0
+    return contact * _joined_torque(t, y, push, slip, drive) < 0.0
+
+
+@numba.njit(cache=True)
+def _leaves_mode(
+    t: float, y: Floats, drawn: Any, contact: int, slip: int, rest_since: float, drive: Any
+) -> bool:
+    """Whether flank or friction mode no longer fits the state."""
+    push = drawn[1] + drawn[2] * t
+    if _leaves_contact(t, y, push, contact, slip, drive):
+        return True
+    if drive.bristle_stiffness != 0.0:
+        return False
+    if slip != 0:
+        return slip * y[GEAR_RATE] < -DEAD_BAND
+    return _holds(t, y, push, contact, rest_since, drive) != 0
+
+
+@numba.njit(cache=True)
+def _impact(y: Floats, side: int, drive: Any) -> int:
+    """Rates after gear and load met at the face `side`; the face they stay at, or 0; in place.
+
+    Dry friction is finite and takes no part in an impact.
+    """
+    gear = drive.J_motor * drive.N**2
+    closing = side * (y[GEAR_RATE] - y[LOAD_RATE])
+    stays = drive.restitution * closing < SLOWEST_REBOUND
+    rebound = 0.0 if stays else drive.restitution
+    impulse = side * (1.0 + rebound) * closing * gear * drive.J_load / (gear + drive.J_load)
+    y[LOAD_RATE] += impulse / drive.J_load
+    y[GEAR_RATE] -= impulse / gear
+    if not stays:
+        return 0
+    y[LOAD_RATE] = y[GEAR_RATE]
+    y[LOAD_ANGLE] = y[GEAR_ANGLE] - side * 0.5 * drive.gap
+    return side
+
+
+@numba.njit(cache=True)
+def _choose_face(t: float, y: Floats, push: float, mode: Any, memory: Floats, drive: Any) -> None:
+    """New (contact, slip) in `mode` [2] between rigid faces; the slip of a moving gear is set."""
+    if mode[0] != 0:
+        if y[GEAR_RATE] == 0.0:
+            mode[1] = _holds(t, y, push, mode[0], memory[0], drive)
+        if mode[0] * _joined_torque(t, y, push, mode[1], drive) < 0.0:
+            mode[0] = 0
+        return
+    side = _face_met(y, drive)
+    if side == 0:
+        return
+    mode[0] = _impact(y, side, drive)
+    if y[GEAR_RATE] != 0.0:
+        mode[1] = 1 if y[GEAR_RATE] > 0.0 else -1
+    elif mode[1] != 0:
+        mode[1] = 0
+        memory[0] = t
+
+
+@numba.njit(cache=True)
+def _choose_mode(t: float, y: Floats, drawn: Any, mode: Any, memory: Floats, drive: Any) -> None:
     """New (contact, slip) in `mode` [2]; first the rate is stopped, then the flank, then friction.
 
     memory [2] = (time since when the gear is at rest in s, last step size in s).
     """
-    if mode[1] * y[GEAR_RATE] < 0.0:
+    push = drawn[1] + drawn[2] * t
+    if drive.bristle_stiffness == 0.0 and mode[1] * y[GEAR_RATE] < 0.0:
         y[GEAR_RATE] = 0.0
         memory[0] = t
-    mode[0] = _touching(y, drive)
-    if y[GEAR_RATE] == 0.0:
-        mode[1] = _holds(t, y, mode[0], memory[0], drive)
+        if _bonded(mode[0], drive):
+            y[LOAD_RATE] = 0.0
+    if drive.k_shaft == 0.0 and drive.gap != 0.0:
+        _choose_face(t, y, push, mode, memory, drive)
+    else:
+        mode[0] = _touching(y, drive)
+    if drive.bristle_stiffness != 0.0:
+        mode[1] = 1
+    elif y[GEAR_RATE] == 0.0:
+        mode[1] = _holds(t, y, push, mode[0], memory[0], drive)
 
 
 @numba.njit(cache=True)
@@ -188,7 +322,7 @@ def _land(
     while h - low > EVENT_TOLERANCE:
         middle = 0.5 * (low + h)
         after, _ = _step(t, y, drawn, mode[0], mode[1], drive, middle)
-        if _leaves_mode(t + middle, after, mode[0], mode[1], memory[0], drive):
+        if _leaves_mode(t + middle, after, drawn, mode[0], mode[1], memory[0], drive):
             h = middle
         else:
             low = middle
@@ -206,7 +340,7 @@ def _advance(
     drive: Any,
     tol: float,
 ) -> int:
-    """Move the state [7] from `t` to `end` under held voltage, in place; the number of events."""
+    """Move the state [10] from `t` to `end` under held voltage, in place; the number of events."""
     events = 0
     while end - t > EVENT_TOLERANCE:
         h = min(memory[1], end - t)
@@ -217,10 +351,10 @@ def _advance(
             continue
         if h == memory[1] or growth < 1.0:
             memory[1] = min(LONGEST_STEP, h * growth)
-        if _leaves_mode(t + h, after, mode[0], mode[1], memory[0], drive):
+        if _leaves_mode(t + h, after, drawn, mode[0], mode[1], memory[0], drive):
             h = _land(t, y, drawn, mode, memory, drive, h)
             after, _ = _step(t, y, drawn, mode[0], mode[1], drive, h)
-            _choose_mode(t + h, after, mode, memory, drive)
+            _choose_mode(t + h, after, drawn, mode, memory, drive)
             events += 1
             if events > 10_000:
                 raise RuntimeError("mode changes pile up")
@@ -239,7 +373,9 @@ def _run(
     mode = np.zeros(2, dtype=np.int64)
     memory = np.array([0.0, 1e-5])
     mode[1] = int(np.sign(y[GEAR_RATE]))
-    _choose_mode(0.0, y, mode, memory, drive)
+    y[DRIVEN], y[LAGGED] = voltage[0], y[LOAD_ANGLE]
+    rise = (push[1] - push[0]) / period
+    _choose_mode(0.0, y, (voltage[0], push[0], rise), mode, memory, drive)
     events = 0
     late = int(drive.delay / period)
     fraction = drive.delay - late * period
@@ -262,10 +398,11 @@ def simulate(
     tolerance: float = 1e-12,
     push: Floats | None = None,
 ) -> tuple[Floats, int]:
-    """States [n, 7] at the sample times under voltage [n] in V, and the number of events.
+    """States [n, 10] at the sample times under voltage [n] in V, and the number of events.
 
     Columns: load angle and rate, gear angle and rate (rad, rad/s), current in A, relative heating,
-    relative pull of a hysteretic cable; `start` may leave out the last. `voltage[k]` is held from
+    relative pull of a hysteretic cable, voltage and reading that lag, bend of bristles in rad;
+    `start` may leave out what follows the heating. `voltage[k]` is held from
     sample k to sample k + 1, the first also before it; `push` [n + 1] in N m turns the load and is
     linear from sample to sample; `tolerance` is the local error of a step.
     """
@@ -278,8 +415,12 @@ def simulate(
 
 @numba.njit(cache=True)
 def shaft_torques(drive: Any, states: Floats) -> Floats:
-    """Torque [n] in N m from the shaft on the load along states [n, 7] of a drive's record."""
+    """Torque [n] in N m from the shaft on the load along states [n, 10] of a drive's record; of a
+    rigid one the motor's.
+    """
     torques = np.empty(states.shape[0])
+    if drive.k_shaft == 0.0:
+        return drive.N * drive.K_t * states[:, CURRENT]
     for k in range(states.shape[0]):
         torques[k] = _contact_torque(states[k], _touching(states[k], drive), drive)
     return torques

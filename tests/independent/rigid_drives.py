@@ -3,7 +3,9 @@
 Each joint sticks, slides forward or slides backward. Between mode changes the motion is smooth and
 classical Runge-Kutta takes steps of 0.25 ms; a mode change is located by bisection. A stuck joint
 stands exactly still: its friction is whatever balances it, up to the breakaway torque. A joint is
-driven by a torque or by a voltage through a motor that is rigidly geared to it.
+driven by a torque or by a voltage through a motor that is rigidly geared to it, or by a flexible
+shaft with or without a gap: then the motor at its gear output is a body of its own without dry
+friction, and contacts are modes that are located as well.
 """
 
 import math
@@ -25,14 +27,20 @@ from tests.independent.drive_laws import (
     breakaway,
     cogging_torque,
     joint_torque,
+    loss_slope,
+    loss_torque,
+    shaft_contact,
+    shaft_torque,
     sliding_friction,
     winding,
     wrap_slope,
 )
 
-ANGLE, RATE, CURRENT, HEAT, WRAP, REST, SLIP = range(7)
-STATES = 7  # per joint; REST is the time in s since when it rests, SLIP its mode: 0, 1 or -1
-SMOOTH = 5  # the first states, which have a slope
+ANGLE, RATE, CURRENT, HEAT, WRAP = range(5)
+GEAR, GEAR_RATE, DRIVEN, LAGGED, WOUND = range(5, 10)  # motor, lagged input and reading, loss
+SMOOTH = 10  # the first states, which have a slope
+REST, SLIP = SMOOTH, SMOOTH + 1
+STATES = 12  # per joint; REST is the time in s since when it rests, SLIP its mode: 0, 1 or -1
 STEP = 0.25e-3  # s
 DEAD_BAND = 1e-13  # rad/s; rounding right after breakaway must not count as a reversal
 EVENT_TOLERANCE = 1e-12  # s
@@ -64,6 +72,8 @@ FRAME = np.dtype(
         ("present", np.int64, 2),
         ("dry", np.int64, 2),
         ("voltage_driven", np.int64),
+        ("flexible", np.int64, 2),
+        ("contact", np.int64, 2),
         # What acts from outside within a sample: inputs, torques at time zero and their slopes.
         ("input", float, 2),
         ("push", float, 2),
@@ -80,9 +90,15 @@ FRAME = np.dtype(
 
 
 def joints(
-    bodies: Bodies, pan: Drive | None, tilt: Drive | None, voltage_driven: bool = False
+    bodies: Bodies,
+    pan: Drive | None,
+    tilt: Drive | None,
+    voltage_driven: bool = False,
+    flexible: tuple[bool, bool] = (False, False),
 ) -> Joints:
-    """The machine with the drives of its joints; None locks a joint."""
+    """The machine with the drives of its joints; None locks a joint, `flexible` ones have the shaft
+    of their drive between motor and joint.
+    """
     both = (pan, tilt)
     frame = np.zeros(1, FRAME)
     for name, value in bodies._asdict().items():
@@ -91,15 +107,26 @@ def joints(
     frame[0]["present"] = [one is not None for one in both]
     frame[0]["dry"] = [one is not None and one.F_c_forward + one.F_s_forward > 0.0 for one in both]
     frame[0]["voltage_driven"] = voltage_driven
+    frame[0]["flexible"] = flexible
     return Joints(as_records(*(one or Drive() for one in both)), frame)
 
 
 @numba.njit(cache=True)
 def motor_torque(k: int, y: Floats, drives: Any, frame: Any) -> float:
     """Torque in N m of the drive on joint `k`."""
+    if frame.flexible[k] == 1:
+        twist, rate = y[k, GEAR] - y[k, ANGLE], y[k, GEAR_RATE] - y[k, RATE]
+        return shaft_torque(drives[k], twist, rate, frame.contact[k])
     if frame.voltage_driven == 1:
         return drives[k].N * drives[k].K_t * y[k, CURRENT]
-    return frame.input[k]
+    limit = drives[k].torque_limit
+    return min(limit, max(-limit, arrived(k, y, drives, frame)))
+
+
+@numba.njit(cache=True)
+def arrived(k: int, y: Floats, drives: Any, frame: Any) -> float:
+    """Voltage or torque at joint `k`, which may lag behind the input."""
+    return frame.input[k] if drives[k].actuator_lag == 0.0 else y[k, DRIVEN]
 
 
 @numba.njit(cache=True)
@@ -129,13 +156,17 @@ def _motion(t: float, y: Floats, slip: Any, drives: Any, frame: Any) -> None:
         if frame.present[k] == 1:
             driving = motor_torque(k, y, drives, frame)
             torque[k] = driving + _torque_but_friction(t, y, k, drives, frame) - bias[k]
+            if drives[k].loss_mean != 0.0:
+                torque[k] -= loss_torque(drives[k], driving, y[k, WOUND])
             if slip[k] != 0:
                 torque[k] -= sliding_friction(
                     drives[k], t, y[k, RATE], slip[k], y[k, ANGLE], driving
                 )
     if frame.voltage_driven == 1:
-        pan += drives[0].J_motor * drives[0].N ** 2
-        tilt += drives[1].J_motor * drives[1].N ** 2
+        if frame.flexible[0] == 0:
+            pan += drives[0].J_motor * drives[0].N ** 2
+        if frame.flexible[1] == 0:
+            tilt += drives[1].J_motor * drives[1].N ** 2
     if slip[0] != 0 and slip[1] != 0:
         determinant = pan * tilt - coupling * coupling
         alpha[0] = (tilt * torque[0] - coupling * torque[1]) / determinant
@@ -150,7 +181,7 @@ def _motion(t: float, y: Floats, slip: Any, drives: Any, frame: Any) -> None:
 
 @numba.njit(cache=True)
 def _slope(t: float, y: Floats, slip: Any, drives: Any, frame: Any, number: int) -> None:
-    """Time derivative of the smooth states [2, 5] in a fixed mode, into slopes[number]."""
+    """Time derivative of the smooth states [2, 10] in a fixed mode, into slopes[number]."""
     out = frame.slopes
     _motion(t, y, slip, drives, frame)
     for k in range(2):
@@ -158,14 +189,35 @@ def _slope(t: float, y: Floats, slip: Any, drives: Any, frame: Any, number: int)
         out[number, k, ANGLE], out[number, k, RATE] = rate, frame.alpha[k]
         out[number, k, CURRENT], out[number, k, HEAT] = 0.0, 0.0
         if frame.voltage_driven == 1 and frame.present[k] == 1:
-            slopes = winding(drive, frame.input[k], rate, y[k, CURRENT], y[k, HEAT])
+            turning = y[k, GEAR_RATE] if frame.flexible[k] == 1 else rate
+            volts = arrived(k, y, drives, frame)
+            slopes = winding(drive, volts, turning, y[k, CURRENT], y[k, HEAT])
             out[number, k, CURRENT], out[number, k, HEAT] = slopes
         out[number, k, WRAP] = wrap_slope(drive, rate, y[k, WRAP])
+        _beside(y, k, drive, frame, out[number, k])
+
+
+@numba.njit(cache=True)
+def _beside(y: Floats, k: int, drive: Any, frame: Any, out: Floats) -> None:
+    """Slopes of the states that only some drives have, into `out` [10]."""
+    for place in (GEAR, GEAR_RATE, DRIVEN, LAGGED, WOUND):
+        out[place] = 0.0
+    if frame.flexible[k] == 1:
+        twist, rate = y[k, GEAR] - y[k, ANGLE], y[k, GEAR_RATE] - y[k, RATE]
+        shaft = shaft_torque(drive, twist, rate, frame.contact[k])
+        torque = drive.N * drive.K_t * y[k, CURRENT] - shaft
+        out[GEAR], out[GEAR_RATE] = y[k, GEAR_RATE], torque / (drive.J_motor * drive.N**2)
+    if drive.actuator_lag != 0.0:
+        out[DRIVEN] = (frame.input[k] - y[k, DRIVEN]) / drive.actuator_lag
+    if drive.measurement_lag != 0.0:
+        out[LAGGED] = (y[k, ANGLE] - y[k, LAGGED]) / drive.measurement_lag
+    if drive.loss_mean != 0.0:
+        out[WOUND] = loss_slope(drive, y[k, RATE], y[k, WOUND])
 
 
 @numba.njit(cache=True)
 def _step(t: float, y: Floats, slip: Any, drives: Any, frame: Any, h: float) -> Floats:
-    """Smooth states [2, 5] after one classical Runge-Kutta step of `h` seconds in a fixed mode."""
+    """Smooth states [2, 10] after one classical Runge-Kutta step of `h` seconds in a fixed mode."""
     slopes, stage = frame.slopes, frame.stage
     _slope(t, y, slip, drives, frame, 0)
     for number in range(1, 4):
@@ -193,10 +245,19 @@ def _breaks_away(t: float, y: Floats, k: int, rest: Floats, drives: Any, frame: 
 
 
 @numba.njit(cache=True)
+def _contact(k: int, y: Floats, drives: Any) -> int:
+    """Contact of the shaft of joint `k`."""
+    twist, rate = y[k, GEAR] - y[k, ANGLE], y[k, GEAR_RATE] - y[k, RATE]
+    return shaft_contact(drives[k], twist, rate)
+
+
+@numba.njit(cache=True)
 def _leaves_mode(t: float, y: Floats, slip: Any, rest: Floats, drives: Any, frame: Any) -> bool:
     """Whether a sliding joint has reversed or a stuck joint carries more than it can."""
     stuck = False
     for k in range(2):
+        if frame.flexible[k] == 1 and _contact(k, y, drives) != frame.contact[k]:
+            return True
         if frame.dry[k] == 1 and slip[k] == 0:
             stuck = True
         elif frame.dry[k] == 1 and slip[k] * y[k, RATE] < -DEAD_BAND:
@@ -242,6 +303,8 @@ def _choose_mode(t: float, y: Floats, slip: Any, rest: Floats, drives: Any, fram
         if frame.dry[k] == 1 and slip[k] * y[k, RATE] < 0.0:
             y[k, RATE] = 0.0
             rest[k] = t
+        if frame.flexible[k] == 1:
+            frame.contact[k] = _contact(k, y, drives)
     for mode in MODES:
         if _fits(t, y, mode, rest, drives, frame):
             slip[:] = mode
@@ -279,6 +342,9 @@ def advance(
     """
     t, end = span
     events = 0
+    for k in range(2):
+        if frame.flexible[k] == 1:
+            frame.contact[k] = _contact(k, y, drives)
     if _leaves_mode(t, y, slip, rest, drives, frame):
         _choose_mode(t, y, slip, rest, drives, frame)
     while end - t > EVENT_TOLERANCE:

@@ -10,6 +10,10 @@ from tests.independent.drive import Floats
 from tests.independent.drive_laws import harmonics
 from tests.independent.rigid_drives import (
     ANGLE,
+    DRIVEN,
+    GEAR,
+    GEAR_RATE,
+    LAGGED,
     RATE,
     REST,
     SLIP,
@@ -46,7 +50,7 @@ def _sample(
     period: float,
     step: float,
 ) -> None:
-    """Move the state [2, 7] over sample `k`, each input late by its drive's delay; in place."""
+    """Move the state [2, 12] over sample `k`, each input late by its drive's delay; in place."""
     y, rest = state[:, :SMOOTH].copy(), state[:, REST].copy()
     slip, late, change = np.empty(2, np.int64), np.empty(2, np.int64), np.empty(2)
     t, end = k * period, (k + 1) * period
@@ -89,7 +93,7 @@ def _command(servo: Servo, drives: Any, state: Floats, target: Floats, out: Floa
 
 @numba.njit(cache=True)
 def _settle(frame: Any, state: Floats) -> None:
-    """Set the modes of `state` [2, 7] to what its rates and the kinds of its joints say; in place.
+    """Set the modes of `state` [2, 12] to what its rates and the kinds of its joints say; in place.
 
     A joint at rest with dry friction keeps its mode.
     """
@@ -117,11 +121,13 @@ def _track(
     inputs, states = np.zeros((samples, 2)), np.empty((samples, 2, STATES))
     _settle(frame, state)
     for k in range(samples):
-        states[k] = state
         if kept[k] or k == 0:
             _command(servo, drives, state, targets[k], inputs[k])
         else:
             inputs[k] = inputs[k - 1]
+        if k == 0:
+            state[:, DRIVEN] = inputs[0]  # what lags behind has settled
+        states[k] = state
         _sample(drives, frame, state, inputs, pushes, k, clock[0], clock[1])
     return inputs, states
 
@@ -136,7 +142,7 @@ def track(
     period: float,
     step: float = STEP,
 ) -> tuple[Floats, Floats]:
-    """Inputs [n, 2] and states [n, 2, 7] of a run under the servo, from the state `start` [2, 7].
+    """Inputs [n, 2] and states [n, 2, 12] of a run under the servo, from `start` [2, 12].
 
     targets [n, 2, 3]: feedforward, angle and rate wanted; where `kept` [n] is False the computer
     stalls and the input stays; pushes [n + 1, 2] in N m are linear between samples.
@@ -175,7 +181,7 @@ def replay(
     period: float,
     step: float = STEP,
 ) -> Floats:
-    """States [n, 2, 7] under given inputs [n, 2], anew from starts [windows, 2, 7] every `window`.
+    """States [n, 2, 12] under inputs [n, 2], anew from starts [windows, 2, 12] every `window`.
 
     An input is held from its sample to the next; before the first it is the first.
     """
@@ -184,8 +190,11 @@ def replay(
 
 
 def at_rest(angles: Floats, rates: Floats | None = None) -> Floats:
-    """State [2, 7] at given angles [2] and rates [2]; a joint at rest starts stuck."""
+    """State [2, 12] at given angles [2] and rates [2]; a joint at rest starts stuck.
+
+    Shafts are relaxed and readings have settled.
+    """
     state = np.zeros((2, STATES))
-    state[:, ANGLE] = angles
-    state[:, RATE] = 0.0 if rates is None else rates
+    state[:, ANGLE] = state[:, GEAR] = state[:, LAGGED] = angles
+    state[:, RATE] = state[:, GEAR_RATE] = 0.0 if rates is None else rates
     return state

@@ -113,7 +113,7 @@ def test_all_smooth_laws_at_once_agree_with_scipy(figure) -> None:
     solution = solve_ivp(
         forward_slope,
         (0.0, 1.0),
-        moving,
+        moving[: WRAP + 1],
         "LSODA",
         t_eval=np.arange(200) * PERIOD,
         args=(14.0, EVERYTHING),
