@@ -125,11 +125,11 @@ def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choic
     end = time.monotonic() + time_limit
     every, untried = structures(platform)
     logs.progress("fitting the declared structure")
-    declared = _begun(platform, None, logs).led_on().fitted
+    declared = _begun(platform, None, logs, {}).led_on().fitted
     found: list[tuple[Rebuilt, FittedStructure]] = []
     if not declared.is_quiet:
         logs.progress(f"fitting {len(every)} structures one step away")
-        found, failed = _all_fitted(every, logs)
+        found, failed = _all_fitted(every, logs, declared.trial.values)
         untried = {**untried, **failed}
     others = [s for _, s in found]
     order = by_fit(declared, others)
@@ -180,22 +180,26 @@ def _rest(
     return [s for s in others if s not in order]
 
 
-def _begun(platform: Platform, rebuilt: Rebuilt | None, logs: Logs) -> Begun:
+def _begun(
+    platform: Platform, rebuilt: Rebuilt | None, logs: Logs, known: Mapping[str, float]
+) -> Begun:
     model = model_of(platform)
     task = task_for(platform, model, logs.train, logs.validate, (), logs.executor, logs.progress)
     if rebuilt is None:
-        return begin_structure("as declared", (), frozenset(), task, ())
-    return begin_structure(rebuilt.title, rebuilt.keys, rebuilt.provides, task, rebuilt.starts)
+        return begin_structure("as declared", (), frozenset(), task, (), known)
+    return begin_structure(
+        rebuilt.title, rebuilt.keys, rebuilt.provides, task, rebuilt.starts, known
+    )
 
 
 def _all_fitted(
-    every: Sequence[Rebuilt], logs: Logs
+    every: Sequence[Rebuilt], logs: Logs, known: Mapping[str, float]
 ) -> tuple[list[tuple[Rebuilt, FittedStructure]], dict[str, str]]:
     """Structures that can be emitted and fitted, and by key why others cannot."""
 
     def one(rebuilt: Rebuilt) -> Begun | str:
         try:
-            return _begun(rebuilt.platform, rebuilt, logs)
+            return _begun(rebuilt.platform, rebuilt, logs, known)
         except InputError as error:
             return f"the platform with it cannot be fitted: {error}"
 

@@ -75,7 +75,12 @@ class Gain:
 
 
 def gain(larger: Trial, smaller: Trial) -> Gain:
-    """The predictive gain of `larger` over `smaller`, both fitted to the same runs."""
+    """The predictive gain of `larger` over `smaller`, both fitted to the same runs; none where a
+    derivative of either is no number, for its motion multiplies any error without bounds.
+    """
+    evaluations = (*larger.fit.evaluations, *smaller.fit.evaluations)
+    if not all(np.all(np.isfinite(e.by_parameter)) for e in evaluations):
+        return Gain(0.0, -np.inf, np.inf, 0.0, 0)
     return _gain(larger.fit.runs, [_projected(t.fit) for t in (larger, smaller)])
 
 

@@ -17,7 +17,7 @@ from ptp_symbolic.numeric.diagnose.floor import floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose
-from ptp_symbolic.numeric.diagnose.refits import refitted_in
+from ptp_symbolic.numeric.diagnose.refits import inside, refitted_in
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, misfits, ranked
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.run import Run
@@ -77,13 +77,20 @@ def begin_structure(
     provides: frozenset[str],
     task: Task,
     starts: Sequence[Mapping[str, float]],
+    known: Mapping[str, float],
 ) -> Begun:
     """The structure of `task`, fitted from the best of `starts` (of the parameters that the effects
-    named in `keys` bring) and from the declared start: to whole runs, or a few iterations where
-    these are windows.
+    named in `keys` bring), each beside the declared start and beside `known` values of a fit of the
+    declared structure: to whole runs, or a few iterations where these are windows.
     """
     proposals = propose(task)
-    values = [proposals.start, *({**proposals.start, **start} for start in starts)]
+    own = {f.name: f for f in task.free}
+    fitted_before = {n: inside(own[n], value) for n, value in known.items() if n in own}
+    values = [
+        {**proposals.start, **beside, **start}
+        for beside in ({}, fitted_before)
+        for start in ({}, *starts)
+    ]
     begun = [fitted(task, (), v, None, executor=task.executor) for v in values]
     rough = halving(task, begun, 1) or begun[:1]
     proposals = replace(proposals, start=rough[0].values)
