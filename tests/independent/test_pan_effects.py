@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 from tests.independent.drive import as_records, rows
 from tests.independent.pan_drive import (
     CURRENT,
+    DRIVEN,
     GEAR_ANGLE,
     GEAR_RATE,
     LOAD_ANGLE,
@@ -210,7 +211,7 @@ def test_dead_band_and_rails_act_as_a_changed_voltage() -> None:
     ):
         changed, _ = simulate(drive, voltage, TOUCHING)
         plain, _ = simulate(PLAIN, same, TOUCHING)
-        assert np.max(np.abs(changed - plain)) < 1e-10
+        assert np.max(np.abs(changed - plain)[:, :DRIVEN]) < 1e-10
 
 
 @pytest.mark.parametrize("delay", [0.0023, 0.0117])

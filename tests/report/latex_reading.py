@@ -4,14 +4,16 @@ Nothing of the program is used: a wrong printer is not to be read by its own cod
 """
 
 import math
+import operator
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 TOKEN = re.compile(
     r"\\(?:left|right)\s*\\?[()\[\]|{}.]|\\(?:left|right)\\[lr]floor|\\begin\{\w+\*?\}|\\end\{\w+\*?\}"
-    r"|\\operatorname\{\w+\}|\\mathrm\{[^{}]*\}|\\[A-Za-z]+|\\\\|\\.|[A-Za-z]|\d+(?:\.\d+)?(?:e-?\d+)?"
+    r"|\\operatorname\{\w+\}|\\text\{[^{}]*\}|\\mathrm\{[^{}]*\}|\\[A-Za-z]+|\\\\|\\.|[A-Za-z]|\d+(?:\.\d+)?(?:e-?\d+)?"
     r"|[-+^_{}&=(),|<>/*']"
 )
+RELATIONS = {">": operator.gt, "<": operator.lt, r"\geq": operator.ge, r"\leq": operator.le}
 FUNCTIONS = {
     r"\sin": math.sin,
     r"\cos": math.cos,
@@ -20,7 +22,9 @@ FUNCTIONS = {
     r"\operatorname{acos}": math.acos,
     r"\operatorname{sign}": lambda x: math.copysign(1.0, x) if x else 0.0,
 }
-SKIPPED = {r"\,", r"\quad", r"\;", r"\ ", r"\!", "&", r"\\", r"\begin{aligned}", r"\end{aligned}"}
+SPACES = {r"\,", r"\quad", r"\;", r"\ ", r"\:", r"\!"}
+SKIPPED = {*SPACES, "&", r"\\", r"\begin{aligned}", r"\end{aligned}"}
+OF_CASES = (r"\\", r"\text{for}", r"\text{otherwise}", r"\end{cases}", *RELATIONS)
 
 
 def equations_in(text: str) -> dict[str, str]:
@@ -64,11 +68,20 @@ class Reader:
         left = TOKEN.sub("", text).strip()
         if left:
             raise ValueError(f"not read: {left[:40]!r}")
-        inner = _Expression(self, [t for t in tokens if t not in SKIPPED])
+        inner = _Expression(self, list(_told(tokens)))
         result = inner.sum()
         if inner.at != len(inner.tokens):
             raise ValueError(f"left over: {inner.tokens[inner.at :][:8]}")
         return result
+
+
+def _told(tokens: list[str]) -> Iterator[str]:
+    """The tokens that say something: within cases a new line does."""
+    cases = 0
+    for token in tokens:
+        cases += (token == r"\begin{cases}") - (token == r"\end{cases}")
+        if token not in SKIPPED or (cases and token == r"\\"):
+            yield token
 
 
 class _Expression:
@@ -103,7 +116,7 @@ class _Expression:
         result = self.power()
         while (
             self.next
-            and self.next not in ("+", "-", "}", ")", ",", "|")
+            and self.next not in ("+", "-", "}", ")", ",", "|", *OF_CASES)
             and not re.match(r"\\right", self.next)
         ):
             if self.next in (r"\cdot", r"\times"):
@@ -162,6 +175,8 @@ class _Expression:
         if token == r"\sqrt":
             self.take()
             return math.sqrt(self.group())
+        if token == r"\begin{cases}":
+            return self.case()
         if token in (r"\max", r"\min"):
             self.take()
             return (max if token == r"\max" else min)(self.bracketed())
@@ -177,6 +192,18 @@ class _Expression:
             self.take()
             return math.exp(self.group())
         return self.reader.value(self.symbol())
+
+    def case(self) -> float:
+        """One value where a relation holds, and another one otherwise."""
+        self.take(r"\begin{cases}")
+        value = self.sum()
+        self.take(r"\text{for}")
+        left, relation, right = self.sum(), self.take(), self.sum()
+        self.take(r"\\")
+        other = self.sum()
+        self.take(r"\text{otherwise}")
+        self.take(r"\end{cases}")
+        return value if RELATIONS[relation](left, right) else other
 
     def symbol(self) -> str:
         """A letter with its index, or with a Delta in front."""
