@@ -2,7 +2,6 @@
 fitted, the best go on into the search for terms, and what each ends with is compared.
 """
 
-import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
@@ -115,39 +114,39 @@ class Choice:
 
 
 def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choice:
-    """Fit the declared platform, and where it leaves more than noise every structure one step away
-    from it; search for terms in it and in the best of them, and choose. The search ends after
-    `time_limit` in s.
+    """Search for terms of the declared platform, and where more than noise is left fit every
+    structure one step away from it; search for terms in the best of them too, and choose. Every
+    search ends after `time_limit` in s.
 
-    Every search is brief at first. The whole one follows where no answer is found soon: of the
-    structure that fits best, and of the declared one where that is beaten by little.
+    All are brief at first. The whole one follows where no answer is found soon: of the structure
+    that fits best, and of the declared one where that is beaten by little.
     """
-    end = time.monotonic() + time_limit
     every, untried = structures(platform)
-    logs.progress("fitting the declared structure")
-    declared = _begun(platform, None, logs, {}).led_on().fitted
     found: list[tuple[Rebuilt, FittedStructure]] = []
-    if not declared.is_quiet:
-        logs.progress(f"fitting {len(every)} structures one step away")
-        found, failed = _all_fitted(every, logs, declared.trial.values)
-        untried = {**untried, **failed}
-    others = [s for _, s in found]
-    order = by_fit(declared, others)
-    platforms = {id(s): rebuilt.platform for rebuilt, s in found}
 
     def searched(structure: FittedStructure | None, brief: bool) -> Searched:
         name = " + ".join(structure.keys) if structure else ""
         logs.progress(f"searching for terms beside {name or 'what is declared'}")
+        platforms = {id(s): rebuilt.platform for rebuilt, s in found}
         there = platforms[id(structure)] if structure else platform
-        limit = max(end - time.monotonic(), 1.0)
-        return _searched(there, structure, logs, limit, brief=brief)
+        return _searched(there, structure, logs, time_limit, brief=brief)
 
-    terms = searched(None, brief=bool(order))
+    terms = searched(None, brief=bool(every))
+    if terms.is_quiet or not every:
+        why = "not tried: the declared structure leaves noise alone, with its terms"
+        untried = {**untried, **{key: why for each in every for key in each.keys}}
+        return Choice(terms.outcome, terms.outcome, (), untried)
+    logs.progress(f"fitting {len(every)} structures one step away")
+    declared = _begun(platform, None, logs, {}).led_on().fitted
+    found, failed = _all_fitted(every, logs, declared.trial.values)
+    untried = {**untried, **failed}
+    others = [s for _, s in found]
+    order = by_fit(declared, others)
     quiet = [s for s in order if s.is_quiet][:1]
-    followed = [
-        searched(s, brief=True) for s in quiet or ([] if terms.is_quiet else order[:FOLLOWED])
-    ]
-    if order and not terms.is_quiet:
+    followed = [searched(s, brief=True) for s in quiet or order[:FOLLOWED]]
+    if not order:
+        terms = searched(None, brief=False)
+    else:
         best = _best_fit([terms, *followed])
         if best is not terms and not best.is_quiet:
             whole = searched(best.structure, brief=False)
@@ -227,7 +226,11 @@ def _searched(
     begun = platform
     if structure is not None:
         begun = variants.extended(platform, (), structure.trial.values, ())
-    model = model_of(variants.with_candidates(begun))
+    try:
+        model = model_of(variants.with_candidates(begun))
+    except InputError as error:  # a candidate that cannot be beside the structure
+        logs.progress(f"no terms are searched for: {error}")
+        model = model_of(begun)
     task = task_for(
         begun, model, logs.train, logs.validate, effect_keys(begun), logs.executor, logs.progress
     )
