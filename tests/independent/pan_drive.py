@@ -373,7 +373,10 @@ def _run(
     mode = np.zeros(2, dtype=np.int64)
     memory = np.array([0.0, 1e-5])
     mode[1] = int(np.sign(y[GEAR_RATE]))
-    y[DRIVEN], y[LAGGED] = voltage[0], y[LOAD_ANGLE]
+    if drive.actuator_lag != 0.0:
+        y[DRIVEN] = voltage[0]  # what lags behind has settled
+    if drive.measurement_lag != 0.0:
+        y[LAGGED] = y[LOAD_ANGLE]
     rise = (push[1] - push[0]) / period
     _choose_mode(0.0, y, (voltage[0], push[0], rise), mode, memory, drive)
     events = 0
