@@ -14,24 +14,14 @@ from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.symbols import ZERO
 
-GAP = Parameter(
-    "gap_{axis}",
-    "rad",
-    0.026005,
-    0.0,
-    1.0,
-    "whole gap between the two faces",
-    vanishes=0.0,
-    starts=(0.005, 0.02),
-    linear={"default": 1e-4, "starts": (2e-5, 1e-4)},
-)
-OPEN_LINEAR = {**GAP.linear, "lower": 1e-7}  # type: ignore[dict-item]
+LINEAR = {"default": 1e-4, "starts": (2e-5, 1e-4)}
+FACES = "whole gap between the two faces"
+GAP = Parameter("gap_{axis}", "rad", 0.026005, 0.0, 1.0, FACES, 0.0, (0.005, 0.02), linear=LINEAR)
+OPEN_LINEAR = {**LINEAR, "lower": 1e-7}
 OPEN_GAP = replace(GAP, lower=1e-6, vanishes=None, linear=OPEN_LINEAR)
 RESTITUTION = Parameter(
     "e_gap_{axis}", "1", 0.5, 0.0, 1.0, "restitution: speed apart after a strike, per speed before"
 )
-
-
 DRIVE = ("winding_resistance_{axis}",)
 EXPERIMENT = (
     "Reverse slowly with and without a known preload torque on the joint: backlash disappears under"

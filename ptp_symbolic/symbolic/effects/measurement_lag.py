@@ -12,16 +12,13 @@ from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.symbols import real
 
-PARAMETERS = (
-    Parameter(
-        "t_lag_{axis}",
-        "s",
-        1e-3,
-        1e-6,
-        10.0,
-        "time constant of the filter of the {axis}",
-        starts=(3e-3, 3e-2),
-    ),
+FILTER = "time constant of the filter of the {axis}"
+PARAMETERS = (Parameter("t_lag_{axis}", "s", 1e-3, 1e-6, 10.0, FILTER, starts=(3e-3, 3e-2)),)
+KINDS = (
+    ("rate", "omega", "rad/s"),
+    ("motor_rate", "omega_motor", "rad/s"),
+    ("current", "i", "A"),
+    ("torque", "tau_shaft", "N m"),
 )
 
 
@@ -38,9 +35,8 @@ def _contribute(place: Place) -> Contribution:
 
 def _kind(kind: str, signal: str, unit: str) -> Effect:
     """The filter of a `signal` that begins each run at what it shows; its state is the reading."""
-    given = replace(PARAMETERS[0], name=f"t_lag_{signal}_{{axis}}")
     word = kind.replace("_", " ")
-    given = replace(given, meaning=f"time constant of the filter of the {{axis}} {word}")
+    given = replace(PARAMETERS[0], name=f"t_lag_{signal}_{{axis}}", meaning=f"{FILTER} {word}")
 
     def contribute(place: Place) -> Contribution:
         (time,) = place.symbols((given,))
@@ -79,12 +75,4 @@ MEASUREMENT_LAG = Effect(
     separating_experiment="Turn steadily at several rates past an index mark: the reading is behind"
     " in proportion to the rate.",
 )
-MEASUREMENT_LAG = replace(
-    MEASUREMENT_LAG,
-    kinds=(
-        _kind("rate", "omega", "rad/s"),
-        _kind("motor_rate", "omega_motor", "rad/s"),
-        _kind("current", "i", "A"),
-        _kind("torque", "tau_shaft", "N m"),
-    ),
-)
+MEASUREMENT_LAG = replace(MEASUREMENT_LAG, kinds=tuple(_kind(*each) for each in KINDS))
