@@ -168,7 +168,7 @@ def _best_fit(searches: Sequence[Searched]) -> Searched:
 
 
 def _is_far_ahead(one: Searched, other: Searched) -> bool:
-    """Whether the first surely takes away most of what the second leaves."""
+    """Whether the first surely halves the squared error of the second."""
     trial = one.found.chosen
     return gain(trial, on_runs_of(other.found.task, other.found.chosen, trial.fit.runs)).is_most
 
@@ -265,7 +265,7 @@ def _chosen(
             if _is_borne_out(named, terms, quiet):
                 accepted.append(named)
                 continue
-            why = "takes away too little of the error of the validation runs, or not clearly"
+            why = "reduces the error of the validation runs too little, or not significantly"
         elif quiet and terms.verdict.final.candidates:
             against = gain(without, final)
             if not is_clearly_more(against, 1, structure.task.material):

@@ -214,9 +214,12 @@ def why_rejected(
     earned = gain(trial, without)
     share, least = (100.0 * max(x, 0.0) for x in (earned.share, earned.lower))
     if not is_earned(earned, 1.0, tests, task.material):
-        return earned, f"takes away {share:.0f} % of the error, surely {least:.0f} %: may be chance"
+        return (
+            earned,
+            f"reduces the squared error by {share:.0f} %, surely by {least:.0f} %: may be chance",
+        )
     if not quiet and not earned.is_most:
-        why = f"takes away {share:.0f} % of the error, surely {least:.0f} %"
+        why = f"reduces the squared error by {share:.0f} %, surely by {least:.0f} %"
         return earned, f"{why}, too little where more than noise is left"
     first = structure.added[0]
     if not is_told(first, trial):
