@@ -107,7 +107,7 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
   i_pan' = (-K_t_pan*N_pan*omega_gear_pan - R_pan*i_pan + u_pan)/L_pan
   i_tilt' = (-K_t_tilt*omega_tilt*ratio_tilt - R_tilt*i_tilt + u_tilt)/L_tilt
 
-Operations of the state derivative: 697 as derived, 227 as written, 170 of them at every
+Operations of the state derivative: 697 as derived, 226 as written, 169 of them at every
 call where `prepare` does the others once per parameter set.
 
 Effects:
@@ -128,7 +128,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "c927079bf9cdf3a4"
+MODEL_HASH = "713fd545849b4d95"
 NAME = "full"
 TITLE = "Both axes of the thesis, all drives"
 # How many numbers `prepare` writes.
@@ -654,10 +654,9 @@ def mode_derivative(t, x, u, p, m, dx):
     dx[4] = omega_gear_pan
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
-    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
-    stribeck_decay_pan = math.exp(
-        -(omega_gear_pan * omega_gear_pan)
-        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    stribeck_square_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_square_pan = (omega_gear_pan * omega_gear_pan) / (
+        (stribeck_square_pan_term * stribeck_square_pan_term) * (v_s_pan * v_s_pan)
     )
     viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
     force_gear_pan = (
@@ -667,7 +666,7 @@ def mode_derivative(t, x, u, p, m, dx):
         * (
             coulomb_torque_pan
             + omega_gear_pan * slide_pan * viscous_coefficient_pan
-            + stribeck_decay_pan * (F_s_pan * force_gear_pan_term - coulomb_torque_pan)
+            + (F_s_pan * force_gear_pan_term - coulomb_torque_pan) * math.exp(-stribeck_square_pan)
         )
     )
     mass_gear_pan = J_motor_pan * (N_pan * N_pan)
@@ -921,10 +920,9 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     dx[4] = omega_gear_pan
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
-    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
-    stribeck_decay_pan = math.exp(
-        -(omega_gear_pan * omega_gear_pan)
-        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    stribeck_square_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_square_pan = (omega_gear_pan * omega_gear_pan) / (
+        (stribeck_square_pan_term * stribeck_square_pan_term) * (v_s_pan * v_s_pan)
     )
     viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
     force_gear_pan = (
@@ -934,7 +932,7 @@ def prepared_derivative(t, x, u, p, m, c, dx):
         * (
             coulomb_torque_pan
             + omega_gear_pan * slide_pan * viscous_coefficient_pan
-            + stribeck_decay_pan * (F_s_pan * force_gear_pan_term - coulomb_torque_pan)
+            + (F_s_pan * force_gear_pan_term - coulomb_torque_pan) * math.exp(-stribeck_square_pan)
         )
     )
     accel_gear_pan = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
@@ -1446,24 +1444,25 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     viscous_coefficient_pan_term = a_F_v_pan * slide_pan + 1.0
     viscous_coefficient_pan = F_v_pan * viscous_coefficient_pan_term
     slide_pan_viscous_coefficient_pan = slide_pan * viscous_coefficient_pan
-    stribeck_decay_pan_term = 1.0 / (v_s_pan * v_s_pan)
-    stribeck_decay_pan_term_2 = a_v_s_pan * slide_pan + 1.0
-    stribeck_decay_pan_term_3 = 1.0 / (stribeck_decay_pan_term_2 * stribeck_decay_pan_term_2)
-    stribeck_decay_pan_term_4 = stribeck_decay_pan_term * stribeck_decay_pan_term_3
+    stribeck_square_pan_term = 1.0 / (v_s_pan * v_s_pan)
+    stribeck_square_pan_term_2 = a_v_s_pan * slide_pan + 1.0
+    stribeck_square_pan_term_3 = 1.0 / (stribeck_square_pan_term_2 * stribeck_square_pan_term_2)
+    stribeck_square_pan_term_4 = stribeck_square_pan_term * stribeck_square_pan_term_3
     coulomb_torque_pan_term = a_F_c_pan * slide_pan + 1.0
     coulomb_torque_pan = F_c_pan * coulomb_torque_pan_term
     accel_gear_pan_by_omega_gear_pan_term = a_F_s_pan * slide_pan + 1.0
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    stribeck_decay_pan = math.exp(-omega_gear_pan_sq * stribeck_decay_pan_term_4)
-    accel_gear_pan_by_omega_gear_pan_term_2 = stribeck_decay_pan * (
+    stribeck_square_pan = omega_gear_pan_sq * stribeck_square_pan_term_4
+    accel_gear_pan_by_omega_gear_pan_term_2 = math.exp(-stribeck_square_pan)
+    accel_gear_pan_by_omega_gear_pan_term_3 = accel_gear_pan_by_omega_gear_pan_term_2 * (
         F_s_pan * accel_gear_pan_by_omega_gear_pan_term - coulomb_torque_pan
     )
-    accel_gear_pan_by_omega_gear_pan_term_3 = 2.0 * accel_gear_pan_by_omega_gear_pan_term_2
+    accel_gear_pan_by_omega_gear_pan_term_4 = 2.0 * accel_gear_pan_by_omega_gear_pan_term_3
     fx[5, 5] = accel_gear_pan_by_theta_pan_term * (
         -follower_torque_tilt_by_omega_gear_pan
         - slide_pan
         * (
-            -accel_gear_pan_by_omega_gear_pan_term_3 * omega_gear_pan * stribeck_decay_pan_term_4
+            -accel_gear_pan_by_omega_gear_pan_term_4 * omega_gear_pan * stribeck_square_pan_term_4
             + slide_pan_viscous_coefficient_pan
         )
     )
@@ -1956,31 +1955,33 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[3, 12] = accel_pan_by_b_tilt_term * accel_tilt_by_i_tilt_term
     inverse_mass_gear_pan_slide_pan = inverse_mass_gear_pan * slide_pan
     fp[5, 13] = -inverse_mass_gear_pan_slide_pan * (
-        -coulomb_torque_pan_term * stribeck_decay_pan + coulomb_torque_pan_term
+        -accel_gear_pan_by_omega_gear_pan_term_2 * coulomb_torque_pan_term + coulomb_torque_pan_term
     )
     fp[5, 14] = (
         -accel_gear_pan_by_omega_gear_pan_term
+        * accel_gear_pan_by_omega_gear_pan_term_2
         * inverse_mass_gear_pan_slide_pan
-        * stribeck_decay_pan
     )
-    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_3 * omega_gear_pan_sq
+    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_4 * omega_gear_pan_sq
     fp[5, 15] = (
         -accel_gear_pan_by_v_s_pan_term
         * inverse_mass_gear_pan_slide_pan
-        * stribeck_decay_pan_term_3
+        * stribeck_square_pan_term_3
         / (v_s_pan * v_s_pan * v_s_pan)
     )
     fp[5, 16] = -accel_gear_pan_by_theta_pan_term * omega_gear_pan * viscous_coefficient_pan_term
     F_c_pan_slide_pan = F_c_pan * slide_pan
     fp[5, 17] = -inverse_mass_gear_pan_slide_pan * (
-        -F_c_pan_slide_pan * stribeck_decay_pan + F_c_pan_slide_pan
+        -F_c_pan_slide_pan * accel_gear_pan_by_omega_gear_pan_term_2 + F_c_pan_slide_pan
     )
-    fp[5, 18] = -F_s_pan * accel_gear_pan_by_theta_pan_term * stribeck_decay_pan
+    fp[5, 18] = (
+        -F_s_pan * accel_gear_pan_by_omega_gear_pan_term_2 * accel_gear_pan_by_theta_pan_term
+    )
     fp[5, 19] = (
         -accel_gear_pan_by_theta_pan_term
         * accel_gear_pan_by_v_s_pan_term
-        * stribeck_decay_pan_term
-        / (stribeck_decay_pan_term_2 * stribeck_decay_pan_term_2 * stribeck_decay_pan_term_2)
+        * stribeck_square_pan_term
+        / (stribeck_square_pan_term_2 * stribeck_square_pan_term_2 * stribeck_square_pan_term_2)
     )
     fp[5, 20] = -F_v_pan * inverse_mass_gear_pan_slide_pan * omega_gear_pan
     half_side_pan = 0.5 * side_pan
@@ -2041,7 +2042,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - shaft_torque_pan
         - slide_pan
         * (
-            accel_gear_pan_by_omega_gear_pan_term_2
+            accel_gear_pan_by_omega_gear_pan_term_3
             + coulomb_torque_pan
             + omega_gear_pan * slide_pan_viscous_coefficient_pan
         )
@@ -4443,10 +4444,9 @@ def energy(t, x, u, p, m, e):
     )
     carried_tilt_slide_tilt = carried_tilt * slide_tilt
     omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
-    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
-    stribeck_decay_pan = math.exp(
-        -omega_gear_pan_sq
-        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    stribeck_square_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_square_pan = omega_gear_pan_sq / (
+        (stribeck_square_pan_term * stribeck_square_pan_term) * (v_s_pan * v_s_pan)
     )
     twist_rate_pan = follower_torque_tilt_term * side_pan_sq
     viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
@@ -4460,7 +4460,7 @@ def energy(t, x, u, p, m, e):
         * (
             coulomb_torque_pan
             + omega_gear_pan_slide_pan * viscous_coefficient_pan
-            + stribeck_decay_pan * (F_s_pan * dissipated_term - coulomb_torque_pan)
+            + (F_s_pan * dissipated_term - coulomb_torque_pan) * math.exp(-stribeck_square_pan)
         )
         + omega_tilt
         * slide_tilt
@@ -4680,10 +4680,9 @@ def equation_error(t, x, u, p, m, r):
     r[1] = accel_pan * mass_pan_tilt + accel_tilt * mass_tilt - force_tilt
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
-    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
-    stribeck_decay_pan = math.exp(
-        -(omega_gear_pan * omega_gear_pan)
-        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    stribeck_square_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_square_pan = (omega_gear_pan * omega_gear_pan) / (
+        (stribeck_square_pan_term * stribeck_square_pan_term) * (v_s_pan * v_s_pan)
     )
     viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
     force_gear_pan = (
@@ -4693,7 +4692,7 @@ def equation_error(t, x, u, p, m, r):
         * (
             coulomb_torque_pan
             + omega_gear_pan * slide_pan * viscous_coefficient_pan
-            + stribeck_decay_pan * (F_s_pan * force_gear_pan_term - coulomb_torque_pan)
+            + (F_s_pan * force_gear_pan_term - coulomb_torque_pan) * math.exp(-stribeck_square_pan)
         )
     )
     mass_gear_pan = J_motor_pan * (N_pan * N_pan)
@@ -4803,4 +4802,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 4556651317b167fa211760a1115f5d85c45bb5bf5cb344e0b0a612ac65c4ea75
+# END sha256 2d77f443ab8f3847ff75763726f9970eb96c44a2468acaa8d2bac2e55d2f8c2b

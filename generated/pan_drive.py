@@ -14,7 +14,7 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       1))*exp(-omega_gear_pan**2/(v_s_pan**2*(a_v_s_pan*slide_pan + 1)**2))
   i_pan' = (-K_t_pan*N_pan*omega_gear_pan - R_pan*i_pan + u_pan)/L_pan
 
-Operations of the state derivative: 65 as derived, 54 as written, 49 of them at every
+Operations of the state derivative: 65 as derived, 53 as written, 48 of them at every
 call where `prepare` does the others once per parameter set.
 
 Effects:
@@ -32,7 +32,7 @@ import math
 import numpy as np
 from numba import njit
 
-MODEL_HASH = "1dd54ed5c1f6477d"
+MODEL_HASH = "d83c3503d96bd52b"
 NAME = "pan_drive"
 TITLE = "Pan drive of the thesis"
 # How many numbers `prepare` writes.
@@ -283,10 +283,9 @@ def mode_derivative(t, x, u, p, m, dx):
     dx[2] = omega_gear_pan
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
-    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
-    stribeck_decay_pan = math.exp(
-        -(omega_gear_pan * omega_gear_pan)
-        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    stribeck_square_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_square_pan = (omega_gear_pan * omega_gear_pan) / (
+        (stribeck_square_pan_term * stribeck_square_pan_term) * (v_s_pan * v_s_pan)
     )
     viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
     force_gear_pan = (
@@ -296,7 +295,7 @@ def mode_derivative(t, x, u, p, m, dx):
         * (
             coulomb_torque_pan
             + omega_gear_pan * slide_pan * viscous_coefficient_pan
-            + stribeck_decay_pan * (F_s_pan * force_gear_pan_term - coulomb_torque_pan)
+            + (F_s_pan * force_gear_pan_term - coulomb_torque_pan) * math.exp(-stribeck_square_pan)
         )
     )
     mass_gear_pan = J_motor_pan * (N_pan * N_pan)
@@ -368,10 +367,9 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     dx[2] = omega_gear_pan
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
-    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
-    stribeck_decay_pan = math.exp(
-        -(omega_gear_pan * omega_gear_pan)
-        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    stribeck_square_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_square_pan = (omega_gear_pan * omega_gear_pan) / (
+        (stribeck_square_pan_term * stribeck_square_pan_term) * (v_s_pan * v_s_pan)
     )
     viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
     force_gear_pan = (
@@ -381,7 +379,7 @@ def prepared_derivative(t, x, u, p, m, c, dx):
         * (
             coulomb_torque_pan
             + omega_gear_pan * slide_pan * viscous_coefficient_pan
-            + stribeck_decay_pan * (F_s_pan * force_gear_pan_term - coulomb_torque_pan)
+            + (F_s_pan * force_gear_pan_term - coulomb_torque_pan) * math.exp(-stribeck_square_pan)
         )
     )
     accel_gear_pan = force_gear_pan * inverse_mass_gear_pan * (slide_pan * slide_pan)
@@ -445,24 +443,25 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     viscous_coefficient_pan_term = a_F_v_pan * slide_pan + 1.0
     viscous_coefficient_pan = F_v_pan * viscous_coefficient_pan_term
     slide_pan_viscous_coefficient_pan = slide_pan * viscous_coefficient_pan
-    stribeck_decay_pan_term = 1.0 / (v_s_pan * v_s_pan)
-    stribeck_decay_pan_term_2 = a_v_s_pan * slide_pan + 1.0
-    stribeck_decay_pan_term_3 = 1.0 / (stribeck_decay_pan_term_2 * stribeck_decay_pan_term_2)
-    stribeck_decay_pan_term_4 = stribeck_decay_pan_term * stribeck_decay_pan_term_3
+    stribeck_square_pan_term = 1.0 / (v_s_pan * v_s_pan)
+    stribeck_square_pan_term_2 = a_v_s_pan * slide_pan + 1.0
+    stribeck_square_pan_term_3 = 1.0 / (stribeck_square_pan_term_2 * stribeck_square_pan_term_2)
+    stribeck_square_pan_term_4 = stribeck_square_pan_term * stribeck_square_pan_term_3
     coulomb_torque_pan_term = a_F_c_pan * slide_pan + 1.0
     coulomb_torque_pan = F_c_pan * coulomb_torque_pan_term
     accel_gear_pan_by_omega_gear_pan_term = a_F_s_pan * slide_pan + 1.0
     omega_gear_pan_sq = omega_gear_pan * omega_gear_pan
-    stribeck_decay_pan = math.exp(-omega_gear_pan_sq * stribeck_decay_pan_term_4)
-    accel_gear_pan_by_omega_gear_pan_term_2 = stribeck_decay_pan * (
+    stribeck_square_pan = omega_gear_pan_sq * stribeck_square_pan_term_4
+    accel_gear_pan_by_omega_gear_pan_term_2 = math.exp(-stribeck_square_pan)
+    accel_gear_pan_by_omega_gear_pan_term_3 = accel_gear_pan_by_omega_gear_pan_term_2 * (
         F_s_pan * accel_gear_pan_by_omega_gear_pan_term - coulomb_torque_pan
     )
-    accel_gear_pan_by_omega_gear_pan_term_3 = 2.0 * accel_gear_pan_by_omega_gear_pan_term_2
+    accel_gear_pan_by_omega_gear_pan_term_4 = 2.0 * accel_gear_pan_by_omega_gear_pan_term_3
     fx[3, 3] = accel_gear_pan_by_theta_pan_term * (
         -active_pan_d_shaft_pan
         - slide_pan
         * (
-            -accel_gear_pan_by_omega_gear_pan_term_3 * omega_gear_pan * stribeck_decay_pan_term_4
+            -accel_gear_pan_by_omega_gear_pan_term_4 * omega_gear_pan * stribeck_square_pan_term_4
             + slide_pan_viscous_coefficient_pan
         )
     )
@@ -484,31 +483,31 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fp[1, 1] = -inverse_mass_pan * omega_pan
     inverse_mass_gear_pan_slide_pan = inverse_mass_gear_pan * slide_pan
     fp[3, 2] = -inverse_mass_gear_pan_slide_pan * (
-        -coulomb_torque_pan_term * stribeck_decay_pan + coulomb_torque_pan_term
+        -accel_gear_pan_by_omega_gear_pan_term_2 * coulomb_torque_pan_term + coulomb_torque_pan_term
     )
     fp[3, 3] = (
         -accel_gear_pan_by_omega_gear_pan_term
+        * accel_gear_pan_by_omega_gear_pan_term_2
         * inverse_mass_gear_pan_slide_pan
-        * stribeck_decay_pan
     )
-    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_3 * omega_gear_pan_sq
+    accel_gear_pan_by_v_s_pan_term = accel_gear_pan_by_omega_gear_pan_term_4 * omega_gear_pan_sq
     fp[3, 4] = (
         -accel_gear_pan_by_v_s_pan_term
         * inverse_mass_gear_pan_slide_pan
-        * stribeck_decay_pan_term_3
+        * stribeck_square_pan_term_3
         / (v_s_pan * v_s_pan * v_s_pan)
     )
     fp[3, 5] = -accel_gear_pan_by_theta_pan_term * omega_gear_pan * viscous_coefficient_pan_term
     F_c_pan_slide_pan = F_c_pan * slide_pan
     fp[3, 6] = -inverse_mass_gear_pan_slide_pan * (
-        -F_c_pan_slide_pan * stribeck_decay_pan + F_c_pan_slide_pan
+        -F_c_pan_slide_pan * accel_gear_pan_by_omega_gear_pan_term_2 + F_c_pan_slide_pan
     )
-    fp[3, 7] = -F_s_pan * accel_gear_pan_by_theta_pan_term * stribeck_decay_pan
+    fp[3, 7] = -F_s_pan * accel_gear_pan_by_omega_gear_pan_term_2 * accel_gear_pan_by_theta_pan_term
     fp[3, 8] = (
         -accel_gear_pan_by_theta_pan_term
         * accel_gear_pan_by_v_s_pan_term
-        * stribeck_decay_pan_term
-        / (stribeck_decay_pan_term_2 * stribeck_decay_pan_term_2 * stribeck_decay_pan_term_2)
+        * stribeck_square_pan_term
+        / (stribeck_square_pan_term_2 * stribeck_square_pan_term_2 * stribeck_square_pan_term_2)
     )
     fp[3, 9] = -F_v_pan * inverse_mass_gear_pan_slide_pan * omega_gear_pan
     half_side_pan = 0.5 * side_pan
@@ -528,7 +527,7 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
         - shaft_torque_pan
         - slide_pan
         * (
-            accel_gear_pan_by_omega_gear_pan_term_2
+            accel_gear_pan_by_omega_gear_pan_term_3
             + coulomb_torque_pan
             + omega_gear_pan * slide_pan_viscous_coefficient_pan
         )
@@ -721,10 +720,9 @@ def energy(t, x, u, p, m, e):
     k_shaft_pan_stored_term = k_shaft_pan * stored_term
     dissipated_term_2 = a_F_s_pan * slide_pan + 1.0
     omega_gear_pan_slide_pan = omega_gear_pan * slide_pan
-    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
-    stribeck_decay_pan = math.exp(
-        -omega_gear_pan_sq
-        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    stribeck_square_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_square_pan = omega_gear_pan_sq / (
+        (stribeck_square_pan_term * stribeck_square_pan_term) * (v_s_pan * v_s_pan)
     )
     twist_rate_pan = dissipated_term * side_pan_sq
     viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
@@ -735,7 +733,7 @@ def energy(t, x, u, p, m, e):
         * (
             coulomb_torque_pan
             + omega_gear_pan_slide_pan * viscous_coefficient_pan
-            + stribeck_decay_pan * (F_s_pan * dissipated_term_2 - coulomb_torque_pan)
+            + (F_s_pan * dissipated_term_2 - coulomb_torque_pan) * math.exp(-stribeck_square_pan)
         )
         + twist_rate_pan
         * (active_pan * d_shaft_pan_dissipated_term - k_shaft_pan_stored_term * (1.0 - active_pan))
@@ -789,10 +787,9 @@ def equation_error(t, x, u, p, m, r):
     r[0] = J_pan * accel_pan - force_pan
     coulomb_torque_pan = F_c_pan * (a_F_c_pan * slide_pan + 1.0)
     force_gear_pan_term = a_F_s_pan * slide_pan + 1.0
-    stribeck_decay_pan_term = a_v_s_pan * slide_pan + 1.0
-    stribeck_decay_pan = math.exp(
-        -(omega_gear_pan * omega_gear_pan)
-        / ((stribeck_decay_pan_term * stribeck_decay_pan_term) * (v_s_pan * v_s_pan))
+    stribeck_square_pan_term = a_v_s_pan * slide_pan + 1.0
+    stribeck_square_pan = (omega_gear_pan * omega_gear_pan) / (
+        (stribeck_square_pan_term * stribeck_square_pan_term) * (v_s_pan * v_s_pan)
     )
     viscous_coefficient_pan = F_v_pan * (a_F_v_pan * slide_pan + 1.0)
     force_gear_pan = (
@@ -802,7 +799,7 @@ def equation_error(t, x, u, p, m, r):
         * (
             coulomb_torque_pan
             + omega_gear_pan * slide_pan * viscous_coefficient_pan
-            + stribeck_decay_pan * (F_s_pan * force_gear_pan_term - coulomb_torque_pan)
+            + (F_s_pan * force_gear_pan_term - coulomb_torque_pan) * math.exp(-stribeck_square_pan)
         )
     )
     mass_gear_pan = J_motor_pan * (N_pan * N_pan)
@@ -863,4 +860,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 018afa5355521e867fdee3b5616967fd9ecfd57421cc08a703bafb43b9f05884
+# END sha256 3f60181ead1ebee386785c19b7ddc8aa9569124c57c5fa36c352fd027d3d67aa

@@ -31,12 +31,13 @@ def _contribute(place: Place) -> Contribution:
     rate = place.friction_rate
     names = [f"{word}_{place.axis}" for word in QUANTITIES]
     coulomb, static, speed, viscous = map(quantity, names)
-    stribeck = f"stribeck_decay_{place.axis}"
-    sliding = coulomb + (static - coulomb) * quantity(stribeck) + viscous * place.slide * rate
+    stribeck = f"stribeck_square_{place.axis}"
+    fallen = sp.exp(-quantity(stribeck))
+    sliding = coulomb + (static - coulomb) * fallen + viscous * place.slide * rate
     defined = dict(zip(names, place.symbols(PARAMETERS), strict=True))
     breakaway = f"breakaway_torque_{place.axis}"
     return Contribution(
-        quantities=defined | {stribeck: sp.exp(-((rate / speed) ** 2)), breakaway: static},
+        quantities=defined | {stribeck: (rate / speed) ** 2, breakaway: static},
         frictions=(Friction(place.own_axis, rate, sliding, quantity(breakaway)),),
     )
 

@@ -30,11 +30,10 @@ PARAMETERS = (
 def _contribute(place: Place) -> Contribution:
     (exponent,) = place.symbols(PARAMETERS)
 
-    def through(decay: sp.Expr) -> sp.Expr:
-        square = -sp.expand_log(sp.log(decay), force=True)  # of the rate over the Stribeck speed
-        return sp.exp(-((square + NEAR_REST**2) ** (exponent / 2)))
+    def through(square: sp.Expr) -> sp.Expr:
+        return (square + NEAR_REST**2) ** (exponent / 2)
 
-    return Contribution(changes={f"stribeck_decay_{place.axis}": Change(through=through)})
+    return Contribution(changes={f"stribeck_square_{place.axis}": Change(through=through)})
 
 
 STRIBECK_EXPONENT = Effect(
@@ -43,7 +42,7 @@ STRIBECK_EXPONENT = Effect(
     reference="thesis Eq. 2.11 with erratum 3 (gamma); Armstrong-Helouvry (1991)",
     parameters=PARAMETERS,
     contribute=_contribute,
-    needs=("stribeck_decay_{axis}",),
+    needs=("stribeck_square_{axis}",),
     separating_experiment="Run at ten or more steady rates from a tenth of the Stribeck speed to"
     " ten times it: the exponent shows in how wide the fall is, whatever its depth.",
 )
