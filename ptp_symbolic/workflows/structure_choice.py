@@ -26,6 +26,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
     begin_structure,
     by_fit,
     gain_over,
+    misfit,
     named_effects,
     on_runs_of,
     why_rejected,
@@ -132,19 +133,23 @@ def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choic
         return _searched(there, structure, logs, time_limit, brief=brief)
 
     terms = searched(None, brief=bool(every))
-    if terms.is_quiet or not every:
-        why = "not tried: the declared structure leaves noise alone, with its terms"
+    if not every or (terms.is_quiet and not terms.found.chosen.candidates):
+        why = "not tried: the declared structure leaves noise alone"
         untried = {**untried, **{key: why for each in every for key in each.keys}}
         return Choice(terms.outcome, terms.outcome, (), untried)
     logs.progress(f"fitting {len(every)} structures one step away")
     declared = _begun(platform, None, logs, {}).led_on().fitted
-    found, failed = _all_fitted(every, logs, declared.trial.values)
+    found, failed = _all_fitted(every, logs, declared, lead=not terms.is_quiet)
     untried = {**untried, **failed}
     others = [s for _, s in found]
     order = by_fit(declared, others)
     quiet = [s for s in order if s.is_quiet][:1]
-    followed = [searched(s, brief=True) for s in quiet or order[:FOLLOWED]]
-    if not order:
+    followed = [
+        searched(s, brief=True) for s in quiet or order[: 0 if terms.is_quiet else FOLLOWED]
+    ]
+    if terms.is_quiet:
+        pass
+    elif not order:
         terms = searched(None, brief=False)
     else:
         best = _best_fit([terms, *followed])
@@ -192,23 +197,28 @@ def _begun(
 
 
 def _all_fitted(
-    every: Sequence[Rebuilt], logs: Logs, known: Mapping[str, float]
+    every: Sequence[Rebuilt], logs: Logs, declared: FittedStructure, lead: bool
 ) -> tuple[list[tuple[Rebuilt, FittedStructure]], dict[str, str]]:
-    """Structures that can be emitted and fitted, and by key why others cannot."""
+    """Structures that can be emitted and fitted, and by key why others cannot. Where none leaves
+    noise alone, the better half of them is led over windows too if `lead`.
+    """
 
     def one(rebuilt: Rebuilt) -> Begun | str:
         try:
-            return _begun(rebuilt.platform, rebuilt, logs, known)
+            return _begun(rebuilt.platform, rebuilt, logs, declared.trial.values)
         except InputError as error:
             return f"the platform with it cannot be fitted: {error}"
 
     results = list(zip(every, side_by_side(one, every), strict=True))
     begun = [(r, b) for r, b in results if isinstance(b, Begun)]
     failed = {r.keys[0]: b for r, b in results if isinstance(b, str)}
-    if not any(b.fitted.is_quiet for _, b in begun):
-        logs.progress("leading the structures over windows")
-        led = side_by_side(Begun.led_on, [b for _, b in begun])
-        begun = [(r, b) for (r, _), b in zip(begun, led, strict=True)]
+    if lead and not any(b.fitted.is_quiet for _, b in begun):
+        logs.progress("leading the better half of the structures over windows")
+        cost = [misfit(b.fitted, declared) for _, b in begun]
+        better = sorted(range(len(begun)), key=cost.__getitem__)[: max(FOLLOWED, len(begun) // 2)]
+        led = side_by_side(Begun.led_on, [begun[k][1] for k in better])
+        for k, structure in zip(better, led, strict=True):
+            begun[k] = begun[k][0], structure
     tried = {key for r, _ in begun for key in r.keys}
     failed = {key: why for key, why in failed.items() if key not in tried}
     return [(r, b.fitted) for r, b in begun], failed
@@ -226,11 +236,14 @@ def _searched(
     begun = platform
     if structure is not None:
         begun = variants.extended(platform, (), structure.trial.values, ())
-    try:
-        model = model_of(variants.with_candidates(begun))
-    except InputError as error:  # a candidate that cannot be beside the structure
-        logs.progress(f"no terms are searched for: {error}")
+    if structure is not None and structure.is_quiet:
         model = model_of(begun)
+    else:
+        try:
+            model = model_of(variants.with_candidates(begun))
+        except InputError as error:  # a candidate that cannot be beside the structure
+            logs.progress(f"no terms are searched for: {error}")
+            model = model_of(begun)
     task = task_for(
         begun, model, logs.train, logs.validate, effect_keys(begun), logs.executor, logs.progress
     )

@@ -79,3 +79,31 @@ def test_the_actuator_lags_a_command_that_ends_at_a_ceiling() -> None:
         strict=True,
     ):
         assert values_found == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_motor_behind_a_slow_amplifier() -> None:
+    """SciPy integrates voltage, current and rate of a rotor on its gear."""
+    lag, volts = 0.03, 6.0
+    effects = (
+        BODY,
+        EffectDeclaration("dc_motor", "pan", None),
+        EffectDeclaration("actuator_lag", "pan", None, "voltage"),
+    )
+    model = emission.emit(Platform("lag", "Slow amplifier", ("pan",), 9.81, effects, (), ()))
+    own = {"L": 7e-3, "R": 12.9, "K_t": 0.0724, "J_motor": 1.1e-5, "N": 500.0}
+    values = {f"{n}_pan": v for n, v in own.items()} | {"J_pan": J, "t_actuator_pan": lag}
+    times = np.linspace(0.0, 0.3, 31)
+    found = simulate(model, times, {"u_pan": constant(volts)}, values, rtol=1e-9)
+    inertia = J + own["J_motor"] * own["N"] ** 2
+
+    def slopes(t: float, y: np.ndarray) -> list[float]:
+        voltage, current, rate = y
+        back = own["K_t"] * own["N"] * rate
+        pushed = own["K_t"] * own["N"] * current / inertia
+        return [(volts - voltage) / lag, (voltage - own["R"] * current - back) / own["L"], pushed]
+
+    ends = (0.0, 0.3)
+    known = solve_ivp(slopes, ends, np.zeros(3), "Radau", times, rtol=1e-10, atol=1e-12).y
+    assert found["u_actuator_pan"] == pytest.approx(known[0], abs=1e-6)
+    assert found["i_pan"] == pytest.approx(known[1], abs=1e-7)
+    assert found["omega_pan"] == pytest.approx(known[2], abs=1e-7)

@@ -140,7 +140,7 @@ def by_fit(declared: FittedStructure, found: Sequence[FittedStructure]) -> list[
         for s in found
         if not s.trial.fit.failed and gain_over(s, declared).share >= declared.task.material
     ]
-    cost = {id(s): _misfit(s, declared) for s in better}
+    cost = {id(s): misfit(s, declared) for s in better}
     left, ordered = sorted(better, key=lambda s: cost[id(s)]), []
     while left:
         best = left[0]
@@ -161,7 +161,7 @@ def _size(structure: FittedStructure) -> int:
     return len(structure.trial.fit.free)
 
 
-def _misfit(structure: FittedStructure, declared: FittedStructure) -> float:
+def misfit(structure: FittedStructure, declared: FittedStructure) -> float:
     """How badly a structure fits, in the windows of the declared one."""
     pattern = declared.trial.fit.runs
     return misfits([declared.trial, on_runs_of(structure.task, structure.trial, pattern)])[1]

@@ -15,7 +15,9 @@ from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.symbols import ZERO, real
 
 WINDING, LOSS = "winding_resistance_{axis}", "winding_loss_{axis}"
-VOLTAGES = ("motor_voltage_{axis}", "drive_voltage_{axis}", "command_{axis}")  # each from the next
+VOLTAGES = tuple(  # each from the next
+    f"{of}_{{axis}}" for of in ("motor_voltage", "amplifier_voltage", "drive_voltage", "command")
+)
 
 
 def motor_parameters(values: tuple[float, float, float, float]) -> tuple[Parameter, ...]:
@@ -46,7 +48,7 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
     current = real(f"i_{place.axis}")
     applied = real(f"u_{place.axis}")
     winding, loss = map(place.quantity, (WINDING, LOSS))
-    voltage, switched, command = map(place.quantity, VOLTAGES)
+    voltage, amplified, switched, command = map(place.quantity, VOLTAGES)
     speed = ratio * place.gear_rate
     derivative = (voltage - winding * current - constant * speed) / inductance
     drive = Drive(
@@ -59,7 +61,7 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
         dissipated=loss + damping * speed**2,
     )
     names = (WINDING, LOSS, *VOLTAGES)
-    values = (resistance, winding * current**2, switched, command, applied)
+    values = (resistance, winding * current**2, amplified, switched, command, applied)
     defined = {n.format(axis=place.axis): v for n, v in zip(names, values, strict=True)}
     state = State(str(current), "A", f"current of the {place.axis} motor", derivative)
     rate = Sensor(f"omega_motor_{place.axis}", "rad/s", f"rate of the {place.axis} motor", speed)
