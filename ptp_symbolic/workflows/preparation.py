@@ -6,12 +6,12 @@ from contextlib import contextmanager
 
 from threadpoolctl import threadpool_limits
 
-from ptp_symbolic.models import emission
+from ptp_symbolic.models import emission, variants
 from ptp_symbolic.models.declared import free_parameters, known_values, refuse_unknown_signals
 from ptp_symbolic.numeric.data import Log, refuse_motionless, refuse_wrapped_angles, remarks
 from ptp_symbolic.numeric.diagnose.preparation import task_of
 from ptp_symbolic.numeric.diagnose.side_by_side import usable_cores
-from ptp_symbolic.numeric.diagnose.trial import Task
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.runtime.model import Model
@@ -21,7 +21,13 @@ from ptp_symbolic.numeric.simulation.ahead import (
     SAMPLED_RUNNER,
     compile_ahead,
 )
-from ptp_symbolic.platform import Platform, effect_key, naming_file
+from ptp_symbolic.platform import (
+    EffectDeclaration,
+    ParameterDeclaration,
+    Platform,
+    effect_key,
+    naming_file,
+)
 from ptp_symbolic.symbolic.derivation.placement import place_effects
 from ptp_symbolic.workflows.result import Progress
 
@@ -96,3 +102,27 @@ def task_for(
         executor,
         progress,
     )
+
+
+def with_effects(platform: Platform, after: Trial) -> Platform:
+    """`platform` with the accepted effects, and every fitted value as the new start."""
+    bounds = {p.name: p for p in after.fit.model.parameters}
+    have = {(e.effect, e.axis) for e in platform.effects}
+    added = [
+        EffectDeclaration(c.id, c.axis, None)
+        for c in after.candidates
+        if not c.is_declared_value and (c.id, c.axis) not in have
+    ]
+    fitted = [
+        ParameterDeclaration(
+            name,
+            bounds[name].unit,
+            after.values[name],
+            True,
+            bounds[name].lower,
+            bounds[name].upper,
+        )
+        for c in after.candidates
+        for name in c.parameters
+    ]
+    return variants.extended(platform, added, after.values, fitted)

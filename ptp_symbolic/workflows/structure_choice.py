@@ -2,36 +2,29 @@
 fitted, the best go on into the search for terms, and what each ends with is compared.
 """
 
-from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import variants
-from ptp_symbolic.models.structures import Rebuilt, structures
-from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.models.structures import structures
 from ptp_symbolic.numeric.diagnose.findings import Search
 from ptp_symbolic.numeric.diagnose.floor import floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
 from ptp_symbolic.numeric.diagnose.groups import Rival, confusable, is_clearly_more
 from ptp_symbolic.numeric.diagnose.held_out import held_out_gain, is_borne_out, simulated_freely
 from ptp_symbolic.numeric.diagnose.search import search
-from ptp_symbolic.numeric.diagnose.side_by_side import side_by_side
 from ptp_symbolic.numeric.diagnose.structures import (
-    Begun,
     FittedStructure,
     alternatives,
-    begin_structure,
-    by_fit,
     gain_over,
-    misfit,
     named_effects,
     on_runs_of,
     why_rejected,
 )
-from ptp_symbolic.numeric.diagnose.summary import gain_table
+from ptp_symbolic.numeric.diagnose.summary import ranking_row
 from ptp_symbolic.numeric.diagnose.trial import Task, misfits, ranked
 from ptp_symbolic.numeric.diagnose.verdict import (
     PARTLY,
@@ -44,20 +37,8 @@ from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.identify.windows import parted_like
 from ptp_symbolic.platform import Platform
-from ptp_symbolic.workflows.preparation import effect_keys, model_of, task_for
-from ptp_symbolic.workflows.result import Progress
-
-FOLLOWED = 2  # structures that go on into the search for terms where none leaves noise alone
-
-
-@dataclass(frozen=True, eq=False)
-class Logs:
-    """What every structure is fitted to, and judged by."""
-
-    train: tuple[Log, ...]
-    validate: tuple[Log, ...]
-    executor: Executor
-    progress: Progress
+from ptp_symbolic.workflows.preparation import effect_keys, model_of, task_for, with_effects
+from ptp_symbolic.workflows.structure_fits import Logs, fit_structures
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,21 +96,20 @@ class Choice:
 
 
 def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choice:
-    """Search for terms of the declared platform, and where more than noise is left fit every
-    structure one step away from it; search for terms in the best of them too, and choose. Every
-    search ends after `time_limit` in s.
+    """Search for terms of the declared platform, and where that adds any or leaves more than noise
+    fit every structure one step away from it; search for terms in the best of them too, and choose.
+    Every search ends after `time_limit` in s.
 
     All are brief at first. The whole one follows where no answer is found soon: of the structure
     that fits best, and of the declared one where that is beaten by little.
     """
     every, untried = structures(platform)
-    found: list[tuple[Rebuilt, FittedStructure]] = []
+    platforms = {rebuilt.keys: rebuilt.platform for rebuilt in every}
 
     def searched(structure: FittedStructure | None, brief: bool) -> Searched:
         name = " + ".join(structure.keys) if structure else ""
         logs.progress(f"searching for terms beside {name or 'what is declared'}")
-        platforms = {id(s): rebuilt.platform for rebuilt, s in found}
-        there = platforms[id(structure)] if structure else platform
+        there = platforms[structure.keys] if structure else platform
         return _searched(there, structure, logs, time_limit, brief=brief)
 
     terms = searched(None, brief=bool(every))
@@ -137,31 +117,53 @@ def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choic
         why = "not tried: the declared structure leaves noise alone"
         untried = {**untried, **{key: why for each in every for key in each.keys}}
         return Choice(terms.outcome, terms.outcome, (), untried)
-    logs.progress(f"fitting {len(every)} structures one step away")
-    declared = _begun(platform, None, logs, {}).led_on().fitted
-    found, failed = _all_fitted(every, logs, declared, lead=not terms.is_quiet)
-    untried = {**untried, **failed}
-    others = [s for _, s in found]
-    order = by_fit(declared, others)
-    quiet = [s for s in order if s.is_quiet][:1]
-    followed = [
-        searched(s, brief=True) for s in quiet or order[: 0 if terms.is_quiet else FOLLOWED]
-    ]
+    fitted = fit_structures(platform, every, logs, lead=not terms.is_quiet)
+    followed = fitted.followed
+    if not terms.is_quiet and not any(s.is_quiet for s in followed) and _is_mostly_terms(terms):
+        with_terms = with_effects(platform, terms.found.chosen)
+        beside = fit_structures(with_terms, structures(with_terms)[0], logs, lead=True)
+        beside = replace(beside, every=tuple(s for s in beside.every if s.keys in platforms))
+        if beside.followed:
+            fitted, followed = beside, beside.followed
     if terms.is_quiet:
-        pass
-    elif not order:
-        terms = searched(None, brief=False)
-    else:
-        best = _best_fit([terms, *followed])
-        if best is not terms and not best.is_quiet:
-            whole = searched(best.structure, brief=False)
-            followed = [whole if s is best else s for s in followed]
-            best = whole
-        if best is terms or not _is_far_ahead(best, terms):
-            terms = searched(None, brief=False)
-    chosen, refused = _chosen(terms.outcome, [s.outcome for s in followed], others, logs)
-    rows = tuple(_row(s, declared, chosen, refused) for s in [*order, *_rest(others, order)])
-    return Choice(chosen, terms.outcome, rows, untried)
+        followed = [s for s in followed if s.is_quiet]
+    outcomes = [searched(s, brief=True) for s in followed]
+    if not terms.is_quiet:
+        outcomes, terms = _at_length(outcomes, terms, searched)
+    chosen, refused = _chosen(terms.outcome, [s.outcome for s in outcomes], fitted.every, logs)
+    order = fitted.order
+    rest = [s for s in fitted.every if s not in order]
+    rows = tuple(_row(s, fitted.declared, chosen, refused) for s in [*order, *rest])
+    return Choice(chosen, terms.outcome, rows, {**untried, **fitted.failed})
+
+
+def _at_length(
+    outcomes: Sequence[Searched],
+    terms: Searched,
+    searched: Callable[[FittedStructure | None, bool], Searched],
+) -> tuple[list[Searched], Searched]:
+    """Structures and the declared one, with the whole search in what is best so far, and in the
+    declared one unless that is far behind.
+    """
+    best = _best_fit([terms, *outcomes])
+    if best is not terms and not best.is_quiet:
+        whole = searched(best.structure, False)
+        outcomes = [whole if s is best else s for s in outcomes]
+        best = whole
+    if best is terms or not _is_far_ahead(best, terms):
+        terms = searched(None, False)
+    return list(outcomes), terms
+
+
+def _is_mostly_terms(terms: Searched) -> bool:
+    """Whether effects that the declared structure lacks surely halve its squared error, so that
+    another structure shows beside them only.
+    """
+    trial = terms.found.chosen
+    if all(c.is_declared_value for c in trial.candidates):
+        return False
+    declared = on_runs_of(terms.found.task, terms.found.declared, trial.fit.runs)
+    return gain(trial, declared).is_most
 
 
 def _best_fit(searches: Sequence[Searched]) -> Searched:
@@ -178,52 +180,6 @@ def _is_far_ahead(one: Searched, other: Searched) -> bool:
     return gain(trial, on_runs_of(other.found.task, other.found.chosen, trial.fit.runs)).is_most
 
 
-def _rest(
-    others: Sequence[FittedStructure], order: Sequence[FittedStructure]
-) -> list[FittedStructure]:
-    return [s for s in others if s not in order]
-
-
-def _begun(
-    platform: Platform, rebuilt: Rebuilt | None, logs: Logs, known: Mapping[str, float]
-) -> Begun:
-    model = model_of(platform)
-    task = task_for(platform, model, logs.train, logs.validate, (), logs.executor, logs.progress)
-    if rebuilt is None:
-        return begin_structure("as declared", (), frozenset(), task, (), known)
-    return begin_structure(
-        rebuilt.title, rebuilt.keys, rebuilt.provides, task, rebuilt.starts, known
-    )
-
-
-def _all_fitted(
-    every: Sequence[Rebuilt], logs: Logs, declared: FittedStructure, lead: bool
-) -> tuple[list[tuple[Rebuilt, FittedStructure]], dict[str, str]]:
-    """Structures that can be emitted and fitted, and by key why others cannot. Where none leaves
-    noise alone, the better half of them is led over windows too if `lead`.
-    """
-
-    def one(rebuilt: Rebuilt) -> Begun | str:
-        try:
-            return _begun(rebuilt.platform, rebuilt, logs, declared.trial.values)
-        except InputError as error:
-            return f"the platform with it cannot be fitted: {error}"
-
-    results = list(zip(every, side_by_side(one, every), strict=True))
-    begun = [(r, b) for r, b in results if isinstance(b, Begun)]
-    failed = {r.keys[0]: b for r, b in results if isinstance(b, str)}
-    if lead and not any(b.fitted.is_quiet for _, b in begun):
-        logs.progress("leading the better half of the structures over windows")
-        cost = [misfit(b.fitted, declared) for _, b in begun]
-        better = sorted(range(len(begun)), key=cost.__getitem__)[: max(FOLLOWED, len(begun) // 2)]
-        led = side_by_side(Begun.led_on, [begun[k][1] for k in better])
-        for k, structure in zip(better, led, strict=True):
-            begun[k] = begun[k][0], structure
-    tried = {key for r, _ in begun for key in r.keys}
-    failed = {key: why for key, why in failed.items() if key not in tried}
-    return [(r, b.fitted) for r, b in begun], failed
-
-
 def _searched(
     platform: Platform,
     structure: FittedStructure | None,
@@ -236,14 +192,12 @@ def _searched(
     begun = platform
     if structure is not None:
         begun = variants.extended(platform, (), structure.trial.values, ())
-    if structure is not None and structure.is_quiet:
+    try:
+        lacks_nothing = structure is not None and _is_enough(structure, platform)
+        model = model_of(begun if lacks_nothing else variants.with_candidates(begun))
+    except InputError as error:  # a candidate that cannot be beside the structure
+        logs.progress(f"no terms are searched for: {error}")
         model = model_of(begun)
-    else:
-        try:
-            model = model_of(variants.with_candidates(begun))
-        except InputError as error:  # a candidate that cannot be beside the structure
-            logs.progress(f"no terms are searched for: {error}")
-            model = model_of(begun)
     task = task_for(
         begun, model, logs.train, logs.validate, effect_keys(begun), logs.executor, logs.progress
     )
@@ -252,6 +206,11 @@ def _searched(
         task, free=tuple(replace(f, declared_start=declared_starts[f.name]) for f in task.free)
     )
     return Searched(platform, structure, task, search(task, time_limit, brief=brief))
+
+
+def _is_enough(structure: FittedStructure, platform: Platform) -> bool:
+    """Whether a structure leaves noise alone with no effect beside those of its `platform`."""
+    return structure.is_quiet and len(structure.task.model.effects) == len(platform.effects)
 
 
 def _chosen(
@@ -362,37 +321,15 @@ def _row(
     structure: FittedStructure, declared: FittedStructure, chosen: Outcome, refused: dict[str, str]
 ) -> dict[str, Any]:
     """A row of the ranking for a structure without terms."""
-    from ptp_symbolic.numeric.diagnose.errors import error_of
-
-    name = " + ".join(structure.keys)
-    units = structure.trial.fit.model.units
     failed = structure.trial.fit.failed
     accepted = structure is chosen.structure
-    why = refused.get(name)
     if accepted:
         why = "the structure of the final model: it predicts blocks left out clearly better"
     elif failed:
         why = f"the fit failed: {failed}"
-    elif why is None:
-        why = "predicts worse than the best structure, or no better than the declared one"
-    error = None if failed else error_of(structure.trial.fit, units)["total"]
-    values = structure.trial.values
-    axes = {c.axis for c in structure.added}
-    return {
-        "effect": " + ".join(c.id for c in structure.added),
-        "axis": axes.pop() if len(axes) == 1 else None,
-        "structure": list(structure.keys),
-        "gain": None if failed else gain_table(gain_over(structure, declared)),
-        "train_error_after": None
-        if error is None
-        else error["rmse"]
-        if error["rmse_counts"] is None
-        else error["rmse_counts"],
-        "parameters": {
-            f.name: {"value": values[f.name], "unit": units[f.name]}
-            for c in structure.added
-            for f in c.free
-        },
-        "accepted": accepted,
-        "why": why,
-    }
+    else:
+        otherwise = "predicts worse than the best structure, or no better than the declared one"
+        why = refused.get(" + ".join(structure.keys), otherwise)
+    earned = None if failed else gain_over(structure, declared)
+    row = ranking_row(structure.added, structure.trial, earned, accepted, why)
+    return {**row, "structure": list(structure.keys)}

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.models import emission, variants
+from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.diagnose.curves import curves_of
 from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.hints import further_hints
@@ -22,10 +22,9 @@ from ptp_symbolic.numeric.diagnose.summary import (
     ranking,
     repeatability_table,
 )
-from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.replays import estimable
-from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, platform_text
+from ptp_symbolic.platform import Platform, platform_text
 from ptp_symbolic.report.changes import render_changes
 from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
 from ptp_symbolic.report.drawing import drawn
@@ -33,6 +32,7 @@ from ptp_symbolic.report.latex_text import PREAMBLE, escaped
 from ptp_symbolic.report.pdf import with_pdf
 from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.workflows.preparation import with_effects
 from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, json_text, windows_table
 from ptp_symbolic.workflows.structure_choice import Choice
 
@@ -59,7 +59,7 @@ def written_up(
         "validate": (verdict.before, verdict.after),
     }
     errors = error_table(parts, verdict.floor)
-    extended = _extended(chosen.platform, after)
+    extended = with_effects(chosen.platform, after)
     module, doubts = _module_of(extended)
     doubts += _carried_remarks(platform, verdict.floor)
     doubts += _tied_remarks(platform) if verdict.leaves_more else []
@@ -177,27 +177,3 @@ def equations_tex(equations: list[dict[str, Any]]) -> str:
     text = "\n".join(f"{title}:\n{row}" for title, row in zip(titles, rows, strict=True))
     text = text or "No effect was added to the equations.\n"
     return f"{PREAMBLE}\n\\begin{{document}}\n{text}\\end{{document}}\n"
-
-
-def _extended(platform: Platform, after: Trial) -> Platform:
-    """`platform` with the accepted effects, and every fitted value as the new start."""
-    bounds = {p.name: p for p in after.fit.model.parameters}
-    have = {(e.effect, e.axis) for e in platform.effects}
-    added = [
-        EffectDeclaration(c.id, c.axis, None)
-        for c in after.candidates
-        if not c.is_declared_value and (c.id, c.axis) not in have
-    ]
-    fitted = [
-        ParameterDeclaration(
-            name,
-            bounds[name].unit,
-            after.values[name],
-            True,
-            bounds[name].lower,
-            bounds[name].upper,
-        )
-        for c in after.candidates
-        for name in c.parameters
-    ]
-    return variants.extended(platform, added, after.values, fitted)

@@ -114,7 +114,7 @@ def fits(declared: tuple[Platform, list[Path]]) -> dict[tuple[str, ...], FittedS
         ):
             model = model_of(there)
             task = task_for(there, model, logs, logs, (), executor, lambda text: None)
-            found[keys] = begin_structure(title, keys, provides, task, starts, {}).fitted
+            found[keys] = begin_structure(title, keys, provides, task, starts, {}).finished().fitted
         yield found
 
 

@@ -52,19 +52,30 @@ class FittedStructure:
 
 @dataclass(frozen=True, eq=False)
 class Begun:
-    """A structure fitted as far as whole runs lead from its starts, with what leads further."""
+    """A structure fitted to whole runs (windows, where they are) by a few iterations from the best
+    of its starts, with what leads further.
+    """
 
     fitted: FittedStructure
     proposals: Proposals
-    led: bool = False
+
+    def finished(self) -> "Begun":
+        """The structure fitted to the end of whole runs; windows are for `led_on`."""
+        task = self.fitted.task
+        return self._with(*over_whole_runs(task, self.proposals)) if task.windows else self
 
     def led_on(self) -> "Begun":
         """The structure led over windows, where whole runs leave more than noise."""
-        if self.led or self.fitted.is_quiet:
+        if self.fitted.is_quiet:
             return self
-        task, trial = led_over_windows(self.fitted.task, self.proposals)
-        trial = ranked([trial, self.fitted.trial])[0] if _alike(trial, self.fitted.trial) else trial
-        return replace(self, fitted=replace(self.fitted, task=task, trial=trial), led=True)
+        return self._with(*led_over_windows(self.fitted.task, self.proposals))
+
+    def _with(self, task: Task, trial: Trial) -> "Begun":
+        """The structure with a trial, or with its own where that fits better in the same runs."""
+        if _alike(trial, self.fitted.trial):
+            trial = ranked([trial, self.fitted.trial])[0]
+        proposals = replace(self.proposals, start=trial.values)
+        return Begun(replace(self.fitted, task=task, trial=trial), proposals)
 
 
 def _alike(one: Trial, other: Trial) -> bool:
@@ -79,9 +90,9 @@ def begin_structure(
     starts: Sequence[Mapping[str, float]],
     known: Mapping[str, float],
 ) -> Begun:
-    """The structure of `task`, fitted from the best of `starts` (of the parameters that the effects
-    named in `keys` bring), each beside the declared start and beside `known` values of a fit of the
-    declared structure: to whole runs, or a few iterations where these are windows.
+    """The structure of `task`, begun from `starts` (of the parameters that the effects named in
+    `keys` bring), each beside the declared start and beside `known` values of a fit of the declared
+    structure.
     """
     proposals = propose(task)
     own = {f.name: f for f in task.free}
@@ -92,11 +103,8 @@ def begin_structure(
         for start in ({}, *starts)
     ]
     begun = [fitted(task, (), v, None, executor=task.executor) for v in values]
-    rough = halving(task, begun, 1) or begun[:1]
-    proposals = replace(proposals, start=rough[0].values)
-    trial = rough[0]
-    if task.windows:
-        task, trial = over_whole_runs(task, proposals)
+    trial = (halving(task, begun, 2, 1) or begun[:1])[0]
+    proposals = replace(proposals, start=trial.values)
     return Begun(FittedStructure(title, effects_of(task, keys), provides, task, trial), proposals)
 
 

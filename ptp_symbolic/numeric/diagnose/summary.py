@@ -232,26 +232,34 @@ def ranking(
 
 
 def _row(search: Search, found: Verdict, trial: Trial) -> dict[str, Any]:
-    units = trial.fit.model.units
     accepted = bool(found.final.candidates) and trial.keys == found.final.keys
     elsewhere = accepted and found.is_along_motion  # that fit is not the best one of outputs
     earned = None if elsewhere else gain(trial, search.declared)
-    error = error_of(trial.fit, units)["total"]
-    axes = {c.axis for c in trial.candidates}
+    return ranking_row(trial.candidates, trial, earned, accepted, _why(search, found, trial))
+
+
+def ranking_row(
+    added: Sequence[Candidate], trial: Trial, earned: Gain | None, accepted: bool, why: str
+) -> dict[str, Any]:
+    """A row of the ranking for a trial with the effects `added`; without figures where it failed.
+    The error is in counts where an angle is counted, else in its unit.
+    """
+    units, failed = trial.fit.model.units, bool(trial.fit.failed)
+    error = {} if failed else error_of(trial.fit, units)["total"]
+    in_counts = error.get("rmse_counts")
+    axes = {c.axis for c in added}
     return {
-        "effect": " + ".join(c.id for c in trial.candidates),
+        "effect": " + ".join(c.id for c in added),
         "axis": axes.pop() if len(axes) == 1 else None,
-        "gain": None if earned is None else gain_table(earned),
-        "train_error_after": error["rmse"]
-        if error["rmse_counts"] is None
-        else error["rmse_counts"],
+        "gain": None if failed or earned is None else gain_table(earned),
+        "train_error_after": error.get("rmse") if in_counts is None else in_counts,
         "parameters": {
             f.name: {"value": trial.values[f.name], "unit": units[f.name]}
-            for c in trial.candidates
+            for c in added
             for f in c.free
         },
         "accepted": accepted,
-        "why": _why(search, found, trial),
+        "why": why,
     }
 
 
