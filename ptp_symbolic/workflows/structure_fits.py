@@ -1,0 +1,111 @@
+"""The structures one step away from a platform, each emitted, and fitted to the same logs."""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.models.structures import Rebuilt
+from ptp_symbolic.numeric.data import Log
+from ptp_symbolic.numeric.diagnose.side_by_side import side_by_side
+from ptp_symbolic.numeric.diagnose.structures import (
+    Begun,
+    FittedStructure,
+    begin_structure,
+    by_fit,
+    misfit,
+)
+from ptp_symbolic.platform import Platform
+from ptp_symbolic.workflows.preparation import model_of, task_for
+from ptp_symbolic.workflows.result import Progress
+
+FOLLOWED = 2  # structures that go on into the search for terms where none leaves noise alone
+
+
+@dataclass(frozen=True, eq=False)
+class Logs:
+    """What every structure is fitted to, and judged by."""
+
+    train: tuple[Log, ...]
+    validate: tuple[Log, ...]
+    executor: Executor
+    progress: Progress
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A platform as `declared` and all structures one step away from it, each fitted; by key, why
+    others could not be.
+    """
+
+    declared: FittedStructure
+    every: tuple[FittedStructure, ...]
+    failed: Mapping[str, str]
+
+    @property
+    def order(self) -> list[FittedStructure]:
+        """Those that predict better than the declared one, the best first (see `by_fit`)."""
+        return by_fit(self.declared, self.every)
+
+    @property
+    def followed(self) -> list[FittedStructure]:
+        """The best that leaves noise alone; else the best few."""
+        order = self.order
+        return [s for s in order if s.is_quiet][:1] or order[:FOLLOWED]
+
+
+def fit_structures(
+    platform: Platform, every: Sequence[Rebuilt], logs: Logs, *, lead: bool
+) -> Fitted:
+    """Fit a platform and `every` structure one step away from it: a few iterations each from their
+    starts, the better half to the end of whole runs. Where none leaves noise alone then, that half
+    is led over windows too if `lead`.
+    """
+    logs.progress(f"fitting {len(every)} structures one step away")
+    alone = _begun(platform, None, logs, {}).finished()
+    declared = (alone.led_on() if lead else alone).fitted
+
+    def one(rebuilt: Rebuilt) -> Begun | str:
+        try:
+            return _begun(rebuilt.platform, rebuilt, logs, declared.trial.values)
+        except InputError as error:
+            return f"the platform with it cannot be fitted: {error}"
+
+    results = list(zip(every, side_by_side(one, every), strict=True))
+    begun = [b for _, b in results if isinstance(b, Begun)]
+    better = _better_half(begun, declared)
+    logs.progress(f"fitting the better {len(better)} of them to their end")
+    begun = _each(Begun.finished, begun, better)
+    if lead and not any(b.fitted.is_quiet for b in begun):
+        logs.progress("leading them over windows")
+        begun = _each(Begun.led_on, begun, better)
+    tried = {key for b in begun for key in b.fitted.keys}
+    failed = {r.keys[0]: b for r, b in results if isinstance(b, str) and r.keys[0] not in tried}
+    return Fitted(declared, tuple(b.fitted for b in begun), failed)
+
+
+def _begun(
+    platform: Platform, rebuilt: Rebuilt | None, logs: Logs, known: Mapping[str, float]
+) -> Begun:
+    model = model_of(platform)
+    task = task_for(platform, model, logs.train, logs.validate, (), logs.executor, logs.progress)
+    if rebuilt is None:
+        return begin_structure("as declared", (), frozenset(), task, (), known)
+    return begin_structure(
+        rebuilt.title, rebuilt.keys, rebuilt.provides, task, rebuilt.starts, known
+    )
+
+
+def _better_half(begun: Sequence[Begun], declared: FittedStructure) -> list[int]:
+    """Which structures fit better than half of them, at least as many as are followed."""
+    cost = [misfit(b.fitted, declared) for b in begun]
+    best_first = sorted(range(len(begun)), key=cost.__getitem__)
+    return best_first[: max(FOLLOWED, (len(begun) + 1) // 2)]
+
+
+def _each(
+    step: Callable[[Begun], Begun], begun: Sequence[Begun], which: Sequence[int]
+) -> list[Begun]:
+    """The structures, those in `which` a step further."""
+    further = dict(zip(which, side_by_side(step, [begun[k] for k in which]), strict=True))
+    return [further.get(k, b) for k, b in enumerate(begun)]
