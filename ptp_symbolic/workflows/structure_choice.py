@@ -38,7 +38,7 @@ from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.numeric.identify.windows import parted_like
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import effect_keys, model_of, task_for, with_effects
-from ptp_symbolic.workflows.structure_fits import Logs, fit_structures
+from ptp_symbolic.workflows.structure_fits import FOLLOWED, Fitted, Logs, fit_structures
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,16 +117,10 @@ def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choic
         why = "not tried: the declared structure leaves noise alone"
         untried = {**untried, **{key: why for each in every for key in each.keys}}
         return Choice(terms.outcome, terms.outcome, (), untried)
-    fitted = fit_structures(platform, every, logs, lead=not terms.is_quiet)
-    followed = fitted.followed
-    if not terms.is_quiet and not any(s.is_quiet for s in followed) and _is_mostly_terms(terms):
-        with_terms = with_effects(platform, terms.found.chosen)
-        beside = fit_structures(with_terms, structures(with_terms)[0], logs, lead=True)
-        beside = replace(beside, every=tuple(s for s in beside.every if s.keys in platforms))
-        if beside.followed:
-            fitted, followed = beside, beside.followed
-    if terms.is_quiet:
-        followed = [s for s in followed if s.is_quiet]
+    fitted = fit_structures(platform, every, logs)
+    if not terms.is_quiet and not fitted.quiet:
+        fitted = _led_on(platform, fitted, terms, logs)
+    followed = fitted.quiet or ([] if terms.is_quiet else fitted.order[:FOLLOWED])
     outcomes = [searched(s, brief=True) for s in followed]
     if not terms.is_quiet:
         outcomes, terms = _at_length(outcomes, terms, searched)
@@ -135,6 +129,22 @@ def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choic
     rest = [s for s in fitted.every if s not in order]
     rows = tuple(_row(s, fitted.declared, chosen, refused) for s in [*order, *rest])
     return Choice(chosen, terms.outcome, rows, {**untried, **fitted.failed})
+
+
+def _led_on(platform: Platform, fitted: Fitted, terms: Searched, logs: Logs) -> Fitted:
+    """The structures led over windows: beside the effects that were found where these surely halve
+    the squared error of the declared structure, because others show beside them only.
+    """
+    trial = terms.found.chosen
+    declared = on_runs_of(terms.found.task, terms.found.declared, trial.fit.runs)
+    if all(c.is_declared_value for c in trial.candidates) or not gain(trial, declared).is_most:
+        return fitted.led_on(logs)
+    beside = with_effects(platform, trial)
+    own = {s.keys for s in fitted.every}
+    every = [rebuilt for rebuilt in structures(beside)[0] if rebuilt.keys in own]
+    led = fit_structures(beside, every, logs)
+    led = led if led.quiet else led.led_on(logs)
+    return led if led.order else fitted
 
 
 def _at_length(
@@ -153,17 +163,6 @@ def _at_length(
     if best is terms or not _is_far_ahead(best, terms):
         terms = searched(None, False)
     return list(outcomes), terms
-
-
-def _is_mostly_terms(terms: Searched) -> bool:
-    """Whether effects that the declared structure lacks surely halve its squared error, so that
-    another structure shows beside them only.
-    """
-    trial = terms.found.chosen
-    if all(c.is_declared_value for c in trial.candidates):
-        return False
-    declared = on_runs_of(terms.found.task, terms.found.declared, trial.fit.runs)
-    return gain(trial, declared).is_most
 
 
 def _best_fit(searches: Sequence[Searched]) -> Searched:

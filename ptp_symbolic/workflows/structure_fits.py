@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.structures import Rebuilt
@@ -34,13 +34,24 @@ class Logs:
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A platform as `declared` and all structures one step away from it, each fitted; by key, why
-    others could not be.
+    """A platform as declared and all structures one step away from it, each fitted; which of these
+    are the `better` half, and by key why others could not be.
     """
 
-    declared: FittedStructure
-    every: tuple[FittedStructure, ...]
+    alone: Begun
+    begun: tuple[Begun, ...]
+    better: tuple[int, ...]
     failed: Mapping[str, str]
+
+    @property
+    def declared(self) -> FittedStructure:
+        """The platform as declared."""
+        return self.alone.fitted
+
+    @property
+    def every(self) -> tuple[FittedStructure, ...]:
+        """All structures."""
+        return tuple(b.fitted for b in self.begun)
 
     @property
     def order(self) -> list[FittedStructure]:
@@ -48,40 +59,39 @@ class Fitted:
         return by_fit(self.declared, self.every)
 
     @property
-    def followed(self) -> list[FittedStructure]:
-        """The best that leaves noise alone; else the best few."""
-        order = self.order
-        return [s for s in order if s.is_quiet][:1] or order[:FOLLOWED]
+    def quiet(self) -> list[FittedStructure]:
+        """The best that leaves noise alone, if any does."""
+        return [s for s in self.order if s.is_quiet][:1]
+
+    def led_on(self, logs: Logs) -> "Fitted":
+        """The declared structure and the better half led over windows."""
+        logs.progress("leading structures over windows")
+        return replace(
+            self, alone=self.alone.led_on(), begun=_each(Begun.led_on, self.begun, self.better)
+        )
 
 
-def fit_structures(
-    platform: Platform, every: Sequence[Rebuilt], logs: Logs, *, lead: bool
-) -> Fitted:
+def fit_structures(platform: Platform, every: Sequence[Rebuilt], logs: Logs) -> Fitted:
     """Fit a platform and `every` structure one step away from it: a few iterations each from their
-    starts, the better half to the end of whole runs. Where none leaves noise alone then, that half
-    is led over windows too if `lead`.
+    starts, the better half to the end of whole runs.
     """
     logs.progress(f"fitting {len(every)} structures one step away")
     alone = _begun(platform, None, logs, {}).finished()
-    declared = (alone.led_on() if lead else alone).fitted
+    known = alone.fitted.trial.values
 
     def one(rebuilt: Rebuilt) -> Begun | str:
         try:
-            return _begun(rebuilt.platform, rebuilt, logs, declared.trial.values)
+            return _begun(rebuilt.platform, rebuilt, logs, known)
         except InputError as error:
             return f"the platform with it cannot be fitted: {error}"
 
     results = list(zip(every, side_by_side(one, every), strict=True))
     begun = [b for _, b in results if isinstance(b, Begun)]
-    better = _better_half(begun, declared)
+    better = _better_half(begun, alone.fitted)
     logs.progress(f"fitting the better {len(better)} of them to their end")
-    begun = _each(Begun.finished, begun, better)
-    if lead and not any(b.fitted.is_quiet for b in begun):
-        logs.progress("leading them over windows")
-        begun = _each(Begun.led_on, begun, better)
     tried = {key for b in begun for key in b.fitted.keys}
     failed = {r.keys[0]: b for r, b in results if isinstance(b, str) and r.keys[0] not in tried}
-    return Fitted(declared, tuple(b.fitted for b in begun), failed)
+    return Fitted(alone, _each(Begun.finished, begun, better), better, failed)
 
 
 def _begun(
@@ -96,16 +106,16 @@ def _begun(
     )
 
 
-def _better_half(begun: Sequence[Begun], declared: FittedStructure) -> list[int]:
+def _better_half(begun: Sequence[Begun], declared: FittedStructure) -> tuple[int, ...]:
     """Which structures fit better than half of them, at least as many as are followed."""
     cost = [misfit(b.fitted, declared) for b in begun]
     best_first = sorted(range(len(begun)), key=cost.__getitem__)
-    return best_first[: max(FOLLOWED, (len(begun) + 1) // 2)]
+    return tuple(best_first[: max(FOLLOWED, (len(begun) + 1) // 2)])
 
 
 def _each(
     step: Callable[[Begun], Begun], begun: Sequence[Begun], which: Sequence[int]
-) -> list[Begun]:
+) -> tuple[Begun, ...]:
     """The structures, those in `which` a step further."""
     further = dict(zip(which, side_by_side(step, [begun[k] for k in which]), strict=True))
-    return [further.get(k, b) for k, b in enumerate(begun)]
+    return tuple(further.get(k, b) for k, b in enumerate(begun))
