@@ -15,9 +15,8 @@ from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.symbols import ZERO, real
 
 WINDING, LOSS = "winding_resistance_{axis}", "winding_loss_{axis}"
-VOLTAGES = tuple(  # each from the next
-    f"{of}_{{axis}}" for of in ("motor_voltage", "amplifier_voltage", "drive_voltage", "command")
-)
+OF = ("motor_voltage", "amplifier_voltage", "drive_voltage", "command")  # each from the next
+VOLTAGES = tuple(f"{voltage}_{{axis}}" for voltage in OF)
 
 
 def motor_parameters(values: tuple[float, float, float, float]) -> tuple[Parameter, ...]:
@@ -45,8 +44,7 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
     """
     ratio = ratio * place.quantity("motor_lead_{axis}")
     inductance, resistance, constant, rotor = place.symbols(MOTOR)
-    current = real(f"i_{place.axis}")
-    applied = real(f"u_{place.axis}")
+    current, applied = real(f"i_{place.axis}"), real(f"u_{place.axis}")
     winding, loss = map(place.quantity, (WINDING, LOSS))
     voltage, amplified, switched, command = map(place.quantity, VOLTAGES)
     speed = ratio * place.gear_rate
@@ -60,9 +58,9 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
         stored=inductance * current**2 / 2,
         dissipated=loss + damping * speed**2,
     )
-    names = (WINDING, LOSS, *VOLTAGES)
     values = (resistance, winding * current**2, amplified, switched, command, applied)
-    defined = {n.format(axis=place.axis): v for n, v in zip(names, values, strict=True)}
+    names = (n.format(axis=place.axis) for n in (WINDING, LOSS, *VOLTAGES))
+    defined = dict(zip(names, values, strict=True))
     state = State(str(current), "A", f"current of the {place.axis} motor", derivative)
     rate = Sensor(f"omega_motor_{place.axis}", "rad/s", f"rate of the {place.axis} motor", speed)
     return Contribution(quantities=defined, drives=(drive,), states=(state,), sensors=(rate,))
