@@ -140,9 +140,9 @@ def integrate(
 
     `held`: inputs are zero-order hold, with jumps at stops only; those that samplers alone read
     need not be. With tangents, output times must be stops. The first tangents are by the parameters
-    `columns`; `delay_column` [nu] is per input the tangent of its delay, or -1. `lean`: states
-    and terms of effects at their vanishing values are left out, which changes nothing else (see
-    `Model.acting` and `kernels.specialised`); for the implicit method. `rough_tangents`:
+    `columns`; `delay_column` [nu] is per input the tangent of its delay, or -1. States that act on
+    nothing (see `Model.acting`) stand still under the implicit method. `lean`: so are the terms of
+    effects at their vanishing values left out (see `kernels.specialised`). `rough_tangents`:
     good to some thousandths is enough, so that exponential steps may carry them (see
     `methods.exponential_tangents`). Raises InputError
     as `refuse_start` and `new_sampling` do.
@@ -158,9 +158,10 @@ def integrate(
         nu,
     )
     solved, functions, c = n if s.shape[1] else model.moving, addresses(module), model.prepared(p)
-    if lean:
-        acting = model.acting(p, columns)
+    acting = model.acting(p, columns)
+    if method == "rosenbrock":
         solved = min(solved, acting)
+    if lean:
         zeros = zeros_of(x, acting, p, c, columns)
         functions = specialised(module).addresses(zeros, len(stops))
     x, u, cursor = x.copy(), np.zeros((3, nu)), inputs.new_cursor()
