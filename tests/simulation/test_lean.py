@@ -93,13 +93,13 @@ def test_a_model_with_every_effect_off_moves_as_one_without_any(declared, union,
 def test_states_stand_still_while_their_effect_is_off_and_not_asked_for(union) -> None:
     p, none = union.parameter_vector({}), np.zeros(0, dtype=np.int64)
     count = len(union.state_names)
-    assert union.state_names[-3:] == ("z_loss_pan", "rest_time_pan", "heat_pan")
+    assert union.state_names[-3:] == ("rest_time_pan", "heat_pan", "z_loss_pan")
     assert union.acting(p, none) == count - 3
     heat = np.array([union.parameter_names.index("k_heat_pan")], dtype=np.int64)
-    assert union.acting(p, heat) == count
+    assert union.acting(p, heat) == count - 1
     p[heat] = 0.01
-    assert union.acting(p, none) == count
-    for parameter, acting in (("mu_avg_pan", count - 2), ("a_rest_pan", count - 1)):
+    assert union.acting(p, none) == count - 1
+    for parameter, acting in (("mu_avg_pan", count), ("a_rest_pan", count - 2)):
         assert union.acting(union.parameter_vector({parameter: 0.2}), none) == acting
 
 
