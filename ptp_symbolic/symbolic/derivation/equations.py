@@ -144,7 +144,12 @@ class Equations:
             self.extra_states,
             key=lambda state: (state.symbol in sampled, state.name in idle, self._goes_on(state)),
         )
-        return (*self.coordinates[:joints], *self.rates[:joints], *gears, *(s.symbol for s in extra))
+        return (
+            *self.coordinates[:joints],
+            *self.rates[:joints],
+            *gears,
+            *(s.symbol for s in extra),
+        )
 
     def _goes_on(self, state: State) -> bool:
         """Whether the state of an effect at its vanishing values leaves zero, on a course that

@@ -187,9 +187,9 @@ class Contribution:
 
     `terms` are functions that the equations keep under their names, each of those before it.
     `potential` is an energy of the coordinates, whose gradient acts as torques; `stored` an energy
-    of the effect's own states, which its `torques` charge and discharge; what else those take out of
-    the machine is dissipated, and nothing that an effect gives counts as supplied but the
-    `power_in` of its drives: a torque that nothing drives has a potential. `delays` hold back the
+    of the effect's own states, which its `torques` charge and discharge; what else those take out
+    is dissipated. Supplied is the `power_in` of drives alone: a torque that no input drives has a
+    potential. `delays` hold back the
     inputs of an axis. `prescribed` gives joint rates an acceleration as input, in place of the
     torque on the joint; `commands` gives an axis other inputs than those of its drive; `inputs` are
     those that drive no axis, such as a temperature. What a sensor shows is the quantity

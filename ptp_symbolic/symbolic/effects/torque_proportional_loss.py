@@ -2,7 +2,7 @@
 
 The losses come up over a small angle after a reversal, as teeth and seals bend before they slip: a
 state between -1 and 1 says how far. What has bent gives back a part of the work: the ledger takes
-that off what is dissipated, for a stiffness that goes with the load stores no energy of its own. The
+that off what is dissipated, for a stiffness that goes with the load has no energy of its own. The
 torque is that of the shaft, of a motor without one at the gear output, or the torque input.
 """
 
