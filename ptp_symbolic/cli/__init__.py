@@ -1,70 +1,19 @@
 """The commands `ptp-symbolic` and `regenerate-equations`."""
 
-import sys
-
-import click
-
-from ptp_symbolic.cli.check import check
-from ptp_symbolic.cli.diagnose import diagnose, fit
-from ptp_symbolic.cli.experiment import experiment
-from ptp_symbolic.cli.friction_map import friction_map
-from ptp_symbolic.cli.lists import effects, models, platforms
-from ptp_symbolic.cli.regenerate import regenerate
-from ptp_symbolic.cli.report import report
-from ptp_symbolic.cli.simulate import sensitivity, simulate
-from ptp_symbolic.errors import InputError
-
-
-@click.group()
-@click.version_option(package_name="ptp-symbolic")
-def commands() -> None:
-    """Equations of pan-tilt platforms: derive, compile, simulate, fit, diagnose."""
-
-
-for command in (
-    regenerate,
-    simulate,
-    sensitivity,
-    check,
-    friction_map,
-    fit,
-    diagnose,
-    experiment,
-    report,
-    effects,
-    models,
-    platforms,
-):
-    commands.add_command(command)
+from ptp_symbolic.cli.interruption import interruptible
 
 
 def main() -> None:
     """Entry point of `ptp-symbolic`."""
-    run(commands)
+    with interruptible():
+        from ptp_symbolic.cli.commands import commands, run
+
+        run(commands)
 
 
 def regenerate_main() -> None:
     """Entry point of `regenerate-equations`."""
-    run(regenerate)
+    with interruptible():
+        from ptp_symbolic.cli.commands import regenerate, run
 
-
-def run(command: click.Command) -> None:
-    """Run `command`; what the user got wrong is one line on stderr and exit code 2."""
-    try:
-        code = command.main(standalone_mode=False)
-    except click.exceptions.Exit as ended:
-        sys.exit(ended.exit_code)
-    except click.Abort:
-        sys.exit(2)
-    except click.ClickException as wrong:
-        _refuse(" ".join(wrong.format_message().split()))
-    except InputError as wrong:
-        _refuse(str(wrong))
-    except OSError as wrong:
-        _refuse(f"{wrong.filename or 'A file'}: {wrong.strerror or wrong}; check path and rights.")
-    sys.exit(code if isinstance(code, int) else 0)
-
-
-def _refuse(message: str) -> None:
-    click.echo(f"ptp-symbolic: {message}", err=True)
-    sys.exit(2)
+        run(regenerate)

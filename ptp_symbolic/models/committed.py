@@ -1,5 +1,6 @@
 """Emit the committed models into `generated/`, or check that they are what would be emitted."""
 
+import importlib.metadata
 import subprocess
 import sys
 import sysconfig
@@ -22,7 +23,17 @@ COMMITTED = {
     "full": "thesis-full",
 }
 LINE_LENGTH = 100
-THIRD_PARTY = frozenset({"numba", "numpy", "ptp_symbolic", "ruff", "scipy", "sympy"})
+# Packages that emitted modules and those who call them import, installed here or not.
+IMPORTED = (
+    "casadi fmpy generated h5py jax mujoco numba numpy pandas pip pytest ruff scipy setuptools"
+    " sklearn sympy torch wheel"
+)
+# Files that Python itself, pytest, setuptools, nox, doit, fabric and torch run where they lie.
+RUN_UNASKED = (
+    "__init__ __main__ conftest dodo fabfile hubconf noxfile setup sitecustomize tasks"
+    " usercustomize"
+)
+DEVICES = "aux con nul prn" + "".join(f" com{k} lpt{k}" for k in range(1, 10))
 
 
 def declared_platform(source: str | Path) -> Platform:
@@ -71,13 +82,32 @@ def regenerate_into(folder: Path, platforms: Sequence[Platform], check: bool = F
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"Two platforms are called '{name}'; change the name of one.")
-        if name in sys.stdlib_module_names or name in THIRD_PARTY:
+        if fate := _taken(name):
             raise InputError(
-                f"A module called {name}.py would be imported in place of Python's own '{name}' by"
-                " whatever runs in its folder; change the name of the platform."
+                f"A module called {name}.py would be {fate}; change the name of the platform."
             )
     texts = {platform.name: module_of(platform) for platform in platforms}
     return _write(texts, folder, check)
+
+
+def _taken(name: str) -> str:
+    """What would become of a module called `name`, where that name is another's, else nothing.
+
+    Where upper and lower case are one, as on Windows, so are their names.
+    """
+    installed = importlib.metadata.packages_distributions()
+    for taken, fate in (
+        (
+            {*sys.stdlib_module_names, *installed, *IMPORTED.split()},
+            "imported in place of '{}' by whatever runs in its folder",
+        ),
+        (RUN_UNASKED.split(), "run unasked, as every '{}' is"),
+        (DEVICES.split(), "a device of Windows, as every '{}' is"),
+    ):
+        for other in taken:
+            if name.lower() == other.lower():
+                return fate.format(other)
+    return ""
 
 
 def _write(texts: Mapping[str, str], folder: Path, check: bool) -> Outcome:
@@ -85,7 +115,7 @@ def _write(texts: Mapping[str, str], folder: Path, check: bool) -> Outcome:
     unchanged: list[str] = []
     for name, text in texts.items():
         path = folder / f"{name}.py"
-        same = path.is_file() and path.read_text(encoding="utf-8") == text
+        same = path.is_file() and path.read_bytes() == text.encode()
         (unchanged if same else changed).append(path.name)
         if not same and not check:
             write_text_if_changed(path, text)

@@ -4,9 +4,12 @@ Writing the module of a machine with all its candidates takes many times as long
 equations: what was once written is found again by the equations and the program that wrote it.
 """
 
+import atexit
 import functools
 import hashlib
 import os
+import re
+import shutil
 import stat
 import tempfile
 from collections.abc import Mapping
@@ -26,23 +29,27 @@ from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 
 DIGITS = 16  # of a SHA-256 in a name: 64 bits
+MODULE_NAME = re.compile(rf"ptp_model_[0-9a-f]{{{DIGITS}}}\.py")
 
 
 def cache_folder() -> Path:
     """Folder of modules emitted for platforms of the user (PTP_SYMBOLIC_CACHE, else the usual),
-    made where it is missing.
+    made where it is missing, and that of their compiled functions.
 
-    Raises InputError for a folder in which another user may write: what lies there is run.
+    Raises InputError for a folder in which another user may write: what lies there is run. Raises
+    OSError where it cannot be made.
     """
     folder = _usual_folder()
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    if hasattr(os, "getuid"):
-        found = folder.stat()
-        if found.st_uid != os.getuid() or found.st_mode & stat.S_IWOTH:
-            raise InputError(
-                f"The cache folder {folder} can be written by other users, and what lies there is"
-                " run; set PTP_SYMBOLIC_CACHE to a folder of your own."
-            )
+    for own in (folder, folder / "__pycache__"):
+        own.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if hasattr(os, "getuid"):
+            found = own.stat()
+            if found.st_uid != os.getuid() or found.st_mode & (stat.S_IWOTH | stat.S_IWGRP):
+                raise InputError(
+                    f"The cache folder {own} can be written by other users, and what lies there is"
+                    f" run; take that right away (chmod go-w {own}), or set PTP_SYMBOLIC_CACHE to a"
+                    " folder of your own."
+                )
     return folder
 
 
@@ -62,10 +69,11 @@ def _usual_folder() -> Path:
 
 
 def emitted(equations: Equations, usual: Mapping[str, Parameter]) -> Path:
-    """The module of `equations`, written unless it is there.
+    """The module of `equations`, written unless it is there, and whole.
 
-    Machines that differ in their numbers alone share it, and what is compiled of it: it has the
-    `usual` values of all parameters.
+    Where the folder of modules has no room, it is written where temporary files go, for this
+    process alone. Machines that differ in their numbers alone share it, and what is compiled of it:
+    it has the `usual` values of all parameters.
     """
     shared = replace(
         equations,
@@ -73,18 +81,37 @@ def emitted(equations: Equations, usual: Mapping[str, Parameter]) -> Path:
         title="Machine of a user",
         parameters=tuple(usual[p.name] for p in equations.parameters),
     )
-    folder = cache_folder()
-    known = folder / f"{_digest(_program(), described(shared))}.name"
-    if known.is_file():
-        path = folder / known.read_text(encoding="utf-8")
-        with suppress(OSError, InputError):
-            verify(path)
-            return path
+    key = f"{_digest(_program(), described(shared))}.name"
+    try:
+        folder = cache_folder()
+    except OSError:
+        return _written(_folder_of_process(), key, module_text(shared))
+    with suppress(OSError, UnicodeDecodeError, InputError):
+        name = (folder / key).read_text(encoding="utf-8")
+        if MODULE_NAME.fullmatch(name):
+            verify(folder / name)
+            return folder / name
     text = module_text(shared)
+    try:
+        return _written(folder, key, text)
+    except InputError:
+        return _written(_folder_of_process(), key, text)
+
+
+def _written(folder: Path, key: str, text: str) -> Path:
+    """The module of this `text` in `folder`, and a file called `key` with its name."""
     path = folder / f"ptp_model_{_digest(text)}.py"
     write_text_if_changed(path, text)
-    write_text_if_changed(known, path.name)
+    write_text_if_changed(folder / key, path.name)
     return path
+
+
+@functools.cache
+def _folder_of_process() -> Path:
+    """A new folder for temporary files, gone with the process."""
+    folder = tempfile.mkdtemp(prefix="ptp_symbolic-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
 
 
 def described(value: object) -> str:

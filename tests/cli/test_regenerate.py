@@ -80,7 +80,42 @@ def test_every_command_refuses_a_platform_in_the_same_words(
         assert wanted in done.err
 
 
-@pytest.mark.parametrize("name", ["numpy", "os", "ruff"])
+def test_a_file_that_is_no_text_differs_and_is_replaced(call, own: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "modules"
+    call("regenerate", own, "--out", folder)
+    whole = (folder / "turret.py").read_bytes()
+    (folder / "turret.py").write_bytes(b"\xff\xfe\x00" + whole)
+    done = call("regenerate", own, "--out", folder, "--check")
+    assert (done.code, done.err) == (1, "")
+    assert done.out == f"differs from its equations: {folder / 'turret.py'}\n"
+    done = call("regenerate", own, "--out", folder)
+    assert (done.code, done.err) == (0, "")
+    assert (folder / "turret.py").read_bytes() == whole
+
+
+@pytest.mark.parametrize(
+    ("name", "fate"),
+    [
+        ("conftest", "run unasked"),
+        ("sitecustomize", "run unasked"),
+        ("setup", "run unasked"),
+        ("con", "a device of Windows"),
+        ("Nul", "a device of Windows"),
+        ("lpt1", "a device of Windows"),
+    ],
+)
+def test_a_module_that_is_more_than_a_module_is_refused(
+    call, name: str, fate: str, own: Path, tmp_path: Path
+) -> None:
+    own.write_text(own.read_text().replace('"turret"', f'"{name}"'), encoding="utf-8")
+    done = call("regenerate", own, "--out", tmp_path / "modules")
+    assert done.code == 2
+    assert f"A module called {name}.py would be {fate}" in done.err
+    assert "change the name of the platform" in done.err
+    assert not (tmp_path / "modules").exists()
+
+
+@pytest.mark.parametrize("name", ["numpy", "NumPy", "os", "ruff", "click", "rich", "torch"])
 def test_a_module_that_would_hide_another_is_refused(
     call, name: str, own: Path, tmp_path: Path
 ) -> None:

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.data.continuity import jumps, parted
+from ptp_symbolic.numeric.data.continuity import jumps, parted, pauses, unwrapped
+from ptp_symbolic.platform import SignalDeclaration
 
 PERIOD = 0.01
 TIME = PERIOD * np.arange(800)
@@ -54,3 +55,26 @@ def test_what_a_machine_does_is_no_jump(angle: np.ndarray) -> None:
 def test_samples_that_are_missing_are_no_jump() -> None:
     kept = np.delete(np.arange(800), [300, 301, 302])
     assert jumps(rounded(WAVE[kept]), TIME[kept], COUNT).size == 0
+
+
+@pytest.mark.parametrize("bits", [12, 16])
+def test_a_counter_that_runs_over_goes_on_by_its_own_span(bits: int) -> None:
+    """Of 2^bits counts, at 3000 counts per revolution: both span more than a turn and no whole
+    number of turns.
+    """
+    cpr = 3000
+    span = 2.0**bits * 2.0 * np.pi / cpr
+    whole = 2.2 * span * np.sin(0.4 * TIME)
+    declared = SignalDeclaration("theta_pan", "angle", "rad", "output", counts_per_revolution=cpr)
+    found, wraps = unwrapped(np.mod(whole, span), declared)
+    assert found == pytest.approx(whole, abs=1e-9)
+    assert wraps is not None and wraps.span == pytest.approx(span, rel=1e-12)
+    assert wraps.count == np.count_nonzero(np.diff(np.floor(whole / span)))
+
+
+def test_a_short_pause_beside_a_long_one_is_one() -> None:
+    """Of ten and more usual sampling periods each, however long others are."""
+    step = np.full(99, PERIOD)
+    step[30], step[60] = 5.0, 30.0 * PERIOD
+    step[80] = 9.0 * PERIOD
+    assert list(pauses(np.concatenate([[0.0], np.cumsum(step)]))) == [31, 61]

@@ -186,6 +186,18 @@ def test_an_input_acts_later_by_its_delay(tmp_path: Path, delay: float) -> None:
     assert given[aside] == pytest.approx(exact[aside], abs=1e-12)
 
 
+@pytest.mark.parametrize("delay", [0.03, -0.03])
+def test_a_log_begins_where_its_late_input_begins_to_act(tmp_path: Path, delay: float) -> None:
+    """Before, what acted was given before the log; its last value acts on to the end."""
+    late = {"u_pan": delay}
+    log = read_log(late_log(tmp_path, {}, 0.2), timed(late, COUNTS))
+    first, last = max(TIMES[0] + delay, TIMES[0]), min(TIMES[-1] + delay, TIMES[-1])
+    assert log.time[0] == pytest.approx(first, abs=1e-9)
+    assert log.time[-1] == pytest.approx(last, abs=1e-9)
+    acted = log.inputs[:, 0] > 0.5
+    assert log.time[acted][0] == pytest.approx(0.2 + delay, abs=1e-9)
+
+
 def test_a_gyro_of_another_delay_comes_onto_the_clock_of_the_encoder(tmp_path: Path) -> None:
     late = {"theta_pan": 0.004, "theta_tilt": 0.004, "omega_pan": 0.0173}
     log = read_log(late_log(tmp_path, late, 0.2), timed(late, COUNTS))

@@ -102,8 +102,9 @@ def test_what_it_brings_is_named_after_its_axis_and_stores_what_its_states_hold(
             names = [p.name for p in effect.parameters_at(place)] + [s.name for s in added.states]
             assert all(place.axis in name.split("_") for name in names), names
         if added.states and added.torques:
-            declared = added.stored != 0 or added.dissipated != 0
-            assert declared, "torques of a state work on what it stores: declare it, or the losses"
+            given = {place.quantity(need) for need in effect.needs}
+            by_others = any(torque.free_symbols & given for torque in added.torques.values())
+            assert added.stored != 0 or by_others, "its states hold energy: declare it as `stored`"
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=IDS)

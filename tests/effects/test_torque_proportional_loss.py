@@ -55,7 +55,9 @@ def test_losses_come_up_as_an_exponential_of_the_angle(model: Model) -> None:
 
 
 def test_motion_and_ledger_under_a_torque_that_swings(model: Model) -> None:
-    """SciPy integrates the law, and what its friction dissipates: |w| z^2 times the loss."""
+    """SciPy integrates the law and its powers: what the input gives, what the loss takes (of which
+    what has bent gives back a part: all but |w| z^2 times the loss).
+    """
     amplitude, frequency = 0.9, 3.0
     times = np.linspace(0.0, 1.0, 51)
 
@@ -74,9 +76,8 @@ def test_motion_and_ledger_under_a_torque_that_swings(model: Model) -> None:
     found = simulate(model, times, driven, GEAR, rtol=1e-9, atol=1e-11)
     assert found["omega_pan"] == pytest.approx(own.y[1], abs=1e-5)
     assert found["z_loss_pan"] == pytest.approx(own.y[2], abs=1e-5)
-    assert found.supplied == pytest.approx(own.y[3] - own.y[5], abs=1e-5)
-    assert found.dissipated == pytest.approx(own.y[4], abs=1e-5)
-    assert np.all(np.diff(found.dissipated) >= -1e-10)
+    assert found.supplied == pytest.approx(own.y[3], abs=1e-5)
+    assert found.dissipated == pytest.approx(own.y[4] + own.y[5], abs=1e-5)
     assert found["z_loss_pan"].min() < -0.9
     stored = J / 2 * found["omega_pan"] ** 2
     assert stored == pytest.approx(found.supplied - found.dissipated, abs=1e-7)

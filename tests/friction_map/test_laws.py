@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 from scipy.stats import binom
+from scipy.stats import t as student
 
 from ptp_symbolic.numeric.friction_map.choice import choose, compare
 from ptp_symbolic.numeric.friction_map.intervals import profile
@@ -181,3 +182,37 @@ def test_points_without_scatter_are_fitted_exactly(law: Callable[[float], float]
     found = friction_map(Points("e.csv", rate, law(rate)), "pan", 0.95)
     assert len(found["parts"]) == 1 + (law is not np.sign)
     assert found["rms"]["law"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_an_interval_of_a_linear_law_is_that_of_student() -> None:
+    """Viscous and Coulomb friction is a straight line on each side: SciPy's t-distribution."""
+    points = drawn(4, VISCOUS, VISCOUS)
+    found = profile(compare(points), Member("", True), 0.95)
+    columns = np.column_stack([np.sign(points.rate), points.rate])
+    values, (rss,), *_ = np.linalg.lstsq(columns, points.torque, rcond=None)
+    left = len(points.rate) - 2
+    spread = np.sqrt(rss / left * np.diag(np.linalg.inv(columns.T @ columns)))
+    half = student.isf(0.025, left) * spread
+    estimates = {name: found.linear(w) for name, w in found.weights()[1].items()}
+    for k, name in enumerate(("F_c", "F_v")):
+        own = estimates[name]
+        assert (own.low, own.high) == pytest.approx(
+            (values[k] - half[k], values[k] + half[k]), rel=1e-6
+        )
+
+
+def test_a_law_is_given_up_at_one_chance_in_a_hundred_not_at_five() -> None:
+    """Points that Coulomb friction alone makes as seldom as one in thirty are no evidence yet."""
+    doubtful = 0
+    for seed in range(400):
+        points = compare(drawn(seed, COULOMB_ALONE, COULOMB_ALONE))
+        strict = choose(points, level=0.05)
+        if strict.member == Member("", False):
+            continue
+        p = choose(points).p_values[Member("", False)]
+        if p > 0.012:
+            doubtful += 1
+            assert choose(points).member == Member("", False)
+        if doubtful == 3:
+            break
+    assert doubtful == 3

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
+from ptp_symbolic.numeric.identify.bounded_step import limited_step
 from ptp_symbolic.numeric.identify.constants import LARGEST_STEP
 from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.least_squares import (
@@ -140,6 +141,21 @@ def test_what_a_bound_holds_up_the_others_make_good_at_once() -> None:
     assert exact[0] == pytest.approx(box[0][0])
     assert box[0][1] < exact[1] < box[1][1]
     assert found.phi == pytest.approx(exact, abs=2e-3)
+
+
+@pytest.mark.parametrize("size", [(1.0, 1.0, 1.0), (100.0, 0.01, 1.0)])
+def test_what_is_fixed_at_its_bound_pulls_on_those_that_are_free(
+    size: tuple[float, float, float],
+) -> None:
+    """The least of a quadratic in a box, two of three at their bounds, by hand: the third solves
+    its own equation with what the others take; the scale of the parameters does not matter.
+    """
+    unscaled = np.array([[4.0, 3.0, 1.0], [3.0, 9.0, 2.0], [1.0, 2.0, 5.0]])
+    scale = np.array(size)
+    matrix, right = unscaled * np.outer(scale, scale), np.array([-10.0, 1.0, 9.0]) * scale
+    low, high = np.array([-0.5, -9.0, -9.0]) / scale, np.array([9.0, 9.0, 1.0]) / scale
+    step = limited_step(matrix, right, np.sqrt(np.diag(matrix)), low, high) * scale
+    assert step == pytest.approx([-0.5, (1.0 - 3.0 * -0.5 - 2.0 * 1.0) / 9.0, 1.0], rel=1e-12)
 
 
 def test_steps_into_a_failing_region_are_never_accepted(curves: Curves) -> None:

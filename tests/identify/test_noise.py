@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy import stats
 from scipy.signal import lfilter
 
 from ptp_symbolic.numeric.identify.noise import (
+    POLES,
     coloured_noise,
     differences,
     hidden_from_differences,
@@ -199,3 +201,17 @@ def test_a_signal_that_rests_or_is_short_shows_no_correlation() -> None:
     """Nothing is left of the one, two segments of the other."""
     assert neighbour_correlation(np.ones(5000)) is None
     assert neighbour_correlation(remembering(0.0, 1, 150)[0]) is None
+
+
+def test_the_quietest_of_many_runs_is_quiet_by_chance() -> None:
+    """Runs that leave the same allow more the more there are: each may be below the truth with the
+    chance of the test over their number. Quantiles of chi-squared for the largest pole that is
+    tried; SciPy.
+    """
+    pole, n = POLES[-1], 4000
+    series = np.where(np.arange(n) % 2 == 0, 1.0, -1.0)  # mean square one
+    degrees = n * (1.0 - pole**2) / (1.0 + pole**2)
+    for runs in (1, 4, 16):
+        allowed = most_in_quietest([[series]] * runs)
+        below = stats.chi2.cdf(degrees / allowed**2, degrees)
+        assert below == pytest.approx(0.01 / runs, rel=1e-6)

@@ -57,7 +57,7 @@ def test_other_equations_are_another_module(machine: Machine, written: list[str]
     assert len(paths) == len(written) == 2
 
 
-@pytest.mark.parametrize("damage", [b"cut", None])
+@pytest.mark.parametrize("damage", [b"cut", b"\xff\xfe", b"\0", None])
 def test_a_damaged_module_is_written_again(
     damage: bytes | None, machine: Machine, written: list[str]
 ) -> None:
@@ -69,6 +69,33 @@ def test_a_damaged_module_is_written_again(
     assert module_cache.emitted(*machine) == path
     assert path.read_bytes() == whole
     assert len(written) == 2
+
+
+@pytest.mark.parametrize("damage", [b"", b"\xff\xfe", b"a\0b", b"../../elsewhere.py"])
+def test_a_damaged_name_is_written_again(
+    damage: bytes, machine: Machine, written: list[str]
+) -> None:
+    path = module_cache.emitted(*machine)
+    (name,) = path.parent.glob("*.name")
+    whole = name.read_bytes()
+    name.write_bytes(damage)
+    assert module_cache.emitted(*machine) == path
+    assert name.read_bytes() == whole
+
+
+def test_a_folder_without_room_is_replaced_for_the_process(
+    machine: Machine, written: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing can be written: a folder has the name of the file, or a file that of the folder."""
+    usual = module_cache.emitted(*machine)
+    usual.unlink()
+    usual.mkdir()
+    other = module_cache.emitted(*machine)
+    monkeypatch.setenv("PTP_SYMBOLIC_CACHE", str(next(usual.parent.glob("*.name")) / "below"))
+    assert module_cache.emitted(*machine) == other
+    assert other.name == usual.name
+    assert not other.is_relative_to(usual.parent)
+    assert other.parent.stat().st_mode & 0o777 == 0o700
 
 
 def test_another_program_writes_anew(
@@ -95,12 +122,14 @@ def test_the_description_is_the_same_in_every_process(
     assert len(printed_in_two_processes(script, str(preset))) == 1
 
 
+@pytest.mark.parametrize("mode", [0o777, 0o770, 0o702])
+@pytest.mark.parametrize("inside", ["", "__pycache__"])
 def test_a_folder_that_others_may_write_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    mode: int, inside: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder = tmp_path / "open"
-    folder.mkdir()
-    folder.chmod(0o777)
+    (folder / inside).mkdir(parents=True)
+    (folder / inside).chmod(mode)
     monkeypatch.setenv("PTP_SYMBOLIC_CACHE", str(folder))
     with pytest.raises(InputError, match="can be written by other users"):
         module_cache.cache_folder()

@@ -79,7 +79,7 @@ def test_no_effect_is_named_by_the_report() -> None:
         ("quadratic_drag", True),
         ("maxwell_slip_friction", True),
         ("lugre_friction", True),
-        ("constant_torque", False),
+        ("constant_torque", None),
         ("dc_motor", False),
         ("cable_spring", None),
         ("cogging", None),

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ptp_symbolic import simulate
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.numeric.simulation.integration import Accuracy, geared_weights, integrate
 from ptp_symbolic.numeric.simulation.kernels import specialised
@@ -19,7 +20,6 @@ from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
 from ptp_symbolic.platform import read_platform
 
 PLATFORM = Path(__file__).parents[1] / "platforms" / "fieldlog_pan.toml"
-MOVING = "torque_proportional_loss"
 TIMES = np.arange(0.0, 3.0, 0.005)
 VOLTAGE = 8.0 * np.sin(5.0 * TIMES) + 3.0 * np.sin(17.0 * TIMES)  # V; reverses, crosses the gap
 STATM = Path("/proc/self/statm")
@@ -33,11 +33,9 @@ def declared():
 
 @pytest.fixture(scope="module")
 def union():
-    """The platform with every candidate but the one whose state moves while it does nothing: to
-    integrate that limits the steps.
-    """
+    """The platform with every candidate."""
     platform = read_platform(PLATFORM)
-    others = [e for e in variants.candidate_effects(platform) if e.effect != MOVING]
+    others = variants.candidate_effects(platform)
     return emission.emit(replace(platform, effects=(*platform.effects, *others)))
 
 
@@ -95,14 +93,22 @@ def test_a_model_with_every_effect_off_moves_as_one_without_any(declared, union,
 def test_states_stand_still_while_their_effect_is_off_and_not_asked_for(union) -> None:
     p, none = union.parameter_vector({}), np.zeros(0, dtype=np.int64)
     count = len(union.state_names)
-    assert union.state_names[-2:] == ("rest_time_pan", "heat_pan")
-    assert union.acting(p, none) == count - 2
+    assert union.state_names[-3:] == ("rest_time_pan", "heat_pan", "z_loss_pan")
+    assert union.acting(p, none) == count - 3
     heat = np.array([union.parameter_names.index("k_heat_pan")], dtype=np.int64)
-    assert union.acting(p, heat) == count
+    assert union.acting(p, heat) == count - 1
     p[heat] = 0.01
-    assert union.acting(p, none) == count
-    resting = union.parameter_vector({"a_rest_pan": 0.2})
-    assert union.acting(resting, none) == count - 1
+    assert union.acting(p, none) == count - 1
+    for parameter, acting in (("mu_avg_pan", count), ("a_rest_pan", count - 2)):
+        assert union.acting(union.parameter_vector({parameter: 0.2}), none) == acting
+
+
+def test_a_state_of_an_effect_that_is_off_stands_still_in_every_run(union) -> None:
+    """The losses of a gear come up over an angle, whatever they are: at none, nothing is seen."""
+    u = {"u_pan": table(TIMES, VOLTAGE)}
+    off, on = (simulate(union, TIMES, u, {"mu_avg_pan": v})["z_loss_pan"] for v in (0.0, 0.1))
+    assert not off.any()
+    assert on.max() > 0.99 and on.min() < -0.99
 
 
 def test_derivatives_by_an_effect_that_is_off_are_not_lost(union, at_once) -> None:

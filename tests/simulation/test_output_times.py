@@ -26,3 +26,10 @@ def test_an_interval_is_a_positive_number() -> None:
     for wrong in (0.0, -1.0, float("nan")):
         with pytest.raises(InputError, match="give a positive number of seconds"):
             output_times(1.0, wrong)
+
+
+def test_only_what_rounding_leaves_is_divided_evenly() -> None:
+    """A quarter of an interval at the end is an interval of its own."""
+    assert output_times(1.0, 0.8) == pytest.approx([0.0, 0.8, 1.0], abs=0.0)
+    assert output_times(1.0, 0.16)[-2:] == pytest.approx([0.96, 1.0], abs=1e-12)
+    assert len(output_times(0.1 * 3.0, 0.1)) == 4

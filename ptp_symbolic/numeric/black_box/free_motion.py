@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ptp_symbolic.numeric.identify.evaluate import Tolerance, start_state
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.integration import Accuracy, default_method, integrate
+from ptp_symbolic.numeric.simulation.integration import Accuracy, integrate
 from ptp_symbolic.numeric.simulation.kernels.records import DONE
 from ptp_symbolic.numeric.simulation.signals.delays import delayed, delays_of
 
@@ -93,7 +93,6 @@ def simulated(
     acts = {model.parameter_names.index(TORQUE.format(axis=a)): f for a, f in torques.items()}
     table = [delayed(run.inputs, delays_of(model, p)) for run in runs]
     accuracy = Accuracy(tolerance.relative, tolerance.absolute(model), 1.0)
-    method = default_method(model)
     states = [np.full((len(run.time), len(model.state_names)), np.nan) for run in runs]
     for found, run, start in zip(states, runs, z, strict=True):
         found[0] = start_state(model, run, p, start, none)[0]
@@ -109,7 +108,7 @@ def simulated(
                 own[place] += torque[row]
             ends = runs[r].time[k : k + 2]
             stops, x = table[r].with_stops(ends), states[r][k]
-            end = integrate(model, method, own, x, table[r], True, stops, ends, accuracy)
+            end = integrate(model, None, own, x, table[r], True, stops, ends, accuracy)
             if end.status == DONE:
                 states[r][k + 1] = end.x[-1]
     return states

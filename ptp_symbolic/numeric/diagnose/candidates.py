@@ -97,6 +97,17 @@ def with_what_needs_it(candidate: Candidate, candidates: Sequence[Candidate]) ->
     return replace(candidate, free=free, vanishing=vanishing)
 
 
+def with_all_they_need(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
+    """Those of `candidates` that find everything they bring among them, in the same order."""
+    kept = tuple(candidates)
+    while True:
+        keys = {c.key for c in kept}
+        able = tuple(c for c in kept if keys.issuperset(c.brings))
+        if len(able) == len(kept):
+            return kept
+        kept = able
+
+
 def find_candidates(
     model: Model, declared: Sequence[str], known: Mapping[str, tuple[float, float | None]]
 ) -> tuple[Candidate, ...]:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from ptp_symbolic.numeric.diagnose.candidates import Candidate
+from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_all_they_need
 from ptp_symbolic.numeric.diagnose.findings import Step, is_earned, looked_at, step_of
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain, p_value
@@ -58,8 +58,10 @@ class Seeker:
     followed: Trial | None = None
 
     def among(self, candidates: tuple[Candidate, ...]) -> "Seeker":
-        """The search among other candidates, which knows what was tried so far."""
-        task = replace(self.task, candidates=candidates)
+        """The search among other candidates, which knows what was tried so far. One that needs
+        another that is not among them has nothing to act on.
+        """
+        task = replace(self.task, candidates=with_all_they_need(candidates))
         return Seeker(task, self.declared, self.proposals, self.carried, self.tried)
 
     def unseen(self, trial: Trial) -> list[Trial]:

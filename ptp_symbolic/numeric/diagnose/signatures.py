@@ -227,7 +227,8 @@ def _strongest(
     carriers: FloatArray,
 ) -> tuple[list[float], float, int]:
     """The frequencies in Hz, or in cycles per turn, of the strongest lines of the residual torques,
-    the lowest that is a line, and how many can be told from one another.
+    the lowest that is a line, and how many can be told from one another; none where the axis of the
+    candidate never moves.
 
     `carriers` [n, m] is what the candidate does at no frequency, orthonormal when rows count by
     `weight`: over many cycles sines and cosines on them are orthogonal too, so that the squared
@@ -238,6 +239,8 @@ def _strongest(
     by_angle = candidate.locked[1] == "angle"
     own = axes_of(space, candidate)
     rows = np.isin(equation, own)
+    if not rows.any():  # an axis that rests throughout has no rows, and nothing moves along it
+        return [], 0.0, 1
     place, speed = time[rows], np.ones(int(rows.sum()))
     if by_angle:
         place, speed, _ = row_motion(space, own[0])

@@ -14,7 +14,6 @@ from ptp_symbolic.numeric.runtime.element_layout import contact_guards
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.integration import (
     Accuracy,
-    default_method,
     geared_weights,
     integrate,
 )
@@ -194,7 +193,7 @@ def evaluate(
     table = delayed(run.inputs, late)
     found = integrate(
         model,
-        default_method(model),
+        None,
         p,
         x,
         table,

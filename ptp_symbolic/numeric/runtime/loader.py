@@ -39,6 +39,8 @@ def load_module(path: Path, import_name: str) -> Model:
 
     Raises InputError when the text of the module does not fit its checksum or cannot be imported.
     """
+    from ptp_symbolic.numeric.runtime import compiled  # noqa: F401
+
     verify(path)
     if import_name in sys.modules:
         return Model(sys.modules[import_name])
@@ -67,9 +69,8 @@ class _FromSource(SourceFileLoader):
 
 def verify(path: Path) -> None:
     """Raise InputError unless the last line of `path` is the SHA-256 of everything above it."""
-    text = path.read_text(encoding="utf-8")
-    above, found, digest = text.rpartition(TRAILER)
-    if not found or hashlib.sha256(above.encode()).hexdigest() != digest.strip():
+    above, found, digest = path.read_bytes().rpartition(TRAILER.encode())
+    if not found or hashlib.sha256(above).hexdigest().encode() != digest.strip():
         raise InputError(
             f"{path.name} does not fit its checksum: it was edited or truncated; run"
             " 'ptp-symbolic regenerate'."

@@ -194,7 +194,10 @@ class Model:
     def _idle(self) -> dict[str, list[tuple[int, float]]]:
         """Index and vanishing value of the parameters that leave a state without influence."""
         off = {p.name: (k, float(p.vanishes or 0.0)) for k, p in enumerate(self.parameters)}
-        return {state: [off[name] for name in names] for state, names in self.module.IDLE_STATES}
+        return {
+            state: [off[name] for name in names]
+            for state, names in vars(self.module).get("IDLE_STATES", ())
+        }
 
     def acting(self, p: FloatArray, columns: NDArray[np.int64]) -> int:
         """Number of states, from the first on, that may act on anything at p [np], or on the

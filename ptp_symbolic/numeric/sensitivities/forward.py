@@ -16,10 +16,15 @@ from numpy.typing import ArrayLike, NDArray
 from ptp_symbolic.errors import unknown
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.integration import (
+    EXPLICIT,
+    IMPLICIT,
     METHODS,
+    Solution,
     checked_accuracy,
     integrate,
+    stable_step,
 )
+from ptp_symbolic.numeric.simulation.kernels.records import STIFF
 from ptp_symbolic.numeric.simulation.run import (
     checked_parameters,
     chosen_method,
@@ -32,9 +37,6 @@ from ptp_symbolic.numeric.simulation.signals.delays import delay_columns
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal
 
 FloatArray = NDArray[np.float64]
-
-EXPLICIT = "runge_kutta"
-STABLE = 2.5  # step of the explicit method over the shortest time constant
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,42 +89,32 @@ def sensitivity(
         s[_index(model.state_names, name, "state"), len(columns) + offset] = 1.0
     chosen = chosen_method(model, method, tuple(METHODS))
     accuracy = checked_accuracy(model, rtol, atol, largest_step)
-    if chosen == EXPLICIT:
-        accuracy = replace(accuracy, largest_step=min(largest_step, stable_step(model, p, x)))
-    found = integrate(
-        model,
-        chosen,
-        p,
-        x,
-        table,
-        table.held,
-        table.with_stops(t),
-        t,
-        accuracy,
-        s,
-        columns,
-        delay_columns(model, columns),
-    )
+
+    def run(chosen: str) -> Solution:
+        # The error estimate does not see a fast mode that has decayed in the states, and it still
+        # grows in the tangents, by ten powers of ten where explicit steps are too long.
+        stable = stable_step(model, p, x) if chosen == EXPLICIT else np.inf
+        return integrate(
+            model,
+            chosen,
+            p,
+            x,
+            table,
+            table.held,
+            table.with_stops(t),
+            t,
+            replace(accuracy, largest_step=min(largest_step, stable)),
+            s,
+            columns,
+            delay_columns(model, columns),
+        )
+
+    found = run(chosen)
+    if found.status == STIFF and method is None:
+        found = run(IMPLICIT)
     refuse_failure(model, p, found.status, found.reached, found.state)
     y, signals = _measured(model, t, found.x, found.s, p, columns)
     return Sensitivities(t, found.x, y, (*wanted, *by_initial), found.s, signals)
-
-
-def stable_step(model: Model, p: FloatArray, x: FloatArray) -> float:
-    """Step in s at which the explicit method is stable, by the spectral radius of the Jacobian at x
-    [n], p [np] in open modes, and with every friction sliding and every contact closed.
-
-    Its tangents need it: the error estimate does not see a fast mode that has decayed in the
-    states, and it still grows in the tangents, by ten powers of ten where steps are too long.
-    """
-    n, nu = len(x), len(model.input_names)
-    fx, fu, fp = np.zeros((n, n)), np.zeros((n, nu)), np.zeros((n, len(p)))
-    fastest = 0.0
-    for modes in (np.zeros(len(model.mode_names)), np.ones(len(model.mode_names))):
-        model.module.jacobian(0.0, x, np.zeros(nu), p, modes, fx, fu, fp)
-        if np.all(np.isfinite(fx)):
-            fastest = max(fastest, float(np.abs(np.linalg.eigvals(fx)).max()))
-    return STABLE / fastest if fastest > 0.0 else np.inf
 
 
 def _measured(

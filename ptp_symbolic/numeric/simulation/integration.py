@@ -1,6 +1,6 @@
 """Integrate a model with adaptive steps: preallocate, run, and return the solution."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,9 @@ from ptp_symbolic.numeric.simulation.kernels.calls import addresses
 from ptp_symbolic.numeric.simulation.kernels.lanes import padded
 from ptp_symbolic.numeric.simulation.kernels.records import (
     EVENTS,
+    EXHAUSTED,
     STEPS,
+    STIFF,
     TIME,
     Watch,
 )
@@ -36,10 +38,13 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 FACE_WIDTH = 1e-9  # rad, or m
-METHODS = {"runge_kutta": RUNGE_KUTTA, "rosenbrock": ROSENBROCK}
-
-
+EXPLICIT, IMPLICIT = "runge_kutta", "rosenbrock"
+METHODS = {EXPLICIT: RUNGE_KUTTA, IMPLICIT: ROSENBROCK}
 MOST_STEPS = 50_000_000  # a minute or two
+PATIENCE = 100_000  # explicit steps after which is asked whether stability holds them up: 0.1 s
+MOST_EXPLICIT_STEPS = 5_000_000  # that a stiff machine is let take: some seconds
+STABLE = 2.5  # step of the explicit method over the shortest time constant
+NEAR_STABILITY = 0.4  # of the stable step: with tangents, or rejected steps among them
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +87,7 @@ def default_method(model: Model) -> str:
     """
     bodies = {f"{kind}_{axis}" for kind in ("theta", "omega") for axis in model.module.AXES}
     smooth = not model.mode_names and set(model.state_names) <= bodies
-    return "runge_kutta" if smooth else "rosenbrock"
+    return EXPLICIT if smooth else IMPLICIT
 
 
 def checked_accuracy(
@@ -102,7 +107,7 @@ def tolerance_weights(model: Model) -> FloatArray:
     """Factor [n] from an absolute tolerance in rad or m to that of every state; 1 for free bodies,
     whose errors do not decay.
     """
-    if default_method(model) == "runge_kutta":
+    if default_method(model) == EXPLICIT:
         return np.ones(len(model.state_names))
     return geared_weights(model)
 
@@ -119,7 +124,7 @@ def geared_weights(model: Model) -> FloatArray:
 
 def integrate(
     model: Model,
-    method: str,
+    method: str | None,
     p: FloatArray,
     x: FloatArray,
     inputs: InputTable,
@@ -140,13 +145,88 @@ def integrate(
 
     `held`: inputs are zero-order hold, with jumps at stops only; those that samplers alone read
     need not be. With tangents, output times must be stops. The first tangents are by the parameters
-    `columns`; `delay_column` [nu] is per input the tangent of its delay, or -1. `lean`: states
-    and terms of effects at their vanishing values are left out, which changes nothing else (see
-    `Model.acting` and `kernels.specialised`); for the implicit method. `rough_tangents`:
+    `columns`; `delay_column` [nu] is per input the tangent of its delay, or -1. States that act on
+    nothing (see `Model.acting`) stand still under the implicit method. `lean`: so are the terms of
+    effects at their vanishing values left out (see `kernels.specialised`). `rough_tangents`:
     good to some thousandths is enough, so that exponential steps may carry them (see
-    `methods.exponential_tangents`). Raises InputError
-    as `refuse_start` and `new_sampling` do.
+    `methods.exponential_tangents`).
+
+    Without a `method` it is the one that suits the model, and the implicit one where the explicit
+    one would be held up by stability; with one, the status is then STIFF. Raises InputError as
+    `refuse_start` and `new_sampling` do.
     """
+
+    def attempt(chosen: str, most_steps: int) -> Solution:
+        return _integrate(
+            model,
+            chosen,
+            p,
+            x,
+            inputs,
+            held,
+            stops,
+            times,
+            replace(accuracy, most_steps=most_steps),
+            s,
+            columns,
+            delay_column,
+            ledger,
+            event_room,
+            lean,
+            rough_tangents,
+        )
+
+    chosen, most = method or default_method(model), accuracy.most_steps
+    if chosen != EXPLICIT or most <= PATIENCE:
+        return attempt(chosen, most)
+    found = attempt(chosen, PATIENCE)
+    if found.status == EXHAUSTED and not _held_up(model, p, found, stops):
+        return attempt(chosen, most)
+    if found.status == EXHAUSTED:
+        return attempt(IMPLICIT, most) if method is None else replace(found, status=STIFF)
+    return found
+
+
+def _held_up(model: Model, p: FloatArray, found: Solution, stops: FloatArray) -> bool:
+    """Whether explicit steps are as short as stability asks, and so many more than can be taken."""
+    step = (found.reached - stops[0]) / found.steps
+    too_many = stops[-1] - stops[0] > MOST_EXPLICIT_STEPS * step
+    return bool(too_many and step > NEAR_STABILITY * stable_step(model, p, found.state))
+
+
+def stable_step(model: Model, p: FloatArray, x: FloatArray) -> float:
+    """Step in s at which the explicit method is stable, by the spectral radius of the Jacobian at x
+    [n], p [np] in open modes, and with every friction sliding and every contact closed.
+    """
+    n, nu = len(x), len(model.input_names)
+    fx, fu, fp = np.zeros((n, n)), np.zeros((n, nu)), np.zeros((n, len(p)))
+    fastest = 0.0
+    for modes in (np.zeros(len(model.mode_names)), np.ones(len(model.mode_names))):
+        model.module.jacobian(0.0, x, np.zeros(nu), p, modes, fx, fu, fp)
+        if np.all(np.isfinite(fx)):
+            fastest = max(fastest, float(np.abs(np.linalg.eigvals(fx)).max()))
+    return STABLE / fastest if fastest > 0.0 else np.inf
+
+
+def _integrate(
+    model: Model,
+    method: str,
+    p: FloatArray,
+    x: FloatArray,
+    inputs: InputTable,
+    held: bool,
+    stops: FloatArray,
+    times: FloatArray,
+    accuracy: Accuracy,
+    s: FloatArray | None,
+    columns: IntArray | None,
+    delay_column: IntArray | None,
+    ledger: bool,
+    event_room: int,
+    lean: bool,
+    rough_tangents: bool,
+) -> Solution:
+    """One run, as `integrate` has it."""
     n, nu, module = len(x), len(model.input_names), model.module
     columns = np.zeros(0, dtype=np.int64) if columns is None else columns
     s = np.zeros((n, 0)) if s is None else s
@@ -158,9 +238,10 @@ def integrate(
         nu,
     )
     solved, functions, c = n if s.shape[1] else model.moving, addresses(module), model.prepared(p)
-    if lean:
-        acting = model.acting(p, columns)
+    acting = model.acting(p, columns)
+    if method == IMPLICIT:
         solved = min(solved, acting)
+    if lean:
         zeros = zeros_of(x, acting, p, c, columns)
         functions = specialised(module).addresses(zeros, len(stops))
     x, u, cursor = x.copy(), np.zeros((3, nu)), inputs.new_cursor()
@@ -170,7 +251,7 @@ def integrate(
     refuse_start(model, x, u[0], p, watch)
     record = new_record(times, n, s.shape[1], len(times) if ledger else 0, event_room)
     sampled, stands_still = len(model.sampler_periods) > 0, held or not any(module.INPUT_ACTS)
-    whole = method == "rosenbrock" and stands_still and not ledger and not sampled
+    whole = method == IMPLICIT and stands_still and not ledger and not sampled
     whole = whole and (rough_tangents or not s.shape[1]) and not np.any(tangents.delay_column >= 0)
     status = hybrid.runner(sampled)(
         METHODS[method],

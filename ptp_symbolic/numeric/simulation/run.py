@@ -30,6 +30,7 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     DONE,
     EXHAUSTED,
     OUTSIDE,
+    STIFF,
     TOO_FAST,
     UNDECIDED,
 )
@@ -102,10 +103,13 @@ def simulate(
     machine with a sampled controller is integrated from sample to sample by an exponential method,
     in less time.
 
+    Rigid bodies that turn out stiff, as in strong damping, are integrated by "rosenbrock"; where
+    "runge_kutta" was asked for, that is refused.
+
     Raises InputError for unknown names, parameters out of bounds, times that do not increase, a
     tolerance or largest step that is not above zero and a step that does not fit; SimulationError
-    when the state diverges, modes chatter, `most_steps` do not reach the end, or fixed steps make a
-    motion whose energies do not add up.
+    when the state diverges, modes chatter, an explicit method is held up by stability, `most_steps`
+    do not reach the end, or fixed steps make a motion whose energies do not add up.
     """
     t = output_times(times)
     x, p = start_of(model, initial or {}), checked_parameters(model, parameters or {})
@@ -118,7 +122,7 @@ def simulate(
             return integrate_in_fixed_steps(model, p, x, table, t, step, event_room)
         return integrate(
             model,
-            chosen,
+            None if method is None else chosen,
             p,
             x,
             table,
@@ -241,6 +245,8 @@ def refuse_failure(model: Model, p: FloatArray, status: int, reached: float, x: 
         " larger, the tolerances looser, or allow more by most_steps",
         TOO_FAST: "it changes too fast for steps of 1e-11 s; check for an inertia, an inductance or"
         " a time constant next to nothing, and for inputs that are too large",
+        STIFF: "the machine is stiff, and explicit steps are as short as its shortest time"
+        " constant; take the method rosenbrock, or leave the choice to the model",
         CHATTERING: "modes switch without end; loosen the tolerance or add damping",
         UNDECIDED: "no set of modes fits the end of the step; take a smaller step",
     }[status]

@@ -82,7 +82,7 @@ def _law(
 ) -> Law:
     added = effect.contribution_at(place)
     values = _known(added, plain)
-    own = Contributions((added,), (effect.dissipative,), values)
+    own = Contributions((added,), values)
     changes = {}
     for name, change in added.changes.items():
         before = _named(own.resolve(quantity(name)))
@@ -97,7 +97,7 @@ def _law(
     frictions: list[tuple[Friction | None, Friction]] = [(None, f) for f in _frictions(added, own)]
     ledger, changed = _ledger(added, own, place), Ledger()
     for _, there, other in bringing:
-        known = Contributions((other,), (False,), _known(other, plain))
+        known = Contributions((other,), _known(other, plain))
         after = {quantity(name): value for name, (_, value) in changes.items()}
         with_it = replace(known, values={**known.values, **after})
         pairs = zip(_frictions(other, known), _frictions(other, with_it), strict=True)

@@ -34,12 +34,9 @@ TORQUES = ("input_torque_{axis}", "command_torque_{axis}")  # each from the next
 
 @dataclass(frozen=True)
 class Contributions:
-    """Contributions of all effects, which of them only dissipate, values of quantities, and the
-    sensors that are read.
-    """
+    """Contributions of all effects, values of quantities, and the sensors that are read."""
 
     by_effect: tuple[Contribution, ...]
-    dissipative: tuple[bool, ...]
     values: Mapping[sp.Symbol, sp.Expr]
     sensors: tuple[Sensor, ...] = ()
 
@@ -199,8 +196,7 @@ def collect(
         values[name] = change.through(values[name])
     symbols = {quantity_symbol(name): value for name, value in values.items()}
     _refuse_circles(symbols)
-    dissipative = tuple(effect.dissipative for effect, _ in placed)
-    return Contributions(contributions, dissipative, symbols, sensors)
+    return Contributions(contributions, symbols, sensors)
 
 
 def _refuse_second_definitions(

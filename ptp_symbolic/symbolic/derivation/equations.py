@@ -129,8 +129,8 @@ class Equations:
 
     @property
     def state_symbols(self) -> tuple[sp.Symbol, ...]:
-        """States in the order of the emitted module: joints, drives, effects that can vanish, what
-        samplers set.
+        """States in the order of the emitted module: joints, drives, effects that can vanish (last
+        those that have a motion of their own while they do), what samplers set.
         """
         joints = len(self.axes)
         gears = [
@@ -140,9 +140,25 @@ class Equations:
         ]
         sampled = {symbol for _, symbol, _ in self.updates}
         idle = self.idle_states
-        extra = [state.symbol for state in self.extra_states]
-        extra.sort(key=lambda symbol: (symbol in sampled, str(symbol) in idle))
-        return (*self.coordinates[:joints], *self.rates[:joints], *gears, *extra)
+        extra = sorted(
+            self.extra_states,
+            key=lambda state: (state.symbol in sampled, state.name in idle, self._goes_on(state)),
+        )
+        return (
+            *self.coordinates[:joints],
+            *self.rates[:joints],
+            *gears,
+            *(s.symbol for s in extra),
+        )
+
+    def _goes_on(self, state: State) -> bool:
+        """Whether the state of an effect at its vanishing values leaves zero, on a course that
+        depends on where it is: to integrate that takes steps of its own.
+        """
+        names = self.idle_states.get(state.name, ())
+        off = {p.symbol: sp.nsimplify(p.vanishes) for p in self.parameters if p.name in names}
+        rate = state.derivative.subs(off)
+        return bool(names and rate.has(state.symbol) and rate.subs(state.symbol, 0) != 0)
 
     @property
     def idle_states(self) -> dict[str, tuple[str, ...]]:

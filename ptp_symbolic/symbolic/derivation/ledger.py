@@ -22,38 +22,30 @@ def energy_ledger(
 ) -> Ledger:
     """Sum the ledgers of bodies, drives, shafts, `frictions` and effects.
 
-    A potential that depends on time (a base that moves) takes in its partial derivative by time.
+    Power comes in by torque inputs, at the terminals of motors, and by a base that moves: the
+    partial derivative by time of a potential.
     """
     powers = (contributions.input_torque(axis) * kinematics.rate(axis) for axis in axes)
     total = Ledger(rigid.kinetic + rigid.potential, sum(powers, ZERO))
-    for contribution, is_loss in zip(
-        contributions.by_effect, contributions.dissipative, strict=True
-    ):
-        total += ledger_of(contribution, contributions.drive_rate, is_loss)
+    for contribution in contributions.by_effect:
+        total += ledger_of(contribution, contributions.drive_rate)
     for friction in frictions:
         total += Ledger(dissipated=slide(friction.axis) * friction.level * friction.rate)
     stored, power_in, dissipated = map(contributions.resolve, sum(shafts, total).parts)
     return Ledger(stored, power_in + sp.diff(stored, kinematics.TIME), dissipated)
 
 
-def ledger_of(
-    contribution: Contribution, rate_of: Callable[[Drive], sp.Symbol], is_loss: bool = False
-) -> Ledger:
+def ledger_of(contribution: Contribution, rate_of: Callable[[Drive], sp.Symbol]) -> Ledger:
     """The ledger of one effect, without its frictions and shafts; `rate_of` tells on which rate a
-    drive works. What its torques take out counts as dissipated if it `is_loss`, else as power in,
-    but for what the effect itself says to be `dissipated`.
+    drive works. What its torques take out of the machine, and do not store, is dissipated.
     """
-    stored, dissipated = contribution.potential + contribution.stored, contribution.dissipated
-    power_in = dissipated
+    stored, power_in, dissipated = contribution.potential + contribution.stored, ZERO, ZERO
     for drive in contribution.drives:
         stored += drive.stored + drive.inertia * rate_of(drive) ** 2 / 2
         power_in += drive.power_in
         dissipated += drive.dissipated
     power = sum((torque * rate for rate, torque in contribution.torques.items()), ZERO)
-    power += _charging(contribution)
-    if is_loss:
-        return Ledger(stored, power_in, dissipated - power)
-    return Ledger(stored, power_in + power, dissipated)
+    return Ledger(stored, power_in, dissipated - power - _charging(contribution))
 
 
 def _charging(contribution: Contribution) -> sp.Expr:

@@ -187,9 +187,9 @@ class Contribution:
 
     `terms` are functions that the equations keep under their names, each of those before it.
     `potential` is an energy of the coordinates, whose gradient acts as torques; `stored` an energy
-    of the effect's own states, which its `torques` charge and discharge. `dissipated` is what those
-    torques lose in W, where not all of their power is lost: the rest counts as supplied, such as
-    what springs give back whose stiffness goes with the load. `delays` hold back the
+    of the effect's own states, which its `torques` charge and discharge; what else those take out
+    is dissipated. Supplied is the `power_in` of drives alone: a torque that no input drives has a
+    potential. `delays` hold back the
     inputs of an axis. `prescribed` gives joint rates an acceleration as input, in place of the
     torque on the joint; `commands` gives an axis other inputs than those of its drive; `inputs` are
     those that drive no axis, such as a temperature. What a sensor shows is the quantity
@@ -203,7 +203,6 @@ class Contribution:
     potential: sp.Expr = ZERO
     stored: sp.Expr = ZERO
     torques: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    dissipated: sp.Expr = ZERO
     frictions: tuple[Friction, ...] = ()
     shafts: tuple[Shaft, ...] = ()
     plays: tuple[Play, ...] = ()

@@ -1,4 +1,7 @@
-"""A constant torque on a joint: mean wind, a counterweight, a pulling cable."""
+"""A constant torque on a joint: mean wind, a counterweight, a pulling cable.
+
+Its work goes with the angle alone: the ledger books it as stored.
+"""
 
 from ptp_symbolic.symbolic.effect_interface.contribution import Contribution
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
@@ -18,7 +21,7 @@ TORQUE = Parameter(
 
 
 def _contribute(place: Place) -> Contribution:
-    return Contribution(torques={place.rate: place.parameter("tau0_{axis}")})
+    return Contribution(potential=-place.parameter(TORQUE.name) * place.angle)
 
 
 CONSTANT_TORQUE = Effect(

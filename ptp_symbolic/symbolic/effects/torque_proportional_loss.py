@@ -1,9 +1,9 @@
 """A gear that loses a share of the torque that it transmits, another one where the load drives it.
 
 The losses come up over a small angle after a reversal, as teeth and seals bend before they slip: a
-state between -1 and 1 says how far. What has bent gives back a part of the work, which the ledger
-counts as supplied, since its stiffness goes with the load; all else is dissipated. The torque is
-that of the shaft, of a motor without one at the gear output, or the torque input.
+state between -1 and 1 says how far. What has bent gives back a part of the work: the ledger takes
+that off what is dissipated, for a stiffness that goes with the load has no energy of its own. The
+torque is that of the shaft, of a motor without one at the gear output, or the torque input.
 """
 
 import sympy as sp
@@ -48,7 +48,6 @@ def _contribute(place: Place) -> Contribution:
     meaning = f"share of the {place.axis} gear's losses that has come up"
     return Contribution(
         torques={rate: -torque},
-        dissipated=torque * slip * sp.Abs(rate),
         states=(State(slip.name, "1", meaning, (rate - sp.Abs(rate) * slip) / angle),),
     )
 

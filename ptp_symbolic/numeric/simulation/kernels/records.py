@@ -18,7 +18,7 @@ inlined = njit(forceinline=True, **INNER)
 merged = njit(inline="always", **INNER)  # for large ones: not compiled by itself as well
 
 SMALLEST = 1e-60
-DONE, DIVERGED, CHATTERING, UNDECIDED, OUTSIDE, EXHAUSTED, TOO_FAST = 0, 1, 2, 3, 4, 5, 6
+DONE, DIVERGED, CHATTERING, UNDECIDED, OUTSIDE, EXHAUSTED, TOO_FAST, STIFF = 0, 1, 2, 3, 4, 5, 6, 7
 LARGEST_STATE = 1e12
 TIME, LENGTH = 0, 1
 OUTPUT, EVENTS, STEPS, INSTANT, SOURCES, UNBALANCED = 0, 1, 2, 3, 4, 5

@@ -1,0 +1,69 @@
+"""A strongly damped body: its rate settles in a nanosecond, which explicit steps would follow."""
+
+import time
+
+import numpy as np
+import pytest
+
+from ptp_symbolic import sensitivity, simulate
+from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.integration import PATIENCE
+from ptp_symbolic.numeric.simulation.run import SimulationError
+from ptp_symbolic.numeric.simulation.signals.inputs import constant
+from ptp_symbolic.platform import EffectDeclaration, Platform
+
+EFFECTS = (
+    EffectDeclaration("rigid_bodies", None, None),
+    EffectDeclaration("viscous_friction", "pan", None),
+)
+PLATFORM = Platform("stiff", "A light body in thick oil", ("pan",), 9.81, EFFECTS, (), ())
+J, B, TORQUE = 1e-6, 1e3, 2.0
+STIFF = {"J_pan": J, "b_pan": B}
+TIMES = np.linspace(0.0, 10.0, 21)
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return emission.emit(PLATFORM)
+
+
+def test_it_is_integrated_implicitly_unless_the_method_is_given(model: Model) -> None:
+    """Rate torque over damping, from the first instant on; angle in proportion to the time."""
+    driven = {"tau_pan": constant(TORQUE)}
+    simulate(model, 0.01, driven)
+    began = time.perf_counter()
+    found = simulate(model, TIMES, driven, STIFF)
+    assert time.perf_counter() - began < 5.0
+    assert found["omega_pan"][1:] == pytest.approx(TORQUE / B, rel=1e-9)
+    assert found["theta_pan"] == pytest.approx(TORQUE / B * TIMES, abs=1e-8)
+    with pytest.raises(SimulationError, match=r"stiff.* take the method rosenbrock"):
+        simulate(model, TIMES, driven, STIFF, method="runge_kutta")
+
+
+def test_so_are_its_sensitivities(model: Model) -> None:
+    driven = {"tau_pan": constant(TORQUE)}
+    found = sensitivity(model, TIMES, driven, STIFF, by_parameters=("b_pan",))
+    assert found.states[1:, 1, 0] == pytest.approx(-TORQUE / B**2, rel=1e-6)
+    angles = -TORQUE / B**2 * TIMES
+    # The error estimate does not see tangents within the first step, where the rate settles.
+    assert found.states[:, 0, 0] == pytest.approx(angles, abs=5e-3 * abs(angles[-1]))
+    with pytest.raises(SimulationError, match="the machine is stiff"):
+        sensitivity(model, TIMES, driven, STIFF, by_parameters=("b_pan",), method="runge_kutta")
+
+
+def test_many_explicit_steps_of_a_machine_that_is_not_stiff_are_taken(model: Model) -> None:
+    mild = {"J_pan": 0.5, "b_pan": 0.1}
+    duration, step = 200.0, 1e-3
+    assert duration / step > 1.5 * PATIENCE
+    found = simulate(
+        model,
+        np.array([0.0, duration]),
+        {"tau_pan": constant(TORQUE)},
+        mild,
+        largest_step=step,
+        method="runge_kutta",
+    )
+    assert found.steps > PATIENCE
+    settled = TORQUE / 0.1 * -np.expm1(-0.1 / 0.5 * duration)
+    assert found["omega_pan"][-1] == pytest.approx(settled, rel=1e-8)
