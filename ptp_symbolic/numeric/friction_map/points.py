@@ -88,7 +88,7 @@ def read_points(path: Path, wanted: Columns) -> Points:
     units = _units(table, places[0])
     factors = [_factor(table, places[0], units.rate, units.other_rates)]
     factors += [_torque_factor(table, k, units, wanted.nominal) for k in places[1:]]
-    values = table.numbers(places) * np.array(factors)
+    values = table.complete(places) * np.array(factors)
     spread = values[:, 2] if wanted.spread else None
     points = Points(path.name, values[:, 0], values[:, 1], spread, units)
     _check(path, points)
