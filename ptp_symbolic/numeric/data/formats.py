@@ -13,7 +13,13 @@ EXCEL = (".xlsx", ".xlsm")
 BAGS = (".bag", ".mcap")  # a .db3 needs the folder that it is in
 STORED_IN = (*BAGS, ".db3")
 METADATA = "metadata.yaml"  # what makes a folder a bag of ROS 2
-IN_FOLDERS = (".csv", *FOREIGN, ".lvm", ".xlsx", *BAGS)  # taken from a folder; others may be anything
+IN_FOLDERS = (
+    ".csv",
+    *FOREIGN,
+    ".lvm",
+    ".xlsx",
+    *BAGS,
+)  # taken from a folder; others may be anything
 AND = "+"  # between files that hold one run together
 
 

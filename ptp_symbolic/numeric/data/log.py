@@ -232,9 +232,7 @@ def _refuse_lost(table: Table, columns: Sequence[int], missing: NDArray[np.bool_
         table.refuse_missing(columns, lost)
 
 
-def _refuse_short(
-    path: Path, rows: NDArray[Any], signal: SignalDeclaration | None = None
-) -> None:
+def _refuse_short(path: Path, rows: NDArray[Any], signal: SignalDeclaration | None = None) -> None:
     if len(rows) < MIN_ROWS:
         of = "" if signal is None or not len(rows) else f" with '{signal.column}'"
         raise InputError(
@@ -247,9 +245,7 @@ def _listing(table: Table) -> str:
         return f"the file holds no column of numbers{table.note}"
     columns = [name if unit is None else f"{name} [{unit}]" for name, unit in table.headings]
     text = ", ".join(columns)
-    return "the header has " + (
-        text if len(text) <= 300 else text[:297] + "..."
-    ) + table.note
+    return "the header has " + (text if len(text) <= 300 else text[:297] + "...") + table.note
 
 
 def _refuse_slow(table: Table, time: NDArray[np.float64]) -> None:

@@ -20,9 +20,7 @@ from ptp_symbolic.numeric.files.content import MOST_NUMBERS, MOST_ROWS, Column
 PATIENCE = 120.0  # s that a file may take, beside a second per MB
 _CHILD = "ptp_symbolic.numeric.files.child"
 _ROOT = Path(__file__).resolve().parents[3]  # the folder that the package is in
-_ONE_THREAD = {
-    name: "1" for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-}
+_ONE_THREAD = {name: "1" for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")}
 
 
 @dataclass(frozen=True)

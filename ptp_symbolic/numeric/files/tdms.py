@@ -41,7 +41,9 @@ def _part(group: str, channels: Sequence[Any]) -> Part:
     known = {channel.name: channel for channel in channels}
     columns = [Column(name, _unit(channel), len(channel)) for name, channel in known.items()]
     first = channels[0]
-    has_clock = any(name.lower().split("[")[0].split("(")[0].strip() in ("time", "t") for name in known)
+    has_clock = any(
+        name.lower().split("[")[0].split("(")[0].strip() in ("time", "t") for name in known
+    )
     is_waveform = float(first.properties.get(PERIOD) or 0.0) > 0.0
     if is_waveform and not has_clock:
         columns.insert(0, Column(TIME, "s", len(first)))
