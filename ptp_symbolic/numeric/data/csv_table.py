@@ -89,8 +89,8 @@ class CsvTable(Table):
                 f" numbers, or times as {FORMS}."
             )
         return InputError(
-            f"{where}: '{name}' is {shown(cell.strip())}, not a finite decimal number; correct it or"
-            " remove the row (time stamps may have gaps, an input holds across them)."
+            f"{where}: '{name}' is {shown(cell.strip())}, not a finite decimal number; correct it"
+            " or remove the row (time stamps may have gaps, an input holds across them)."
         )
 
 

@@ -83,7 +83,7 @@ def _heading(where: str, kind: str, column: Column) -> tuple[str, str | None]:
 
 
 def refuse_no_file(path: Path, kind: str) -> None:
-    """Raise InputError where there is no file of at most 1 GB; a bag may be a folder, and larger."""
+    """Raise InputError where there is no file of at most 1 GB; a bag may be a folder."""
     try:
         stored = path.stat()
         is_folder = path.is_dir()

@@ -274,6 +274,6 @@ def _check_time(
         row = int(wrong[0]) + 1
         what = "repeats" if time[row] == time[row - 1] else "goes back from"
         raise InputError(
-            f"{table.row(int(rows[row]))}: time {float(time[row])!r} {unit} {what} {float(time[row - 1])!r} "
-            f"{unit} of the line before; time stamps must increase."
+            f"{table.row(int(rows[row]))}: time {float(time[row])!r} {unit} {what}"
+            f" {float(time[row - 1])!r} {unit} of the line before; time stamps must increase."
         )

@@ -44,8 +44,8 @@ def seconds_of(cell: str) -> float | None:
         date = dated["american"] or dated["day"] or dated["year"].replace("/", "-")
         begin = _since(date, form)
         return None if begin is None or of_day is None else begin + of_day
-    if of_day := _OF_DAY.fullmatch(text):
-        return _of_day(of_day["clock"], of_day["half"])
+    if clock := _OF_DAY.fullmatch(text):
+        return _of_day(clock["clock"], clock["half"])
     duration = _DURATION.fullmatch(text)
     return None if duration is None else _duration(duration[1], duration[2])
 

@@ -1,12 +1,15 @@
 """MATLAB 7.3 files, which are HDF5, read with h5py."""
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.files.content import NUMERIC, Part, lacking
 from ptp_symbolic.numeric.files.structures import Leaf, Objects, part_of
+
+MOST_CHARACTERS = 1000  # of a text that names a signal
 
 
 def parts(path: Path) -> Sequence[Part]:
@@ -35,13 +38,10 @@ def _tree(group: Any, walked: set[Any], where: str, objects: Objects) -> dict[st
             objects.append((f"{where}{name}", _text(item.attrs.get("MATLAB_class"))))
         elif _is_numeric(item):
             # MATLAB counts the first index fastest, HDF5 the last
-            tree[name] = Leaf(tuple(reversed(item.shape)), lambda item=item: item[()].T)
+            tree[name] = Leaf(tuple(reversed(item.shape)), partial(_transposed, item))
         elif _text(item.attrs.get("MATLAB_class")) == "char" and item.size <= MOST_CHARACTERS:
             tree[name] = "".join(map(chr, item[()].ravel()))
     return tree
-
-
-MOST_CHARACTERS = 1000  # of a text that names a signal
 
 
 def _items(group: Any) -> Iterator[tuple[str, Any]]:
@@ -56,6 +56,10 @@ def _items(group: Any) -> Iterator[tuple[str, Any]]:
             continue
         if hasattr(item, "keys") or hasattr(item, "shape"):
             yield name, item
+
+
+def _transposed(item: Any) -> Any:
+    return item[()].T
 
 
 def _is_numeric(item: Any) -> bool:

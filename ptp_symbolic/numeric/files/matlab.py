@@ -1,6 +1,7 @@
 """MATLAB files of version 4 to 7, read with SciPy."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,7 @@ def parts(path: Path) -> Sequence[Part]:
     objects: Objects = []
     for name, shape, kind in whosmat(path):
         if kind in _NUMBERS:
-            tree[name] = Leaf(tuple(shape), lambda name=name: _load(path, name))
+            tree[name] = Leaf(tuple(shape), partial(_load, path, name))
         elif kind == "struct":
             tree[name] = _fields(_load(path, name))
         elif kind in ("opaque", "object"):

@@ -43,7 +43,7 @@ def part_of(tree: Mapping[str, Any], objects: Objects) -> list[Part]:
         for k in range(width if width > 1 else 0):
             found.setdefault(f"{name}(:,{k + 1})", (leaf, k))
     columns = [Column(n, leaf.unit, max(leaf.shape)) for n, (leaf, _) in found.items()]
-    return [Part("", columns, one_by_one(lambda name: _values(*found[name])), _note(objects))]
+    return [Part("", columns, one_by_one(lambda name: _values(*found[name])), _note(objects, list(found)))]
 
 
 def _named(tree: Mapping[str, Any], where: str) -> Named:
@@ -127,13 +127,15 @@ def _values(leaf: Leaf, column: int | None) -> NDArray[Any]:
     return rows.reshape(len(rows), -1)[:, column]
 
 
-def _note(objects: Sequence[tuple[str, str]]) -> str:
+def _note(objects: Objects, names: Sequence[str]) -> str:
+    matrix = next((name for name in names if name.endswith(")")), None)
+    advice = f"; a column of a matrix is named by column = '{matrix}' in the platform file"
     if not objects:
-        return ""
-    names = ", ".join(repr(name) for name, _ in objects[:3])
+        return advice if matrix else ""
+    known = ", ".join(repr(name) for name, _ in objects[:3])
     first = objects[0][0]
     return (
-        f"; {names} can be read by MATLAB alone, being an object such as a timeseries, a timetable"
+        f"; {known} can be read by MATLAB alone, being an object such as a timeseries, a timetable"
         f" or a Dataset: save numbers, such as time = {first}.Time; angle = {first}.Data;"
         " save('log.mat', 'time', 'angle')"
     )

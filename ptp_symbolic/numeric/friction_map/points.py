@@ -15,6 +15,7 @@ from ptp_symbolic.platform.units import to_si
 
 FloatArray = NDArray[np.float64]
 
+SMALLEST, LARGEST = 1e-12, 1e12  # in SI units, of rates and torques: any machine's lie between
 MIN_POINTS = 4  # two for Coulomb and viscous friction, one for the scatter, one to leave out
 _PERCENT = re.compile(r"% of (.+)")
 _QUANTITY = re.compile(r"([0-9.]++(?:[eE][+-]?[0-9]+)?) *([^0-9].*)")
@@ -165,6 +166,7 @@ def _check(path: Path, points: Points) -> None:
             f"{path}: has {count} points at {len(speeds)} speeds; a friction map needs at least"
             f" {MIN_POINTS} points at two."
         )
+    _refuse_sizes(path, points)
     rest = np.flatnonzero((points.rate == 0.0) & (points.torque == 0.0))
     if len(rest):
         raise InputError(
@@ -182,3 +184,18 @@ def _check(path: Path, points: Points) -> None:
             f"{path}: most {word}s brake the motion; give the {word} that drives the joint,"
             " positive where the rate is positive."
         )
+
+
+def _refuse_sizes(path: Path, points: Points) -> None:
+    units = points.units
+    found = [("rate", points.rate, units.rate), (units.word, points.torque, units.torque)]
+    if points.spread is not None:
+        found.append(("standard deviation", points.spread, units.torque))
+    for name, values, unit in found:
+        size = np.abs(values[values != 0.0])
+        wrong = size[~((size >= SMALLEST) & (size <= LARGEST))]
+        if len(wrong):
+            raise InputError(
+                f"{path}: a {name} of {wrong[0]:g} {unit} is none of a machine; give at least"
+                f" {SMALLEST:g} and at most {LARGEST:g} {unit}, or correct the unit."
+            )
