@@ -4,11 +4,11 @@ import io
 from collections.abc import Mapping
 from typing import Any
 
-import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ptp_symbolic.report.figures import AFTER, BEFORE, FLOOR, MEASURED, STYLE, plot_unit
+from ptp_symbolic.report.plotting import own_style
 
 COLOURS = (AFTER, BEFORE, "#3f7d4e", MEASURED)
 NOISE = 2.0  # sigmas either side of zero that are drawn as the noise of one sample
@@ -20,7 +20,7 @@ def experiment_figure(curves: Mapping[str, Any]) -> bytes:
     """
     inputs, outputs, tells = curves["inputs"], curves["outputs"], curves["tells"]
     rows = len(inputs) + 2 * len(outputs)
-    with matplotlib.rc_context(STYLE):
+    with own_style(STYLE):
         figure = Figure(figsize=(7.5, 0.5 + 1.35 * rows), layout="constrained")
         panels = iter(figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0])
         for name, (unit, values) in inputs.items():

@@ -5,7 +5,6 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -13,6 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from numpy.typing import NDArray
+
+from ptp_symbolic.report.plotting import own_style
 
 FloatArray = NDArray[np.float64]
 
@@ -102,7 +103,7 @@ def motion_figure(
     panels += [(name, given, "input") for name, given in (curve.get("inputs") or {}).items()]
     heights = tuple(HEIGHTS[kind] for _, _, kind in panels)
     sheets = {} if sheets is None else sheets
-    with matplotlib.rc_context(STYLE):
+    with own_style(STYLE):
         if heights not in sheets:
             sheets[heights] = _blank(heights)
         figure, grid = sheets[heights]

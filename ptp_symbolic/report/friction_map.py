@@ -4,12 +4,12 @@ import io
 from collections.abc import Mapping
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ptp_symbolic.report.figures import AFTER, BEFORE, STYLE
+from ptp_symbolic.report.plotting import own_style
 
 
 def friction_map_picture(summary: Mapping[str, Any]) -> bytes:
@@ -23,9 +23,7 @@ def friction_map_picture(summary: Mapping[str, Any]) -> bytes:
     si, rate = summary["units"]["torque"], summary["units"]["rate"]
     scale, unit = (1e3, f"m{si}") if small else (1.0, si)
     left = scale * (points["torque"] - points["fitted"])
-    with matplotlib.rc_context(
-        {**STYLE, "font.size": 10.0, "axes.titlesize": 10.0, "axes.xmargin": 0.03}
-    ):
+    with own_style({**STYLE, "font.size": 10.0, "axes.titlesize": 10.0, "axes.xmargin": 0.03}):
         figure = Figure(figsize=(8.0, 5.6), layout="constrained")
         FigureCanvasAgg(figure)
         above, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (2.2, 1.0)})

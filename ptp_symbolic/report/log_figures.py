@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -19,6 +18,7 @@ from ptp_symbolic.report.figures import (
     svg_of,
     thinned,
 )
+from ptp_symbolic.report.plotting import own_style
 
 FloatArray = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def log_figure(time: FloatArray, shown: Sequence[Shown]) -> str:
     """
     period = float(np.median(np.diff(time)))
     style: dict[Any, Any] = {**STYLE, "axes.titlesize": 8.0}
-    with matplotlib.rc_context(style):
+    with own_style(style):
         figure = Figure(figsize=(10.4, 0.7 + (ROW + 0.33) * len(shown)))
         grid = figure.subplots(
             len(shown), 2, squeeze=False, gridspec_kw={"width_ratios": (2.2, 1.0)}

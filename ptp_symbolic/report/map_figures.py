@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -23,6 +22,7 @@ from ptp_symbolic.report.figures import (
     set_margins,
     svg_of,
 )
+from ptp_symbolic.report.plotting import own_style
 from ptp_symbolic.report.quantities import joint_words
 
 DOTS = 700
@@ -48,7 +48,7 @@ def residual_map_figure(
     signals = [run["signals"][signal_name] for run in runs]
     stages = [s for s in ("before", "after") if all(x.get(s) is not None for x in signals)]
     unit = residual_unit(signals[0])
-    with matplotlib.rc_context(STYLE):
+    with own_style(STYLE):
         figure = Figure(figsize=(10.4, 0.5 + 1.9 * len(stages)))
         grid = figure.subplots(len(stages), 3, sharey="row", sharex="col", squeeze=False)
         set_margins(figure, len(stages), 3)
@@ -69,7 +69,7 @@ def torque_map_figure(maps: Sequence[Mapping[str, Any]], unit: str) -> str:
     """Means of the residual torque of one axis, in `unit`, in bins of every side of `maps`, with
     bars of twice their standard error, as SVG; the share of its variance stands above.
     """
-    with matplotlib.rc_context(STYLE):
+    with own_style(STYLE):
         figure = Figure(figsize=(10.4, 2.4))
         grid = figure.subplots(1, len(maps), sharey="row", squeeze=False)[0]
         set_margins(figure, 1, len(maps))

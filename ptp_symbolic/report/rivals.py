@@ -3,13 +3,13 @@
 from collections.abc import Mapping
 from typing import Any
 
-import matplotlib
 import numpy as np
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from ptp_symbolic.report import tables
 from ptp_symbolic.report.figures import AFTER, BEFORE, INPUT, STYLE, svg_of
+from ptp_symbolic.report.plotting import own_style
 
 MODELS = {
     "declared": "declared model",
@@ -54,7 +54,7 @@ def rival_figure(part: Mapping[str, Any]) -> str:
     """The torque (rms) that every model leaves on every validation run, as SVG."""
     runs = sorted({run for model in part["models"].values() for run in model["by_run"]})
     height = 0.75 + ROW * len(runs)
-    with matplotlib.rc_context(STYLE):
+    with own_style(STYLE):
         figure = Figure(figsize=(10.4, height))
         axes = figure.subplots()
         figure.subplots_adjust(LEFT / 10.4, 0.42 / height, 0.99, 1.0 - 0.3 / height)

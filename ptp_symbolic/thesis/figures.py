@@ -5,13 +5,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from ptp_symbolic.report.plotting import own_style
 from ptp_symbolic.thesis.items import Kind
 
 FloatArray = NDArray[np.float64]
@@ -131,7 +131,7 @@ def drawn(figure: ThesisFigure) -> Figure:
 def rendered(figure: ThesisFigure) -> dict[str, bytes]:
     """The figure as PDF and PNG, by file name."""
     files = {}
-    with matplotlib.rc_context(STYLE):
+    with own_style(STYLE):
         page = drawn(figure)
         for kind, metadata in (("pdf", {"CreationDate": None}), ("png", {})):
             buffer = io.BytesIO()

@@ -43,7 +43,8 @@ def part_of(tree: Mapping[str, Any], objects: Objects) -> list[Part]:
         for k in range(width if width > 1 else 0):
             found.setdefault(f"{name}(:,{k + 1})", (leaf, k))
     columns = [Column(n, leaf.unit, max(leaf.shape)) for n, (leaf, _) in found.items()]
-    return [Part("", columns, one_by_one(lambda name: _values(*found[name])), _note(objects, list(found)))]
+    load = one_by_one(lambda name: _values(*found[name]))
+    return [Part("", columns, load, _note(objects, list(found)))]
 
 
 def _named(tree: Mapping[str, Any], where: str) -> Named:

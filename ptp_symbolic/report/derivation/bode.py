@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ptp_symbolic.report.figures import AFTER, BEFORE, INPUT, STYLE
+from ptp_symbolic.report.plotting import own_style
 
 FloatArray = NDArray[np.float64]
 LINES = (("-", AFTER), ("--", BEFORE), (":", INPUT), ("-.", "#4a8f5c"))
@@ -53,7 +53,7 @@ def frequency_response(
 
 def bode_figure(title: str, unit: str, at: FloatArray, lines: Sequence[BodeLine]) -> bytes:
     """Magnitude in dB re 1 `unit` and phase in degrees over the frequency in Hz, as PDF."""
-    with matplotlib.rc_context(STYLE | IN_PRINT):
+    with own_style(STYLE | IN_PRINT):
         figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
         FigureCanvasAgg(figure)
         upper, lower = figure.subplots(2, 1, sharex=True)
