@@ -1,8 +1,9 @@
 """Fit a declared platform to its logs."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from ptp_symbolic.models import variants
 from ptp_symbolic.numeric.data import log_files, read_logs
@@ -30,6 +31,8 @@ from ptp_symbolic.workflows.result import (
 )
 
 FAR_FROM_FLOOR = 3.0  # times the floor: from here on a fit is called far from it
+MUCH_OF_MOTION = 0.1  # share of the motion that no usual effect costs
+MANY_COUNTS, SOME_OF_MOTION = 1000.0, 0.01  # as much of a coarse encoder, not of a fine one
 START_ITERATIONS = 10  # for the starts of the runs at the declared values
 START_SHARE = 1e-2  # error of those simulations, as a share of the noise
 
@@ -67,6 +70,7 @@ def fit_platform(
         "after": error_of(trial.fit, units),
         "noise_floor": error_of(trial.fit, units, floor.level),
     }
+    noted = (*_what_to_check(error["after"]["total"]), *noted)  # type: ignore[index]
     left, least = (error[when]["total"]["rmse"] for when in ("after", "noise_floor"))  # type: ignore[index]
     fitted = variants.extended(platform, (), trial.values, ())
     summary = {
@@ -81,6 +85,22 @@ def fit_platform(
     }
     files = {"platform.toml": platform_text(fitted), "fit.json": json_text(summary)}
     return Output(summary, files)
+
+
+def _what_to_check(error: Mapping[str, Any]) -> tuple[str, ...]:
+    """What is wrong most often where a fit leaves a good part of the motion, or thousands of
+    counts: what the signals mean, not what the model lacks.
+    """
+    share = 1.0 - 0.01 * float(error["fit_percent"])
+    counts = float(error["rmse_counts"] or 0.0)
+    if not (share > MUCH_OF_MOTION or (counts > MANY_COUNTS and share > SOME_OF_MOTION)):
+        return ()
+    left = f"{counts:.3g} counts" if counts else f"{error['rmse']:.3g} {error['unit']}"
+    return (
+        f"The fit leaves {left} rms, {100.0 * share:.0f} % of the motion: check the unit, sign, scale"
+        " and delay of every signal first, and the declared inertias and lengths; an effect that"
+        " the model lacks seldom costs as much.",
+    )
 
 
 def _as_declared(task: Task) -> Trial:
