@@ -31,8 +31,8 @@ from ptp_symbolic.workflows.result import (
 )
 
 FAR_FROM_FLOOR = 3.0  # times the floor: from here on a fit is called far from it
-MUCH_OF_MOTION = 0.1  # share of the motion that no usual effect costs
-MANY_COUNTS, SOME_OF_MOTION = 1000.0, 0.01  # as much of a coarse encoder, not of a fine one
+MANY_COUNTS = 1000.0  # that a missing effect seldom costs,
+SOME_OF_MOTION = 0.05  # where they are this share of the motion: not of a fine encoder
 START_ITERATIONS = 10  # for the starts of the runs at the declared values
 START_SHARE = 1e-2  # error of those simulations, as a share of the noise
 
@@ -88,18 +88,18 @@ def fit_platform(
 
 
 def _what_to_check(error: Mapping[str, Any]) -> tuple[str, ...]:
-    """What is wrong most often where a fit leaves a good part of the motion, or thousands of
-    counts: what the signals mean, not what the model lacks.
+    """What is wrong most often where a fit leaves thousands of counts, or all of the motion: what
+    the signals mean, not what the model lacks.
     """
     share = 1.0 - 0.01 * float(error["fit_percent"])
     counts = float(error["rmse_counts"] or 0.0)
-    if not (share > MUCH_OF_MOTION or (counts > MANY_COUNTS and share > SOME_OF_MOTION)):
+    if share < SOME_OF_MOTION or (counts < MANY_COUNTS if counts else share < 1.0):
         return ()
     left = f"{counts:.3g} counts" if counts else f"{error['rmse']:.3g} {error['unit']}"
     return (
-        f"The fit leaves {left} rms, {100.0 * share:.0f} % of the motion: check the unit, sign, scale"
-        " and delay of every signal first, and the declared inertias and lengths; an effect that"
-        " the model lacks seldom costs as much.",
+        f"The fit leaves {left} rms, {100.0 * share:.0f} % of the motion: check the unit, sign,"
+        " scale and delay of every signal first, then the declared inertias and lengths; if these are"
+        " right, run diagnose.",
     )
 
 

@@ -17,6 +17,7 @@ Objects = list[tuple[str, str]]  # names and classes of what only MATLAB can rea
 Named = Iterator[tuple[str, str, "Leaf"]]  # short name, full name, numbers
 SIMULATED = "tout"  # the times of a simulation, which Simulink gives in s
 _PORTS = ("In", "Out")
+_SIGNS = str.maketrans({"[": "(", "]": ")", ",": ";", '"': None})
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ def part_of(tree: Mapping[str, Any], objects: Objects) -> list[Part]:
     """The columns of the variables in `tree`: mappings are structures, lists arrays of structures.
 
     A column has the name of its field where no other has it, else with its structure before it; a
-    matrix has a column for each of its own, such as `yout(:,2)`. Numbers alone are no columns.
+    matrix has a column for each of its own, such as `yout_2` (the names that `splitvars` of MATLAB gives). Numbers alone are no columns.
     """
     found: dict[str, tuple[Leaf, int | None]] = {}
     for short, full, leaf in _named(tree, ""):
@@ -41,10 +42,10 @@ def part_of(tree: Mapping[str, Any], objects: Objects) -> list[Part]:
         if width == 1:
             found.setdefault(name, (leaf, None))
         for k in range(width if width > 1 else 0):
-            found.setdefault(f"{name}(:,{k + 1})", (leaf, k))
+            found.setdefault(f"{name}_{k + 1}", (leaf, k))
     columns = [Column(n, leaf.unit, max(leaf.shape)) for n, (leaf, _) in found.items()]
     load = one_by_one(lambda name: _values(*found[name]))
-    return [Part("", columns, load, _note(objects, list(found)))]
+    return [Part("", columns, load, _note(objects))]
 
 
 def _named(tree: Mapping[str, Any], where: str) -> Named:
@@ -78,7 +79,7 @@ def _with_time(structure: Mapping[str, Any], full: str) -> Named:
         own = f"{full}.signals({k + 1})" if several else f"{full}.signals"
         if isinstance(signal, Mapping) and isinstance(signal.get("values"), Leaf):
             label = signal.get("label")
-            name = label.strip() if isinstance(label, str) else ""
+            name = _plain(label) if isinstance(label, str) else ""
             yield name or f"{own}.values", f"{own}.values", signal["values"]
 
 
@@ -92,7 +93,7 @@ def _control_desk(structure: Mapping[str, Any], full: str) -> Named:
         name = "time" if len(times) == 1 else f"time_{k + 1}"
         unit = x.get("Unit") if isinstance(x.get("Unit"), str) else None
         yield name, f"{full}.X({k + 1})", Leaf(x["Data"].shape, x["Data"].load, unit or "s")
-    paths = [str(y.get("Name") or f"{full}.Y({k + 1})") for k, y in enumerate(signals)]
+    paths = [_plain(str(y.get("Name") or f"{full}.Y({k + 1})")) for k, y in enumerate(signals)]
     own = [_last(path) for path in paths]
     for y, path, name in zip(signals, paths, own, strict=True):
         yield name if own.count(name) == 1 else path, path, y["Data"]
@@ -104,10 +105,15 @@ def _list(value: Any) -> list[Mapping[str, Any]]:
 
 def _last(path: str) -> str:
     """The last block of a path in a model, without the port."""
-    blocks = [block.strip('" ') for block in path.split("/")]
+    blocks = [block.strip() for block in path.split("/")]
     blocks = [block for block in blocks if block] or [path]
     is_port = blocks[-1].rstrip("0123456789") in _PORTS and len(blocks) > 1
     return blocks[-2] if is_port else blocks[-1]
+
+
+def _plain(name: str) -> str:
+    """A name without the signs that mean something in a heading or a CSV."""
+    return " ".join(name.translate(_SIGNS).split())
 
 
 def _width(shape: tuple[int, ...]) -> int:
@@ -128,15 +134,13 @@ def _values(leaf: Leaf, column: int | None) -> NDArray[Any]:
     return rows.reshape(len(rows), -1)[:, column]
 
 
-def _note(objects: Objects, names: Sequence[str]) -> str:
-    matrix = next((name for name in names if name.endswith(")")), None)
-    advice = f"; a column of a matrix is named by column = '{matrix}' in the platform file"
+def _note(objects: Objects) -> str:
     if not objects:
-        return advice if matrix else ""
-    known = ", ".join(repr(name) for name, _ in objects[:3])
+        return ""
+    names = ", ".join(repr(name) for name, _ in objects[:3])
     first = objects[0][0]
     return (
-        f"; {known} can be read by MATLAB alone, being an object such as a timeseries, a timetable"
+        f"; {names} can be read by MATLAB alone, being an object such as a timeseries, a timetable"
         f" or a Dataset: save numbers, such as time = {first}.Time; angle = {first}.Data;"
         " save('log.mat', 'time', 'angle')"
     )

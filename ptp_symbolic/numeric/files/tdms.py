@@ -54,7 +54,8 @@ def _part(group: str, channels: Sequence[Any]) -> Part:
                 values = np.asarray(known[name][:])
                 yield seconds(values) if values.dtype.kind == "M" else values
             else:
-                yield first.time_track()
+                start = float(first.properties.get(START) or 0.0)
+                yield start + float(first.properties[PERIOD]) * np.arange(len(first))
 
     return Part(group, columns, load)
 
