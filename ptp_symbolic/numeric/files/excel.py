@@ -32,6 +32,7 @@ def text_of(path: Path) -> str:
         )
     book = load_workbook(path, read_only=True, data_only=True, keep_links=False)
     for sheet in book.worksheets:
+        sheet.reset_dimensions()  # which some programs write wrong
         text = io.StringIO()
         write = csv.writer(text, lineterminator="\n").writerow
         for number, row in enumerate(sheet.iter_rows(values_only=True, max_col=MOST_COLUMNS + 1)):

@@ -4,7 +4,7 @@ Known structures are those of Simulink ("Structure With Time": time, and signals
 labels) and of dSPACE ControlDesk (X with the times, Y with a name and data of every signal).
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from math import prod
 from typing import Any
@@ -33,7 +33,8 @@ def part_of(tree: Mapping[str, Any], objects: Objects) -> list[Part]:
     """The columns of the variables in `tree`: mappings are structures, lists arrays of structures.
 
     A column has the name of its field where no other has it, else with its structure before it; a
-    matrix has a column for each of its own, such as `yout_2` (the names that `splitvars` of MATLAB gives). Numbers alone are no columns.
+    matrix has a column for each of its own, such as `yout_2`, as `splitvars` of MATLAB names them.
+    Numbers alone are no columns.
     """
     found: dict[str, tuple[Leaf, int | None]] = {}
     for short, full, leaf in _named(tree, ""):
