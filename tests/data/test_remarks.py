@@ -105,11 +105,11 @@ def test_degrees_under_the_name_of_rad_are_said_and_rad_under_that_of_degrees() 
     """By the steps of the encoder, 0.05 deg or 8.7e-4 rad; without one, by rates of no joint."""
     counts = np.round(np.degrees(np.sin(2.0 * TIME)) / 0.05)
     (text,) = remarks([log(0.05 * counts)], PLATFORM)
-    assert "'pan_angle' looks like degrees under the name of rad: it goes over 114 rad" in text
-    assert "at up to 114 rad/s. Write 'pan_angle [deg]'" in text
+    assert "'pan_angle' looks like degrees under the name of rad: it goes over 100 rad" in text
+    assert "at up to 120 rad/s. Write 'pan_angle [deg]'" in text  # 2 rad/s, 12 counts a sample
     (text,) = remarks([log(np.radians(COUNT * counts))], PLATFORM)
     assert "'pan_angle' looks like rad under the name of deg" in text
-    signals = [replace(s, count=None) if s.count else s for s in PLATFORM.signals]
+    signals = [replace(s, counts_per_revolution=None) if s.count else s for s in PLATFORM.signals]
     unknown = replace(PLATFORM, signals=tuple(signals))
     (text,) = remarks([log(np.degrees(np.sin(2.0 * TIME)))], unknown)
     assert "looks like degrees" in text
