@@ -1,6 +1,7 @@
 """Files as programs of this trade write them read as the numbers that were logged."""
 
 import json
+import struct
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +46,7 @@ def written(folder: Path, content: str, name: str = "run.csv") -> Path:
         "sep=;\n" + text(";").replace(".", ","),
         '"sep=;"\n' + text(";"),
         "\ufeffsep=;\r\n" + text(";").replace("\n", "\r\n"),
+        text("|"),
         text(" "),
         text("   "),
         text(" ").replace(".", ","),
@@ -232,6 +234,55 @@ def test_matrices_of_matlab_7_3_are_those_of_older_files(tmp_path: Path) -> None
         file["tout"] = TIME[None, :]
         file["yout"] = np.column_stack([VOLTAGE, ANGLE]).T
     assert_same(read_log(tmp_path / "run.mat", bench(tmp_path, "yout_1", "yout_2")))
+
+
+def element(kind: int, content: bytes) -> bytes:
+    """An element of a MATLAB 5 file, filled up to 8 bytes."""
+    return struct.pack("<II", kind, len(content)) + content + b"\0" * (-len(content) % 8)
+
+
+def test_objects_of_matlab_are_named_with_what_to_save(tmp_path: Path) -> None:
+    """A timeseries is an opaque array (class 17) with its name, "MCOS" and its class in 5 to 7, and
+    a dataset with the attribute MATLAB_object_decode in 7.3.
+    """
+    h5py = pytest.importorskip("h5py")
+    reference = element(6, struct.pack("<II", 13, 0)) + element(5, struct.pack("<ii", 1, 6))
+    reference += element(1, b"") + element(6, struct.pack("<6I", 3707764736, 2, 1, 1, 1, 1))
+    names = b"".join(element(1, text) for text in (b"ts", b"MCOS", b"timeseries"))
+    opaque = element(6, struct.pack("<II", 17, 0)) + names + element(14, reference)
+    savemat(tmp_path / "old.mat", {"gain": 2.0})
+    with (tmp_path / "old.mat").open("ab") as file:
+        file.write(element(14, opaque))
+    with h5py.File(tmp_path / "new.mat", "w", userblock_size=512) as file:
+        file["ts"] = np.zeros((1, 6), dtype=np.uint32)
+        file["ts"].attrs["MATLAB_object_decode"] = np.int32(3)
+    for name in ("old.mat", "new.mat"):
+        with pytest.raises(InputError, match=r"can be read by MATLAB alone.*save\('log.mat'") as no:
+            read_log(tmp_path / name, bench(tmp_path))
+        assert "no column of numbers" in str(no.value)
+    savemat(tmp_path / "old.mat", COLUMNS)
+    with (tmp_path / "old.mat").open("ab") as file:
+        file.write(element(14, opaque))
+    assert_same(read_log(tmp_path / "old.mat", bench(tmp_path)))
+
+
+@pytest.mark.parametrize(
+    ("begin", "words"),
+    [
+        (b"\xd0\xcf\x11\xe0\xa1\xb1", r"Excel file of before 2007 \(\.xls\); save it as \.xlsx"),
+        (b"PK\x03\x04", "zip archive.*name it .xlsx"),
+        (b"MDF     4.10", "MDF file"),
+        (b"\x93NUMPY", "NumPy file"),
+        (b"TDSm", "name it .tdms"),
+    ],
+)
+def test_what_is_no_text_is_named_with_the_way_round(
+    tmp_path: Path, begin: bytes, words: str
+) -> None:
+    for name in ("run.csv", "run.xls"):
+        (tmp_path / name).write_bytes(begin + bytes(100))
+        with pytest.raises(InputError, match=rf"{name}: is .*{words}.*, or save the log as CSV"):
+            read_log(tmp_path / name, bench(tmp_path))
 
 
 def test_dates_and_durations_of_parquet_are_times(tmp_path: Path) -> None:

@@ -29,6 +29,19 @@ NEW_LINE = b"\n"
 _PLAIN = b"0123456789+-.eE, \t\n"
 MISSING = ("", "nan")  # cells without a value, as spreadsheets and MATLAB write them
 MANY = 100  # rows that show whether a column holds numbers
+NO_TEXT = {  # how files begin: what they are, and what to do
+    b"PK\x03\x04": ("a zip archive, such as an Excel file", "name it .xlsx if that is what it is"),
+    b"\xd0\xcf\x11\xe0": ("an Excel file of before 2007 (.xls)", "save it as .xlsx"),
+    b"\x89HDF": ("an HDF5 file", "name it .mat if MATLAB has written it"),
+    b"MATLAB 5.0 MAT": ("a MATLAB file", "name it .mat"),
+    b"PAR1": ("a Parquet file", "name it .parquet"),
+    b"TDSm": ("a TDMS file of LabVIEW", "name it .tdms"),
+    b"#ROSBAG": ("a ROS bag", "name it .bag"),
+    b"\x89MCAP": ("an MCAP file", "name it .mcap"),
+    b"MDF     ": ("an MDF file (ASAM)", "export it as .mat or Parquet"),
+    b"\x93NUMPY": ("a NumPy file", "write it with numpy.savetxt"),
+    b"\x1f\x8b": ("compressed with gzip", "unpack it"),
+}
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 
@@ -102,7 +115,22 @@ def read_csv(path: Path) -> CsvTable:
     Raises InputError for a file that is missing, larger than 200 MB, empty or not text, and for a
     header with a column twice, over 1000 columns or a malformed heading.
     """
+    _refuse_other_formats(path)
     return _table(path, read_text_bytes(path, _MAX_BYTES, "a CSV log", of_instruments=True))
+
+
+def _refuse_other_formats(path: Path) -> None:
+    """Raise InputError for a file that begins as one of a known format that is no text."""
+    if not path.is_file():
+        return
+    try:
+        with path.open("rb") as file:
+            begin = file.read(max(map(len, NO_TEXT)))
+    except OSError:
+        return  # which says why when it is read as text
+    for mark, (kind, advice) in NO_TEXT.items():
+        if begin.startswith(mark):
+            raise InputError(f"{path}: is {kind}; {advice}, or save the log as CSV.")
 
 
 def _table(path: Path, content: bytes) -> CsvTable:

@@ -14,7 +14,8 @@ from ptp_symbolic.numeric.data.table import is_unit
 
 LONGEST_LINE = 100_000
 COMMENTS = (b"#", b"%", b"//")
-SEPARATORS = (b";", b"\t", b",")  # tried in this order: commas may be decimal marks
+SEPARATORS = (b";", b"\t", b"|", b",")  # tried in this order: commas may be decimal marks
+CALLED = {b";": "semicolons", b"\t": "tabs", b"|": "bars", b",": "commas"}
 SPACES = b" "  # one or more
 _NAMED = re.compile(rb"\"?sep=([;,|\t])\"?[;,|\t]*\n")  # the first line that Excel understands
 _SPACED = re.compile(r"\S+(?: *\[[^\[\]]*\])?")  # a name, and its unit
@@ -39,10 +40,11 @@ class PlainText:
 def plain_text(path: object, content: bytes) -> PlainText:
     """Return the text of a CSV in the plain form.
 
-    The separator is that which a first line such as `sep=;` names, else a semicolon, a tab or a
-    comma, whichever is in the header and the first row, else spaces. Lines above that begin with
-    ``#``, ``%`` or ``//`` are comments; the last of them is the header where no other line names
-    the columns. A row of units may follow the header. Raises InputError for a file without one.
+    The separator is that which a first line such as `sep=;` names, else a semicolon, a tab, a
+    bar or a comma, whichever is in the header and the first row, else spaces. Lines above that
+    begin with ``#``, ``%`` or ``//`` are comments; the last of them is the header where no other
+    line names the columns. A row of units may follow the header. Raises InputError for a file
+    without one.
     """
     if content.startswith(labview.BEGIN):
         found = labview.measurement(path, content)
@@ -60,7 +62,7 @@ def plain_text(path: object, content: bytes) -> PlainText:
     row = after.partition(b"\n")[0]
     separator = named[1] if named else _separator(first, row)
     if separator != SPACES and row.strip() and separator in first and separator not in row:
-        called = {b";": "semicolons", b"\t": "tabs", b",": "commas"}.get(separator, "separators")
+        called = CALLED[separator]
         raise InputError(
             f"{path}:{line}: the header has {called} between columns and the row below has not;"
             " write both alike."

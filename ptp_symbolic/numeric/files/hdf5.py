@@ -35,7 +35,7 @@ def _tree(group: Any, walked: set[Any], where: str, objects: Objects) -> dict[st
                 walked.add(_address(item))
                 tree[name] = _tree(item, walked, f"{where}{name}.", objects)
         elif "MATLAB_object_decode" in item.attrs:
-            objects.append((f"{where}{name}", _text(item.attrs.get("MATLAB_class"))))
+            objects.append(f"{where}{name}")
         elif _is_numeric(item):
             # MATLAB counts the first index fastest, HDF5 the last
             tree[name] = Leaf(tuple(reversed(item.shape)), partial(_transposed, item))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.files import hdf5
 from ptp_symbolic.numeric.files.content import NUMERIC, Part
-from ptp_symbolic.numeric.files.structures import Leaf, Objects, part_of
+from ptp_symbolic.numeric.files.structures import Leaf, part_of
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _HDF5_AT = (0, 512)  # MATLAB puts a text of 512 bytes in front
@@ -30,15 +30,26 @@ def parts(path: Path) -> Sequence[Part]:
     from scipy.io import whosmat
 
     tree: dict[str, Any] = {}
-    objects: Objects = []
-    for name, shape, kind in whosmat(path):
+    try:
+        listed = whosmat(path)
+    except TypeError:  # SciPy cannot list a file with an object that MATLAB alone can read
+        return _with_objects(path)
+    for name, shape, kind in listed:
         if kind in _NUMBERS:
             tree[name] = Leaf(tuple(shape), partial(_load, path, name))
         elif kind == "struct":
             tree[name] = _fields(_load(path, name))
-        elif kind in ("opaque", "object"):
-            objects.append((str(name), ""))
-    return part_of(tree, objects)
+    return part_of(tree, [name for name, _, kind in listed if kind == "object"])
+
+
+def _with_objects(path: Path) -> Sequence[Part]:
+    """Everything, read at once; objects are left out, and have lost their names."""
+    from scipy.io import loadmat
+
+    found = loadmat(path, simplify_cells=True)
+    return part_of(
+        {n: _fields(v) for n, v in found.items() if n != "None" and not n.startswith("__")}, [""]
+    )
 
 
 def _load(path: Path, name: str) -> Any:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.files.content import WIDEST, Column, Part, one_by_one
 
-Objects = list[tuple[str, str]]  # names and classes of what only MATLAB can read
+Objects = list[str]  # names of what only MATLAB can read; empty where the file has none
 Named = Iterator[tuple[str, str, "Leaf"]]  # short name, full name, numbers
 SIMULATED = "tout"  # the times of a simulation, which Simulink gives in s
 _PORTS = ("In", "Out")
@@ -138,8 +138,8 @@ def _values(leaf: Leaf, column: int | None) -> NDArray[Any]:
 def _note(objects: Objects) -> str:
     if not objects:
         return ""
-    names = ", ".join(repr(name) for name, _ in objects[:3])
-    first = objects[0][0]
+    names = ", ".join(repr(name) for name in objects[:3] if name) or "a variable"
+    first = next(filter(None, objects), "ts")
     return (
         f"; {names} can be read by MATLAB alone, being an object such as a timeseries, a timetable"
         f" or a Dataset: save numbers, such as time = {first}.Time; angle = {first}.Data;"
