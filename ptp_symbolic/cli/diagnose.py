@@ -139,9 +139,11 @@ def _print_fit(summary: Mapping[str, Any]) -> None:
         if before is None
         else f"{before['total'][key]:.4g} at the start values"
     )
-    advice = (
-        ": the model does not fit these logs; run diagnose" if summary["far_from_floor"] else ""
-    )
+    advice = ""
+    if summary["far_from_floor"]:
+        is_odd = any(text.startswith("The fit leaves") for text in summary["remarks"])
+        next_step = "check the signals as said above" if is_odd else "run diagnose"
+        advice = f": the model does not fit these logs; {next_step}"
     click.echo(f"{after:.4g} {unit} rms over all runs ({begun}), floor {floor:.2g}{advice}.")
 
 

@@ -24,6 +24,7 @@ ALLOWED = (
     "delay",
     "column_unit",
 )
+RUN_BY_SPREADSHEETS = ("=", "+", "-", "@")  # what a formula begins with
 LONGEST_DELAY = 10.0  # s: beyond it stands a slip of the unit
 
 
@@ -53,6 +54,12 @@ def _signal(name: str, given: object, where: str) -> SignalDeclaration:
         raise InputError(
             f"{where}.column: {fields.shown(column)}: give the CSV column without its [unit], "
             "without quotes and commas; 'time' is the time base."
+        )
+    if column.startswith(RUN_BY_SPREADSHEETS):
+        raise InputError(
+            f"{where}.column: {fields.shown(column)} begins with {column[0]!r}, and a spreadsheet"
+            " runs such a cell as a formula when it opens a log or a result; rename the column, in"
+            " the log too."
         )
     factor, unit = fields.unit(entry, where)
     turn, metre = (_resolution(entry, key, unit, where) for key in RESOLUTIONS)

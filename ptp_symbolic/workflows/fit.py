@@ -1,8 +1,9 @@
 """Fit a declared platform to its logs."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from ptp_symbolic.models import variants
 from ptp_symbolic.numeric.data import log_files, read_logs
@@ -30,6 +31,8 @@ from ptp_symbolic.workflows.result import (
 )
 
 FAR_FROM_FLOOR = 3.0  # times the floor: from here on a fit is called far from it
+MANY_COUNTS = 1000.0  # that a missing effect seldom costs,
+SOME_OF_MOTION = 0.05  # where they are this share of the motion: not of a fine encoder
 START_ITERATIONS = 10  # for the starts of the runs at the declared values
 START_SHARE = 1e-2  # error of those simulations, as a share of the noise
 
@@ -67,6 +70,7 @@ def fit_platform(
         "after": error_of(trial.fit, units),
         "noise_floor": error_of(trial.fit, units, floor.level),
     }
+    noted = (*_what_to_check(error["after"]["total"]), *noted)  # type: ignore[index]
     left, least = (error[when]["total"]["rmse"] for when in ("after", "noise_floor"))  # type: ignore[index]
     fitted = variants.extended(platform, (), trial.values, ())
     summary = {
@@ -81,6 +85,22 @@ def fit_platform(
     }
     files = {"platform.toml": platform_text(fitted), "fit.json": json_text(summary)}
     return Output(summary, files)
+
+
+def _what_to_check(error: Mapping[str, Any]) -> tuple[str, ...]:
+    """What is wrong most often where a fit leaves thousands of counts, or all of the motion: what
+    the signals mean, not what the model lacks.
+    """
+    share = 1.0 - 0.01 * float(error["fit_percent"])
+    counts = float(error["rmse_counts"] or 0.0)
+    if share < SOME_OF_MOTION or (counts < MANY_COUNTS if counts else share < 1.0):
+        return ()
+    left = f"{counts:.3g} counts" if counts else f"{error['rmse']:.3g} {error['unit']}"
+    return (
+        f"The fit leaves {left} rms, {100.0 * share:.0f} % of the motion: check the unit, sign,"
+        " scale and delay of every signal first, then the declared inertias and lengths; if these"
+        " are right, run diagnose.",
+    )
 
 
 def _as_declared(task: Task) -> Trial:

@@ -1,7 +1,6 @@
 """A bag that rosbags has written: topics with clocks of their own become one log."""
 
 import json
-import shutil
 import sys
 from pathlib import Path
 
@@ -10,6 +9,7 @@ import pytest
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import log_files, read_log, stored_at
+from ptp_symbolic.numeric.files.bags import parts
 from ptp_symbolic.platform import Platform, read_platform
 
 pytest.importorskip("rosbags")
@@ -145,16 +145,17 @@ def test_a_damaged_bag_is_refused_in_one_line(tmp_path: Path, platform: Platform
 
 
 def test_without_the_library_the_extra_is_named(
-    tmp_path: Path, platform: Platform, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """As the process that reads a bag finds it."""
     bag = write_bag(tmp_path / "run")
     monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
     with pytest.raises(InputError, match=r"pip install 'ptp-symbolic\[bag\]'"):
-        read_log(bag, platform)
-    shutil.rmtree(bag)
+        parts(bag, [bag])
     monkeypatch.setitem(sys.modules, "mcap.reader", None)
+    alone = write_json(tmp_path / "run.mcap")
     with pytest.raises(InputError, match=r"needs mcap; run pip install 'ptp-symbolic\[bag\]'"):
-        read_log(write_json(tmp_path / "run.mcap"), platform)
+        parts(alone, [alone])
 
 
 def write_json(path: Path, stamped: bool = True, broken: bool = False) -> Path:

@@ -8,7 +8,7 @@ from scipy.io import savemat
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import read_log, remarks
-from ptp_symbolic.numeric.data.array_table import read_mat
+from ptp_symbolic.numeric.data.formats import read_table
 from ptp_symbolic.platform import Platform, platform_text, read_platform
 
 ROWS = 20
@@ -101,7 +101,7 @@ def test_fields_that_share_a_name_keep_that_of_their_structure(
     tmp_path: Path, platform: Platform
 ) -> None:
     savemat(tmp_path / "two.mat", {"first": COLUMNS, "second": COLUMNS})
-    names = [name for name, _ in read_mat(tmp_path / "two.mat").headings]
+    names = [name for name, _ in read_table(tmp_path / "two.mat").headings]
     assert names == ["t", "volt", "angle", "second.t", "second.volt", "second.angle"]
     savemat(tmp_path / "none.mat", {"note": "empty"})
     with pytest.raises(InputError, match="the file holds no column of numbers"):

@@ -99,3 +99,18 @@ def test_pauses_and_jitter_are_noted() -> None:
     shaken = TIME + 0.002 * np.random.default_rng(1).uniform(-1.0, 1.0, 400)
     (text,) = remarks([log(MOVING, time=shaken)], PLATFORM)
     assert "sampling period varies" in text
+
+
+def test_degrees_under_the_name_of_rad_are_said_and_rad_under_that_of_degrees() -> None:
+    """By the steps of the encoder, 0.05 deg or 8.7e-4 rad; without one, by rates of no joint."""
+    counts = np.round(np.degrees(np.sin(2.0 * TIME)) / 0.05)
+    (text,) = remarks([log(0.05 * counts)], PLATFORM)
+    assert "'pan_angle' looks like degrees under the name of rad: it goes over 100 rad" in text
+    assert "at up to 120 rad/s. Write 'pan_angle [deg]'" in text  # 2 rad/s, 12 counts a sample
+    (text,) = remarks([log(np.radians(COUNT * counts))], PLATFORM)
+    assert "'pan_angle' looks like rad under the name of deg" in text
+    signals = [replace(s, counts_per_revolution=None) if s.count else s for s in PLATFORM.signals]
+    unknown = replace(PLATFORM, signals=tuple(signals))
+    (text,) = remarks([log(np.degrees(np.sin(2.0 * TIME)))], unknown)
+    assert "looks like degrees" in text
+    assert remarks([log(20.0 * TIME)], unknown) == ()

@@ -216,3 +216,27 @@ def test_a_law_is_given_up_at_one_chance_in_a_hundred_not_at_five() -> None:
         if doubtful == 3:
             break
     assert doubtful == 3
+
+
+@pytest.mark.parametrize("backwards", [1, 2, 3])
+@pytest.mark.filterwarnings("error")
+def test_few_points_of_one_direction_leave_out_the_laws_that_they_cannot_determine(
+    backwards: int,
+) -> None:
+    """Coulomb and viscous friction without scatter, so that no law is better."""
+    rate = np.array([0.5, 1.0, 2.0, 3.0, 5.0, 8.0, *(-1.0, -2.0, -4.0)[:backwards]])
+    points = Points("few.csv", rate, 0.3 * np.sign(rate) + 0.05 * rate)
+    law = friction_map(points, "pan", 0.95)
+    assert law["parts"] == ["Coulomb", "viscous"]
+    assert law["parameters"]["F_c_pan"]["value"] == pytest.approx(0.3, rel=1e-6)
+    assert law["parameters"]["F_v_pan"]["value"] == pytest.approx(0.05, rel=1e-6)
+
+
+@pytest.mark.filterwarnings("error")
+def test_breakaway_torques_beside_a_curve_raise_no_warning() -> None:
+    """Static friction at rest alone has as many linear parameters as the curve that holds it."""
+    rate = np.array([0.0, 0.0, *RATES])
+    moving = torque(RATES, CURVE, CURVE)
+    noise = SCATTER * np.random.default_rng(5).standard_normal(len(rate))
+    points = Points("rest.csv", rate, np.concatenate([[0.5, -0.5], moving]) + noise)
+    assert choose(compare(points)).member == FULL

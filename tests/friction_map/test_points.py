@@ -54,6 +54,19 @@ def test_a_torque_at_rest_has_the_direction_of_its_sign(tmp_path: Path) -> None:
         ("rate [rpm],torque [%]", ROWS, Columns(nominal="0 N m"), "no nominal torque"),
         ("rate [rpm],torque [%]", ROWS, Columns(nominal="1 fish"), "no nominal torque|not a unit"),
         ("rate [rpm],torque [N m]", ROWS[:3], Columns(), "has 3 points"),
+        (
+            "rate [rpm],torque [N m]",
+            ((1.0, 1e300), *ROWS),
+            Columns(),
+            r"of 1e\+300 N m is no",
+        ),
+        (
+            "rate [rpm],torque [N m]",
+            ((1.0, 1e-300), *ROWS),
+            Columns(),
+            "of 1e-300 N m is none",
+        ),
+        ("rate [rad/s],torque [N m]", ((1e-200, 1.0), *ROWS), Columns(), "rate of 1e-200 rad/s is"),
         ("rate [rpm],torque [N m]", ((5.0, 1.0),) * 4, Columns(), "at 1 speeds"),
         (
             "rate [rpm],torque [N m]",

@@ -1,5 +1,6 @@
 """95 % intervals: how often they hold the truth, and what they say where the data are silent."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -278,3 +279,23 @@ def test_projection_leaves_what_is_orthogonal_to_the_starts() -> None:
     assert project_out(jacobian, nuisance[:, [0, 0]]) == pytest.approx(
         project_out(jacobian, nuisance[:, :1]), abs=1e-12
     )
+
+
+@pytest.mark.parametrize("span", [2.0, 40.0])
+def test_an_angle_that_stays_within_its_counts_tells_nothing(span: float) -> None:
+    """Of two angles the first has 2 or 40 counts; `a` acts on it alone, `b` on the other alone."""
+    rng = np.random.default_rng(4)
+    residuals, columns = [], []
+    for _ in range(RUNS):
+        table = np.zeros((SAMPLES, 2, 2))
+        table[:, 0, 0], table[:, 1, 1] = WAVE, OTHER
+        columns.append(table.reshape(-1, 2))
+        residuals.append(rng.standard_normal((SAMPLES, 2)))
+    fit = finished(residuals, columns, free=LINEAR, values={"a": 2.0, "b": 0.5})
+    measured = np.column_stack([span * 1e-3 * (TIME > 5.0), np.sin(TIME)])
+    known = {"signals": ("theta_pan", "theta_tilt"), "counts": np.full(2, 1e-3)}
+    runs = tuple(replace(run, measured=measured, **known) for run in fit.runs)
+    on_pan, on_tilt = estimates(replace(fit, runs=runs))
+    assert on_pan.identified == (span > 3.0)
+    assert ((on_pan.lower, on_pan.upper) == (-50.0, 50.0)) == (span <= 3.0)
+    assert on_tilt.identified

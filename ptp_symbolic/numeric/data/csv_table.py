@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +14,11 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data.dialect import LONGEST_LINE, plain_text
-from ptp_symbolic.numeric.data.stamps import seconds_of
-from ptp_symbolic.numeric.data.table import MOST_ROWS, Table, checked_headings, heading
+from ptp_symbolic.numeric.data.foreign_table import refuse_no_file
+from ptp_symbolic.numeric.data.stamps import FORMS, seconds_of
+from ptp_symbolic.numeric.data.table import Table, checked_headings, heading
+from ptp_symbolic.numeric.files.content import MOST_ROWS, in_a_line
+from ptp_symbolic.numeric.files.outside import ForeignFile
 from ptp_symbolic.platform import Clock
 from ptp_symbolic.platform.fields import shown
 from ptp_symbolic.platform.text_file import read_text_bytes
@@ -23,6 +27,21 @@ _MAX_BYTES = 200_000_000
 _CHUNK = 1 << 22
 NEW_LINE = b"\n"
 _PLAIN = b"0123456789+-.eE, \t\n"
+MISSING = ("", "nan")  # cells without a value, as spreadsheets and MATLAB write them
+MANY = 100  # rows that show whether a column holds numbers
+NO_TEXT = {  # how files begin: what they are, and what to do
+    b"PK\x03\x04": ("a zip archive, such as an Excel file", "name it .xlsx if that is what it is"),
+    b"\xd0\xcf\x11\xe0": ("an Excel file of before 2007 (.xls)", "save it as .xlsx"),
+    b"\x89HDF": ("an HDF5 file", "name it .mat if MATLAB has written it"),
+    b"MATLAB 5.0 MAT": ("a MATLAB file", "name it .mat"),
+    b"PAR1": ("a Parquet file", "name it .parquet"),
+    b"TDSm": ("a TDMS file of LabVIEW", "name it .tdms"),
+    b"#ROSBAG": ("a ROS bag", "name it .bag"),
+    b"\x89MCAP": ("an MCAP file", "name it .mcap"),
+    b"MDF     ": ("an MDF file (ASAM)", "export it as .mat or Parquet"),
+    b"\x93NUMPY": ("a NumPy file", "write it with numpy.savetxt"),
+    b"\x1f\x8b": ("compressed with gzip", "unpack it"),
+}
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 
@@ -57,11 +76,35 @@ class CsvTable(Table):
     def numbers(self, columns: Sequence[int]) -> NDArray[np.float64]:
         """The given columns as [n, len(columns)]; the first may hold stamps (see `seconds_of`).
 
-        Raises InputError with the line for a row with too few or too many cells and for a cell of
-        these columns that is empty or not a finite decimal number, and for more than ten million
-        rows or a truncated last number. Other columns may hold anything.
+        A cell that is empty, or nan, is NaN, but for the first column. Raises InputError with the
+        line for a row with too few or too many cells and for a cell of these columns that is not a
+        finite decimal number, and for more than ten million rows or a truncated last number. Other
+        columns may hold anything.
         """
         return _parse(self, columns)
+
+    def lost(self, row: int, column: int) -> InputError:
+        """The refusal of a row, counted from zero, without a value in a column."""
+        line = next(islice(_lines(self.body), row, None)).decode()
+        where = self.row(row)
+        return self.odd(_cells(line, where)[column], column, where)
+
+    def odd(self, cell: str, column: int, where: str) -> InputError:
+        """The refusal of a cell that is no finite number."""
+        name = self.headings[column][0]
+        if not cell.strip():
+            return InputError(f"{where}: '{name}' is missing; every row needs a value.")
+        first = [_cells(line.decode(), where) for line in islice(_lines(self.body), MANY)]
+        own = [row[column] for row in first if len(row) > column]
+        if len(own) > 1 and not any(_is_number(text) or seconds_of(text) for text in own):
+            return InputError(
+                f"{where}: '{name}' is {shown(cell.strip())}, and no row has a number there; write"
+                f" numbers, or times as {FORMS}."
+            )
+        return InputError(
+            f"{where}: '{name}' is {shown(cell.strip())}, not a finite decimal number; correct it"
+            " or remove the row (time stamps may have gaps, an input holds across them)."
+        )
 
 
 def read_csv(path: Path) -> CsvTable:
@@ -72,7 +115,25 @@ def read_csv(path: Path) -> CsvTable:
     Raises InputError for a file that is missing, larger than 200 MB, empty or not text, and for a
     header with a column twice, over 1000 columns or a malformed heading.
     """
-    content = read_text_bytes(path, _MAX_BYTES, "a CSV log", of_instruments=True)
+    _refuse_other_formats(path)
+    return _table(path, read_text_bytes(path, _MAX_BYTES, "a CSV log", of_instruments=True))
+
+
+def _refuse_other_formats(path: Path) -> None:
+    """Raise InputError for a file that begins as one of a known format that is no text."""
+    if not path.is_file():
+        return
+    try:
+        with path.open("rb") as file:
+            begin = file.read(max(map(len, NO_TEXT)))
+    except OSError:
+        return  # which says why when it is read as text
+    for mark, (kind, advice) in NO_TEXT.items():
+        if begin.startswith(mark):
+            raise InputError(f"{path}: is {kind}; {advice}, or save the log as CSV.")
+
+
+def _table(path: Path, content: bytes) -> CsvTable:
     if not content.strip():
         raise InputError(f"{path}: is empty; give a CSV with a header row such as 'time [s],...'.")
     text = plain_text(path, content)
@@ -80,6 +141,15 @@ def read_csv(path: Path) -> CsvTable:
     cells = zip(text.headings, text.units, strict=True)
     headings = checked_headings(where, [heading(where, cell, unit) for cell, unit in cells])
     return CsvTable(path, headings, text.body, text.first_line, text.head_line)
+
+
+def read_excel(path: Path) -> CsvTable:
+    """Read the first sheet of an Excel file that has some cells, as `read_csv` reads its text.
+
+    Raises InputError as `read_csv` does, and where the library that reads it is not installed.
+    """
+    refuse_no_file(path, "Excel")
+    return _table(path, ForeignFile(path, "Excel", (path,)).text())
 
 
 def _parse(table: CsvTable, columns: Sequence[int]) -> NDArray[np.float64]:
@@ -107,8 +177,8 @@ def _cells(line: str, where: str) -> list[str]:
         raise InputError(f"{where}: line has more than {LONGEST_LINE} characters; is this a CSV?")
     try:
         return next(csv.reader([line])) if '"' in line else line.split(",")
-    except csv.Error as error:
-        raise InputError(f"{where}: is not a row of a CSV ({error}).") from error
+    except (csv.Error, StopIteration) as error:
+        raise InputError(f"{where}: is not a row of a CSV ({in_a_line(error)}).") from error
 
 
 def _parse_plain(chunk: bytes, width: int, columns: Sequence[int]) -> NDArray[np.float64] | None:
@@ -145,21 +215,24 @@ def _parse_rows(
             )
         stamp = seconds_of(cells[columns[0]])
         first = columns if stamp is None else columns[1:]
-        numbers = [_number(cells[k], table.headings[k][0], where) for k in first]
+        numbers = [_number(table, cells, k, where, k != columns[0]) for k in first]
         rows.append(numbers if stamp is None else [stamp, *numbers])
     return np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
 
 
-def _number(cell: str, name: str, where: str) -> float:
-    cell = cell.strip()
-    if not cell:
-        raise InputError(f"{where}: '{name}' is missing; every row needs a value.")
-    if not _NUMBER.fullmatch(cell) or not math.isfinite(float(cell)):
-        raise InputError(
-            f"{where}: '{name}' is {shown(cell)}, not a finite decimal number; correct it or remove"
-            " the row (time stamps may have gaps, an input holds across them)."
-        )
+def _number(
+    table: CsvTable, cells: Sequence[str], column: int, where: str, may_lack: bool
+) -> float:
+    cell = cells[column].strip()
+    if may_lack and cell.lower() in MISSING:
+        return math.nan
+    if not _is_number(cell):
+        raise table.odd(cell, column, where)
     return float(cell)
+
+
+def _is_number(cell: str) -> bool:
+    return bool(_NUMBER.fullmatch(cell.strip())) and math.isfinite(float(cell))
 
 
 def _refuse_cut_number(table: CsvTable, body: bytes) -> None:
@@ -168,9 +241,10 @@ def _refuse_cut_number(table: CsvTable, body: bytes) -> None:
     A file cut inside its last number has the right number of cells and a wrong value. With a fixed
     number of decimals, as loggers write, the cut shows.
     """
-    last = _decimals(body[body.rfind(b"\n") + 1 :])
-    usual = _decimals(body.partition(b"\n")[0])
-    if usual > last and all(_decimals(row) == usual for row in _rows_but_last(body)):
+    before, _, row = body.rpartition(NEW_LINE)
+    last, usual = _decimals(row), _decimals(body.partition(NEW_LINE)[0])
+    is_there = not row.endswith(b",")
+    if is_there and usual > last and all(_decimals(row) == usual for row in _lines(before)):
         raise InputError(
             f"{table.row(body.count(NEW_LINE))}: the last number has {last} decimals where all"
             f" others have {usual}, and no line end follows; the file is truncated, copy it again."
@@ -182,9 +256,10 @@ def _decimals(row: bytes) -> int:
     return len(row.rpartition(b",")[2].partition(b".")[2])
 
 
-def _rows_but_last(body: bytes) -> Iterator[bytes]:
+def _lines(body: bytes) -> Iterator[bytes]:
     """One after another: all of ten million at once take a gigabyte."""
     start = 0
     while (end := body.find(NEW_LINE, start)) >= 0:
         yield body[start:end]
         start = end + 1
+    yield body[start:]

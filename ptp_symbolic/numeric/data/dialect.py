@@ -9,11 +9,18 @@ import re
 from dataclasses import dataclass
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.data import labview
 from ptp_symbolic.numeric.data.table import is_unit
 
 LONGEST_LINE = 100_000
 COMMENTS = (b"#", b"%", b"//")
-SEPARATORS = (b";", b"\t", b",")  # tried in this order: commas may be decimal marks
+SEPARATORS = (b";", b"\t", b"|", b",")  # tried in this order: commas may be decimal marks
+CALLED = {b";": "semicolons", b"\t": "tabs", b"|": "bars", b",": "commas"}
+SPACES = b" "  # one or more
+_NAMED = re.compile(rb"\"?sep=([;,|\t])\"?[;,|\t]*\n")  # the first line that Excel understands
+_SPACED = re.compile(r"\S+(?: *\[[^\[\]]*\])?")  # a name, and its unit
+_BESIDE = re.compile(rb"^[ \t]+|[ \t]+$", re.MULTILINE)
+_BETWEEN = re.compile(rb"[ \t]+")
 _NUMBER = re.compile(rb"\s*[+-]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+)(?:[eE][+-]?[0-9]+)?\s*")
 
 
@@ -33,22 +40,19 @@ class PlainText:
 def plain_text(path: object, content: bytes) -> PlainText:
     """Return the text of a CSV in the plain form.
 
-    The separator is a semicolon, a tab or a comma, whichever is in the header and the first row.
-    Lines above that begin with ``#``, ``%`` or ``//`` are comments; the last of them is the header
-    where no other line names the columns. A row of units may follow the header. Raises InputError
-    for a file without a header.
+    The separator is that which a first line such as `sep=;` names, else a semicolon, a tab, a
+    bar or a comma, whichever is in the header and the first row, else spaces. Lines above that
+    begin with ``#``, ``%`` or ``//`` are comments; the last of them is the header where no other
+    line names the columns. A row of units may follow the header. Raises InputError for a file
+    without one.
     """
-    comment, commented, position, line = b"", 1, 0, 1
-    while position < len(content):
-        end = content.find(b"\n", position)
-        end = len(content) if end < 0 else end
-        text = content[position:end].strip()
-        mark = next((m for m in COMMENTS if text.startswith(m)), None)
-        if text and mark is None:
-            break
-        if mark is not None:
-            comment, commented = text[len(mark) :].strip(), line
-        position, line = end + 1, line + 1
+    if content.startswith(labview.BEGIN):
+        found = labview.measurement(path, content)
+        body = _with_commas(found.body, found.separator)
+        return PlainText(found.headings, found.units, body, found.first_line, found.first_line - 1)
+    named = _NAMED.match(content)
+    position, line = (named.end(), 2) if named else (0, 1)
+    comment, commented, position, line = _comments(content, position, line)
     rest = content[position:]
     first, _, after = rest.partition(b"\n")
     if len(first) > LONGEST_LINE:
@@ -56,15 +60,16 @@ def plain_text(path: object, content: bytes) -> PlainText:
             f"{path}:{line}: line has more than {LONGEST_LINE} characters; is this a CSV?"
         )
     row = after.partition(b"\n")[0]
-    separator = _separator(first, row)
-    if row.strip() and separator in first and separator not in row:
-        called = {b";": "semicolons", b"\t": "tabs", b",": "commas"}[separator]
+    separator = named[1] if named else _separator(first, row)
+    if separator != SPACES and row.strip() and separator in first and separator not in row:
+        called = CALLED[separator]
         raise InputError(
             f"{path}:{line}: the header has {called} between columns and the row below has not;"
             " write both alike."
         )
-    if _is_numbers(first, separator):
-        if first.count(separator) != comment.count(separator):
+    names = _cells(comment, separator)
+    if _is_row(first, separator, len(names)):
+        if not comment or len(_cells(first, separator)) != len(names):
             raise InputError(
                 f"{path}:{line}: begins with numbers; give a header row such as 'time [s],...'"
                 " above them."
@@ -81,24 +86,52 @@ def plain_text(path: object, content: bytes) -> PlainText:
     return PlainText(headings, units, _with_commas(body, separator), line, head_line)
 
 
+def _comments(content: bytes, position: int, line: int) -> tuple[bytes, int, int, int]:
+    """The last comment above the rows and its line, and place and line of what follows."""
+    comment, commented = b"", 1
+    while position < len(content):
+        end = content.find(b"\n", position)
+        end = len(content) if end < 0 else end
+        text = content[position:end].strip()
+        mark = next((m for m in COMMENTS if text.startswith(m)), None)
+        if text and mark is None:
+            break
+        if mark is not None:
+            comment, commented = text[len(mark) :].strip(), line
+        position, line = end + 1, line + 1
+    return comment, commented, position, line
+
+
 def _separator(head: bytes, row: bytes) -> bytes:
-    """The first of SEPARATORS that is as often in the header as in the first row, and at all."""
+    """The first of SEPARATORS that is as often in the header as in the first row, and at all; of
+    rows that have none of them, spaces.
+    """
     for mark in SEPARATORS:
         if head.count(mark) and (head.count(mark) == row.count(mark) or mark == b","):
             return mark
-    return max(SEPARATORS, key=head.count)
+    found = max(SEPARATORS, key=head.count)
+    is_spaced = found not in head and b" " in head.strip()
+    return SPACES if is_spaced else found
 
 
 def _cells(row: bytes, separator: bytes) -> tuple[str, ...]:
     text = row.decode()
+    if separator == SPACES:
+        return tuple(_SPACED.findall(text))
     if '"' in text:
-        return tuple(next(csv.reader([text], delimiter=separator.decode())))
+        return next((tuple(r) for r in csv.reader([text], delimiter=separator.decode())), ())
     return tuple(text.split(separator.decode()))
 
 
-def _is_numbers(row: bytes, separator: bytes) -> bool:
-    cells = row.split(separator)
-    return bool(row.strip()) and all(_NUMBER.fullmatch(cell) for cell in cells)
+def _is_row(row: bytes, separator: bytes, width: int) -> bool:
+    """Whether a line is a row of numbers, no header; of text too, below a comment with a name for
+    each of its cells.
+    """
+    cells = row.split() if separator == SPACES else row.split(separator)
+    are_numbers = [bool(_NUMBER.fullmatch(cell)) for cell in cells]
+    if not row.strip():
+        return False
+    return all(are_numbers) or (len(cells) == width > 1 and any(are_numbers))
 
 
 def _is_units(row: bytes, separator: bytes, width: int) -> bool:
@@ -120,6 +153,9 @@ def _with_commas(body: bytes, separator: bytes) -> bytes:
     """Rows with commas between columns and points in numbers."""
     if separator == b",":
         return body
+    if separator == SPACES:
+        body = _BESIDE.sub(b"", body.replace(b",", b"."))
+        return _BETWEEN.sub(b",", body)
     if b'"' in body:
         rows = csv.reader(io.StringIO(body.decode()), delimiter=separator.decode())
         cells = ([cell.replace(",", ".") for cell in row] for row in rows)

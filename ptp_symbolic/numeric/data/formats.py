@@ -1,45 +1,59 @@
 """Which reader a file needs, by the end of its name."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.array_table import read_mat, read_parquet
-from ptp_symbolic.numeric.data.bag import METADATA, SUFFIXES, is_bag, read_topics
-from ptp_symbolic.numeric.data.csv_table import read_csv
+from ptp_symbolic.numeric.data.csv_table import read_csv, read_excel
+from ptp_symbolic.numeric.data.foreign_table import BAG, foreign_tables
 from ptp_symbolic.numeric.data.table import Table
 
-READERS: Mapping[str, Callable[[Path], Table]] = {
-    ".csv": read_csv,
-    ".tsv": read_csv,
-    ".txt": read_csv,
-    ".dat": read_csv,
-    ".mat": read_mat,
-    ".parquet": read_parquet,
-}
-
+FOREIGN: Mapping[str, str] = {".mat": "MATLAB", ".parquet": "Parquet", ".tdms": "TDMS"}
+EXCEL = (".xlsx", ".xlsm")
 BAGS = (".bag", ".mcap")  # a .db3 needs the folder that it is in
-IN_FOLDERS = (".csv", ".mat", ".parquet", *BAGS)  # taken from a folder; others may be anything
+STORED_IN = (*BAGS, ".db3")
+METADATA = "metadata.yaml"  # what makes a folder a bag of ROS 2
+IN_FOLDERS = (
+    ".csv",
+    *FOREIGN,
+    ".lvm",
+    ".xlsx",
+    *BAGS,
+)  # taken from a folder; others may be anything
 AND = "+"  # between files that hold one run together
 
 
 def read_table(path: Path) -> Table:
-    """Read a table of numbers; a file whose name ends otherwise is read as a CSV.
-
-    Raises InputError as the readers do.
-    """
-    return READERS.get(path.suffix.lower(), read_csv)(path)
+    """Read the one table of a file. Raises InputError for several, and as the readers do."""
+    tables = read_tables(path)
+    if len(tables) > 1:
+        names = ", ".join(table.head for table in tables[:5])
+        raise InputError(f"{path}: holds {len(tables)} tables ({names}); save one alone, as CSV.")
+    return tables[0]
 
 
 def read_tables(path: Path) -> Sequence[Table]:
-    """The tables of a log: one of a file, several of a bag and of files with a plus between them.
+    """The tables of a log: one of most files, several of a bag, of groups of channels, and of files
+    with a plus between them. A file whose name has an unknown end is read as a CSV.
 
     Raises InputError as the readers do.
     """
     parts = parts_of(path)
     bags = [part for part in parts if is_bag(part)]
-    topics = read_topics(path, bags) if bags else []
-    return [*(read_table(part) for part in parts if part not in bags), *topics]
+    topics = foreign_tables(path, BAG, bags) if bags else []
+    return [*(t for part in parts if part not in bags for t in _tables_of(part)), *topics]
+
+
+def _tables_of(path: Path) -> Sequence[Table]:
+    suffix = path.suffix.lower()
+    if suffix in FOREIGN:
+        return foreign_tables(path, FOREIGN[suffix])
+    return [read_excel(path) if suffix in EXCEL else read_csv(path)]
+
+
+def is_bag(path: Path) -> bool:
+    """Whether a path is a bag: a file by the end of its name, or a folder with its metadata."""
+    return path.suffix.lower() in STORED_IN or (path / METADATA).is_file()
 
 
 def parts_of(path: Path) -> list[Path]:
@@ -59,7 +73,7 @@ def stored_at(path: Path) -> list[Path]:
     stored = []
     for part in parts_of(path):
         inside = sorted(part.iterdir()) if part.is_dir() else [part]
-        stored += [p for p in inside if p is part or p.suffix in SUFFIXES or p.name == METADATA]
+        stored += [p for p in inside if p is part or p.suffix in STORED_IN or p.name == METADATA]
     return stored
 
 

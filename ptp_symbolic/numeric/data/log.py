@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from ptp_symbolic.platform import Clock, Platform, SignalDeclaration, naming_fil
 
 MIN_ROWS = 10
 STEADY = {"rate", "torque"}  # columns of points at steady rates
+OWN_SAMPLES = 0.25  # share of the rows that lack a column which has samples of its own
 SLOWEST = 5.0  # Hz; samples at most as often show no drive that lets go
 
 
@@ -150,7 +152,7 @@ def _read_signals(
     tables = read_tables(path)
     if len(tables) == 1:
         time, values = _read_table(tables[0], signals, declared)
-        return [(time, column) for column in values.T]
+        return _own_samples([(time, column) for column in values.T])
     found: dict[str, Series] = {}
     by_column = {signal.column: signal for signal in signals}
     for columns, parts in groups_of(path, tables, list(by_column)).items():
@@ -158,13 +160,27 @@ def _read_signals(
         time, values = one_after_the_other([(t, *_read_table(t, own, declared)) for t in parts])
         same = [known for known, _ in found.values() if np.array_equal(known, time)]
         found |= {c: (same[0] if same else time, v) for c, v in zip(columns, values.T, strict=True)}
-    return [found[signal.column] for signal in signals]
+    return _own_samples([found[signal.column] for signal in signals])
+
+
+def _own_samples(series: Sequence[Series]) -> list[Series]:
+    """Every signal at the times at which it has a value; those with the same share their times."""
+    own: list[Series] = []
+    clocks: dict[bytes, NDArray[np.float64]] = {}
+    for time, values in series:
+        missing = np.isnan(values)
+        if missing.any():
+            kept = ~missing
+            key = np.packbits(kept).tobytes()
+            time, values = clocks.setdefault(key, time[kept]), values[kept]
+        own.append((time, values))
+    return own
 
 
 def _read_table(
     table: Table, signals: Sequence[SignalDeclaration], declared: Clock
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return time [n] and the signals [n, len(signals)] in SI."""
+    """Return time [n] and the signals [n, len(signals)] in SI, NaN where one has no sample."""
     clock = table.clock(declared)
     if clock is None:
         steady = STEADY.issubset(name for name, _ in table.headings)
@@ -185,31 +201,51 @@ def _read_table(
         factor_of(f"{table.head}: column '{s.column}'", s, unit)
         for s, (_, unit) in zip(signals, found, strict=True)
     ]
-    numbers = table.numbers([clock[0], *(index for index, _ in found)])
+    columns = [clock[0], *(index for index, _ in found)]
+    numbers = table.numbers(columns)
     _refuse_short(table.path, numbers)
+    _refuse_lost(table, columns, np.isnan(numbers))
     time = np.ascontiguousarray(numbers[:, 0])
-    _check_time(table, time, clock[1])
+    for k, signal in enumerate(signals):
+        sampled = np.flatnonzero(~np.isnan(numbers[:, 1 + k]))
+        _refuse_short(table.path, sampled, signal)
+        if k == 0 or len(sampled) < len(time):
+            _check_time(table, time, clock[1], sampled)
     second = unit_factor(f"{table.head}: column 'time'", "time", "time", "s", clock[1])
     if second != 1.0:
         time *= second
-    if any(s.role == "output" for s in signals):
-        _refuse_slow(table, time)
+    for k, signal in enumerate(signals):
+        if signal.role == "output":
+            _refuse_slow(table, time[~np.isnan(numbers[:, 1 + k])])
     return time, calibrated(numbers[:, 1:], signals, factors)
 
 
-def _refuse_short(path: Path, rows: NDArray[np.float64]) -> None:
+def _refuse_lost(table: Table, columns: Sequence[int], missing: NDArray[np.bool_]) -> None:
+    """Raise InputError for a value that is missing here and there.
+
+    Where a column lacks many, it has samples of its own, as in the outer join of logs of several
+    rates; rows that hold none of the `columns` but the time are of others.
+    """
+    table.refuse_missing(columns[:1], missing[:, :1])
+    lost = missing & ~missing[:, 1:].all(axis=1, keepdims=True)
+    if lost.any() and lost.mean(axis=0).max() < OWN_SAMPLES:
+        table.refuse_missing(columns, lost)
+
+
+def _refuse_short(path: Path, rows: NDArray[Any], signal: SignalDeclaration | None = None) -> None:
     if len(rows) < MIN_ROWS:
+        of = "" if signal is None or not len(rows) else f" with '{signal.column}'"
         raise InputError(
-            f"{path}: has {len(rows)} rows of numbers; a log needs at least {MIN_ROWS}."
+            f"{path}: has {len(rows)} rows of numbers{of}; a log needs at least {MIN_ROWS}."
         )
 
 
 def _listing(table: Table) -> str:
     if not table.headings:
-        return "the file holds no column of numbers"
+        return f"the file holds no column of numbers{table.note}"
     columns = [name if unit is None else f"{name} [{unit}]" for name, unit in table.headings]
     text = ", ".join(columns)
-    return "the header has " + (text if len(text) <= 300 else text[:297] + "...")
+    return "the header has " + (text if len(text) <= 300 else text[:297] + "...") + table.note
 
 
 def _refuse_slow(table: Table, time: NDArray[np.float64]) -> None:
@@ -221,7 +257,11 @@ def _refuse_slow(table: Table, time: NDArray[np.float64]) -> None:
         )
 
 
-def _check_time(table: Table, time: NDArray[np.float64], unit: str | None) -> None:
+def _check_time(
+    table: Table, stamps: NDArray[np.float64], unit: str | None, rows: NDArray[np.intp]
+) -> None:
+    """Refuse times of the `rows` that do not increase, and such without a unit."""
+    time = stamps[rows]
     if unit is None:
         step = float(np.median(np.diff(time)))
         raise InputError(
@@ -234,6 +274,6 @@ def _check_time(table: Table, time: NDArray[np.float64], unit: str | None) -> No
         row = int(wrong[0]) + 1
         what = "repeats" if time[row] == time[row - 1] else "goes back from"
         raise InputError(
-            f"{table.row(row)}: time {float(time[row])!r} {unit} {what} {float(time[row - 1])!r} "
-            f"{unit} of the line before; time stamps must increase."
+            f"{table.row(int(rows[row]))}: time {float(time[row])!r} {unit} {what}"
+            f" {float(time[row - 1])!r} {unit} of the line before; time stamps must increase."
         )

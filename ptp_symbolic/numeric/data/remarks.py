@@ -24,6 +24,9 @@ HALF_TURN = np.pi  # rad: no platform turns further from one sample to the next
 FEW_COUNTS = 3.0  # of an encoder: an angle that stays within them did not move
 SATURATED = 0.5  # share of the samples at the largest or smallest value of a signal that changes
 FEW_LEVELS = 5  # of a signal that is switched
+FASTEST = 50.0  # rad/s, 480 rpm: no joint of a platform turns as fast for long
+OFTEN = 0.95  # share of the samples below the rate that is compared with it
+WHOLE, MOST_WHOLE = 0.02, 0.99  # of a count: rounding of a written number; share of such samples
 JITTER = 0.2  # of the sampling period, rms
 
 
@@ -83,6 +86,7 @@ def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
         found += [_wrap_remark(log.name, wraps) for wraps in log.wraps]
         found += _clock_remarks(log)
         found += [t for k, s in enumerate(outputs) for t in _jump_remarks(log, k, s)]
+        found += [t for k, s in enumerate(outputs) for t in _unit_remarks(log, k, s)]
         found += [t for s in outputs for t in _interpolation_remarks(log, s)]
         found += [_thinning_remark(log.name, *thinned) for thinned in log.thinned.items()]
     return tuple(found)
@@ -135,6 +139,40 @@ def _jump_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]
         f"{log.name}: '{signal.column}' jumps by {size:.6g} counts at {time:.6g} s{more},"
         " between samples that hardly move: was the encoder set anew, at an index?"
     ]
+
+
+def _unit_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]:
+    """An angle said to be in rad that steps by the counts of its encoder in degrees, or turns as no
+    joint does; or one said to be in deg that steps by its counts in rad.
+    """
+    if signal.unit != "rad" or not signal.is_position:
+        return []
+    angle = log.outputs[:, column]
+    rate = float(np.quantile(np.abs(np.diff(angle) / np.diff(log.time)), OFTEN))
+    span = float(np.ptp(angle))
+    is_fast = rate > FASTEST and span > 2.0 * HALF_TURN
+    if is_fast or _steps_by(angle, signal.count, np.degrees(1.0)):
+        return [
+            f"{log.name}: '{signal.column}' looks like degrees under the name of rad: it goes over"
+            f" {span:.3g} rad, at up to {rate:.3g} rad/s. Write '{signal.column} [deg]' in the"
+            ' heading, or column_unit = "deg" in the platform file where it has no unit.'
+        ]
+    if _steps_by(angle, signal.count, np.radians(1.0)):
+        return [
+            f"{log.name}: '{signal.column}' looks like rad under the name of deg: it steps by the"
+            f" counts of its encoder in rad, {signal.count:.3g}. Write '{signal.column} [rad]' in"
+            ' the heading, or column_unit = "rad" in the platform file where it has no unit.'
+        ]
+    return []
+
+
+def _steps_by(angle: FloatArray, count: float | None, factor: float) -> bool:
+    """Whether all values are whole numbers of a count times a factor, and some are far apart."""
+    if count is None:
+        return False
+    steps = (angle - angle[0]) / (count * factor)
+    whole = np.rint(steps)
+    return bool(np.ptp(whole) >= FEW_LEVELS and np.mean(np.abs(steps - whole) < WHOLE) > MOST_WHOLE)
 
 
 def _interpolation_remarks(log: Log, signal: SignalDeclaration) -> list[str]:

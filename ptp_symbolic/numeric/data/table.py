@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.files.content import MOST_COLUMNS
 from ptp_symbolic.platform import Clock
 from ptp_symbolic.platform.fields import shown
 from ptp_symbolic.platform.units import to_si
 
-CLOCKS = ("time", "t")  # names of the column of times, in any case
-MOST_ROWS = 10_000_000
-MOST_COLUMNS = 1000
+CLOCKS = ("time", "t", "tout", "x_value")  # names of the column of times, in any case
+_COMMENT = "%#/ "  # what may mark a header as a comment, and is no part of a name
 _HEADING = re.compile(r"([^\[\]]*?)\s*(?:\[([^\[\]]*)\])?")
 _ROUND = re.compile(r"(.*\S)\s*\(([^()]*)\)")
 
@@ -27,6 +27,8 @@ class Table(ABC):
 
     path: Path
     headings: tuple[tuple[str, str | None], ...]
+
+    note = ""  # what else the file holds, and cannot be read
 
     @property
     def head(self) -> str:
@@ -54,7 +56,7 @@ class Table(ABC):
     def clock(self, declared: Clock) -> tuple[int, str | None] | None:
         """Index and unit of the column of times; None where there is none."""
         if declared.column is not None:
-            found = self.place(declared.column)
+            found = self.place(declared.column) or self.place(declared.column.lstrip(_COMMENT))
         else:
             found = self._usual_clock()
         return None if found is None else (found[0], found[1] or declared.unit)
@@ -70,11 +72,28 @@ class Table(ABC):
 
     @abstractmethod
     def numbers(self, columns: Sequence[int]) -> NDArray[np.float64]:
-        """The given columns as [n, len(columns)].
+        """The given columns as [n, len(columns)], NaN where there is no value.
 
         Raises InputError, with the line where there is one, for cells of these columns that are no
         finite numbers, and for more than ten million rows.
         """
+
+    def complete(self, columns: Sequence[int]) -> NDArray[np.float64]:
+        """`numbers`, each of which is there. Raises InputError for one that is missing, too."""
+        values = self.numbers(columns)
+        self.refuse_missing(columns, np.isnan(values))
+        return values
+
+    def refuse_missing(self, columns: Sequence[int], missing: NDArray[np.bool_]) -> None:
+        """Raise InputError for the first of the `missing` values [n, len(columns)]."""
+        if missing.any():
+            row, place = (int(k) for k in np.argwhere(missing)[0])
+            raise self.lost(row, columns[place])
+
+    def lost(self, row: int, column: int) -> InputError:
+        """The refusal of a row, counted from zero, without a value in a column."""
+        name = self.headings[column][0]
+        return InputError(f"{self.row(row)}: '{name}' is missing; every row needs a value.")
 
 
 def heading(where: str, cell: str, unit: str | None = None) -> tuple[str, str | None]:

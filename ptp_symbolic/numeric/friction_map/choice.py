@@ -1,5 +1,6 @@
 """Which member the points can show: every member is tested against all that are larger."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -186,9 +187,12 @@ def _nominal(
 def _bound(found: Comparison, member: Member, other: Member, nominal: float) -> float:
     """Most that the probability of a nominal p-value as small can be: the sum over the scan.
 
-    For a linear `member`: at each speed `other` is then linear, too, and its F-test exact.
+    For a linear `member`: at each speed `other` is then linear, too, and its F-test exact. There is
+    no bound where `other` adds speeds alone.
     """
     added, left = other.size - member.size, found.left(other)
+    if added == other.speeds:
+        return math.inf
     ratio = fisher.isf(nominal, added, left) * added / left
     scanned = float(np.prod([len(block.speeds) for block in found.blocks[other]]))
     linear, rest = added - other.speeds, left + other.speeds

@@ -15,6 +15,7 @@ from ptp_symbolic.platform.units import to_si
 
 FloatArray = NDArray[np.float64]
 
+SMALLEST, LARGEST = 1e-12, 1e12  # in SI units, of rates and torques: any machine's lie between
 MIN_POINTS = 4  # two for Coulomb and viscous friction, one for the scatter, one to leave out
 _PERCENT = re.compile(r"% of (.+)")
 _QUANTITY = re.compile(r"([0-9.]++(?:[eE][+-]?[0-9]+)?) *([^0-9].*)")
@@ -88,7 +89,7 @@ def read_points(path: Path, wanted: Columns) -> Points:
     units = _units(table, places[0])
     factors = [_factor(table, places[0], units.rate, units.other_rates)]
     factors += [_torque_factor(table, k, units, wanted.nominal) for k in places[1:]]
-    values = table.numbers(places) * np.array(factors)
+    values = table.complete(places) * np.array(factors)
     spread = values[:, 2] if wanted.spread else None
     points = Points(path.name, values[:, 0], values[:, 1], spread, units)
     _check(path, points)
@@ -165,6 +166,7 @@ def _check(path: Path, points: Points) -> None:
             f"{path}: has {count} points at {len(speeds)} speeds; a friction map needs at least"
             f" {MIN_POINTS} points at two."
         )
+    _refuse_sizes(path, points)
     rest = np.flatnonzero((points.rate == 0.0) & (points.torque == 0.0))
     if len(rest):
         raise InputError(
@@ -182,3 +184,18 @@ def _check(path: Path, points: Points) -> None:
             f"{path}: most {word}s brake the motion; give the {word} that drives the joint,"
             " positive where the rate is positive."
         )
+
+
+def _refuse_sizes(path: Path, points: Points) -> None:
+    units = points.units
+    found = [("rate", points.rate, units.rate), (units.word, points.torque, units.torque)]
+    if points.spread is not None:
+        found.append(("standard deviation", points.spread, units.torque))
+    for name, values, unit in found:
+        size = np.abs(values[values != 0.0])
+        wrong = size[~((size >= SMALLEST) & (size <= LARGEST))]
+        if len(wrong):
+            raise InputError(
+                f"{path}: a {name} of {wrong[0]:g} {unit} is none of a machine; give at least"
+                f" {SMALLEST:g} and at most {LARGEST:g} {unit}, or correct the unit."
+            )

@@ -102,10 +102,15 @@ class Design:
         else:
             speeds, decay = np.full(1, np.nan), (rate == 0.0)[None].astype(float)
         table = columns(member, rate, sign, decay) * self.weight[rows][:, None]
+        count, size = table.shape[1:]
+        if count < size:
+            none = np.zeros(len(speeds), dtype=bool)
+            triangle = np.broadcast_to(np.eye(size), (len(speeds), size, size))
+            return Block(member, rows, speeds, np.zeros_like(table), triangle, none)
         basis, triangle = np.linalg.qr(table)
         length = np.linalg.norm(table, axis=1)
         pivots = np.abs(np.diagonal(triangle, axis1=1, axis2=2))
-        sound = (pivots > SMALLEST_PIVOT * length).all(axis=1) & (len(rows) >= table.shape[2])
+        sound = (pivots > SMALLEST_PIVOT * length).all(axis=1)
         return Block(member, rows, speeds, basis, triangle, sound)
 
     def blocks(self, member: Member, speeds: FloatArray | None = None) -> tuple[Block, ...]:

@@ -77,7 +77,10 @@ def half_width_of(
             )
             for run in runs
         ]
-        size = np.sqrt(np.nanmean(np.concatenate(curved) ** 2, axis=0))
+        curvature = np.concatenate(curved)
+        if np.isnan(curvature).all(axis=0).any():  # no window fits into any run
+            return False
+        size = np.sqrt(np.nanmean(curvature**2, axis=0))
         return bool(np.all(noise * gain <= CALM * size))
 
     half_width = next((w for w in HALF_WIDTHS if is_calm(w)), None)

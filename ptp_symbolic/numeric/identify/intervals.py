@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from ptp_symbolic.numeric.data.remarks import FEW_COUNTS
 from ptp_symbolic.numeric.identify.between_logs import reach_between_logs
 from ptp_symbolic.numeric.identify.blocks import (
     degrees_of_freedom,
@@ -158,9 +159,25 @@ def chance_of(
 def covariance_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Covariance [nf, nf] of the search coordinates, the degrees of freedom [nf] behind each, and
     the null space [2, nf, lost] that the data do not see, in coordinates scaled by what the data
-    see of each alone, and in those of the search; the covariance leaves it out.
+    see of each alone, and in those of the search; the covariance leaves it out. Angles that never
+    move are no data.
     """
-    return _covariance(fit, np.vstack(_columns(fit)))
+    columns = np.vstack(_columns(fit))
+    signals = fit.runs[0].measured.shape[1]
+    columns[np.isin(np.arange(len(columns)) % signals, _at_rest(fit))] = 0.0
+    return _covariance(fit, columns)
+
+
+def _at_rest(fit: Fit) -> list[int]:
+    """The measured angles that stay within a few counts of their encoder in all runs. They tell
+    nothing: what they rest on may be any friction above a torque that was never reached.
+    """
+    still = []
+    for k, name in enumerate(fit.runs[0].signals):
+        span = max(float(np.ptp(run.measured[:, k])) for run in fit.runs)
+        if name.startswith("theta_") and span <= FEW_COUNTS * fit.runs[0].counts[k]:
+            still.append(k)
+    return still
 
 
 def axes_of(fit: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:

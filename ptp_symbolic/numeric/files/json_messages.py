@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.messages import in_a_line, numbers_of, without_library
+from ptp_symbolic.numeric.files.content import in_a_line, lacking
+from ptp_symbolic.numeric.files.messages import numbers_of
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ def json_messages(path: Path, paths: Sequence[Path]) -> JsonMessages | None:
         from mcap.exceptions import McapError
         from mcap.reader import make_reader
     except ImportError as error:
-        raise InputError(without_library(path, "mcap")) from error
+        raise InputError(lacking(path, "bag", "mcap", "bag")) from error
     topics: set[str] = set()
     starts: list[int] = []
     for part in paths:

@@ -1,16 +1,14 @@
-"""Messages of a bag: the numbers in one by name, the time of its header, and what to do where they
-cannot be read.
-"""
+"""Messages of a bag: the numbers in one by name, and the time of its header."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
-from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
+from ptp_symbolic.numeric.files.content import WIDEST
+
 FAR = 10**15  # ns, 12 days: stamps that far from the time of recording are of another clock
-LONGEST_LIST = 100  # numbers in a field that are columns
 STAMPS = ("header", "stamp", "timestamp", "__msgtype__")  # fields that are no measurements
 UNDER_A_SECOND = ("nanosec", "nsec", "nsecs")  # ns of a time, by convention
 
@@ -59,7 +57,7 @@ def _numbers(name: str, value: Any, names: Sequence[str]) -> Iterator[tuple[str,
     """The numbers within a value of a message; `names` are those of the elements of lists."""
     if isinstance(value, bool | int | float | np.number):
         yield name, float(value)
-    elif isinstance(value, list | np.ndarray) and len(value) <= LONGEST_LIST:
+    elif isinstance(value, list | np.ndarray) and len(value) <= WIDEST:
         own = names if len(names) == len(value) else []
         for key, element in chain(enumerate(value), zip(own, value, strict=False)):
             yield from _numbers(f"{name}/{key}", element, [])
@@ -69,16 +67,3 @@ def _numbers(name: str, value: Any, names: Sequence[str]) -> Iterator[tuple[str,
         for key, element in fields.items():
             if key not in STAMPS or isinstance(element, int | float):
                 yield from _numbers(f"{name}/{key}", element, own)
-
-
-def without_library(path: Path, library: str) -> str:
-    """What to do where the library that reads a bag is not installed."""
-    return (
-        f"{path}: a bag needs {library}; run pip install 'ptp-symbolic[bag]', or save the log as"
-        " CSV."
-    )
-
-
-def in_a_line(error: Exception) -> str:
-    """The message of an error in one line, without the dot at its end."""
-    return " ".join(str(error).split()).rstrip(".") or type(error).__name__

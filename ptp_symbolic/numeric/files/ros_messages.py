@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data.messages import in_a_line, numbers_of, without_library
+from ptp_symbolic.numeric.files.content import in_a_line, lacking
+from ptp_symbolic.numeric.files.messages import numbers_of
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class RosMessages:
         try:
             from rosbags.highlevel import AnyReader, AnyReaderError
         except ImportError as error:
-            raise InputError(without_library(self.path, "rosbags")) from error
+            raise InputError(lacking(self.path, "bag", "rosbags", "bag")) from error
         missing = [p for p in self.paths if not p.exists()]
         if missing:
             raise InputError(f"{missing[0]}: No such file or directory; give the path of a log.")

@@ -1,0 +1,67 @@
+"""Excel files (.xlsx), read with openpyxl as the text of a CSV."""
+
+import csv
+import io
+from datetime import date, datetime, time, timedelta
+from pathlib import Path
+from typing import Any
+from zipfile import ZipFile
+
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.files.content import MOST_COLUMNS, MOST_ROWS, lacking
+
+MOST_BYTES = 400_000_000  # of all that is compressed within a file
+
+
+def text_of(path: Path) -> str:
+    """The rows of the first sheet that has some, as the text of a CSV.
+
+    Raises InputError for a file that unfolds into over 400 MB or too many cells, and where openpyxl
+    is not installed, and whatever openpyxl raises.
+    """
+    try:
+        from openpyxl import load_workbook
+    except ImportError as error:
+        raise InputError(lacking(path, "Excel", "openpyxl", "excel")) from error
+    with ZipFile(path) as archive:
+        unfolded = sum(entry.file_size for entry in archive.infolist())
+    if unfolded > MOST_BYTES:
+        raise InputError(
+            f"{path}: unfolds into {unfolded / 1e6:.0f} MB, and {MOST_BYTES / 1e6:.0f} MB are"
+            " allowed; save the log as CSV."
+        )
+    book = load_workbook(path, read_only=True, data_only=True, keep_links=False)
+    for sheet in book.worksheets:
+        sheet.reset_dimensions()  # which some programs write wrong
+        text = io.StringIO()
+        write = csv.writer(text, lineterminator="\n").writerow
+        for number, row in enumerate(sheet.iter_rows(values_only=True, max_col=MOST_COLUMNS + 1)):
+            if number > MOST_ROWS:
+                raise InputError(f"{path}: has more than {MOST_ROWS} rows; split the log.")
+            write([_cell(value) for value in row])
+        if text.getvalue().strip(",\n"):
+            return _trimmed(text.getvalue())
+    return ""
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return str(int(value))
+    if isinstance(value, timedelta):
+        return f"{value.total_seconds()!r} s"
+    if isinstance(value, datetime | date | time):
+        return value.isoformat()
+    return " ".join(str(value).split())
+
+
+def _trimmed(text: str) -> str:
+    """Without rows and columns at the ends that have no values."""
+    rows = list(csv.reader(io.StringIO(text)))
+    while rows and not any(rows[-1]):
+        rows.pop()
+    width = max((k + 1 for row in rows for k, cell in enumerate(row) if cell), default=0)
+    trimmed = io.StringIO()
+    csv.writer(trimmed, lineterminator="\n").writerows(row[:width] for row in rows)
+    return trimmed.getvalue()
