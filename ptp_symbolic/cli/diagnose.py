@@ -162,6 +162,8 @@ def _print_diagnosis(summary: Mapping[str, Any]) -> None:
         click.echo("Gained something, but were not named:")
     for key, why in summary["refused"].items():
         click.echo(f"  {key}: {why}")
+    for text in summary["hints"]:
+        click.echo(f"Hint: {text}")
     _print_errors(summary)
     _print_rivals(summary)
 
@@ -205,13 +207,14 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from ptp_symbolic.numeric.diagnose.errors import over
     from ptp_symbolic.report.tables import declared_totals, error_measure
 
     key, unit = error_measure(declared_totals(summary))
     errors = summary["error"]
     for part, title in (("train", "fitted"), ("validate", "never fitted")):
         error = errors[part]
-        click.echo(f"{part} ({title}), {unit} rms:")
+        click.echo(f"{part} ({title}), {unit} rms, {over(error['before'].get('windows'))}:")
         table = Table("run", "before", "after", "floor", box=None)
         for run in (*error["before"]["by_run"], "total"):
             cells = [

@@ -89,6 +89,7 @@ def diagnosis(counts: float | None, angle: float) -> dict[str, Any]:
         "added": [],
         "refused": {},
         "remarks": [],
+        "hints": [],
         "black_box": None,
         "windows": None,
         "fit": {"after": {"parameters": {}}},
@@ -109,6 +110,24 @@ def test_errors_are_in_counts_or_where_there_is_no_encoder_in_rad(
         assert f"{part}, {unit} rms" in text
     assert re.findall(r"^ total +(\S+)", text, re.MULTILINE) == [shown, shown]
     assert "Error: root mean square." in text
+
+
+def test_errors_are_printed_with_the_windows_that_they_were_taken_over(capsys) -> None:
+    """Training and validation runs may be cut differently: their errors are no pair then."""
+    found = diagnosis(0.3, 5e-4)
+    for part, windows in (("train", {"count": 3, "seconds": 10.0}), ("validate", None)):
+        found["error"][part] = {
+            when: {**stage, "windows": windows} for when, stage in found["error"][part].items()
+        }
+    _print_diagnosis(found)
+    text = capsys.readouterr().out
+    assert "train (fitted), counts rms, over 3 windows of 10 s:" in text
+    assert "validate (never fitted), counts rms, over whole runs:" in text
+
+
+def test_hints_are_printed(capsys) -> None:
+    _print_diagnosis({**diagnosis(0.3, 5e-4), "hints": ["The residual torque steps at 10 s."]})
+    assert "Hint: The residual torque steps at 10 s." in capsys.readouterr().out.splitlines()
 
 
 def test_what_was_refused_and_remarks_on_the_logs_are_printed(capsys) -> None:
