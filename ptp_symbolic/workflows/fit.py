@@ -62,9 +62,10 @@ def fit_platform(
         trial = trial or begun
         floor = floor_of(task, trial, carried_noise(task, trial.fit))
     units = model.units
+    after = error_of(trial.fit, units)
     error = {
         "before": None if begun.fit.failed else error_of(begun.fit, units),
-        "after": error_of(trial.fit, units),
+        "after": after,
         "noise_floor": error_of(trial.fit, units, floor.level),
     }
     left, least = (error[when]["total"]["rmse"] for when in ("after", "noise_floor"))  # type: ignore[index]
@@ -75,7 +76,7 @@ def fit_platform(
         "parameters": fit_table(trial, estimates(trial.fit)),
         "error": error,
         "far_from_floor": trial.fit.failed is not None or left > FAR_FROM_FLOOR * least,
-        "windows": error["after"]["windows"],
+        "windows": after["windows"],
         "remarks": list(noted),
         "provenance": sources,
     }
