@@ -45,6 +45,10 @@ from ptp_symbolic.symbolic.effects import EFFECTS
 from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, json_text
 from ptp_symbolic.workflows.structure_choice import Choice
 
+TAKEN_OVER = (
+    "The declared model fits better from where an extended one ended than from its own starts: that"
+    " is the error before, and fit alone may end in a worse place."
+)
 NOT_TRIED = "not tried: "  # begins a reason that lies in the effect, not in the platform
 
 
@@ -74,6 +78,8 @@ def written_up(
     module, doubts = _module_of(extended)
     doubts += _carried_remarks(platform, verdict.floor)
     doubts += _tied_remarks(platform) if verdict.leaves_more else []
+    if choice.terms.found.is_taken_over:
+        doubts.append(TAKEN_OVER)
     named = [c for c in after.candidates if not c.is_declared_value]
     equations = [e for c in named for e in effect_equations(extended, c.id, c.axis)]
     space = found.proposals.space
