@@ -42,7 +42,7 @@ def load(source: str | Path) -> Model:
 
     if str(source) in model_names():
         return load_model(str(source))
+    from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.models.emission import emit
-    from ptp_symbolic.platform import platform_file, read_platform
 
-    return emit(read_platform(platform_file(source, model_names())))
+    return emit(declared_platform(source))

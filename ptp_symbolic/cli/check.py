@@ -7,7 +7,8 @@ from typing import Any
 
 import click
 
-from ptp_symbolic.cli.diagnose import progress_line
+from ptp_symbolic.cli.declared import note_defaults
+from ptp_symbolic.cli.progress import progress_line
 
 COLUMNS = (
     "  signal",
@@ -40,9 +41,11 @@ def check(source: str, logs: tuple[str, ...], out: Path | None, as_json: bool) -
     platform = declared_platform(source)
     if out is not None:
         check_writable(out)
-    found = check_logs(platform, logs, progress_line())
+    with progress_line() as say:
+        found = check_logs(platform, logs, say)
     if out is not None:
         write_files_atomically(out, found.files)
+    note_defaults(platform)
     if as_json:
         click.echo(json.dumps(found.summary, indent=2))
         return

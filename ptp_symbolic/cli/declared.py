@@ -4,16 +4,12 @@ import click
 
 from ptp_symbolic.platform import Platform
 
-SHOWN = 6
-
 
 def note_defaults(platform: Platform) -> None:
-    """Print one line on stderr with the parameters that keep the default of the catalogue."""
+    """Print one line on stderr with all parameters that keep their natural default."""
     from ptp_symbolic.symbolic.derivation.placement import undeclared_parameters
 
     left = undeclared_parameters(platform)
-    if not left:
-        return
-    shown = ", ".join(f"{p.name} = {p.default:g} {p.unit}" for p in left[:SHOWN])
-    more = f" and {len(left) - SHOWN} more" if len(left) > SHOWN else ""
-    click.echo(f"Not declared, default of the catalogue: {shown}{more}.", err=True)
+    if left:
+        shown = ", ".join(f"{p.name} = {p.default:g} {p.unit}" for p in left)
+        click.echo(f"Not declared, at their natural default: {shown}.", err=True)

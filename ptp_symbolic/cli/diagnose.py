@@ -2,15 +2,14 @@
 
 import json
 import shlex
-import sys
-import time
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
 from ptp_symbolic.cli.declared import note_defaults
+from ptp_symbolic.cli.progress import progress_line
 
 
 class SeveralValues(click.Command):
@@ -36,17 +35,6 @@ def repeated(args: Sequence[str], options: Collection[str]) -> list[str]:
             has_value = True
         written.append(arg)
     return written
-
-
-def progress_line() -> Callable[[str], None]:
-    """A function that shows what is being done, on a terminal only."""
-    begun = time.monotonic()
-
-    def show(text: str) -> None:
-        if sys.stderr.isatty():
-            click.echo(f"[{time.monotonic() - begun:6.1f} s] {text}", err=True)
-
-    return show
 
 
 @click.command(cls=SeveralValues)
@@ -83,9 +71,8 @@ def diagnose(
     words += ["--black-box"] * rivals
     words += [] if time_limit is None else ["--time-limit", f"{time_limit:g}"]
     command = shlex.join(["ptp-symbolic", *words, "--out", str(out)])
-    found = diagnose_platform(
-        platform, train, validate, progress_line(), command, rivals, time_limit
-    )
+    with progress_line() as say:
+        found = diagnose_platform(platform, train, validate, say, command, rivals, time_limit)
     write_files_atomically(out, found.files)
     note_defaults(platform)
     if as_json:
@@ -112,7 +99,8 @@ def fit(source: str, logs: tuple[str, ...], out: Path, as_json: bool) -> None:
     platform = declared_platform(source)
     check_writable(out)
     words = ["fit", "--platform", source, *logs, "--out", str(out)]
-    found = fit_platform(platform, logs, progress_line(), shlex.join(["ptp-symbolic", *words]))
+    with progress_line() as say:
+        found = fit_platform(platform, logs, say, shlex.join(["ptp-symbolic", *words]))
     write_files_atomically(out, found.files)
     note_defaults(platform)
     if as_json:
@@ -176,6 +164,8 @@ def _print_diagnosis(summary: Mapping[str, Any]) -> None:
         click.echo("Gained something, but were not named:")
     for key, why in summary["refused"].items():
         click.echo(f"  {key}: {why}")
+    for text in summary["hints"]:
+        click.echo(f"Hint: {text}")
     _print_errors(summary)
     _print_rivals(summary)
 
@@ -219,13 +209,14 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from ptp_symbolic.numeric.diagnose.errors import over
     from ptp_symbolic.report.tables import declared_totals, error_measure
 
     key, unit = error_measure(declared_totals(summary))
     errors = summary["error"]
     for part, title in (("train", "fitted"), ("validate", "never fitted")):
         error = errors[part]
-        click.echo(f"{part} ({title}), {unit} rms:")
+        click.echo(f"{part} ({title}), {unit} rms, {over(error['before'].get('windows'))}:")
         table = Table("run", "before", "after", "floor", box=None)
         for run in (*error["before"]["by_run"], "total"):
             cells = [

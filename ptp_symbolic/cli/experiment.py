@@ -8,7 +8,8 @@ from typing import Any
 import click
 
 from ptp_symbolic.cli.declared import note_defaults
-from ptp_symbolic.cli.diagnose import SeveralValues, progress_line
+from ptp_symbolic.cli.diagnose import SeveralValues
+from ptp_symbolic.cli.progress import progress_line
 from ptp_symbolic.cli.simulate import initial_states
 from ptp_symbolic.errors import InputError
 
@@ -70,7 +71,8 @@ def experiment(
         between = between or (() if parameter else group)
     states = initial_states(load(source), initial) if initial else {}
     request = Request(between, parameter, limit, duration, period, states, known, tries, seed)
-    found = design_experiment(platform, request, train, progress_line())
+    with progress_line() as say:
+        found = design_experiment(platform, request, train, say)
     write_files_atomically(out, found.files)
     note_defaults(platform)
     if as_json:

@@ -71,10 +71,10 @@ def friction_map(
 
 def _check_axis(source: str, axis: str, points: Path, rate: str) -> None:
     from ptp_symbolic.errors import InputError
-    from ptp_symbolic.models.committed import declared_platform
+    from ptp_symbolic.models.committed import platform_as_written
     from ptp_symbolic.numeric.friction_map.points import LINEAR, ROTARY
 
-    platform = declared_platform(source)
+    platform = platform_as_written(source)
     if axis not in platform.axes:
         axes = ", ".join(platform.axes)
         raise InputError(f"--axis {axis}: '{source}' has {axes}; give one of these.")

@@ -110,7 +110,7 @@ def _described(kind: Any) -> dict[str, Any]:
             {
                 "name": p.name,
                 "unit": p.unit,
-                "default": p.default,
+                "default": p.default if p.has_natural_default else None,
                 "bounds": [p.lower, p.upper],
                 "meaning": p.meaning,
                 "off_at": p.vanishes,
@@ -131,11 +131,11 @@ def _from_the_machine(need: str) -> list[str]:
 
 def _as_row(parameter: Mapping[str, Any]) -> dict[str, str]:
     lower, upper = parameter["bounds"]
-    off = parameter["off_at"]
+    off, default = parameter["off_at"], parameter["default"]
     return {
         "parameter": parameter["name"],
         "unit": parameter["unit"],
-        "default": f"{parameter['default']:g}",
+        "default": "none: declare it" if default is None else f"{default:g}",
         "bounds": f"{lower:g} to {upper:g}",
         "off at": "" if off is None else f"{off:g}",
         "meaning": parameter["meaning"],

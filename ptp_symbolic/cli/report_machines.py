@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from ptp_symbolic.cli.diagnose import progress_line
+from ptp_symbolic.cli.progress import progress_line
 
 
 @click.command()
@@ -19,7 +19,8 @@ def machines(data: Path, out: Path, as_json: bool) -> None:
     from ptp_symbolic.report.machines import render_machines
 
     check_writable(out)
-    results = study.machines(data, progress_line())
+    with progress_line() as say:
+        results = study.machines(data, say)
     text = json.dumps(results, indent=2) + "\n"
     files: dict[str, str | bytes] = {
         "machines.html": render_machines(results),

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from ptp_symbolic.cli.diagnose import progress_line
+from ptp_symbolic.cli.progress import progress_line
 
 
 @click.command()
@@ -18,7 +18,8 @@ def thesis(out: Path, as_json: bool) -> None:
     from ptp_symbolic.thesis.document import thesis_files
 
     check_writable(out)
-    files = thesis_files(progress_line())
+    with progress_line() as say:
+        files = thesis_files(say)
     pdf = compile_pdf(files, "thesis")
     if pdf is not None:
         files["thesis.pdf"] = pdf

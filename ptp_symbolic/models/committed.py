@@ -14,6 +14,7 @@ from ptp_symbolic.models.emission import module_of
 from ptp_symbolic.numeric.runtime.loader import generated_folder
 from ptp_symbolic.platform import Platform, platform_file, read_platform
 from ptp_symbolic.symbolic.codegen.module import sealed
+from ptp_symbolic.symbolic.derivation.placement import refuse_undeclared
 
 COMMITTED = {
     "ideal": "thesis-ideal",
@@ -39,8 +40,16 @@ DEVICES = "aux con nul prn" + "".join(f" com{k} lpt{k}" for k in range(1, 10))
 def declared_platform(source: str | Path) -> Platform:
     """Read the platform of a committed model, a preset or a file.
 
-    Raises InputError for what is none of them, and for a file that cannot be used.
+    Raises InputError for what is none of them, for a file that cannot be used, and for one that
+    leaves out a parameter without a natural default.
     """
+    platform = platform_as_written(source)
+    refuse_undeclared(platform)
+    return platform
+
+
+def platform_as_written(source: str | Path) -> Platform:
+    """As `declared_platform`, for what needs no values: parameters may be missing."""
     name = COMMITTED.get(str(source), source)
     return read_platform(platform_file(name, tuple(COMMITTED)))
 

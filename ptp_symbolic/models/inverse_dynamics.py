@@ -9,7 +9,7 @@ import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.models.committed import COMMITTED
+from ptp_symbolic.models.committed import COMMITTED, declared_platform
 from ptp_symbolic.models.variants import torque_driven
 from ptp_symbolic.numeric.runtime.loader import load_model
 from ptp_symbolic.numeric.runtime.model import Model
@@ -133,7 +133,7 @@ def _platform(machine: Model | Platform | str | Path) -> Platform:
     if isinstance(machine, Platform):
         return machine
     if not isinstance(machine, Model):
-        return read_platform(COMMITTED.get(str(machine), machine))
+        return declared_platform(machine)
     name = machine.name
     if name not in COMMITTED or machine.module is not load_model(name).module:
         raise InputError(f"Model '{name}' is not a committed one; give its platform instead.")

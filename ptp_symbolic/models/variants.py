@@ -77,7 +77,9 @@ def extended(
     values: Mapping[str, float],
     fitted: Sequence[ParameterDeclaration],
 ) -> Platform:
-    """`platform` with effects and fitted parameters added; `values` are the new starts."""
+    """`platform` with effects and fitted parameters added; `values` are the new starts, and of the
+    added effects what was not fitted: the result declares all that the model had.
+    """
     kept = []
     replaced = {p.name for p in fitted}
     for declaration in platform.parameters:
@@ -85,4 +87,13 @@ def extended(
             continue
         value = values.get(declaration.name, declaration.value)
         kept.append(replace(declaration, value=value))
-    return replace(platform, effects=(*platform.effects, *added), parameters=(*kept, *fitted))
+    whole = replace(platform, effects=(*platform.effects, *added), parameters=(*kept, *fitted))
+    own = {(e.effect, e.axis) for e in added}
+    known = tuple(
+        ParameterDeclaration(p.name, p.unit, values[p.name])
+        for effect, place in place_effects(whole)
+        if (effect.id, place.axis) in own
+        for p in effect.parameters_at(place)
+        if p.name in values and p.name not in {d.name for d in whole.parameters}
+    )
+    return replace(whole, parameters=(*whole.parameters, *known))

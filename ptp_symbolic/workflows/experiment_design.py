@@ -13,7 +13,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.diagnose.visibility import SEEN
 from ptp_symbolic.numeric.experiment.criteria import Worth, least_separation, precision
 from ptp_symbolic.numeric.experiment.limits import read_limits
-from ptp_symbolic.numeric.experiment.machine import Conditions, Played, play, refuse_start_outside
+from ptp_symbolic.numeric.experiment.machine import Conditions, Played, play, refuse_rest_outside
 from ptp_symbolic.numeric.experiment.prediction import (
     predicted_curves,
     predicted_pairs,
@@ -76,7 +76,8 @@ def design_experiment(
             progress,
         )
         conditions = _conditions(request, rivals)
-        refuse_start_outside(rivals.contenders[0], conditions)
+        for contender in rivals.contenders:
+            refuse_rest_outside(contender, conditions)
         found = _found(request, rivals, conditions, executor, progress)
         played = play(rivals.contenders[0], conditions, found.wave)
         assert played is not None  # the worth of what cannot be played is not finite

@@ -74,6 +74,13 @@ def rivals_of(
 
     Raises InputError for unknown names and logs that do not fit.
     """
+    own = set(effect_keys(platform))
+    for key in (key for keys in between for key in keys.split("+")):
+        if key in own:
+            raise InputError(
+                f"--between {key}: {platform.source or platform.name} declares it already; give the"
+                " platform without the effects to tell apart."
+            )
     progress("deriving the equations")
     model = model_of(variants.with_candidates(platform) if between else platform)
     declared = effect_keys(platform) if between else ()

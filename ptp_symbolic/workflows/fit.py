@@ -27,7 +27,6 @@ from ptp_symbolic.workflows.result import (
     Output,
     Progress,
     json_text,
-    windows_table,
 )
 
 FAR_FROM_FLOOR = 3.0  # times the floor: from here on a fit is called far from it
@@ -56,18 +55,20 @@ def fit_platform(
     model = model_of(platform)
     with workers() as executor:
         task = task_for(platform, model, logs, logs, (), executor, progress)
-        begun = _as_declared(task)
-        trial = begun
+        progress("fitting")
+        trial = None
         if task.free:
-            progress("fitting")
             task, trial = fit_declared(task, propose(task))
             noted = (*noted, *turned_inputs(task, trial))
             trial = replace(trial, fit=estimable(trial.fit, task.input_noise, executor))
+        begun = _as_declared(task)  # over the windows of the fit, as what comes after
+        trial = trial or begun
         floor = floor_of(task, trial, carried_noise(task, trial.fit))
     units = model.units
+    after = error_of(trial.fit, units)
     error = {
         "before": None if begun.fit.failed else error_of(begun.fit, units),
-        "after": error_of(trial.fit, units),
+        "after": after,
         "noise_floor": error_of(trial.fit, units, floor.level),
     }
     noted = (*_what_to_check(error["after"]["total"]), *noted)  # type: ignore[index]
@@ -79,7 +80,7 @@ def fit_platform(
         "parameters": fit_table(trial, estimates(trial.fit)),
         "error": error,
         "far_from_floor": trial.fit.failed is not None or left > FAR_FROM_FLOOR * least,
-        "windows": windows_table(task),
+        "windows": after["windows"],
         "remarks": list(noted),
         "provenance": sources,
     }

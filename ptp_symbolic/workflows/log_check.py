@@ -36,7 +36,7 @@ def check_logs(
     model = model_of(variants.with_candidates(platform))
     with workers() as executor:
         task = task_for(platform, model, logs, logs, effect_keys(platform), executor, progress)
-        progress("predicting what these logs can show")
+        progress("simulating the logs at the declared start values")
         start = fitted(task, (), {**task.fixed, **all_values_at_start(task.free)}, None)
         failed = start.fit.failed is not None
         visible = [] if failed else visible_amounts(task, start)

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.diagnose.trial import Task
 from ptp_symbolic.platform import Platform
 
 Wanted = TypeVar("Wanted")
@@ -50,9 +49,3 @@ def read_diagnosis(
             " diagnosed, of two as the first one."
         )
     return part
-
-
-def windows_table(task: Task) -> dict[str, Any] | None:
-    """How many windows runs were cut into, and how long they are; None where all runs are whole."""
-    lengths = [float(run.time[-1] - run.time[0]) for run in task.train if run.name != run.source]
-    return {"count": len(lengths), "seconds": sum(lengths) / len(lengths)} if lengths else None

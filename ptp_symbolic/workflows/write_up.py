@@ -7,6 +7,7 @@ import numpy as np
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
+from ptp_symbolic.numeric.diagnose.confirm import at_bound
 from ptp_symbolic.numeric.diagnose.curves import curves_of
 from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.hints import further_hints
@@ -32,9 +33,23 @@ from ptp_symbolic.report.latex_text import PREAMBLE, escaped
 from ptp_symbolic.report.pdf import with_pdf
 from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.placement import (
+    available_quantities,
+    find_effect,
+    place_effects,
+)
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.place import Place
+from ptp_symbolic.symbolic.effects import EFFECTS
 from ptp_symbolic.workflows.preparation import with_effects
-from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, json_text, windows_table
+from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, json_text
 from ptp_symbolic.workflows.structure_choice import Choice
+
+TAKEN_OVER = (
+    "The declared model fits better from where an extended one ended than from its own starts: that"
+    " is the error before, and fit alone may end in a worse place."
+)
+NOT_TRIED = "not tried: "  # begins a reason that lies in the effect, not in the platform
 
 
 def written_up(
@@ -63,11 +78,17 @@ def written_up(
     module, doubts = _module_of(extended)
     doubts += _carried_remarks(platform, verdict.floor)
     doubts += _tied_remarks(platform) if verdict.leaves_more else []
+    if choice.terms.found.is_taken_over:
+        doubts.append(TAKEN_OVER)
     named = [c for c in after.candidates if not c.is_declared_value]
     equations = [e for c in named for e in effect_equations(extended, c.id, c.axis)]
     space = found.proposals.space
     left = remainder(space, after.values) if verdict.leaves_more else None
     further = further_hints(after, space) if verdict.leaves_more else []
+    if verdict.leaves_more:
+        tried = [t for t in (verdict.closest, found.chosen, *found.tried.others) if t is not None]
+        further += _bound_hints(platform, tried, verdict.refused)
+        further += _untried_hints(platform, choice.untried)
     summary = {
         "schema_version": SCHEMA_VERSION,
         "platform": {"name": platform.name, "title": platform.title},
@@ -88,7 +109,7 @@ def written_up(
         "remainder": left,
         "hints": [*hints(left), *further],
         "black_box": None if beside is None else dict(beside),
-        "windows": windows_table(found.task),
+        "windows": errors["train"]["after"]["windows"],
         "material": task.material,
         "remarks": [*noted, *doubts],
         "equations": equations,
@@ -134,6 +155,79 @@ def _ranking(choice: Choice) -> list[dict[str, Any]]:
         for (effect, _, axis), why in ((key.partition("@"), w) for key, w in choice.untried.items())
     ]
     return rows
+
+
+def _bound_hints(
+    platform: Platform, tried: Sequence[Trial], refused: Mapping[str, str]
+) -> list[str]:
+    """Of declared values that ended at the end of what they may be, in the first of the trials (the
+    closest) or where that is why they are not named: how to let them go farther.
+    """
+    said: dict[str, str] = {}
+    for number, trial in enumerate(tried):
+        for c in trial.candidates:
+            bound = at_bound(trial.fit, c) if c.is_declared_value else None
+            if bound is not None and (number == 0 or c.key in refused):
+                said.setdefault(bound, _farther(platform, bound, trial.values[bound]))
+    return list(said.values())
+
+
+def _farther(platform: Platform, name: str, end: float) -> str:
+    """What to write so that a declared value may be twice as far off as the `end` of its range."""
+    (own,) = (p for p in platform.parameters if p.name == name)
+    unit = own.unit or "1"
+    wider = 2.0 * abs(end - own.value)
+    range_of = "its uncertainty" if own.uncertainty is not None else "a factor of two"
+    return (
+        f"The declared value of {name}, {own.value:.6g} {unit}, ended at its bound of {end:.6g}"
+        f" {unit}, the end of {range_of}: it may be farther off. Declare how far, as in"
+        f' {name} = {{ value = {own.value:.6g}, unit = "{unit}", uncertainty = {wider:.3g} }}, and'
+        " run diagnose again."
+    )
+
+
+def _untried_hints(platform: Platform, untried: Mapping[str, str]) -> list[str]:
+    """Candidates that were not tried for want of something that could be declared, those that want
+    the same together, and those that could not be fitted, with the reason.
+    """
+    wanting: dict[str, list[str]] = {}
+    for key, why in untried.items():
+        identifier, _, axis = key.partition("@")
+        effect = find_effect(identifier)
+        if not (effect.searched or effect.structure):
+            continue
+        wanted = _wanted(platform, effect, axis or None)
+        if wanted:
+            on_axis = f" on {axis}" if axis else ""
+            wanting.setdefault(f"for want of {wanted}{on_axis}, not declared", []).append(key)
+        elif not why.startswith(NOT_TRIED):
+            wanting.setdefault(why, []).append(key)
+    return [f"Not tried: {', '.join(keys)} ({why})." for why, keys in wanting.items()]
+
+
+def _wanted(platform: Platform, effect: Effect, axis: str | None) -> str:
+    """Effects that would have to be declared for `effect` to be a candidate; empty where none is
+    lacking, or where none would do.
+    """
+    placed = place_effects(platform)
+    given = effect.structure
+    needs = [n.format(axis=axis) for n in (given.needs if given else effect.needs)]
+    missing = {n for n in needs if n not in available_quantities(placed)}
+    bringing = {name: list[str]() for name in missing}
+    for other in EFFECTS:
+        place = Place(platform.axes, axis, None, frozenset(), bool(platform.linear_axes))
+        if other is effect or other.on_axis != (axis is not None):
+            continue
+        if not (platform.linear_axes and other.instead_on_linear):
+            for name in missing & available_quantities([*placed, (other, place)]):
+                bringing[name].append(other.id)
+    if given and given.in_place_of:
+        own = {e.effect for e in platform.effects if e.axis == axis}
+        if not own.intersection(given.in_place_of):
+            bringing["in place of"] = list(given.in_place_of)
+    if not all(bringing.values()):
+        return ""
+    return " and ".join(sorted({" or ".join(ids) for ids in bringing.values()}))
 
 
 def _module_of(extended: Platform) -> tuple[dict[str, str], list[str]]:

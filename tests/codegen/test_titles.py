@@ -17,6 +17,7 @@ axes = ["tilt"]
 [[effects]]
 effect = "rigid_bodies"
 """
+INERTIA = '[parameters.J_y_tilt]\nvalue = {}\nunit = "kg m^2"\n'
 MARK = 'open("mark", "w").close()'
 TITLES = {
     "ends the docstring": f'zebra""" + str({MARK}) + """',
@@ -49,7 +50,7 @@ def test_a_title_that_is_written_into_a_module_is_never_run(title: str, declared
 def test_a_module_that_machines_share_holds_nothing_of_their_titles(
     title: str, declared: Path
 ) -> None:
-    declared.write_text(PLATFORM.format(title=title), encoding="utf-8")
+    declared.write_text(PLATFORM.format(title=title) + INERTIA.format(2e-3), encoding="utf-8")
     model = ptp_symbolic.load(declared)
     assert (model.name, model.title) == ("named", title)
     emitted = Path(model.module.__file__ or "").read_text(encoding="utf-8")
@@ -61,8 +62,9 @@ def test_a_module_that_machines_share_holds_nothing_of_their_titles(
 def test_machines_that_differ_in_title_and_numbers_share_a_module(declared: Path) -> None:
     models = []
     for title, inertia in (("one", 2e-3), ("the other", 3e-3)):
-        number = f'[parameters.J_y_tilt]\nvalue = {inertia}\nunit = "kg m^2"\n'
-        declared.write_text(PLATFORM.format(title=title) + number, encoding="utf-8")
+        declared.write_text(
+            PLATFORM.format(title=title) + INERTIA.format(inertia), encoding="utf-8"
+        )
         models.append(ptp_symbolic.load(declared))
     assert models[0].module is models[1].module
     assert [model.title for model in models] == ["one", "the other"]

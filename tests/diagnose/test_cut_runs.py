@@ -10,13 +10,13 @@ from scipy.integrate import solve_ivp
 
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of
 from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows
+from ptp_symbolic.numeric.diagnose.errors import windows_of
 from ptp_symbolic.numeric.diagnose.left_over import left_over
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.trial import Task, fitted
 from ptp_symbolic.numeric.identify.constants import ITERATIONS
 from ptp_symbolic.numeric.identify.coordinates import free_parameter
 from ptp_symbolic.numeric.identify.run import Run
-from ptp_symbolic.workflows.result import windows_table
 from tests.identify.test_windows import COUNT, FREE, MODEL, pendulum, run_of
 
 PAYLOAD = {"m_payload": 5.0, "c_x_payload": 0.001}
@@ -60,7 +60,7 @@ def test_runs_in_which_a_set_multiplies_errors_are_cut_and_no_other(task: Task) 
     assert part.every_sample == part.train
     assert part.validate[0] is down
     assert len(part.validate) == 3
-    assert windows_table(part) == {"count": 2, "seconds": pytest.approx(up.time[-1] / 2)}
+    assert windows_of(part.train) == {"count": 2, "seconds": pytest.approx(up.time[-1] / 2)}
 
 
 def falling(duration: float) -> Run:

@@ -6,10 +6,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ptp_symbolic.models.structures import structures
+from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.left_over import Carried
+from ptp_symbolic.numeric.diagnose.trial import fitted
 from ptp_symbolic.platform import ParameterDeclaration, Platform, SignalDeclaration, read_platform
-from ptp_symbolic.workflows.write_up import _carried_remarks, _module_of, _tied_remarks
+from ptp_symbolic.workflows.write_up import (
+    _bound_hints,
+    _carried_remarks,
+    _module_of,
+    _tied_remarks,
+    _untried_hints,
+)
+from tests.diagnose.spring_table import PLATFORM, spring_table
 
 GIMBAL = """[platform]
 name = "gimbal"
@@ -67,3 +77,60 @@ def test_a_tie_that_may_be_wrong_is_said() -> None:
     (text,) = _tied_remarks(platform)
     assert text.startswith("F_s_pan is declared the same as F_c_pan")
     assert _tied_remarks(replace(platform, parameters=(own,))) == []
+
+
+def test_a_declared_value_at_the_end_of_its_range_gets_the_entry_to_write(tmp_path: Path) -> None:
+    """A payload of 2 kg is looked for up to twice that; it may be twice as far off: up to 6 kg."""
+    with spring_table(tmp_path) as task:
+        platform = read_platform(tmp_path / "table.toml")
+        (mass,) = (c for c in task.candidates if c.key == "declared_value:m_payload")
+        ends = [
+            fitted(task, (mass,), declared_start(task) | {"m_payload": kg}, None)
+            for kg in (4.0, 3.9)
+        ]
+    (said,) = _bound_hints(platform, [ends[0]], {})
+    assert "m_payload, 2 kg, ended at its bound of 4 kg, the end of a factor of two" in said
+    entry = 'm_payload = { value = 2, unit = "kg", uncertainty = 4 }'
+    assert entry in said
+    assert _bound_hints(platform, [ends[1]], {}) == []
+    assert _bound_hints(platform, [ends[1], ends[0]], {}) == []
+    assert _bound_hints(platform, [ends[1], ends[0]], {mass.key: "ends at its bound"}) == [said]
+    old = '[parameters.m_payload]\nvalue = 2.0\nunit = "kg"\n'
+    assert old in PLATFORM
+    path = tmp_path / "wider.toml"
+    path.write_text(PLATFORM.replace(old, f"[parameters]\n{entry}\n"))
+    (wider,) = (p for p in read_platform(path).parameters if p.name == "m_payload")
+    assert (wider.value, wider.uncertainty) == (2.0, 4.0)
+
+
+TORQUE_DRIVEN = """[platform]
+name = "turntable"
+axes = ["pan"]
+[[effects]]
+effect = "rigid_bodies"
+"""
+MOTOR = '[[effects]]\neffect = "dc_motor"\naxis = "pan"\n'
+
+
+def test_what_was_not_tried_is_said_with_what_would_have_to_be_declared(tmp_path: Path) -> None:
+    path = tmp_path / "turntable.toml"
+    path.write_text(TORQUE_DRIVEN)
+    platform = read_platform(path)
+    said = _untried_hints(platform, structures(platform)[1])
+    (motor,) = (text for text in said if "backlash@pan" in text)
+    assert "shaft_compliance@pan" in motor and "winding_heating@pan" in motor
+    assert "for want of dc_motor or linear_actuator on pan, not declared" in motor
+    assert any("gear_eccentricity@pan" in text for text in said)
+    assert not any("payload" in text and "offset" not in text for text in said)
+    path.write_text(TORQUE_DRIVEN + MOTOR)
+    driven = read_platform(path)
+    said = _untried_hints(driven, structures(driven)[1])
+    assert not any(key in text for text in said for key in ("backlash", "shaft", "heating"))
+
+
+def test_a_candidate_that_could_not_be_fitted_is_said_with_the_reason(tmp_path: Path) -> None:
+    path = tmp_path / "turntable.toml"
+    path.write_text(TORQUE_DRIVEN + MOTOR)
+    why = "the platform with it cannot be fitted: no machine has that"
+    found = _untried_hints(read_platform(path), {"shaft_compliance@pan": why})
+    assert found == [f"Not tried: shaft_compliance@pan ({why})."]

@@ -1,13 +1,14 @@
 """What a diagnosis left open, read from its folder."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.platform import Platform, read_platform
+from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from ptp_symbolic.workflows.experiment_group import group_of
 from tests.diagnose.spring_table import PLATFORM
 
@@ -51,6 +52,20 @@ def test_every_set_of_a_group_with_the_values_it_was_fitted_with(
     assert group == ("cogging@pan+base_tilt", "cogging@pan+cable_spring@pan")
     fitted = {"beta_base": 0.07, "J_pan": 0.05, "k1_cable_pan": 0.8, "T_sin_pan": 0.3}
     assert values == fitted
+
+
+def test_the_extended_platform_is_not_the_one_that_was_diagnosed(
+    tmp_path: Path, platform: Platform
+) -> None:
+    source = {"platform": {"file": "turret.toml", "sha256": "0"}}
+    folder = diagnosis(tmp_path / "found", provenance=source)
+    added = EffectDeclaration("cogging", "pan", None)
+    extended = replace(platform, effects=(*platform.effects, added))
+    said = (
+        r"declares cogging@pan already, .* give the platform that was diagnosed, turret\.toml, in"
+    )
+    with pytest.raises(InputError, match=said):
+        group_of(folder, extended)
 
 
 def test_a_diagnosis_that_leaves_nothing_open_has_no_group(

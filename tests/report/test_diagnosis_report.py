@@ -202,6 +202,16 @@ def test_the_windows_of_the_training_runs_are_counted() -> None:
     assert "windows of" not in page("explained")
 
 
+def test_errors_stand_beside_the_windows_that_they_were_taken_over() -> None:
+    diagnosis = synthetic_diagnosis("explained")
+    for part, seconds in (("train", 10.0), ("validate", 1.5)):
+        for stage in ("before", "after", "noise_floor"):
+            diagnosis["error"][part][stage]["windows"] = {"count": 12, "seconds": seconds}
+    html = render_diagnosis(diagnosis, {})
+    assert "Training runs: used for the fit, errors over 12 windows of 10 s" in html
+    assert "Validation runs: never fitted, errors over 12 windows of 1.5 s" in html
+
+
 def test_the_share_that_earns_a_name_is_stated() -> None:
     assert "a name asks for 5 % at least" in page("explained")
 

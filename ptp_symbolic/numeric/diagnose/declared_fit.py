@@ -1,5 +1,7 @@
 """The declared model fitted to the training runs: to whole ones, or led there over windows."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ptp_symbolic.numeric.diagnose.cut_runs import (
@@ -11,10 +13,12 @@ from ptp_symbolic.numeric.diagnose.cut_runs import (
 )
 from ptp_symbolic.numeric.diagnose.declared_rows import declared_start
 from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
+from ptp_symbolic.numeric.diagnose.findings import Search, step_of
 from ptp_symbolic.numeric.diagnose.floor import leaves_white_noise
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.growing_windows import growing, led_through, settled
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise, left_over
+from ptp_symbolic.numeric.diagnose.nested import beside_declared
 from ptp_symbolic.numeric.diagnose.proposals import Proposals
 from ptp_symbolic.numeric.diagnose.refits import (
     begun_anew,
@@ -26,7 +30,7 @@ from ptp_symbolic.numeric.diagnose.refits import (
     strayed_from_start,
 )
 from ptp_symbolic.numeric.diagnose.starts import far_starts
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving
+from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, ranked
 from ptp_symbolic.numeric.identify.constants import ABOVE_NOISE, SCREENED
 
 
@@ -34,11 +38,48 @@ def fit_declared(task: Task, proposals: Proposals) -> tuple[Task, Trial]:
     """The declared model fitted to whole runs, and over windows where that leaves more than white
     noise; and the task with windows for runs that ask for them.
     """
-    if task.windows:
-        part, trial = over_whole_runs(task, proposals)
-        if leaves_white_noise(trial, carried_noise(part, trial.fit)):
-            return part, trial
-    return led_over_windows(task, proposals)
+    if not task.windows:
+        return led_over_windows(task, proposals)
+    part, trial = over_whole_runs(task, proposals)
+    if leaves_white_noise(trial, carried_noise(part, trial.fit)):
+        return part, trial
+    part, led = led_over_windows(task, proposals)
+    return part, better_over_same_runs(trial, led)
+
+
+def better_over_same_runs(before: Trial, led: Trial) -> Trial:
+    """The declared model where windows have `led` it, or where it was before if that is better:
+    what begins better does not always end so. What leaves other runs cannot be compared.
+    """
+    names = [[run.name for run in trial.fit.runs] for trial in (before, led)]
+    return ranked([before, led])[0] if names[0] == names[1] else led
+
+
+def as_fitted_alone(found: Search) -> Search:
+    """The search with its declared model led over windows too, as `fit_declared` would, where it
+    ended before that and leaves more than white noise: what a set gains is told over the best fit
+    of the declared model.
+    """
+    task = found.task
+    if found.is_led or not task.windows or leaves_white_noise(found.declared, found.carried):
+        return found
+    task.progress("fitting the declared model over windows")
+    part, led = led_over_windows(replace(task, candidates=()), found.proposals)
+    if [run.name for run in part.train] != [run.name for run in task.train]:
+        led = refitted_in(task, led)
+    best = better_over_same_runs(found.declared, led)
+    if best is found.declared:
+        return replace(found, is_led=True)
+    chosen = found.chosen if found.chosen.candidates else best
+    if chosen.candidates:
+        chosen = beside_declared(task, chosen, best, found.carried)
+    members = tuple(
+        step_of(chosen, s.candidate, s.without if s.without.candidates else best)
+        for s in found.members
+    )
+    return replace(
+        found, declared=best, chosen=chosen, members=members, is_led=True, is_taken_over=False
+    )
 
 
 def over_whole_runs(task: Task, proposals: Proposals) -> tuple[Task, Trial]:

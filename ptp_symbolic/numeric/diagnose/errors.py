@@ -5,7 +5,7 @@ signals in rad (the position of a linear joint in m) and in counts of each signa
 of every signal in its own unit.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -43,7 +43,7 @@ def angle_columns(run: Run) -> list[int]:
 def error_of(fit: Fit, units: dict[str, str], floor: FloatArray | None = None) -> dict[str, Any]:
     """Errors of `fit` in total, by run and by signal, and those `without` the run or window that
     alone holds most of the error, None where none does; those of a `floor` [ny], in units of the
-    noise of every signal, where one is given.
+    noise of every signal, where one is given; and the `windows` that they were taken over.
     """
     pairs = fit.pairs()
     unit = units[fit.runs[0].signals[angle_columns(fit.runs[0])[0]]]
@@ -55,7 +55,23 @@ def error_of(fit: Fit, units: dict[str, str], floor: FloatArray | None = None) -
             for k, name in enumerate(fit.runs[0].signals)
         },
         "without": None if floor is not None else _without_worst(pairs, unit),
+        "windows": windows_of(fit.runs),
     }
+
+
+def windows_of(runs: Sequence[Run]) -> dict[str, Any] | None:
+    """How many windows `runs` were cut into, and how long they are on average in s; None where all
+    are whole.
+    """
+    lengths = [float(run.time[-1] - run.time[0]) for run in runs if run.name != run.source]
+    return {"count": len(lengths), "seconds": sum(lengths) / len(lengths)} if lengths else None
+
+
+def over(windows: Mapping[str, Any] | None) -> str:
+    """What an error was taken over, in words, from what `windows_of` gives."""
+    if windows is None:
+        return "over whole runs"
+    return f"over {windows['count']} windows of {windows['seconds']:.2g} s"
 
 
 def _without_worst(pairs: Sequence[Pair], unit: str) -> dict[str, Any] | None:

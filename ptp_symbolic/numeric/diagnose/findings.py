@@ -31,7 +31,8 @@ class Search:
     what every member of it gains, all that was tried, and the noise of the inputs as the best model
     so far carries it to the outputs. `task` has the candidates with a frequency where a line was
     found, and without those that have none. The search `is_cut_short` where its time was over at
-    its end: some moves may not have been tried.
+    its end: some moves may not have been tried. The declared model `is_led` where windows have led
+    it too, and `is_taken_over` where it was found from the end of a set, not from its own starts.
     """
 
     task: Task
@@ -42,6 +43,8 @@ class Search:
     proposals: Proposals
     carried: Carried
     is_cut_short: bool
+    is_led: bool = True
+    is_taken_over: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,11 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import signal, stats
 
+from ptp_symbolic.numeric.diagnose.change_at_one_time import (
+    Change,
+    LogRows,
+    change_at_one_time,
+    long_run,
+)
 from ptp_symbolic.numeric.diagnose.linear import projected_off
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
-    FALSE_ALARM,
     FAR,
     LEAST_CYCLES,
     MATERIAL,
@@ -30,12 +35,6 @@ from ptp_symbolic.numeric.identify.weak_form import averages
 
 FloatArray = NDArray[np.float64]
 
-TRIM = 0.1  # 1; share of a log at either end in which no change is looked for; usual (Andrews 1993)
-TIMES = 81  # 1; of a log at which a change is looked for: steps of 1 % of it; derived
-NEARLY_ALL = 0.7  # 1; share of the logs that are nearly all; stated
-APART = 0.04  # 1; of the duration of a log: times of a change that agree; stated
-LEAST_DEGREES = 4.0  # 1; of freedom: the variance is then good to a factor of two; derived
-SHOWN = 0.1  # 1; square of a step that the motion leaves unexplained, so that it shows; stated
 SEGMENT_TIME = 2.0  # s; of a periodogram, resolves 0.5 Hz; halved for windows below twice; stated
 BACKGROUND = 2.0  # 1; factor of frequency on either side of a line, its background; stated
 CORE = 1.15  # 1; factor of frequency on either side that belongs to the line; stated
@@ -49,31 +48,6 @@ LEAST_REVERSALS = 6  # 1; whose median has an interval at 97 %; derived
 REVERSAL_ALARM = 1e-3  # 1; false alarms of the test of lost motion; stated level
 LEVELS = 40  # 1; of |input| where a ceiling may begin, from its median to its largest; stated
 SHOWS_ALONE = 1e-3  # 1; share of the excess of an input that nothing else explains; stated
-
-
-@dataclass(frozen=True, eq=False)
-class LogRows:
-    """What is left of one log: `time` [n] in s, `left` [n] in N m (or output units), `beside`
-    [n, m] what else it may follow (a constant, motion, inputs), and the `input` [n, nu].
-    """
-
-    time: FloatArray
-    left: FloatArray
-    beside: FloatArray
-    input: FloatArray
-
-
-@dataclass(frozen=True)
-class Change:
-    """A change at `time` in s, within `interval` s in `shown` of `logs` logs, by `size` (median)
-    in the unit of the residual.
-    """
-
-    time: float
-    interval: float
-    shown: int
-    logs: int
-    size: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +123,10 @@ def _said_of_rows(trial: Trial, space: EquationSpace) -> list[str]:
         beside, given = _beside(space, axis)
         logs = _by_log(space, axis, left[own], beside, given)
         what = f"residual {'force' if unit == 'N' else 'torque'} of {name}"
-        found += _said_change(change_at_one_time(logs), what, unit)
+        moved = "position" if unit == "N" else "angle"
+        follows = ("", moved, "rate", "direction of travel", "square of the rate")
+        names = (*follows, *model.input_names, *(f"square of {n}" for n in model.input_names))
+        found += _said_change(change_at_one_time(logs), what, unit, names)
         for column, signal_name in enumerate(model.input_names):
             levels, beyond = _beyond(space, axis, column)
             acts = float(np.mean(_response(space, p, column)[own] - left[own]))
@@ -177,7 +154,9 @@ def _said_of_outputs(trial: Trial) -> list[str]:
             rows = LogRows(run.time, left, beside, run.held_inputs)
             by_log.setdefault(run.source, []).append(rows)
         change = change_at_one_time([_joined(parts) for parts in by_log.values()])
-        found += _said_change(change, f"residual of {name}", trial.fit.model.units[name])
+        inputs = trial.fit.model.input_names
+        names = ("", *runs[0][0].signals, *inputs, *(f"size of {n}" for n in inputs))
+        found += _said_change(change, f"residual of {name}", trial.fit.model.units[name], names)
     return found
 
 
@@ -191,13 +170,17 @@ def _joined(parts: Sequence[LogRows]) -> LogRows:
     )
 
 
-def _said_change(change: Change | None, what: str, unit: str) -> list[str]:
+def _said_change(change: Change | None, what: str, unit: str, names: Sequence[str]) -> list[str]:
+    """A change as a sentence; `names` are those of the columns that the residual may follow."""
     if change is None:
         return []
+    name = names[change.column]
+    how = "steps" if not name else f"follows the {name} differently from then on, beginning"
+    by = "" if name else f", by {change.size:.3g} {unit}"
     return [
-        f"The {what} steps at {change.time:.3g} s (within {change.interval:.2g} s) in"
-        f" {change.shown} of {change.logs} logs, by {change.size:.3g} {unit} (one step per log at"
-        " 5 %, their agreement at 1 %): something is switched on or off there."
+        f"The {what} {how} at {change.time:.3g} s (within {change.interval:.2g} s) in"
+        f" {change.shown} of {change.logs} logs{by} (one change per log at 5 %, their agreement at"
+        " 1 %): something is switched on or off, put on or taken off there."
     ]
 
 
@@ -299,93 +282,6 @@ def _response(space: EquationSpace, p: FloatArray, column: int) -> FloatArray:
         table[:, column] = 1.0
         added.append(table)
     return space.rows(p, added)
-
-
-def change_at_one_time(logs: Sequence[LogRows]) -> Change | None:
-    """The time at which the residual of nearly all logs steps, where their inputs do not.
-
-    Every log has its own test for one step at an unknown time, at 5 % (Andrews, 1993), beside
-    what follows motion and inputs; the times have to agree more closely than 1 % of independent
-    ones would (binomial). Blind where fewer than three logs reach the time.
-    """
-    duration = max((float(np.ptp(log.time)) for log in logs), default=0.0)
-    near = APART * duration
-    found = [_step_of(log.time, log.left, log.beside) for log in logs]
-    times = [(t, size) for t, size in found if np.isfinite(t)]
-    best: Change | None = None
-    for centre, _ in times:
-        reach = [log for log in logs if _trimmed(log.time)[0] <= centre <= _trimmed(log.time)[1]]
-        close = [(t, size) for t, size in times if abs(t - centre) <= near]
-        share = np.mean(
-            [min(2.0 * near / max(np.ptp(_trimmed(r.time)), 1e-300), 1.0) for r in reach]
-        )
-        chance = len(times) * float(stats.binom.sf(len(close) - 1, len(reach), share))
-        enough = len(close) >= max(3, NEARLY_ALL * len(reach))
-        if not enough or chance > TEST_ALARM or _inputs_change(reach, centre, near):
-            continue
-        if best is None or len(close) > best.shown:
-            time = float(np.median([t for t, _ in close]))
-            size = float(np.median([abs(size) for _, size in close]))
-            best = Change(time, near, len(close), len(reach), size)
-    return best
-
-
-def _trimmed(time: FloatArray) -> tuple[float, float]:
-    """The times in s between which a step of a log is looked for."""
-    first, last = float(time[0]), float(time[-1])
-    return first + TRIM * (last - first), last - TRIM * (last - first)
-
-
-def _inputs_change(logs: Sequence[LogRows], centre: float, near: float) -> bool:
-    """Whether the size of an input steps at the time in more than half of the logs."""
-    for column in range(logs[0].input.shape[1]):
-        sizes = [np.abs(log.input[:, column]) for log in logs]
-        steps = [
-            _step_of(log.time, size, np.ones((len(size), 1)))[0]
-            for log, size in zip(logs, sizes, strict=True)
-        ]
-        if np.mean([abs(t - centre) <= near for t in steps]) > MOST:
-            return True
-    return False
-
-
-def _step_of(time: FloatArray, left: FloatArray, beside: FloatArray) -> tuple[float, float]:
-    """Time in s of the step of one residual [n] beside columns [n, m], and its size; nan where the
-    largest statistic is below its level. Its distribution is that of the largest square of a
-    normalised Brownian bridge (Miller and Siegmund, 1982, eq. 8), the residual an AR(1).
-    """
-    none = (float("nan"), 0.0)
-    if len(left) < 4 * (beside.shape[1] + 2) or not np.ptp(left) > 0.0:
-        return none
-    times = np.linspace(*_trimmed(time), TIMES)
-    steps = (time[:, None] >= times).astype(np.float64)
-    raw = np.sum((steps - steps.mean(axis=0)) ** 2, axis=0)
-    table = projected_off(np.column_stack([left, steps]), beside)
-    rest, steps = table[:, 0], table[:, 1:]
-    square = np.sum(steps**2, axis=0)
-    size = steps.T @ rest / np.maximum(square, 1e-300)
-    gain = np.where(square > SHOWN * raw, size**2 * square, 0.0)
-    best = int(np.argmax(gain))
-    noise, independent = _long_run(rest - size[best] * steps[:, best])
-    degrees = independent - beside.shape[1] - 1.0
-    if degrees < LEAST_DEGREES or noise == 0.0:
-        return none
-    b = float(np.sqrt(gain[best] / noise * degrees / independent))
-    odds = 2.0 * np.log((1.0 - TRIM) / TRIM)
-    density = float(stats.norm.pdf(b))
-    chance = density * (4.0 / b + (b - 1.0 / b) * odds) if b > 1.0 else 1.0
-    return (float(times[best]), float(size[best])) if chance <= FALSE_ALARM else none
-
-
-def _long_run(rest: FloatArray) -> tuple[float, float]:
-    """Variance at frequency zero of a residual [n] as an AR(1), and how many independent values it
-    has; the pole is corrected for its bias (Kendall, 1954).
-    """
-    square, n = float(rest @ rest), len(rest)
-    pole = float(rest[1:] @ rest[:-1]) / max(square, 1e-300)
-    pole = float(np.clip(pole + (1.0 + 3.0 * pole) / n, 0.0, 1.0 - 1.0 / n))
-    inflation = (1.0 + pole) / (1.0 - pole)
-    return inflation * square / n, n / inflation
 
 
 def resonance(runs: Sequence[Recorded]) -> Resonance | None:
@@ -582,7 +478,7 @@ def input_ceiling(
             continue
         size = float(step @ rest) / square
         after = rest - size * step
-        noise, independent = _long_run(after)
+        noise, independent = long_run(after)
         degrees = independent - beside.shape[1] - 2.0
         if size * acts <= 0.0 or degrees < 1.0:
             continue

@@ -9,7 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of, parted_task, takes_away_most
-from ptp_symbolic.numeric.diagnose.declared_fit import led_over_windows, over_whole_runs
+from ptp_symbolic.numeric.diagnose.declared_fit import (
+    better_over_same_runs,
+    led_over_windows,
+    over_whole_runs,
+)
 from ptp_symbolic.numeric.diagnose.fewer_samples import with_fewer_samples
 from ptp_symbolic.numeric.diagnose.findings import Search, Step, step_of
 from ptp_symbolic.numeric.diagnose.gain import gain
@@ -55,17 +59,22 @@ def search(task: Task, time_limit: float = np.inf, *, brief: bool = False) -> Se
     task = replace(task, candidates=placed_by_rows(task.candidates, proposals))
     task = with_fewer_samples(task, proposals.start)
     task.progress("fitting the declared model")
+    before = None
     if task.windows:
         seeker = _seeker(*over_whole_runs(task, proposals), proposals)
+        before = seeker.declared
         seeker, found = _with_lines(seeker, _soon_found(seeker), _soon_found)
         if seeker.task.is_over or any(map(seeker.is_at_noise, (seeker.declared, *found))):
-            return _from_declared(seeker, found)
+            return replace(_from_declared(seeker, found), is_led=False)
         if brief:
-            return _ended(seeker, *seeker.pruned(ranked([seeker.declared, *found])[0]))
+            best = seeker.pruned(ranked([seeker.declared, *found])[0])
+            return replace(_ended(seeker, *best), is_led=False)
         task = replace(task, candidates=seeker.task.candidates)
         proposals = seeker.proposals
         task.progress("fitting the declared model over windows")
-    seeker = _seeker(*led_over_windows(task, proposals), proposals)
+    part, led = led_over_windows(task, proposals)
+    declared = led if before is None else better_over_same_runs(before, led)
+    seeker = _seeker(part, declared, proposals)
     found = _proposed(seeker)
     if not task.windows:
         seeker, found = _with_lines(seeker, found, _proposed)
@@ -173,7 +182,8 @@ def _from_declared(seeker: Seeker, found: list[Trial]) -> Search:
             return _from_declared(seeker, _proposed(seeker))
     if better is not best or declared is not before:
         best, steps = seeker.pruned(better)
-    return _ended(seeker, best, steps)
+    ended = _ended(seeker, best, steps)
+    return replace(ended, is_taken_over=declared is not before and bool(better.candidates))
 
 
 def _begun(seeker: Seeker, found: list[Trial]) -> tuple[Trial, list[Step]]:

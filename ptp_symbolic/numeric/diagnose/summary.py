@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ptp_symbolic.numeric.diagnose.candidates import DECLARED_VALUE, Candidate
-from ptp_symbolic.numeric.diagnose.errors import DEFINITION, error_of
+from ptp_symbolic.numeric.diagnose.errors import DEFINITION, error_of, over
 from ptp_symbolic.numeric.diagnose.findings import Search
 from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
@@ -36,7 +36,8 @@ def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -
     if found.word == NOTHING_MISSING:
         rms = [errors["validate"][when]["total"]["rmse"] for when in ("before", "noise_floor")]
         if rms[0] <= ABOVE_NOISE * rms[1]:
-            return f"Nothing is missing: {before} on validation runs is the noise floor."
+            taken = _over_windows(errors["validate"]["before"])
+            return f"Nothing is missing: {before} on validation runs{taken} is the noise floor."
         text = (
             f"Nothing is missing: noise ({floor}) and errors of the fitted values leave {before} on"
         )
@@ -49,7 +50,8 @@ def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -
         )
         declared = all(c.is_declared_value for c in found.final.candidates)
         begin = f"{causes[:1].upper()}{causes[1:]}" if declared else f"Missing: {causes}"
-        sentences = [f"{begin}; validation error {before} to {after}."]
+        taken = _over_windows(errors["validate"]["after"])
+        sentences = [f"{begin}; validation error {before} to {after}{taken}."]
         sentences += _mostly_in_one_run(errors["validate"]["after"]["without"])
         sentences += [SMALL for c in found.final.candidates if _is_small(c, found.final)][:1]
         alike = {key: ", ".join(keys) for key, keys in found.confusable.items() if keys}
@@ -79,8 +81,14 @@ def _most_left(errors: Mapping[str, Any]) -> str:
     training = is_at_floor("validate") and not is_at_floor("train")
     part, name = ("train", "training") if training else ("validate", "validation")
     before, floor = (_worded(errors[part][w]["total"]) for w in ("before", "noise_floor"))
-    text = f"{before} on {name} runs, the floor is {floor}"
+    text = f"{before} on {name} runs{_over_windows(errors[part]['before'])}, the floor is {floor}"
     return f"{text}, and that of the validation runs is reached" if training else text
+
+
+def _over_windows(error: Mapping[str, Any]) -> str:
+    """The windows that an error was taken over, where runs were cut."""
+    windows = error.get("windows")
+    return "" if windows is None else f" {over(windows)}"
 
 
 def _mostly_in_one_run(without: Mapping[str, Any] | None) -> list[str]:

@@ -14,6 +14,7 @@ from ptp_symbolic.numeric.diagnose.confirmed_sets import (
     shortened,
     simplest_alike,
 )
+from ptp_symbolic.numeric.diagnose.declared_fit import as_fitted_alone
 from ptp_symbolic.numeric.diagnose.fewer_samples import fitted_to_every_sample
 from ptp_symbolic.numeric.diagnose.findings import Refusals, Search, Step
 from ptp_symbolic.numeric.diagnose.floor import (
@@ -92,6 +93,7 @@ def decide(found: Search) -> Verdict:
     Where training runs leave what noise of some colour may be, and validation runs show more, there
     is no such noise: names are held to white noise then.
     """
+    found = as_fitted_alone(found)
     verdict = _decided(found)
     quiet = leaves_noise_alone(verdict.final, verdict.floor)
     if verdict.word != PARTLY or not quiet or not np.any(verdict.floor.largest > 1.0):

@@ -23,6 +23,7 @@ FloatArray = NDArray[np.float64]
 
 # Standard deviations, of either sign, with which 95 % are found at 5 % of false alarms.
 SEEN = float(np.sum(stats.norm.isf([FALSE_ALARM, MOST * FALSE_ALARM])))
+TOLD = 10  # effects; a line of progress after so many
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,10 @@ def visible_amounts(task: Task, start: Trial) -> list[Visible]:
             rows.append(Visible(candidate.key, f.name, smallest, largest))
         return rows
 
-    for rows in task.executor.map(amounts, simplest.values()):
+    amount = f"{len(simplest)} effects, each simulated at several amounts"
+    for done, rows in enumerate(task.executor.map(amounts, simplest.values())):
+        if done % TOLD == 0:
+            task.progress(f"predicting what {len(task.train)} runs can show: {done} of {amount}")
         found += rows
     return found
 

@@ -98,8 +98,10 @@ def play(
     return None
 
 
-def refuse_start_outside(machine: Contender, conditions: Conditions) -> None:
-    """Raise InputError where the machine begins outside its limits, or does not simulate."""
+def refuse_rest_outside(machine: Contender, conditions: Conditions) -> None:
+    """Raise InputError where the machine begins outside its limits, leaves them with its inputs at
+    rest (a body that nothing balances falls), or does not simulate: every input rests at its ends.
+    """
     rest = np.zeros((len(conditions.t), len(machine.model.input_names)))
     inputs = inputs_of(machine.model, conditions, rest)
     signals = _signals(machine, conditions, inputs, _start(machine, conditions, 0.0))
@@ -115,6 +117,29 @@ def refuse_start_outside(machine: Contender, conditions: Conditions) -> None:
             f"The experiment begins with {name} = {signals[name][0]:.4g} {unit}, outside its limits"
             f" {limit.lower:.4g} to {limit.upper:.4g} {unit}; change --initial or --limit."
         )
+    if worst > 1.0:
+        raise InputError(_moves_at_rest(machine, conditions, signals, name))
+
+
+def _moves_at_rest(
+    machine: Contender, conditions: Conditions, signals: Mapping[str, FloatArray], name: str
+) -> str:
+    """That the signal of this `name` leaves its limits while inputs rest: when, and what to do."""
+    limit, units, t = conditions.limits[name], machine.model.units, _with_coasting(conditions.t)
+    values = signals[name]
+    first = int(np.flatnonzero((values < limit.lower) | (values > limit.upper))[0])
+    given = [conditions.limits[n] for n in machine.model.input_names]
+    inputs = ", ".join(f"{i.name} = {rest_of(i):.4g} {units[i.name]}" for i in given)
+    end = limit.upper if values[first] > limit.upper else limit.lower
+    axis = name.rpartition("_")[2]
+    holding = next((n for n in machine.model.input_names if n.endswith(f"_{axis}")), given[-1].name)
+    return (
+        f"With its inputs at rest ({inputs}), {machine.name} does not stay where the experiment"
+        f" begins: {name} is past its limit of {end:.4g} {units[name]} after {t[first]:.3g} s, and"
+        f" every input rests at its ends. Begin where {axis} stays by itself (--initial), widen"
+        f" --limit {name}, or give an input limits whose end nearest to zero holds it, such as"
+        f" --limit '{holding}=LOW..HIGH {units[holding]}'."
+    )
 
 
 def inputs_of(model: Model, conditions: Conditions, wave: FloatArray) -> FloatArray:
@@ -141,6 +166,11 @@ def _start(machine: Contender, conditions: Conditions, place: float) -> dict[str
     return dict(zip(model.state_names, x.tolist(), strict=True))
 
 
+def _with_coasting(t: FloatArray) -> FloatArray:
+    """Sample times t [k] in s, and those after the run; the last input is held for a period."""
+    return np.concatenate([t, t[-1] + np.linspace(t[1] - t[0], t[-1] - t[0], COASTING)])
+
+
 def _signals(
     machine: Contender, conditions: Conditions, u: FloatArray, begin: Mapping[str, float]
 ) -> dict[str, FloatArray] | None:
@@ -148,8 +178,7 @@ def _signals(
     them after the run; None where it cannot be simulated.
     """
     model = machine.model
-    t, period = conditions.t, conditions.t[1] - conditions.t[0]  # the last input is held as long
-    t = np.concatenate([t, t[-1] + np.linspace(period, t[-1] - t[0], COASTING)])
+    t = _with_coasting(conditions.t)
     u = np.vstack([u, inputs_of(model, conditions, np.zeros((COASTING, u.shape[1])))])
     held = {n: table(t, c, "hold") for n, c in zip(model.input_names, u.T, strict=True)}
     try:

@@ -105,6 +105,23 @@ def undeclared_parameters(platform: Platform) -> tuple[Parameter, ...]:
     return tuple(parameter for name, parameter in own.items() if name not in said)
 
 
+def refuse_undeclared(platform: Platform) -> None:
+    """Raise InputError where `platform` leaves out a parameter that has no natural default (see
+    `Parameter`): its value is known of one machine, never of another.
+    """
+    left = [p for p in undeclared_parameters(platform) if not p.has_natural_default]
+    if not left:
+        return
+    named = ", ".join(f"{p.name} in {p.unit} ({p.meaning})" for p in left)
+    first = left[0]
+    with naming_file(platform):
+        raise InputError(
+            f"Not declared, and without a natural default: {named}. Declare each under"
+            f' [parameters], as in {first.name} = {{ value = NUMBER, unit = "{first.unit}" }}, or'
+            " with start in place of value where it is to be fitted."
+        )
+
+
 def resolved_parameters(
     platform: Platform, placed: list[tuple[Effect, Place]]
 ) -> dict[str, Parameter]:

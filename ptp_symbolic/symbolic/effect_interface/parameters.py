@@ -50,6 +50,13 @@ class Parameter:
                 )
 
     @property
+    def has_natural_default(self) -> bool:
+        """Whether a machine that does not declare the parameter is as good as said: the default is
+        zero, or switches the effect off. Any other one is that of some machine.
+        """
+        return self.default in (0.0, self.vanishes)
+
+    @property
     def symbol(self) -> sp.Symbol:
         """The symbol of the parameter, its name being filled in."""
         return real(self.name)

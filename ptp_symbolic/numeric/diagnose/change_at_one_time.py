@@ -1,0 +1,154 @@
+"""A change at one time in all logs: something is switched on or off, taken off or put on.
+
+The residual of a log steps, or follows the motion or an input differently from some time on; where
+the times of nearly all logs agree, and their inputs do not change, no law of motion is what lacks.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from ptp_symbolic.numeric.diagnose.linear import projected_off
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MOST, TEST_ALARM
+
+FloatArray = NDArray[np.float64]
+
+TRIM = 0.1  # 1; share of a log at either end in which no change is looked for; usual (Andrews 1993)
+TIMES = 81  # 1; of a log at which a change is looked for: steps of 1 % of it; derived
+NEARLY_ALL = 0.7  # 1; share of the logs that are nearly all; stated
+APART = 0.04  # 1; of the duration of a log: times of a change that agree; stated
+LEAST_DEGREES = 4.0  # 1; of freedom: the variance is then good to a factor of two; derived
+SHOWN = 0.1  # 1; square of a step that the motion leaves unexplained, so that it shows; stated
+
+
+@dataclass(frozen=True, eq=False)
+class LogRows:
+    """What is left of one log: `time` [n] in s, `left` [n] in N m (or output units), `beside`
+    [n, m] what else it may follow (a constant first, then motion, inputs), and the `input` [n, nu].
+    """
+
+    time: FloatArray
+    left: FloatArray
+    beside: FloatArray
+    input: FloatArray
+
+
+@dataclass(frozen=True)
+class Change:
+    """A change at `time` in s, within `interval` s in `shown` of `logs` logs: of how the residual
+    follows the `column` of what stands beside it, by `size` (median) in the unit of the residual
+    over that of the column; a step where that is the constant, 0.
+    """
+
+    time: float
+    interval: float
+    shown: int
+    logs: int
+    size: float
+    column: int = 0
+
+
+def change_at_one_time(logs: Sequence[LogRows]) -> Change | None:
+    """The time at which the residual of nearly all logs steps, or follows motion or inputs
+    differently from then on (a payload that is taken off), where their inputs do not change.
+
+    Every log has its own test for one change of one coefficient at an unknown time, at 5 % over all
+    of them (Andrews, 1993; Bonferroni); the times have to agree more closely than 1 % of
+    independent ones would (binomial). Blind where fewer than three logs reach the time.
+    """
+    duration = max((float(np.ptp(log.time)) for log in logs), default=0.0)
+    near = APART * duration
+    found = [_change_of(log.time, log.left, log.beside) for log in logs]
+    times = [each for each in found if each is not None]
+    best: Change | None = None
+    for centre, _, _ in times:
+        reach = [log for log in logs if _trimmed(log.time)[0] <= centre <= _trimmed(log.time)[1]]
+        close = [each for each in times if abs(each[0] - centre) <= near]
+        share = np.mean(
+            [min(2.0 * near / max(np.ptp(_trimmed(r.time)), 1e-300), 1.0) for r in reach]
+        )
+        chance = len(times) * float(stats.binom.sf(len(close) - 1, len(reach), share))
+        enough = len(close) >= max(3, NEARLY_ALL * len(reach))
+        if not enough or chance > TEST_ALARM or _inputs_change(reach, centre, near):
+            continue
+        if best is None or len(close) > best.shown:
+            time = float(np.median([t for t, _, _ in close]))
+            column = Counter(c for _, _, c in close).most_common(1)[0][0]
+            size = float(np.median([abs(size) for _, size, c in close if c == column]))
+            best = Change(time, near, len(close), len(reach), size, column)
+    return best
+
+
+def _trimmed(time: FloatArray) -> tuple[float, float]:
+    """The times in s between which a step of a log is looked for."""
+    first, last = float(time[0]), float(time[-1])
+    return first + TRIM * (last - first), last - TRIM * (last - first)
+
+
+def _inputs_change(logs: Sequence[LogRows], centre: float, near: float) -> bool:
+    """Whether the size of an input steps at the time in more than half of the logs."""
+    for column in range(logs[0].input.shape[1]):
+        sizes = [np.abs(log.input[:, column]) for log in logs]
+        steps = [
+            _change_of(log.time, size, np.ones((len(size), 1)))
+            for log, size in zip(logs, sizes, strict=True)
+        ]
+        if np.mean([s is not None and abs(s[0] - centre) <= near for s in steps]) > MOST:
+            return True
+    return False
+
+
+def _change_of(
+    time: FloatArray, left: FloatArray, beside: FloatArray
+) -> tuple[float, float, int] | None:
+    """Time in s of the change of one residual [n] beside columns [n, m], its size, and the column
+    whose coefficient changes; None where the largest statistic of all is below its level.
+    """
+    if len(left) < 4 * (beside.shape[1] + 2) or not np.ptp(left) > 0.0:
+        return None
+    found = [(*_change_in(time, left, beside, c), c) for c in range(beside.shape[1])]
+    chance, at, size, column = min(found)
+    return (at, size, column) if chance * beside.shape[1] <= FALSE_ALARM else None
+
+
+def _change_in(
+    time: FloatArray, left: FloatArray, beside: FloatArray, column: int
+) -> tuple[float, float, float]:
+    """The chance of the largest statistic for a change of one coefficient, its time in s and its
+    size. Its distribution is that of the largest square of a normalised Brownian bridge (Miller and
+    Siegmund, 1982, eq. 8), the residual an AR(1).
+    """
+    times, along = np.linspace(*_trimmed(time), TIMES), beside[:, column]
+    changes = (time[:, None] >= times) * along[:, None]
+    part = along @ changes / max(float(along @ along), 1e-300)
+    raw = np.sum((changes - np.outer(along, part)) ** 2, axis=0)
+    table = projected_off(np.column_stack([left, changes]), beside)
+    rest, changes = table[:, 0], table[:, 1:]
+    square = np.sum(changes**2, axis=0)
+    size = changes.T @ rest / np.maximum(square, 1e-300)
+    gain = np.where(square > SHOWN * raw, size**2 * square, 0.0)
+    best = int(np.argmax(gain))
+    noise, independent = long_run(rest - size[best] * changes[:, best])
+    degrees, at = independent - beside.shape[1] - 1.0, float(times[best])
+    if degrees < LEAST_DEGREES or noise == 0.0:
+        return 1.0, at, 0.0
+    b = float(np.sqrt(gain[best] / noise * degrees / independent))
+    odds = 2.0 * np.log((1.0 - TRIM) / TRIM)
+    density = float(stats.norm.pdf(b))
+    chance = density * (4.0 / b + (b - 1.0 / b) * odds) if b > 1.0 else 1.0
+    return chance, at, float(size[best])
+
+
+def long_run(rest: FloatArray) -> tuple[float, float]:
+    """Variance at frequency zero of a residual [n] as an AR(1), and how many independent values it
+    has; the pole is corrected for its bias (Kendall, 1954).
+    """
+    square, n = float(rest @ rest), len(rest)
+    pole = float(rest[1:] @ rest[:-1]) / max(square, 1e-300)
+    pole = float(np.clip(pole + (1.0 + 3.0 * pole) / n, 0.0, 1.0 - 1.0 / n))
+    inflation = (1.0 + pole) / (1.0 - pole)
+    return inflation * square / n, n / inflation
