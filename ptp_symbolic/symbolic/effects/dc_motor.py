@@ -49,22 +49,27 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
     applied = real(f"u_{place.axis}")
     winding, loss = map(place.quantity, (WINDING, LOSS))
     voltage, amplified, switched, command = map(place.quantity, VOLTAGES)
-    speed = ratio * place.gear_rate
-    derivative = (voltage - winding * current - constant * speed) / inductance
     drive = Drive(
         axis=place.own_axis,
-        inertia=rotor * ratio**2,
-        torque=ratio * (constant * current - damping * speed),
+        rate=place.gear_rate,
+        ratio=ratio,
+        current=current,
+        voltage=voltage,
+        inductance=inductance,
+        resistance=winding,
+        loss=loss,
+        constant=constant,
+        rotor=rotor,
+        damping=damping,
         inputs=(Input(str(applied), "V", f"voltage of the {place.axis} motor"),),
-        power_in=voltage * current,
-        stored=inductance * current**2 / 2,
-        dissipated=loss + damping * speed**2,
     )
     names = (WINDING, LOSS, *VOLTAGES)
     values = (resistance, winding * current**2, amplified, switched, command, applied)
     defined = {n.format(axis=place.axis): v for n, v in zip(names, values, strict=True)}
-    state = State(str(current), "A", f"current of the {place.axis} motor", derivative)
-    rate = Sensor(f"omega_motor_{place.axis}", "rad/s", f"rate of the {place.axis} motor", speed)
+    state = State(str(current), "A", f"current of the {place.axis} motor", drive.current_slope)
+    rate = Sensor(
+        f"omega_motor_{place.axis}", "rad/s", f"rate of the {place.axis} motor", drive.speed
+    )
     return Contribution(quantities=defined, drives=(drive,), states=(state,), sensors=(rate,))
 
 
