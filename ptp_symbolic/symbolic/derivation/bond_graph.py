@@ -247,8 +247,8 @@ def _effect(found: _Parts, effect: Effect, own: Contribution) -> None:
         kind = found.source_kind(sp.Add(*efforts.values()))
     places = {kinematics.place_of(rate).removeprefix("gear_") for rate in efforts}
     axis = places.pop() if len(places) == 1 else None
-    law = _law(kind, efforts, potential if potential != 0 else ledger.stored)
-    found.add(Node(key, kind, law, effect.title, axis, ledger), efforts)
+    meaning = f"{effect.title}, {axis} axis" if axis else effect.title
+    found.add(Node(key, kind, _law(kind, efforts), meaning, axis, ledger), efforts)
 
 
 def _own_ledger(found: _Parts, effect: Effect, own: Contribution) -> Ledger:
@@ -266,7 +266,7 @@ def _kind(ledger: Ledger) -> str:
     return "".join(letter for part, letter in pairs if part != 0)
 
 
-def _law(kind: str, efforts: Mapping[sp.Symbol, sp.Expr], energy: sp.Expr) -> sp.Expr:
+def _law(kind: str, efforts: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
     """What to write beside an element: its coefficient, if it is linear, else nothing."""
     if len(efforts) != 1:
         return ZERO
@@ -401,11 +401,11 @@ def _play(found: _Parts, play: Play) -> None:
 def _frictions(found: _Parts) -> None:
     """Dry friction, one resistor for every rate; at rest it takes what acts, without power."""
     for friction in found.machine.frictions:
-        titles = _friction_titles(found, friction.rate)
+        meaning = f"dry friction: {_friction_titles(found, friction.rate)}"
         effort = slide(friction.axis) * friction.level
         ledger = Ledger(dissipated=effort * friction.rate)
         at = kinematics.place_of(friction.rate)
-        node = Node(f"friction_{at}", RESISTOR, ZERO, titles, friction.axis, ledger)
+        node = Node(f"friction_{at}", RESISTOR, ZERO, meaning, friction.axis, ledger)
         found.add(node, {friction.rate: effort})
 
 
