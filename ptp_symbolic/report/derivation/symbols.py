@@ -9,6 +9,7 @@ from ptp_symbolic.symbolic.codegen.latex import latex_of, symbol_latex
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
+from ptp_symbolic.symbolic.simplify.readable import readable
 
 PAN = r"The pan frame turns about the $z$ axis of the base by $\theta_{\mathrm{pan}}$"
 TILT = r"the tilt frame turns about the $y$ axis of the {base} by $\theta_{{\mathrm{{tilt}}}}$"
@@ -38,7 +39,7 @@ def frames(equations: Equations) -> str:
     else:
         text = f"{PAN}; {TILT.format(base='pan frame')}. {_crossing(equations)}{BORESIGHT}"
         text += BODY_RATES
-    gravity = displayed(rf"\mathbf{{g}} = {latex_of(equations.rigid.gravity)}")
+    gravity = displayed(rf"\mathbf{{g}} = {latex_of(equations.rigid.gravity.applyfunc(readable))}")
     unit = unit_latex("m/s^2")
     return rf"\section{{Frames and signs}}{text} Gravity in the base frame, in {unit}, is{gravity}"
 

@@ -7,6 +7,7 @@ from sympy.printing.latex import LatexPrinter
 from sympy.printing.mathml import mathml
 
 from ptp_symbolic.symbolic.codegen.letters import lettered
+from ptp_symbolic.symbolic.simplify.readable import readable
 from ptp_symbolic.symbolic.symbols import real
 
 GREEK = {
@@ -117,9 +118,13 @@ def _stacked(argument: sp.Expr) -> str:
 def latex_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
     """LaTeX of an expression, the terms of a sum on as many lines as they need.
 
-    A product with a long sum in it breaks inside the sum; another term that is too long is
-    multiplied out.
+    It is written as `readable` writes it. A product with a long sum in it breaks inside the sum;
+    another term that is too long is multiplied out.
     """
+    return _lines(readable(expression), room)
+
+
+def _lines(expression: sp.Expr, room: int) -> list[str]:
     product = _long_product(expression, room)
     if product is not None:
         before, inner = product
@@ -127,7 +132,8 @@ def latex_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
     lines: list[str] = []
     width = 0
     for number, term in enumerate(_terms(expression, room)):
-        first, *more = _factors_by_line(term, room)
+        own = _long_product(term, room)
+        first, *more = _factors_by_line(term, room) if own is None else _lines(term, room)
         signed = first if number == 0 or first.startswith("-") else f"+ {first}"
         size = _width(term)
         if lines and width + size <= room and not more:
@@ -151,10 +157,15 @@ def _long_product(expression: sp.Expr, room: int) -> tuple[sp.Expr, sp.Expr] | N
 
 
 def _terms(expression: sp.Expr, room: int) -> list[sp.Expr]:
-    """The terms of a sum in a fixed order; one wider than `room` is multiplied out if that fits."""
+    """The terms of a sum in a fixed order; one wider than `room`, in which no sum can be broken, is
+    multiplied out if that fits.
+    """
     terms = []
     for term in expression.as_ordered_terms(order="lex"):
         parts = [term]
+        if _long_product(term, room) is not None:
+            terms.append(term)
+            continue
         for multiplied_out in (sp.expand_mul(term, deep=False), sp.expand(term)):
             if max(map(_width, parts)) > room:
                 parts = multiplied_out.as_ordered_terms(order="lex")
@@ -176,7 +187,7 @@ def _factors_by_line(term: sp.Expr, room: int) -> list[str]:
 
 
 def _in_brackets(total: sp.Expr, room: int) -> str:
-    first, *more = latex_lines(total, room)
+    first, *more = _lines(total, room)
     if not more:
         return rf"\left({first}\right)"
     lines = " \\\\\n& ".join([first, *more])
@@ -242,10 +253,14 @@ def mathml_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
 
     A reader may break the line between any two of them, also of a long sum in a product.
     """
+    return _pieces(readable(expression), room)
+
+
+def _pieces(expression: sp.Expr, room: int) -> list[str]:
     product = _long_product(expression, room)
     if product is not None:
         before, inner = product
-        pieces = mathml_lines(inner, room)
+        pieces = _pieces(inner, room)
         opened, closed = (f'<mo stretchy="false">{mark}</mo>' for mark in "()")
         pieces[0] = f"<mrow>{mathml_of(before)}{opened}{pieces[0]}</mrow>"
         pieces[-1] = f"<mrow>{pieces[-1]}{closed}</mrow>"

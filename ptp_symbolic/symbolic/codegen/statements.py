@@ -17,6 +17,7 @@ from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Sampler, Switch
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME, place_of
+from ptp_symbolic.symbolic.simplify.readable import readable
 from ptp_symbolic.symbolic.symbols import ZERO, real
 
 RELATIONS = {
@@ -58,7 +59,7 @@ class Statement:
     def text(self) -> str:
         """The equation as one line of text, names as in the emitted module."""
         sign = RELATIONS[self.relation][1]
-        return f"{plain_text_of(self.left)} {sign} {plain_text_of(self.right)}"
+        return f"{plain_text_of(self.left)} {sign} {plain_text_of(readable(self.right))}"
 
     @property
     def mathml(self) -> str:
