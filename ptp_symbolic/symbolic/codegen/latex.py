@@ -39,6 +39,7 @@ LETTERS = {"gravity": "g"}
 DERIVATIVES = {"dc": r"\Delta c", "dF": r"\Delta F"}
 LARGEST_FRACTION = 2  # larger ones are measured numbers
 LINE_WIDTH = 92
+BRACKETS = 4  # width of a pair of them
 ARGUMENT_WIDTH = 40  # of a maximum, beside what it is multiplied with
 _SIGN = '<mo form="infix">{}</mo>'
 
@@ -128,7 +129,7 @@ def _lines(expression: sp.Expr, room: int) -> list[str]:
     product = _long_product(expression, room)
     if product is not None:
         before, inner = product
-        return [f"{latex_of(before)} {_in_brackets(inner, room - _width(before))}"]
+        return [f"{latex_of(before)} {_in_brackets(inner, room - _width(before) - BRACKETS)}"]
     lines: list[str] = []
     width = 0
     for number, term in enumerate(_terms(expression, room)):
@@ -183,7 +184,8 @@ def _factors_by_line(term: sp.Expr, room: int) -> list[str]:
             groups[-1] *= factor
         else:
             groups.append(factor)
-    return [_in_brackets(g, room) if isinstance(g, sp.Add) else latex_of(g) for g in groups]
+    inside = room - 2 * BRACKETS  # behind a cross, indented
+    return [_in_brackets(g, inside) if isinstance(g, sp.Add) else latex_of(g) for g in groups]
 
 
 def _in_brackets(total: sp.Expr, room: int) -> str:
