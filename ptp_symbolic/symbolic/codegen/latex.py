@@ -133,8 +133,8 @@ def _lines(expression: sp.Expr, room: int) -> list[str]:
     lines: list[str] = []
     width = 0
     for number, term in enumerate(_terms(expression, room)):
-        own = _long_product(term, room)
-        first, *more = _factors_by_line(term, room) if own is None else _lines(term, room)
+        lines_of = _lines if _is_collected(term, room) else _factors_by_line
+        first, *more = lines_of(term, room)
         signed = first if number == 0 or first.startswith("-") else f"+ {first}"
         size = _width(term)
         if lines and width + size <= room and not more:
@@ -157,6 +157,12 @@ def _long_product(expression: sp.Expr, room: int) -> tuple[sp.Expr, sp.Expr] | N
     return (before, sums[0]) if _width(before) < room // 2 else None
 
 
+def _is_collected(term: sp.Expr, room: int) -> bool:
+    """Whether a long term is a sum of plain products times something, as inertias are."""
+    product = _long_product(term, room)
+    return product is not None and not any(part.has(sp.Add) for part in product[1].args)
+
+
 def _terms(expression: sp.Expr, room: int) -> list[sp.Expr]:
     """The terms of a sum in a fixed order; one wider than `room`, in which no sum can be broken, is
     multiplied out if that fits.
@@ -164,7 +170,7 @@ def _terms(expression: sp.Expr, room: int) -> list[sp.Expr]:
     terms = []
     for term in expression.as_ordered_terms(order="lex"):
         parts = [term]
-        if _long_product(term, room) is not None:
+        if _is_collected(term, room):
             terms.append(term)
             continue
         for multiplied_out in (sp.expand_mul(term, deep=False), sp.expand(term)):
