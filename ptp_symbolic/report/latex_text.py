@@ -22,7 +22,10 @@ PREAMBLE = r"""\documentclass[a4paper,10pt]{article}
 \setlength{\jot}{1.5pt}
 \setlength{\LTpre}{4pt}
 \setlength{\LTpost}{6pt}
-\raggedbottom"""
+\raggedbottom
+\makeatletter % room for numbers such as 10.10 in the list of contents
+\renewcommand*\l@subsection{\@dottedtocline{2}{1.5em}{3em}}
+\makeatother"""
 
 SPECIAL = {
     "\\": r"\textbackslash{}",

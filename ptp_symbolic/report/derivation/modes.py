@@ -101,7 +101,7 @@ def _friction(friction: Friction, guards: Sequence[sp.Expr]) -> Automaton:
     sliding, _, breakaway = (latex_of(s.left) for s in friction_statements(friction))
     holding, taken, limit, ahead, back = (
         latex_of(real(f"{name}_{at}"))
-        for name in ("T_holding", "F_friction", "F_limit", "F_ahead", "F_back")
+        for name in ("F_sticking", "F_friction", "F_limit", "F_ahead", "F_back")
     )
     return Automaton(
         f"Friction on ${rate}$",

@@ -33,7 +33,8 @@ SUMS = {
 @lru_cache(maxsize=4096)
 def readable(expression: sp.Expr) -> sp.Expr:
     """An expression equal to `expression`, as a person would write it."""
-    plain, circular = [], []
+    plain: list[sp.Expr] = []
+    circular: list[sp.Expr] = []
     for term in sp.Add.make_args(expression):
         (circular if _is_circular_polynomial(term) else plain).append(term)
     written = [_with_numbers_inside(sp.factor_terms(term)) for term in plain]
@@ -93,7 +94,8 @@ def _sorted(functions: set[sp.Expr]) -> list[sp.Expr]:
 
 def _parts_of(term: sp.Expr, opaque: set[sp.Dummy]) -> tuple[sp.Expr, sp.Expr]:
     """What moves in a product, and what does not."""
-    moving, fixed = [], []
+    moving: list[sp.Expr] = []
+    fixed: list[sp.Expr] = []
     for factor in sp.Mul.make_args(term):
         moves = factor.has(*CIRCULAR) or factor.free_symbols & (MOTION | opaque)
         (moving if moves else fixed).append(factor)
