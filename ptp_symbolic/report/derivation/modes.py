@@ -84,7 +84,11 @@ def automata(equations: Equations) -> list[Automaton]:
     names: dict[sp.Expr, sp.Expr] = dict(zip(solve.accelerations, places, strict=True))
     masses = {symbol for symbol in solve.mass.free_symbols if symbol not in names}
     names |= {real(name): e for name, e in solve.definitions if real(name) in masses}
-    guards = [by_name(e.xreplace(names), equations) for e in guard_expressions(equations, solve)]
+    guards = [e.xreplace(names) for e in guard_expressions(equations, solve)]
+    guards = [by_name(_with_sum(e, equations), equations) for e in guards]
+    guards = [
+        e.xreplace({part: part.args[0] for part in e.atoms(sp.UnevaluatedExpr)}) for e in guards
+    ]
     found, at = [], 0
     for friction in equations.frictions:
         found.append(_friction(friction, guards[at : at + FRICTION_GUARDS]))
@@ -93,6 +97,16 @@ def automata(equations: Equations) -> list[Automaton]:
         own = _rigid_contact if contact.rigid else _sprung_contact
         found.append(own(contact))
     return found + [_switch(switch) for switch in equations.switches]
+
+
+def _with_sum(guard: sp.Expr, equations: Equations) -> sp.Expr:
+    """`guard` with the torque on a rate as one sum in it, where that is most of it."""
+    for torque in equations.forcing:
+        whole = sp.expand(torque)
+        rest = sp.expand(sp.expand(guard) - whole)
+        if len(sp.Add.make_args(rest)) < len(sp.Add.make_args(whole)) // 2:
+            return rest + sp.UnevaluatedExpr(whole) if rest != 0 else guard
+    return guard
 
 
 def _friction(friction: Friction, guards: Sequence[sp.Expr]) -> Automaton:

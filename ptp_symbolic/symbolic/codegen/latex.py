@@ -39,6 +39,7 @@ LETTERS = {"gravity": "g"}
 DERIVATIVES = {"dc": r"\Delta c", "dF": r"\Delta F"}
 LARGEST_FRACTION = 2  # larger ones are measured numbers
 LINE_WIDTH = 92
+COLLECTED_BEFORE = 0.65  # of a line, of what stands before a collected sum
 BRACKETS = 4  # width of a pair of them
 ARGUMENT_WIDTH = 40  # of a maximum, beside what it is multiplied with
 _SIGN = '<mo form="infix">{}</mo>'
@@ -122,18 +123,20 @@ def latex_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
     It is written as `readable` writes it. A product with a long sum in it breaks inside the sum;
     another term that is too long is multiplied out.
     """
-    return _lines(readable(expression), room)
+    return lines_as_they_are(readable(expression), room)
 
 
-def _lines(expression: sp.Expr, room: int) -> list[str]:
-    product = _long_product(expression, room)
+def lines_as_they_are(expression: sp.Expr, room: int) -> list[str]:
+    """As `latex_lines`, but in the form that the expression has."""
+    most = COLLECTED_BEFORE if _is_collected(expression, room) else 0.5
+    product = _long_product(expression, room, most)
     if product is not None:
         before, inner = product
         return [f"{latex_of(before)} {_in_brackets(inner, room - _width(before) - BRACKETS)}"]
     lines: list[str] = []
     width = 0
     for number, term in enumerate(_terms(expression, room)):
-        lines_of = _lines if _is_collected(term, room) else _factors_by_line
+        lines_of = lines_as_they_are if _is_collected(term, room) else _factors_by_line
         first, *more = lines_of(term, room)
         signed = first if number == 0 or first.startswith("-") else f"+ {first}"
         size = _width(term)
@@ -146,20 +149,24 @@ def _lines(expression: sp.Expr, room: int) -> list[str]:
     return lines
 
 
-def _long_product(expression: sp.Expr, room: int) -> tuple[sp.Expr, sp.Expr] | None:
-    """Factors of a product wider than `room`: all but a sum, and the sum; None of anything else."""
+def _long_product(
+    expression: sp.Expr, room: int, most: float = 0.5
+) -> tuple[sp.Expr, sp.Expr] | None:
+    """Factors of a product wider than `room`: all but a sum, and the sum; None of anything else,
+    and where the first would take more than the share `most` of the room.
+    """
     if not isinstance(expression, sp.Mul) or _width(expression) <= room:
         return None
     sums = [factor for factor in expression.args if isinstance(factor, sp.Add)]
     if len(sums) != 1:
         return None
     before = expression / sums[0]
-    return (before, sums[0]) if _width(before) < room // 2 else None
+    return (before, sums[0]) if _width(before) < most * room else None
 
 
 def _is_collected(term: sp.Expr, room: int) -> bool:
     """Whether a long term is a sum of plain products times something, as inertias are."""
-    product = _long_product(term, room)
+    product = _long_product(term, room, COLLECTED_BEFORE)
     return product is not None and not any(part.has(sp.Add) for part in product[1].args)
 
 
@@ -195,7 +202,7 @@ def _factors_by_line(term: sp.Expr, room: int) -> list[str]:
 
 
 def _in_brackets(total: sp.Expr, room: int) -> str:
-    first, *more = _lines(total, room)
+    first, *more = lines_as_they_are(total, room)
     if not more:
         return rf"\left({first}\right)"
     lines = " \\\\\n& ".join([first, *more])
