@@ -2,91 +2,63 @@
 
 M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
 
-  M[0, 0] = J_pan + J_x_payload*sin(theta_tilt)**2 + J_x_tilt*sin(theta_tilt)**2 +
-      J_z_payload*cos(theta_tilt)**2 + J_z_tilt*cos(theta_tilt)**2 +
-      c_x_payload**2*m_payload*cos(theta_tilt)**2 +
-      2*c_x_payload*c_z_payload*m_payload*sin(theta_tilt)*cos(theta_tilt) +
-      c_y_payload**2*m_payload*sin(theta_tilt)**2 + c_y_payload**2*m_payload*cos(theta_tilt)**2
-      + c_z_payload**2*m_payload*sin(theta_tilt)**2
-  M[0, 1] = c_x_payload*c_y_payload*m_payload*sin(theta_tilt) -
-      c_y_payload*c_z_payload*m_payload*cos(theta_tilt)
-  M[1, 1] = J_motor_tilt*ratio_tilt**2 + J_y_payload + J_y_tilt + c_x_payload**2*m_payload +
-      c_z_payload**2*m_payload
+  M[0, 0] = inertia_pan + inertia_pan_per_sin_tilt*sin(theta_tilt)
+  M[0, 1] = -coupling_cos_tilt*cos(theta_tilt) + coupling_sin_tilt*sin(theta_tilt)
+  M[1, 1] = J_motor_tilt*ratio_tilt**2 + inertia_tilt
   M[2, 2] = J_motor_pan*N_pan**2
-  forcing[omega_pan] = -2*J_x_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) -
-      2*J_x_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
-      2*J_z_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
-      2*J_z_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
-      active_pan*(d_shaft_pan*(omega_gear_pan - omega_pan) + k_shaft_pan*(-gap_pan*side_pan/2 +
-      theta_gear_pan - theta_pan)) - b_pan*omega_pan +
-      2*c_x_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) -
-      c_x_payload*c_y_payload*m_payload*omega_tilt**2*cos(theta_tilt) +
-      2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*sin(theta_tilt)**2 -
-      2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*cos(theta_tilt)**2 -
-      c_y_payload*c_z_payload*m_payload*omega_tilt**2*sin(theta_tilt) -
-      2*c_z_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt)
-  forcing[omega_tilt] = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
-      J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
-      J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
-      J_z_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
-      J_z_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) - b_tilt*omega_tilt -
-      c_x_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
-      c_x_payload*c_z_payload*m_payload*omega_pan**2*sin(theta_tilt)**2 +
-      c_x_payload*c_z_payload*m_payload*omega_pan**2*cos(theta_tilt)**2 +
-      c_x_payload*gravity*m_payload*cos(theta_tilt) +
-      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
-      c_z_payload*gravity*m_payload*sin(theta_tilt) + ratio_tilt*(K_t_tilt*i_tilt -
+  forcing[omega_pan] = active_pan*(d_shaft_pan*(omega_gear_pan - omega_pan) +
+      k_shaft_pan*(-gap_pan*side_pan/2 + theta_gear_pan - theta_pan)) - b_pan*omega_pan -
+      coriolis*omega_tilt - coupling_cos_tilt*omega_tilt**2*sin(theta_tilt) -
+      coupling_sin_tilt*omega_tilt**2*cos(theta_tilt)
+  forcing[omega_tilt] = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt -
+      b_tilt*omega_tilt + coriolis*omega_pan/2 + gravity_cos_tilt*cos(theta_tilt) +
+      gravity_sin_tilt*sin(theta_tilt) + ratio_tilt*(K_t_tilt*i_tilt -
       b_motor_tilt*omega_tilt*ratio_tilt)
   forcing[omega_gear_pan] = K_t_pan*N_pan*i_pan - active_pan*(d_shaft_pan*(omega_gear_pan -
       omega_pan) + k_shaft_pan*(-gap_pan*side_pan/2 + theta_gear_pan - theta_pan))
+
+with the functions named above, in order of use:
+
+  inertia_pan = J_pan + J_z_payload + J_z_tilt + c_x_payload**2*m_payload +
+      c_y_payload**2*m_payload
+  inertia_pan_sin_sq_tilt = J_x_payload + J_x_tilt - J_z_payload - J_z_tilt -
+      c_x_payload**2*m_payload + c_z_payload**2*m_payload
+  inertia_pan_sin_cos_tilt = 2*c_x_payload*c_z_payload*m_payload
+  coupling_sin_tilt = c_x_payload*c_y_payload*m_payload
+  coupling_cos_tilt = c_y_payload*c_z_payload*m_payload
+  inertia_tilt = J_y_payload + J_y_tilt + c_x_payload**2*m_payload + c_z_payload**2*m_payload
+  gravity_sin_tilt = c_z_payload*gravity*m_payload
+  gravity_cos_tilt = c_x_payload*gravity*m_payload
+  inertia_pan_per_sin_tilt = inertia_pan_sin_cos_tilt*cos(theta_tilt) +
+      inertia_pan_sin_sq_tilt*sin(theta_tilt)
+  coriolis = 2*inertia_pan_per_sin_tilt*omega_pan*cos(theta_tilt) -
+      inertia_pan_sin_cos_tilt*omega_pan
   linkage_cos_tilt = l_ground_tilt**2 + r_arm_tilt**2 - (l_min_tilt + s_start_tilt)**2
   linkage_sin_tilt = sqrt(4*l_ground_tilt**2*r_arm_tilt**2 - linkage_cos_tilt**2)
   length_tilt = sqrt(l_ground_tilt**2 - linkage_cos_tilt*cos(theta_tilt) -
       linkage_sin_tilt*sin(theta_tilt) + r_arm_tilt**2)
-  length_tilt_by_theta_tilt = (linkage_cos_tilt*sin(theta_tilt)/2 -
-      linkage_sin_tilt*cos(theta_tilt)/2)/sqrt(l_ground_tilt**2 -
-      linkage_cos_tilt*cos(theta_tilt) - linkage_sin_tilt*sin(theta_tilt) + r_arm_tilt**2)
+  length_tilt_by_theta_tilt = (linkage_cos_tilt*sin(theta_tilt) -
+      linkage_sin_tilt*cos(theta_tilt))/(2*sqrt(l_ground_tilt**2 -
+      linkage_cos_tilt*cos(theta_tilt) - linkage_sin_tilt*sin(theta_tilt) + r_arm_tilt**2))
   ratio_tilt = pi*N_tilt*(linkage_cos_tilt*sin(theta_tilt) -
       linkage_sin_tilt*cos(theta_tilt))/(lead_tilt*length_tilt)
   ratio_tilt_by_theta_tilt = pi*N_tilt*(linkage_cos_tilt*cos(theta_tilt) +
       linkage_sin_tilt*sin(theta_tilt))/(lead_tilt*length_tilt) -
       pi*N_tilt*length_tilt_by_theta_tilt*(linkage_cos_tilt*sin(theta_tilt) -
       linkage_sin_tilt*cos(theta_tilt))/(lead_tilt*length_tilt**2)
-  follower_coupling_tilt = c_x_payload*c_y_payload*m_payload*sin(theta_tilt) -
-      c_y_payload*c_z_payload*m_payload*cos(theta_tilt)
-  follower_inertia_tilt = J_pan + J_x_payload*sin(theta_tilt)**2 + J_x_tilt*sin(theta_tilt)**2 +
-      J_z_payload*cos(theta_tilt)**2 + J_z_tilt*cos(theta_tilt)**2 +
-      c_x_payload**2*m_payload*cos(theta_tilt)**2 +
-      2*c_x_payload*c_z_payload*m_payload*sin(theta_tilt)*cos(theta_tilt) +
-      c_y_payload**2*m_payload*sin(theta_tilt)**2 + c_y_payload**2*m_payload*cos(theta_tilt)**2
-      + c_z_payload**2*m_payload*sin(theta_tilt)**2
-  follower_torque_tilt = -2*J_x_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) -
-      2*J_x_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
-      2*J_z_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
-      2*J_z_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
-      active_pan*(d_shaft_pan*(omega_gear_pan - omega_pan) + k_shaft_pan*(-gap_pan*side_pan/2 +
-      theta_gear_pan - theta_pan)) - b_pan*omega_pan +
-      2*c_x_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) -
-      c_x_payload*c_y_payload*m_payload*omega_tilt**2*cos(theta_tilt) +
-      2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*sin(theta_tilt)**2 -
-      2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*cos(theta_tilt)**2 -
-      c_y_payload*c_z_payload*m_payload*omega_tilt**2*sin(theta_tilt) -
-      2*c_z_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt)
+  follower_coupling_tilt = -coupling_cos_tilt*cos(theta_tilt) +
+      coupling_sin_tilt*sin(theta_tilt)
+  follower_inertia_tilt = inertia_pan + inertia_pan_per_sin_tilt*sin(theta_tilt)
+  follower_torque_tilt = active_pan*(d_shaft_pan*(omega_gear_pan - omega_pan) +
+      k_shaft_pan*(-gap_pan*side_pan/2 + theta_gear_pan - theta_pan)) - b_pan*omega_pan -
+      coriolis*omega_tilt - coupling_cos_tilt*omega_tilt**2*sin(theta_tilt) -
+      coupling_sin_tilt*omega_tilt**2*cos(theta_tilt)
   driving_torque_tilt = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
       ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
-  load_torque_tilt = J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
-      J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
-      J_z_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
-      J_z_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) - b_tilt*omega_tilt -
-      c_x_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
-      c_x_payload*c_z_payload*m_payload*omega_pan**2*sin(theta_tilt)**2 +
-      c_x_payload*c_z_payload*m_payload*omega_pan**2*cos(theta_tilt)**2 +
-      c_x_payload*gravity*m_payload*cos(theta_tilt) +
-      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
-      c_z_payload*gravity*m_payload*sin(theta_tilt) -
-      follower_coupling_tilt*follower_torque_tilt/follower_inertia_tilt
-  load_inertia_tilt = J_y_payload + J_y_tilt + c_x_payload**2*m_payload +
-      c_z_payload**2*m_payload - follower_coupling_tilt**2/follower_inertia_tilt
+  load_torque_tilt = -b_tilt*omega_tilt + coriolis*omega_pan/2 -
+      follower_coupling_tilt*follower_torque_tilt/follower_inertia_tilt +
+      gravity_cos_tilt*cos(theta_tilt) + gravity_sin_tilt*sin(theta_tilt)
+  load_inertia_tilt = -follower_coupling_tilt**2/follower_inertia_tilt + inertia_tilt
   raised_tilt = pi*d_screw_tilt*(pi*d_screw_tilt*f_screw_tilt +
       lead_tilt)/(lead_tilt*(pi*d_screw_tilt - f_screw_tilt*lead_tilt))
   lowered_tilt = -pi*d_screw_tilt*(pi*d_screw_tilt*f_screw_tilt -
@@ -97,6 +69,7 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       load_inertia_tilt*raised_tilt)
   lost_lowering_tilt = (-lowered_tilt + 1)/Abs(J_motor_tilt*ratio_tilt**2 +
       load_inertia_tilt*lowered_tilt)
+
   sliding friction[omega_gear_pan] = F_c_pan*(a_F_c_pan*slide_pan + 1) +
       F_v_pan*omega_gear_pan*slide_pan*(a_F_v_pan*slide_pan + 1) +
       (-F_c_pan*(a_F_c_pan*slide_pan + 1) + F_s_pan*(a_F_s_pan*slide_pan +
@@ -4802,4 +4775,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 2d77f443ab8f3847ff75763726f9970eb96c44a2468acaa8d2bac2e55d2f8c2b
+# END sha256 dbcc816d48062ffa7716811cae8cee8ae1f989f83522d2c77a9b1bce5655d05f

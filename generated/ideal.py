@@ -2,13 +2,18 @@
 
 M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
 
-  M[0, 0] = J_pan + J_x_tilt*sin(theta_tilt)**2 + J_z_tilt*cos(theta_tilt)**2
+  M[0, 0] = inertia_pan + inertia_pan_per_sin_tilt*sin(theta_tilt)
   M[1, 1] = J_y_tilt
-  forcing[omega_pan] = -2*J_x_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
-      2*J_z_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) - b_pan*omega_pan +
-      tau_pan
-  forcing[omega_tilt] = J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
-      J_z_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) - b_tilt*omega_tilt + tau_tilt
+  forcing[omega_pan] = -b_pan*omega_pan - 2*coriolis*omega_tilt + tau_pan
+  forcing[omega_tilt] = -b_tilt*omega_tilt + coriolis*omega_pan + tau_tilt
+
+with the functions named above, in order of use:
+
+  inertia_pan = J_pan + J_z_tilt
+  inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
+  inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt*sin(theta_tilt)
+  coriolis = inertia_pan_per_sin_tilt*omega_pan*cos(theta_tilt)
+
 
 Operations of the state derivative: 46 as derived, 22 as written, 19 of them at every
 call where `prepare` does the others once per parameter set.
@@ -400,4 +405,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 b7843681648dd240db55d0ccea862eaf4f3ffec4a21895918c85d3486010d750
+# END sha256 07f64219ce5a3c97009cdfaca6ed4d512d97339fa18708f41347d3b611e13d6b

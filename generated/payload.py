@@ -2,35 +2,32 @@
 
 M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
 
-  M[0, 0] = J_pan + J_x_payload*sin(theta_tilt)**2 + J_x_tilt*sin(theta_tilt)**2 +
-      J_z_payload*cos(theta_tilt)**2 + J_z_tilt*cos(theta_tilt)**2 +
-      c_x_payload**2*m_payload*cos(theta_tilt)**2 +
-      2*c_x_payload*c_z_payload*m_payload*sin(theta_tilt)*cos(theta_tilt) +
-      c_y_payload**2*m_payload*sin(theta_tilt)**2 + c_y_payload**2*m_payload*cos(theta_tilt)**2
-      + c_z_payload**2*m_payload*sin(theta_tilt)**2
-  M[0, 1] = c_x_payload*c_y_payload*m_payload*sin(theta_tilt) -
-      c_y_payload*c_z_payload*m_payload*cos(theta_tilt)
-  M[1, 1] = J_y_payload + J_y_tilt + c_x_payload**2*m_payload + c_z_payload**2*m_payload
-  forcing[omega_pan] = -2*J_x_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) -
-      2*J_x_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
-      2*J_z_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) +
-      2*J_z_tilt*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) - b_pan*omega_pan +
-      2*c_x_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) -
-      c_x_payload*c_y_payload*m_payload*omega_tilt**2*cos(theta_tilt) +
-      2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*sin(theta_tilt)**2 -
-      2*c_x_payload*c_z_payload*m_payload*omega_pan*omega_tilt*cos(theta_tilt)**2 -
-      c_y_payload*c_z_payload*m_payload*omega_tilt**2*sin(theta_tilt) -
-      2*c_z_payload**2*m_payload*omega_pan*omega_tilt*sin(theta_tilt)*cos(theta_tilt) + tau_pan
-  forcing[omega_tilt] = J_x_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
-      J_x_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
-      J_z_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
-      J_z_tilt*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) - b_tilt*omega_tilt -
-      c_x_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) -
-      c_x_payload*c_z_payload*m_payload*omega_pan**2*sin(theta_tilt)**2 +
-      c_x_payload*c_z_payload*m_payload*omega_pan**2*cos(theta_tilt)**2 +
-      c_x_payload*gravity*m_payload*cos(theta_tilt) +
-      c_z_payload**2*m_payload*omega_pan**2*sin(theta_tilt)*cos(theta_tilt) +
-      c_z_payload*gravity*m_payload*sin(theta_tilt) + tau_tilt
+  M[0, 0] = inertia_pan + inertia_pan_per_sin_tilt*sin(theta_tilt)
+  M[0, 1] = -coupling_cos_tilt*cos(theta_tilt) + coupling_sin_tilt*sin(theta_tilt)
+  M[1, 1] = inertia_tilt
+  forcing[omega_pan] = -b_pan*omega_pan - coriolis*omega_tilt -
+      coupling_cos_tilt*omega_tilt**2*sin(theta_tilt) -
+      coupling_sin_tilt*omega_tilt**2*cos(theta_tilt) + tau_pan
+  forcing[omega_tilt] = -b_tilt*omega_tilt + coriolis*omega_pan/2 +
+      gravity_cos_tilt*cos(theta_tilt) + gravity_sin_tilt*sin(theta_tilt) + tau_tilt
+
+with the functions named above, in order of use:
+
+  inertia_pan = J_pan + J_z_payload + J_z_tilt + c_x_payload**2*m_payload +
+      c_y_payload**2*m_payload
+  inertia_pan_sin_sq_tilt = J_x_payload + J_x_tilt - J_z_payload - J_z_tilt -
+      c_x_payload**2*m_payload + c_z_payload**2*m_payload
+  inertia_pan_sin_cos_tilt = 2*c_x_payload*c_z_payload*m_payload
+  coupling_sin_tilt = c_x_payload*c_y_payload*m_payload
+  coupling_cos_tilt = c_y_payload*c_z_payload*m_payload
+  inertia_tilt = J_y_payload + J_y_tilt + c_x_payload**2*m_payload + c_z_payload**2*m_payload
+  gravity_sin_tilt = c_z_payload*gravity*m_payload
+  gravity_cos_tilt = c_x_payload*gravity*m_payload
+  inertia_pan_per_sin_tilt = inertia_pan_sin_cos_tilt*cos(theta_tilt) +
+      inertia_pan_sin_sq_tilt*sin(theta_tilt)
+  coriolis = 2*inertia_pan_per_sin_tilt*omega_pan*cos(theta_tilt) -
+      inertia_pan_sin_cos_tilt*omega_pan
+
 
 Operations of the state derivative: 236 as derived, 71 as written, 44 of them at every
 call where `prepare` does the others once per parameter set.
@@ -889,4 +886,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 3a74a5f480716cc0ee72403afbb5f647f9336ab00047a5a4e6b74b0c3f09925e
+# END sha256 3266838ee1bd4e25f7df0d5f75d3b422f54ed73337632cf05721b0232a158a87

@@ -2,19 +2,23 @@
 
 M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
 
-  M[0, 0] = J_motor_tilt*ratio_tilt**2 + J_y_payload + c_x_payload**2*m_payload +
-      c_z_payload**2*m_payload
+  M[0, 0] = J_motor_tilt*ratio_tilt**2 + inertia_tilt
   forcing[omega_tilt] = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt -
-      b_tilt*omega_tilt + c_x_payload*gravity*m_payload*cos(theta_tilt) +
-      c_z_payload*gravity*m_payload*sin(theta_tilt) + ratio_tilt*(K_t_tilt*i_tilt -
-      b_motor_tilt*omega_tilt*ratio_tilt)
+      b_tilt*omega_tilt + gravity_cos_tilt*cos(theta_tilt) + gravity_sin_tilt*sin(theta_tilt) +
+      ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
+
+with the functions named above, in order of use:
+
+  inertia_tilt = J_y_payload + c_x_payload**2*m_payload + c_z_payload**2*m_payload
+  gravity_sin_tilt = c_z_payload*gravity*m_payload
+  gravity_cos_tilt = c_x_payload*gravity*m_payload
   linkage_cos_tilt = l_ground_tilt**2 + r_arm_tilt**2 - (l_min_tilt + s_start_tilt)**2
   linkage_sin_tilt = sqrt(4*l_ground_tilt**2*r_arm_tilt**2 - linkage_cos_tilt**2)
   length_tilt = sqrt(l_ground_tilt**2 - linkage_cos_tilt*cos(theta_tilt) -
       linkage_sin_tilt*sin(theta_tilt) + r_arm_tilt**2)
-  length_tilt_by_theta_tilt = (linkage_cos_tilt*sin(theta_tilt)/2 -
-      linkage_sin_tilt*cos(theta_tilt)/2)/sqrt(l_ground_tilt**2 -
-      linkage_cos_tilt*cos(theta_tilt) - linkage_sin_tilt*sin(theta_tilt) + r_arm_tilt**2)
+  length_tilt_by_theta_tilt = (linkage_cos_tilt*sin(theta_tilt) -
+      linkage_sin_tilt*cos(theta_tilt))/(2*sqrt(l_ground_tilt**2 -
+      linkage_cos_tilt*cos(theta_tilt) - linkage_sin_tilt*sin(theta_tilt) + r_arm_tilt**2))
   ratio_tilt = pi*N_tilt*(linkage_cos_tilt*sin(theta_tilt) -
       linkage_sin_tilt*cos(theta_tilt))/(lead_tilt*length_tilt)
   ratio_tilt_by_theta_tilt = pi*N_tilt*(linkage_cos_tilt*cos(theta_tilt) +
@@ -23,9 +27,9 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       linkage_sin_tilt*cos(theta_tilt))/(lead_tilt*length_tilt**2)
   driving_torque_tilt = -J_motor_tilt*omega_tilt**2*ratio_tilt*ratio_tilt_by_theta_tilt +
       ratio_tilt*(K_t_tilt*i_tilt - b_motor_tilt*omega_tilt*ratio_tilt)
-  load_torque_tilt = -b_tilt*omega_tilt + c_x_payload*gravity*m_payload*cos(theta_tilt) +
-      c_z_payload*gravity*m_payload*sin(theta_tilt)
-  load_inertia_tilt = J_y_payload + c_x_payload**2*m_payload + c_z_payload**2*m_payload
+  load_torque_tilt = -b_tilt*omega_tilt + gravity_cos_tilt*cos(theta_tilt) +
+      gravity_sin_tilt*sin(theta_tilt)
+  load_inertia_tilt = inertia_tilt
   raised_tilt = pi*d_screw_tilt*(pi*d_screw_tilt*f_screw_tilt +
       lead_tilt)/(lead_tilt*(pi*d_screw_tilt - f_screw_tilt*lead_tilt))
   lowered_tilt = -pi*d_screw_tilt*(pi*d_screw_tilt*f_screw_tilt -
@@ -36,6 +40,7 @@ M(q) q'' = forcing - friction, with the lower triangle of M by symmetry:
       load_inertia_tilt*raised_tilt)
   lost_lowering_tilt = (-lowered_tilt + 1)/Abs(J_motor_tilt*ratio_tilt**2 +
       load_inertia_tilt*lowered_tilt)
+
   sliding friction[omega_tilt] = carried_tilt*slide_tilt*(-lost_lowering_tilt +
       lost_raising_tilt)/2 + (lost_lowering_tilt +
       lost_raising_tilt)*Abs(carried_tilt*slide_tilt)/2
@@ -2150,4 +2155,4 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, m, dx)
 
 
-# END sha256 63d76ae97b406a9ed6b327b58366558e0d771729f9aacbf1bc009f21abd9b885
+# END sha256 da0d721845d27384cd17b40a51c262367847d04dda022943176020203b1ad7eb

@@ -7,6 +7,7 @@ from ptp_symbolic import __version__
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.derivation.curves import PACKAGES
 from ptp_symbolic.report.derivation.effects import described
+from ptp_symbolic.report.derivation.named_functions import meaning_of
 from ptp_symbolic.report.latex_equations import displayed_changes
 from ptp_symbolic.report.latex_text import PREAMBLE, escaped, table, unit_latex
 from ptp_symbolic.report.quantities import number
@@ -116,6 +117,7 @@ def _quantities(old: Equations, new: Equations, diagnosis: Record) -> str:
         for effect in diagnosis.get("added", ())
         for name, value in effect["parameters"].items()
     }
+    fitted = _fitted_before(diagnosis)
     was, now = ({p.name: p for p in m.parameters} for m in (old, new))
     rows = [
         [
@@ -123,7 +125,7 @@ def _quantities(old: Equations, new: Equations, diagnosis: Record) -> str:
             escaped(p.meaning),
             unit_latex(p.unit),
             f"{p.default:.6g}",
-            _interval(intervals.get(p.name)),
+            interval(intervals.get(p.name)),
         ]
         for name, p in now.items()
         if name not in was
@@ -136,11 +138,11 @@ def _quantities(old: Equations, new: Equations, diagnosis: Record) -> str:
             f"${symbol_latex(p.name)}$",
             escaped(p.meaning),
             unit_latex(p.unit),
-            f"{was[name].default:.6g}",
+            f"{fitted.get(name, was[name].default):.6g}",
             f"{p.default:.6g}",
         ]
         for name, p in now.items()
-        if name in was and was[name].default != p.default
+        if name in was and f"{fitted.get(name, was[name].default):.6g}" != f"{p.default:.6g}"
     ]
     if rows:
         head = ["symbol", "meaning", "unit", "before", "after"]
@@ -154,13 +156,36 @@ def _quantities(old: Equations, new: Equations, diagnosis: Record) -> str:
     if rows:
         head = ["symbol", "meaning", "unit", ""]
         parts.append(r"\par New states and inputs:\nopagebreak" + table("lL{78mm}ll", head, rows))
+    rows = [
+        [f"${symbol_latex(str(s))}$", *_of_function(str(s))]
+        for s, _ in new.terms
+        if s not in dict(old.terms)
+    ]
+    if rows:
+        parts.append(
+            r"\par New functions:\nopagebreak"
+            + table("lL{98mm}l", ["symbol", "meaning", "unit"], rows)
+        )
     gone = [name for name in (*was, *variables[0]) if name not in now and name not in variables[1]]
     if gone:
         parts.append(r"\par Gone: " + ", ".join(f"${symbol_latex(name)}$" for name in gone) + ".")
     return "\n".join(parts if len(parts) > 1 else [*parts, "The same, with the same values."])
 
 
-def _interval(ends: Sequence[float | None] | None) -> str:
+def _of_function(name: str) -> tuple[str, str]:
+    meaning, unit = meaning_of(name)
+    return meaning, unit_latex(unit)
+
+
+def _fitted_before(diagnosis: Record) -> dict[str, float]:
+    """The parameters of the declared machine as fitted to the runs, where there is a diagnosis."""
+    before = (diagnosis.get("fit") or {}).get("before") or {}
+    found = {name: own.get("value") for name, own in (before.get("parameters") or {}).items()}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def interval(ends: Sequence[float | None] | None) -> str:
+    """The ends of an interval in print; nothing where there is none."""
     if not ends:
         return ""
     return "[" + ", ".join("?" if end is None else f"{end:.5g}" for end in ends) + "]"

@@ -45,7 +45,8 @@ def displayed_changes(changes: Sequence[Change]) -> str:
         left, relation = statement.left_latex, RELATIONS[statement.relation][0]
         words = in_words(statement.name)
         if change.gone:
-            parts.append(rf"\par Gone: {words}.")
+            gone = numbered([(left, change.statement.right)], relation)
+            parts.append(rf"\par Gone: {words}:" + gone)
         elif added is not None:
             parts.append(
                 rf"\par Added to {words}:" + numbered([(rf"\Delta {left}", added)], relation)

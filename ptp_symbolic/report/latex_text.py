@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.latex import LINE_WIDTH, latex_lines
+from ptp_symbolic.symbolic.codegen.latex import LINE_WIDTH, latex_lines, lines_as_they_are
 
 PREAMBLE = r"""\documentclass[a4paper,10pt]{article}
 \usepackage[T1]{fontenc}
@@ -22,7 +22,10 @@ PREAMBLE = r"""\documentclass[a4paper,10pt]{article}
 \setlength{\jot}{1.5pt}
 \setlength{\LTpre}{4pt}
 \setlength{\LTpost}{6pt}
-\raggedbottom"""
+\raggedbottom
+\makeatletter % room for numbers such as 10.10 in the list of contents
+\renewcommand*\l@subsection{\@dottedtocline{2}{1.5em}{3em}}
+\makeatother"""
 
 SPECIAL = {
     "\\": r"\textbackslash{}",
@@ -63,11 +66,13 @@ def formulas(
     relation: str = "=",
     together: int = 0,
     with_numbers: bool = False,
+    as_it_is: bool = False,
 ) -> str:
     """Displayed formulas one below another; a long sum breaks before its terms.
 
     The last lines, as many as are to stay `together`, are not torn apart by the end of a page.
-    `with_numbers`, every formula has a number behind its last line.
+    `with_numbers`, every formula has a number behind its last line. `as_it_is`, it is not written
+    more shortly.
     """
     if not rows:
         return ""
@@ -75,7 +80,7 @@ def formulas(
     room = LINE_WIDTH - max(0, widest - SHORT_NAME) - (NUMBER if with_numbers else 0)
     lines = []
     for left, right in rows:
-        first, *more = latex_lines(right, room)
+        first, *more = lines_as_they_are(right, room) if as_it_is else latex_lines(right, room)
         own = [f"{left} {relation}{{}}& {first}", *(f"& {line}" for line in more)]
         lines += [*(rf"{line} \notag" for line in own[:-1]), own[-1]] if with_numbers else own
     free = max(len(lines) - together, 0)

@@ -23,16 +23,20 @@ from ptp_symbolic.numeric.diagnose.summary import (
     ranking,
     repeatability_table,
 )
+from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.replays import estimable
 from ptp_symbolic.platform import Platform, platform_text
-from ptp_symbolic.report.changes import render_changes
+from ptp_symbolic.report.changes import interval, render_changes
 from ptp_symbolic.report.diagnosis import render_diagnosis, write_curves_csv
 from ptp_symbolic.report.drawing import drawn
-from ptp_symbolic.report.latex_text import PREAMBLE, escaped
+from ptp_symbolic.report.latex_equations import in_words
+from ptp_symbolic.report.latex_text import PREAMBLE, escaped, table, unit_latex
 from ptp_symbolic.report.pdf import with_pdf
 from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
+from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.placement import (
     available_quantities,
     find_effect,
@@ -89,13 +93,15 @@ def written_up(
         tried = [t for t in (verdict.closest, found.chosen, *found.tried.others) if t is not None]
         further += _bound_hints(platform, tried, verdict.refused)
         further += _untried_hints(platform, choice.untried)
+
+    added = added_effects(verdict, after, intervals)
     summary = {
         "schema_version": SCHEMA_VERSION,
         "platform": {"name": platform.name, "title": platform.title},
         "verdict": verdict.word,
         "summary": headline(verdict, errors, sizes_of(after, intervals)),
         "fitted_to": "torques" if verdict.is_along_motion else "outputs",
-        "added": added_effects(verdict, after, intervals),
+        "added": added,
         "ranking": _ranking(choice),
         "error": errors,
         "repeatability": repeatability_table(task.whole, task.model.units),
@@ -118,7 +124,7 @@ def written_up(
     changes = task.executor.submit(with_pdf, render_changes(platform, extended, summary), "changes")
     curves = curves_of(parts)
     files: dict[str, str | bytes] = {"platform.toml": platform_text(extended)}
-    files["equations.tex"] = equations_tex(equations)
+    files["equations.tex"] = equations_tex(equations, added, assemble(extended))
     files |= module
     marked = {name for candidate in after.candidates for name in candidate.parameters}
     machine = drawn(extended, assemble(extended), marked)
@@ -264,10 +270,30 @@ def _tied_remarks(platform: Platform) -> list[str]:
     ]
 
 
-def equations_tex(equations: list[dict[str, Any]]) -> str:
-    """The added equations as a LaTeX document of its own."""
+def equations_tex(
+    equations: Sequence[Mapping[str, Any]],
+    added: Sequence[Mapping[str, Any]],
+    machine: Equations,
+) -> str:
+    """The added equations as a LaTeX document of its own, with meaning, value and 95 % interval of
+    the parameters of what was `added` to the `machine`.
+    """
     rows = [f"\\[\n{e['latex']}\n\\]\n" for e in equations]
-    titles = [escaped(f"{e['title'][:1].upper()}{e['title'][1:]}") for e in equations]
+    titles = [in_words(f"{e['title'][:1].upper()}{e['title'][1:]}") for e in equations]
     text = "\n".join(f"{title}:\n{row}" for title, row in zip(titles, rows, strict=True))
     text = text or "No effect was added to the equations.\n"
+    meanings = {p.name: p.meaning for p in machine.parameters}
+    values = [
+        [
+            f"${symbol_latex(name)}$",
+            escaped(meanings.get(name, "")),
+            unit_latex(own["unit"]),
+            f"{own['value']:.6g}",
+            interval(own.get("ci95")),
+        ]
+        for effect in added
+        for name, own in effect["parameters"].items()
+    ]
+    head = ["symbol", "meaning", "unit", "value", r"95\,\% interval"]
+    text += table("lL{62mm}lrl", head, values) if values else ""
     return f"{PREAMBLE}\n\\begin{{document}}\n{text}\\end{{document}}\n"

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.report.synthetic_diagnosis import RUNS, page
+from ptp_symbolic.report.diagnosis import render_diagnosis
+from tests.report.synthetic_diagnosis import RUNS, page, synthetic_diagnosis
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 UNSEEN = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage")
@@ -71,6 +72,24 @@ def too_wide(html: str, width: int, selector: str, browser: str, folder: Path) -
 
 def test_on_a_telephone_the_cards_fit(browser: str, tmp_path: Path) -> None:
     assert too_wide(page("explained"), 420, ".card, .card table", browser, tmp_path) == []
+
+
+def many_values() -> str:
+    """A page on which every candidate has nine fitted values and a reason of two lines."""
+    diagnosis = dict(synthetic_diagnosis("explained"))
+    values = {f"F_some_parameter_{k}_pan": 0.3 * k + 1e-3 for k in range(9)}
+    why = "explains more than noise, and so does the set that was chosen, with fewer parameters"
+    diagnosis["ranking"] = [
+        {**row, "parameters": row["parameters"] if row["accepted"] else values, "why": why}
+        for row in diagnosis["ranking"]
+    ]
+    return render_diagnosis(diagnosis, {})
+
+
+@pytest.mark.parametrize("width", [390, 1400])
+def test_no_column_of_the_candidates_is_clipped(width: int, browser: str, tmp_path: Path) -> None:
+    selector = ".wide, .wide table, .wide td, .wide th"
+    assert too_wide(many_values(), width, selector, browser, tmp_path) == []
 
 
 def test_in_print_nothing_is_wider_than_the_page(browser: str, tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.diagnosis import render_diagnosis
 from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects import EFFECTS
 from ptp_symbolic.workflows.write_up import equations_tex
@@ -94,7 +95,12 @@ def test_the_formulas_pass_the_filter_of_the_page_and_wrap_between_terms(effect:
 
 def test_equations_tex_compiles_without_a_warning(tmp_path: Path) -> None:
     rows = [row for effect in SEARCHED for row in equations_of(effect)[0]]
-    text = equations_tex(rows)
+    machine = assemble(read_platform("thesis-pan-drive"))
+    values = {"F_s_pan": {"value": 0.5, "ci95": [0.4, 0.6], "unit": "N m"}}
+    text = equations_tex(rows, [{"effect": "csvs_friction", "parameters": values}], machine)
+    assert r"$F_{\mathrm{s,pan}}$ & static (breakaway) friction torque" in text
+    assert r"0.5 & [0.4, 0.6]" in text
+    assert "omega\\_pan" not in text  # symbols in headings are printed as in formulas
     assert text.count("\\[") == len(rows)
     if shutil.which("pdflatex") is None:
         pytest.skip("pdflatex is not installed")

@@ -53,19 +53,23 @@ def coupled_axes(equations: Equations) -> str:
             r" completely so with $J_{\mathrm{x}}=J_{\mathrm{z}}$ too; balanced, that the centre of"
             r" mass is where the tilt axis meets the pan frame's $x$ axis.",
             table(
-                "L{52mm}llL{50mm}",
+                "L{50mm}lL{40mm}L{50mm}",
                 ["mass that tilts", "", "axes", "$M_{1,2}$"],
-                [_row(equations, d, d == own) for d in DISTRIBUTIONS],
+                [_row(equations, d, kind if d == own else "") for d in DISTRIBUTIONS],
             ),
         ]
     )
 
 
-def _row(equations: Equations, mass: MassDistribution, own: bool) -> list[str]:
+def _row(equations: Equations, mass: MassDistribution, own: str) -> list[str]:
+    """A distribution of mass; of the one here with its `own` kind of coupling, by its numbers."""
     found = distributed(equations.rigid, mass)
     name = rf"\textbf{{{mass.name}}} (here)" if own else mass.name
     entry = sp.collect(normal_form(found.mass_matrix[0, 1]), _functions(found.mass_matrix[0, 1]))
-    return [name, linearity(found), coupling(found), f"${latex_of(entry)}$"]
+    coupled = coupling(found)
+    if own and own != coupled:
+        coupled += rf"\newline (with these numbers {own})"
+    return [name, linearity(found), coupled, f"${latex_of(entry)}$"]
 
 
 def _functions(expression: sp.Expr) -> list[sp.Expr]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from ptp_symbolic.platform import Platform
+from ptp_symbolic.report.derivation.bond_graph import bond_graph_section
 from ptp_symbolic.report.derivation.coupling import coupled_axes
 from ptp_symbolic.report.derivation.curves import PACKAGES as CURVES
 from ptp_symbolic.report.derivation.drawing import PACKAGES, drawing
@@ -51,6 +52,7 @@ def render_derivation(
         symbols(equations, platform),
         three_routes(equations),
         coupled_axes(equations),
+        bond_graph_section(platform, equations),
         equations_of_motion(equations),
         modes(equations),
         simplification(found, equations),

@@ -15,6 +15,29 @@ from ptp_symbolic.symbolic.symbols import real
 
 Row = tuple[str, sp.Expr]
 DIRECTIONS = ("x", "y", "z")
+OF_CENTRES = (
+    r"The centre of mass of a body, at $c$ in its frame, moves with $v + \omega\times c$ and"
+    r" $a + \alpha\times c + \omega\times(\omega\times c)$. Those that move do so with"
+)
+NEWTON_EULER = (
+    r"\begin{gathered}F = m\,(a_\mathrm{centre} - \mathbf{g}),\qquad"
+    r" N = J\alpha + \omega\times J\omega,\\"
+    r" \tau = n\cdot\sum(N + r\times F) \text{ of a joint that turns, }"
+    r" n\cdot\sum F \text{ of one that slides.}\end{gathered}"
+)
+KANE = (
+    r"\begin{gathered}Q_{\mathrm{active},i} = \sum m\,\mathbf{g}\cdot v_i,\qquad"
+    r" Q_{\mathrm{inertia},i} = -\sum\left(m\,a_\mathrm{centre}\cdot v_i"
+    r" + (J\alpha + \omega\times J\omega)\cdot\omega_i\right),\\"
+    r" Q_{\mathrm{active},i} + Q_{\mathrm{inertia},i} + \tau_i = 0\end{gathered}"
+)
+LAGRANGE = (
+    r"\begin{gathered}\frac{\mathrm{d}}{\mathrm{d}t}\frac{\partial T}{\partial\omega_i}"
+    r" - \frac{\partial T}{\partial\theta_i} + \frac{\partial V}{\partial\theta_i} = \tau_i,"
+    r"\\ T = \sum\tfrac12\left(m\,v_\mathrm{centre}\cdot v_\mathrm{centre}"
+    r" + \omega\cdot J\omega\right),\qquad V = -\sum m\,\mathbf{g}\cdot r_\mathrm{centre}"
+    r"\end{gathered}"
+)
 
 
 def _written(expression: sp.Expr) -> sp.Expr:
@@ -55,27 +78,32 @@ def carried_motion(configuration: RigidConfiguration, motions: Sequence[Motion])
         parts += [rf"\subsection*{{The {axis} frame}}", numbered(rows)]
     centres: list[Row] = []
     for body in configuration.bodies:
-        velocity = _velocity(configuration, motions, body)
+        velocity, acceleration_of_centre = _centre(configuration, motions, body)
         centres += _components("v", f"{body.name}_centre", velocity)
+        centres += _components("a", f"{body.name}_centre", acceleration_of_centre)
     if centres:
-        parts += ["The centres of mass that move do so with", numbered(centres)]
+        parts += [OF_CENTRES, numbered(centres)]
     return "\n".join(parts)
 
 
-def _velocity(
+def _centre(
     configuration: RigidConfiguration, motions: Sequence[Motion], body: Body
-) -> sp.Matrix:
+) -> tuple[sp.Matrix, sp.Matrix]:
+    """Velocity and acceleration of the centre of mass of `body`, in its frame."""
     motion = motions[len(kinematics.joints_up_to(configuration.axes, body.frame))]
-    return motion.velocity + motion.spin.cross(sp.Matrix(body.com))
+    spin, arm = motion.spin, sp.Matrix(body.com)
+    turning = motion.spin_rate.cross(arm) + spin.cross(spin.cross(arm))
+    return motion.velocity + spin.cross(arm), motion.acceleration + turning
 
 
 def inward_steps(loads: Sequence[JointLoad]) -> str:
     """Newton-Euler: forces and moments of the bodies, outermost joint first."""
     parts = [
         r"\subsection{Newton--Euler}From the outermost joint inward: the force $F$ that every body"
-        r" takes at its centre of mass, less its weight, the moment $N$ about it, and the torque"
-        r" (or force) $\tau$ of the joint: the part along its axis of all forces and moments"
-        r" behind the joint, taken about the origin there."
+        r" takes at its centre of mass, less its weight (Newton), the moment $N$ about it (Euler),"
+        r" and the torque (or force) $\tau$ of the joint: the part along its direction $n$ of all"
+        r" moments (or forces) behind the joint, taken about the origin there, $r$ from it,"
+        + displayed(NEWTON_EULER)
     ]
     for load in reversed(loads):
         rows = [row for body, force in load.forces for row in _components("F", body, force)]
@@ -97,8 +125,10 @@ def projected_steps(axes: Sequence[str], steps: KaneSteps) -> str:
         forces.append((symbol_latex(f"Q_active_{axis}"), _written(active)))
         forces.append((symbol_latex(f"Q_inertia_{axis}"), _written(inertial)))
     return (
-        r"\subsection{Kane}The partial velocities of every centre of mass, $v$, and of every body,"
-        r" $\omega$, for the rate of the joint that is named last, in the frame of the body, are"
+        r"\subsection{Kane}The partial velocities of every centre of mass, $v_i$, and of every"
+        r" body, $\omega_i$, are the derivatives of its velocity by the rate of joint $i$. With"
+        + displayed(KANE)
+        + r"they are, the joint named last, in the frame of the body,"
         + numbered(rows)
         + r"They project gravity to the generalized active forces and the inertia of the bodies to"
         r" the generalized inertia forces; with the torque of the joint each pair adds up to zero:"
@@ -109,7 +139,8 @@ def projected_steps(axes: Sequence[str], steps: KaneSteps) -> str:
 def energy_steps(kinetic: sp.Expr, potential: sp.Expr, found: Sequence[LagrangeRow]) -> str:
     """Lagrange: kinetic and potential energy, and their derivatives term by term."""
     parts = [
-        r"\subsection{Lagrange}Kinetic and potential energy are",
+        r"\subsection{Lagrange}With kinetic and potential energy as sums over the bodies, the"
+        r" equation of joint $i$ is" + displayed(LAGRANGE) + "The energies are",
         numbered([("T", sp.expand(kinetic)), ("V", potential)]),
         r"with the derivatives, where $\dot p$ is the rate of change of the momentum"
         r" $p=\partial T/\partial\omega$ at constant rates,",

@@ -168,7 +168,8 @@ def _matrices(model: LinearModel, name: str) -> str:
     order = rf"$x=({states})$" + (rf" and $u=({inputs})$" if model.inputs else "")
     both = [("A", model.A), ("B", model.B)][: 1 + bool(model.inputs)]
     written = r",\qquad ".join(rf"{letter} = {_matrix(values)}" for letter, values in both)
-    return rf"\par At {name}, with {order}:{{\small{displayed(written)}}}"
+    where = name if name.startswith("at ") else f"at {name}"
+    return rf"\par {where[:1].upper()}{where[1:]}, with {order}:{{\small{displayed(written)}}}"
 
 
 def _matrix(values: np.ndarray) -> str:

@@ -84,7 +84,11 @@ def automata(equations: Equations) -> list[Automaton]:
     names: dict[sp.Expr, sp.Expr] = dict(zip(solve.accelerations, places, strict=True))
     masses = {symbol for symbol in solve.mass.free_symbols if symbol not in names}
     names |= {real(name): e for name, e in solve.definitions if real(name) in masses}
-    guards = [by_name(e.xreplace(names), equations) for e in guard_expressions(equations, solve)]
+    guards = [e.xreplace(names) for e in guard_expressions(equations, solve)]
+    guards = [by_name(_with_sum(e, equations), equations) for e in guards]
+    guards = [
+        e.xreplace({part: part.args[0] for part in e.atoms(sp.UnevaluatedExpr)}) for e in guards
+    ]
     found, at = [], 0
     for friction in equations.frictions:
         found.append(_friction(friction, guards[at : at + FRICTION_GUARDS]))
@@ -95,13 +99,23 @@ def automata(equations: Equations) -> list[Automaton]:
     return found + [_switch(switch) for switch in equations.switches]
 
 
+def _with_sum(guard: sp.Expr, equations: Equations) -> sp.Expr:
+    """`guard` with the torque on a rate as one sum in it, where that is most of it."""
+    for torque in equations.forcing:
+        whole = sp.expand(torque)
+        rest = sp.expand(sp.expand(guard) - whole)
+        if len(sp.Add.make_args(rest)) < len(sp.Add.make_args(whole)) // 2:
+            return rest + sp.UnevaluatedExpr(whole) if rest != 0 else guard
+    return guard
+
+
 def _friction(friction: Friction, guards: Sequence[sp.Expr]) -> Automaton:
     direction, rate = latex_of(slide(friction.axis)), latex_of(friction.rate)
     at = place_of(friction.rate)
     sliding, _, breakaway = (latex_of(s.left) for s in friction_statements(friction))
     holding, taken, limit, ahead, back = (
         latex_of(real(f"{name}_{at}"))
-        for name in ("T_holding", "F_friction", "F_limit", "F_ahead", "F_back")
+        for name in ("F_sticking", "F_friction", "F_limit", "F_ahead", "F_back")
     )
     return Automaton(
         f"Friction on ${rate}$",

@@ -13,8 +13,11 @@ MEANINGS = {
     "driving_torque": ("torque of the drive at the joint, friction aside", "N m"),
     "load_torque": ("torque of the rest of the machine on the joint", "N m"),
     "load_inertia": ("inertia of the rest of the machine at the joint", "kg m^2"),
-    "raised": ("one over the efficiency of the screw where the motor drives the load", "1"),
-    "lowered": ("efficiency of the screw where the load drives the motor", "1"),
+    "raised": (
+        "2 pi T_raise over lead F of thesis Eq. 3.12: power in over out, the motor driving",
+        "1",
+    ),
+    "lowered": ("-2 pi T_lower over lead F of thesis Eq. 3.12: efficiency, the load driving", "1"),
     "carried": (
         "torque that the screw would carry without friction, times the sum of the inertias",
         "kg m^2 N m",

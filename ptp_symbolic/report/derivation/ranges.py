@@ -27,6 +27,7 @@ USUAL = {  # half a range where no parameter says how far, in the unit
     "N m": 1.0,
     "N": 10.0,
 }
+USUAL_TWIST = 0.01  # rad, of a shaft without play
 UNITS = {  # of symbols that are no state, input or parameter, by the start of their name
     "theta": "rad",
     "omega": "rad/s",
@@ -88,6 +89,8 @@ def extent(
             lower, upper = (float(sp.re(sp.N(end))) for end in ends)
             margin = 1e-3 * (upper - lower)
             return lower + margin, upper - margin
+    if str(variable).startswith("twist_") and not str(variable).startswith("twist_rate_"):
+        return _twists(variable, given, equations)
     unit = unit_of(variable, equations)
     beside = [p for p in given.parameters if p.unit == unit and p.symbol in expression.free_symbols]
     scales = [given.values[p.symbol] for p in beside if p.lower >= 0.0]
@@ -97,6 +100,14 @@ def extent(
     if not scales and (period := _period(variable, expression, given)):
         half = period
     return (0.0, half) if unit == "s" else (centre - half, centre + half)
+
+
+def _twists(variable: sp.Symbol, given: Setting, equations: Equations) -> tuple[float, float]:
+    """The twists of a shaft that are drawn: as far as its gap is wide, or a usual range."""
+    gaps = [c.half_gap for c in equations.contacts if str(variable) == f"twist_{c.axis}"]
+    widths = [abs(float(sp.N(gap.xreplace(_exact(given))))) for gap in gaps]
+    half = SCALES * widths[0] if widths and widths[0] > 0.0 else USUAL_TWIST
+    return -half, half
 
 
 def _exact(given: Setting) -> dict[sp.Symbol, sp.Expr]:

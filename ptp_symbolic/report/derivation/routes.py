@@ -71,9 +71,7 @@ def _by_origin(found: RigidEquations) -> str:
     """Mass matrix and forcing of the rigid bodies, the terms sorted by where they come from."""
     n = len(found.rates)
     rows = [
-        (rf"M_{{{i + 1},{j + 1}}}", normal_form(found.mass_matrix[i, j]))
-        for i in range(n)
-        for j in range(i, n)
+        (rf"M_{{{i + 1},{j + 1}}}", found.mass_matrix[i, j]) for i in range(n) for j in range(i, n)
     ]
     still = dict.fromkeys(found.rates, 0)
     for axis, forcing in zip(found.axes, found.forcing, strict=True):

@@ -9,6 +9,8 @@ from ptp_symbolic.symbolic.codegen.latex import latex_of, symbol_latex
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
+from ptp_symbolic.symbolic.mechanics.kinematics import place_of
+from ptp_symbolic.symbolic.simplify.readable import readable
 
 PAN = r"The pan frame turns about the $z$ axis of the base by $\theta_{\mathrm{pan}}$"
 TILT = r"the tilt frame turns about the $y$ axis of the {base} by $\theta_{{\mathrm{{tilt}}}}$"
@@ -38,7 +40,7 @@ def frames(equations: Equations) -> str:
     else:
         text = f"{PAN}; {TILT.format(base='pan frame')}. {_crossing(equations)}{BORESIGHT}"
         text += BODY_RATES
-    gravity = displayed(rf"\mathbf{{g}} = {latex_of(equations.rigid.gravity)}")
+    gravity = displayed(rf"\mathbf{{g}} = {latex_of(equations.rigid.gravity.applyfunc(readable))}")
     unit = unit_latex("m/s^2")
     return rf"\section{{Frames and signs}}{text} Gravity in the base frame, in {unit}, is{gravity}"
 
@@ -111,9 +113,37 @@ def _variables(equations: Equations) -> Iterator[tuple[str, str, str, str]]:
         beyond = f"threshold that {name} is beyond: the lower $-1$, the upper $1$, none 0"
         yield str(side(switch.name)), beyond, "1", "mode"
         yield str(active(switch.name)), f"1 while {name} is on, else 0", "1", "mode"
+    yield from _torques(equations)
     for symbol, _ in equations.terms:
         meaning, unit = meaning_of(str(symbol))
         yield str(symbol), meaning, unit, "function"
+
+
+def _torques(equations: Equations) -> Iterator[tuple[str, str, str, str]]:
+    """What the equations of friction and contact name beside states and functions."""
+    unit = equations.unit("N m")
+    for friction in equations.frictions:
+        at, rate = place_of(friction.rate), symbol_latex(str(friction.rate))
+        for word, meaning in (
+            ("sliding", rf"friction torque on ${rate}$ while it slides"),
+            ("sticking", rf"torque that friction has to take up for ${rate}$ to stay at zero"),
+            ("breakaway", rf"largest torque that friction takes up at ${rate}=0$"),
+            ("ahead", rf"breakaway on ${rate}$ in the positive direction"),
+            ("back", rf"breakaway on ${rate}$ in the negative direction"),
+            ("friction", rf"torque that friction on ${rate}$ takes up"),
+            ("limit", "most that it can take up, at rest or sliding"),
+        ):
+            yield f"F_{word}_{at}", equations.worded(meaning), unit, "torque"
+    for contact in equations.contacts:
+        axis, length = contact.axis, equations.unit("rad")
+        turned = equations.worded("angle of the gear output ahead of the joint")
+        yield f"separation_{axis}", f"{turned}, {axis} axis", length, "function"
+        yield f"half_gap_{axis}", f"half of the gap in the {axis} drive", length, "function"
+        if not contact.rigid:
+            meaning = f"torque of the {axis} shaft at a face"
+            yield f"T_shaft_{axis}", equations.worded(meaning), unit, "torque"
+        meaning = f"torque that the {axis} drive transmits to the joint"
+        yield f"T_transmitted_{axis}", equations.worded(meaning), unit, "torque"
 
 
 def _joint_state(name: str) -> tuple[str, str]:

@@ -51,4 +51,13 @@ for (const plot of plots) {
 for (const button of document.querySelectorAll("button[data-zoom]")) {
   button.addEventListener("click", () => enlarge(Number(button.dataset.zoom)));
 }
+// On a narrow screen a table is shown as cards: every cell then says what its column is.
+for (const table of document.querySelectorAll(".wide table")) {
+  const heads = [...table.querySelectorAll("thead th")].map((head) => head.innerHTML.replace(/<[^>]+>/g, " ").trim());
+  for (const row of table.querySelectorAll("tbody tr")) {
+    [...row.cells].forEach((cell, place) => {
+      if (cell.tagName === "TD" && cell.colSpan === 1 && heads[place]) cell.dataset.head = heads[place];
+    });
+  }
+}
 document.documentElement.classList.add("scripted");

@@ -7,12 +7,13 @@ import sympy as sp
 from ptp_symbolic.symbolic.codegen.latex import plain_text_of
 from ptp_symbolic.symbolic.codegen.literals import repr_text
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.simplify.readable import readable
 from ptp_symbolic.symbolic.symbols import real
 
 
 def docstring(equations: Equations, operations: tuple[int, int, int]) -> str:
-    """The docstring of the module of `equations`: its equations, the `operations` of the state
-    derivative (as derived, as written, at every call), its effects.
+    """The docstring of the module that computes `equations`: these in the form in which it does,
+    the `operations` of the state derivative (as derived, as written, at every call), its effects.
     """
     title = repr_text(equations.title)[1:-1]
     lines = [f'"""{title}: equations of motion, emitted; do not edit.', ""]
@@ -26,8 +27,11 @@ def docstring(equations: Equations, operations: tuple[int, int, int]) -> str:
                 lines += _wrapped(f"M[{i}, {j}]", entry)
     for i, rate in enumerate(equations.rates):
         lines += _wrapped(f"forcing[{rate}]", equations.forcing[i])
+    if equations.terms:
+        lines += ["", "with the functions named above, in order of use:", ""]
     for symbol, term in equations.terms:
         lines += _wrapped(str(symbol), term)
+    lines += [""] if equations.terms else []
     for friction in equations.frictions:
         lines += _wrapped(f"sliding friction[{friction.rate}]", friction.level)
     sampled = {symbol for _, symbol, _ in equations.updates}
@@ -57,5 +61,5 @@ def docstring(equations: Equations, operations: tuple[int, int, int]) -> str:
 
 
 def _wrapped(name: str, expression: sp.Expr) -> list[str]:
-    text = f"{name} = {plain_text_of(expression)}"
+    text = f"{name} = {plain_text_of(readable(expression))}"
     return textwrap.wrap(text, 96, initial_indent="  ", subsequent_indent="      ")

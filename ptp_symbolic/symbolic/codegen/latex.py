@@ -7,6 +7,7 @@ from sympy.printing.latex import LatexPrinter
 from sympy.printing.mathml import mathml
 
 from ptp_symbolic.symbolic.codegen.letters import lettered
+from ptp_symbolic.symbolic.simplify.readable import readable
 from ptp_symbolic.symbolic.symbols import real
 
 GREEK = {
@@ -38,6 +39,8 @@ LETTERS = {"gravity": "g"}
 DERIVATIVES = {"dc": r"\Delta c", "dF": r"\Delta F"}
 LARGEST_FRACTION = 2  # larger ones are measured numbers
 LINE_WIDTH = 92
+COLLECTED_BEFORE = 0.65  # of a line, of what stands before a collected sum
+BRACKETS = 4  # width of a pair of them
 ARGUMENT_WIDTH = 40  # of a maximum, beside what it is multiplied with
 _SIGN = '<mo form="infix">{}</mo>'
 
@@ -117,17 +120,24 @@ def _stacked(argument: sp.Expr) -> str:
 def latex_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
     """LaTeX of an expression, the terms of a sum on as many lines as they need.
 
-    A product with a long sum in it breaks inside the sum; another term that is too long is
-    multiplied out.
+    It is written as `readable` writes it. A product with a long sum in it breaks inside the sum;
+    another term that is too long is multiplied out.
     """
-    product = _long_product(expression, room)
+    return lines_as_they_are(readable(expression), room)
+
+
+def lines_as_they_are(expression: sp.Expr, room: int) -> list[str]:
+    """As `latex_lines`, but in the form that the expression has."""
+    most = COLLECTED_BEFORE if _is_collected(expression, room) else 0.5
+    product = _long_product(expression, room, most)
     if product is not None:
         before, inner = product
-        return [f"{latex_of(before)} {_in_brackets(inner, room - _width(before))}"]
+        return [f"{latex_of(before)} {_in_brackets(inner, room - _width(before) - BRACKETS)}"]
     lines: list[str] = []
     width = 0
     for number, term in enumerate(_terms(expression, room)):
-        first, *more = _factors_by_line(term, room)
+        lines_of = lines_as_they_are if _is_collected(term, room) else _factors_by_line
+        first, *more = lines_of(term, room)
         signed = first if number == 0 or first.startswith("-") else f"+ {first}"
         size = _width(term)
         if lines and width + size <= room and not more:
@@ -139,22 +149,37 @@ def latex_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
     return lines
 
 
-def _long_product(expression: sp.Expr, room: int) -> tuple[sp.Expr, sp.Expr] | None:
-    """Factors of a product wider than `room`: all but a sum, and the sum; None of anything else."""
+def _long_product(
+    expression: sp.Expr, room: int, most: float = 0.5
+) -> tuple[sp.Expr, sp.Expr] | None:
+    """Factors of a product wider than `room`: all but a sum, and the sum; None of anything else,
+    and where the first would take more than the share `most` of the room.
+    """
     if not isinstance(expression, sp.Mul) or _width(expression) <= room:
         return None
     sums = [factor for factor in expression.args if isinstance(factor, sp.Add)]
     if len(sums) != 1:
         return None
     before = expression / sums[0]
-    return (before, sums[0]) if _width(before) < room // 2 else None
+    return (before, sums[0]) if _width(before) < most * room else None
+
+
+def _is_collected(term: sp.Expr, room: int) -> bool:
+    """Whether a long term is a sum of plain products times something, as inertias are."""
+    product = _long_product(term, room, COLLECTED_BEFORE)
+    return product is not None and not any(part.has(sp.Add) for part in product[1].args)
 
 
 def _terms(expression: sp.Expr, room: int) -> list[sp.Expr]:
-    """The terms of a sum in a fixed order; one wider than `room` is multiplied out if that fits."""
+    """The terms of a sum in a fixed order; one wider than `room`, in which no sum can be broken, is
+    multiplied out if that fits.
+    """
     terms = []
     for term in expression.as_ordered_terms(order="lex"):
         parts = [term]
+        if _is_collected(term, room):
+            terms.append(term)
+            continue
         for multiplied_out in (sp.expand_mul(term, deep=False), sp.expand(term)):
             if max(map(_width, parts)) > room:
                 parts = multiplied_out.as_ordered_terms(order="lex")
@@ -172,11 +197,12 @@ def _factors_by_line(term: sp.Expr, room: int) -> list[str]:
             groups[-1] *= factor
         else:
             groups.append(factor)
-    return [_in_brackets(g, room) if isinstance(g, sp.Add) else latex_of(g) for g in groups]
+    inside = room - 2 * BRACKETS  # behind a cross, indented
+    return [_in_brackets(g, inside) if isinstance(g, sp.Add) else latex_of(g) for g in groups]
 
 
 def _in_brackets(total: sp.Expr, room: int) -> str:
-    first, *more = latex_lines(total, room)
+    first, *more = lines_as_they_are(total, room)
     if not more:
         return rf"\left({first}\right)"
     lines = " \\\\\n& ".join([first, *more])
@@ -242,10 +268,14 @@ def mathml_lines(expression: sp.Expr, room: int = LINE_WIDTH) -> list[str]:
 
     A reader may break the line between any two of them, also of a long sum in a product.
     """
+    return _pieces(readable(expression), room)
+
+
+def _pieces(expression: sp.Expr, room: int) -> list[str]:
     product = _long_product(expression, room)
     if product is not None:
         before, inner = product
-        pieces = mathml_lines(inner, room)
+        pieces = _pieces(inner, room)
         opened, closed = (f'<mo stretchy="false">{mark}</mo>' for mark in "()")
         pieces[0] = f"<mrow>{mathml_of(before)}{opened}{pieces[0]}</mrow>"
         pieces[-1] = f"<mrow>{pieces[-1]}{closed}</mrow>"

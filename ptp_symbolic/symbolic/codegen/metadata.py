@@ -2,7 +2,6 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.docstring import docstring
 from ptp_symbolic.symbolic.codegen.literals import (
     listed,
     long_text,
@@ -16,9 +15,7 @@ from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.mechanics import kinematics
 
 
-def metadata_text(
-    equations: Equations, digest: str, operations: tuple[int, int, int], prepared: int
-) -> str:
+def metadata_text(equations: Equations, digest: str, opening: str, prepared: int) -> str:
     """Return docstring, imports and constants of the module of `equations`, of which `prepared`
     numbers are computed once.
     """
@@ -32,9 +29,7 @@ def metadata_text(
         *_motion_lines(equations),
         *_parameter_lines(equations),
     ]
-    return "\n\n".join(
-        [docstring(equations, operations), _imports(equations), "\n".join(constants)]
-    )
+    return "\n\n".join([opening, _imports(equations), "\n".join(constants)])
 
 
 def _signal_lines(equations: Equations) -> list[str]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import sympy as sp
 
 from ptp_symbolic.symbolic.codegen import dynamics
+from ptp_symbolic.symbolic.codegen.docstring import docstring
 from ptp_symbolic.symbolic.codegen.grouped import in_base_parameters
 from ptp_symbolic.symbolic.codegen.kernel import Vectors
 from ptp_symbolic.symbolic.codegen.kernel_lines import used_names
@@ -77,7 +78,8 @@ def module_text(equations: Equations) -> str:
     )
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
     operations = _operations(equations, rates, each)
-    return sealed(f"{metadata_text(equations, digest, operations, len(vectors.c))}\n\n\n{body}\n")
+    opening = docstring(grouped, operations)
+    return sealed(f"{metadata_text(equations, digest, opening, len(vectors.c))}\n\n\n{body}\n")
 
 
 def _rows(equations: Equations, guards: int) -> dict[str, tuple[str, str]]:

@@ -17,8 +17,10 @@ from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Sampler, Switch
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME, place_of
+from ptp_symbolic.symbolic.simplify.readable import readable
 from ptp_symbolic.symbolic.symbols import ZERO, real
 
+MANY_TERMS = 8  # of a sum that is printed once and named after
 RELATIONS = {
     "=": ("=", "=", "="),
     "<=": (r"\le", "<=", "≤"),
@@ -58,7 +60,7 @@ class Statement:
     def text(self) -> str:
         """The equation as one line of text, names as in the emitted module."""
         sign = RELATIONS[self.relation][1]
-        return f"{plain_text_of(self.left)} {sign} {plain_text_of(self.right)}"
+        return f"{plain_text_of(self.left)} {sign} {plain_text_of(readable(self.right))}"
 
     @property
     def mathml(self) -> str:
@@ -89,11 +91,13 @@ def statements(equations: Equations) -> list[Statement]:
 
 
 def by_name(expression: sp.Expr, equations: Equations, defined: sp.Expr = ZERO) -> sp.Expr:
-    """`expression` with friction and what shafts transmit, however it is written, by its name.
+    """`expression` with friction, what shafts transmit and long sums of torques by their names,
+    however they are written.
 
     The right side of what is `defined` keeps its own torque written out.
     """
-    torques = {sliding(f): sp.expand(f.level) for f in equations.frictions}
+    torques: dict[sp.Expr, sp.Expr] = _sums_of_torques(equations)
+    torques |= {sliding(f): sp.expand(f.level) for f in equations.frictions}
     torques |= {shaft_torque(c): sp.expand(c.torque) for c in equations.contacts if not c.rigid}
     torques.pop(defined, None)
     pushing = {c.active * shaft_torque(c): c.active * c.torque for c in equations.contacts}
@@ -105,6 +109,19 @@ def by_name(expression: sp.Expr, equations: Equations, defined: sp.Expr = ZERO) 
             names |= {part: symbol} if written == torque else {}
             names |= {part: -symbol} if written == -torque else {}
     return expression.xreplace(names)
+
+
+def _sums_of_torques(equations: Equations) -> dict[sp.Expr, sp.Expr]:
+    """The torques on the rates, friction left out, as `_joints` names them; those of many terms."""
+    frictions = {friction.rate: friction for friction in equations.frictions}
+    found = {}
+    for rate, torque in zip(equations.rates, equations.forcing, strict=True):
+        if len(sp.Add.make_args(torque)) >= MANY_TERMS:
+            name = real(f"f_{place_of(rate)}")
+            if rate in frictions:
+                name += slide(frictions[rate].axis) * sliding(frictions[rate])
+            found[name] = sp.expand(torque)
+    return found
 
 
 def tidy(expression: sp.Expr) -> sp.Expr:

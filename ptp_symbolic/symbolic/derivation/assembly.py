@@ -6,35 +6,18 @@ from dataclasses import replace
 import sympy as sp
 
 from ptp_symbolic.platform import Platform
-from ptp_symbolic.symbolic.derivation.contributions import (
-    AXIS_OFFSET,
-    BASE_ACCELERATION,
-    GRAVITY_QUANTITIES,
-    Contributions,
-    collect,
-)
+from ptp_symbolic.symbolic.derivation.contributions import Contributions
 from ptp_symbolic.symbolic.derivation.equations import Equations, PlacedEffect
-from ptp_symbolic.symbolic.derivation.friction import Mechanics, driving_torque, resolved_frictions
-from ptp_symbolic.symbolic.derivation.lagrange import lagrange
 from ptp_symbolic.symbolic.derivation.ledger import energy_ledger
-from ptp_symbolic.symbolic.derivation.placement import (
-    GRAVITY,
-    acts_on,
-    definitions,
-    place_effects,
-    resolved_parameters,
-)
-from ptp_symbolic.symbolic.derivation.prescribed import constraint_power, reduced, released
+from ptp_symbolic.symbolic.derivation.machine import machine
+from ptp_symbolic.symbolic.derivation.placement import acts_on, definitions, resolved_parameters
 from ptp_symbolic.symbolic.derivation.reserved_names import refuse_reserved_names
-from ptp_symbolic.symbolic.derivation.rigid_play import rigid_contact
-from ptp_symbolic.symbolic.derivation.transmission import Transmission, transmission
 from ptp_symbolic.symbolic.effect_interface.conditions import Limit
 from ptp_symbolic.symbolic.effect_interface.contribution import Input, Sampler, State, Switch
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import quantity as quantity_symbol
 from ptp_symbolic.symbolic.effect_interface.place import quantity_name
 from ptp_symbolic.symbolic.mechanics import kinematics
-from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
 from ptp_symbolic.symbolic.symbols import ZERO
 
@@ -45,24 +28,18 @@ def assemble(platform: Platform) -> Equations:
     Raises InputError for an unknown effect, a parameter that no effect declares, a wrong unit or a
     value out of bounds; ValueError for states of one name, and symbols that nothing defines.
     """
-    placed = place_effects(platform)
+    parts = machine(platform)
+    placed, contributions, mechanics = parts.placed, parts.contributions, parts.mechanics
     defined = definitions(placed)
-    measured = {s.signal for s in platform.signals if s.role == "output"}
-    contributions = released(collect(platform.axes, placed, measured))
-    transmissions = [transmission(shaft, contributions) for shaft in contributions.shafts]
-    contributions = _with_twists(contributions, transmissions)
-    rigid = _rigid_configuration(platform, contributions)
-    rigid_equations = lagrange(rigid)
-    full = _mechanics(platform, contributions, transmissions, rigid_equations)
-    mechanics, rigid_equations = reduced(full, rigid_equations, contributions.prescribed)
-    contacts = [t.contact for t in transmissions if t.contact is not None]
-    contacts += [rigid_contact(play, contributions, mechanics) for play in contributions.plays]
-    frictions, loads = resolved_frictions(contributions, mechanics)
     inputs = _inputs(platform, contributions)
     ledger = energy_ledger(
-        platform.axes, contributions, frictions, [t.ledger for t in transmissions], rigid_equations
+        platform.axes,
+        contributions,
+        parts.frictions,
+        [t.ledger for t in parts.transmissions],
+        parts.rigid_equations,
     )
-    power = constraint_power(full, mechanics, frictions, contributions.prescribed)
+    power = sum((torque * rate for rate, torque in parts.constraint_torques.items()), ZERO)
     equations = Equations(
         name=platform.name,
         title=platform.title,
@@ -71,14 +48,14 @@ def assemble(platform: Platform) -> Equations:
         rates=mechanics.rates,
         mass_matrix=mechanics.mass,
         forcing=mechanics.forcing,
-        terms=(*contributions.terms.items(), *loads),
+        terms=(*contributions.terms.items(), *parts.loads),
         extra_states=_extra_states(contributions, (*mechanics.coordinates, *mechanics.rates)),
         samplers=_samplers(contributions),
         inputs=tuple(given for given, _ in inputs),
         delays=tuple(_delay_of(axis, contributions) for _, axis in inputs),
         parameters=(),
-        frictions=frictions,
-        contacts=tuple(contacts),
+        frictions=parts.frictions,
+        contacts=parts.contacts,
         switches=_switches(contributions),
         outputs=_outputs(platform, contributions),
         quantities=_quantities(contributions),
@@ -95,25 +72,12 @@ def assemble(platform: Platform) -> Equations:
             )
             for (effect, place), own in zip(placed, contributions.by_effect, strict=True)
         ),
-        rigid=rigid,
-        rigid_equations=rigid_equations,
+        rigid=parts.rigid,
+        rigid_equations=parts.rigid_equations,
     )
     equations = _with_parameters(equations, resolved_parameters(platform, placed))
     refuse_reserved_names(equations)
     return equations
-
-
-def _with_twists(
-    contributions: Contributions, transmissions: Sequence[Transmission]
-) -> Contributions:
-    """`contributions` in which the torque and the twist of every shaft are quantities, and the
-    torque that a sensor shows, where one is read.
-    """
-    found = [item for t in transmissions for item in t.quantities.items()]
-    read = {symbol for sensor in contributions.sensors for symbol in sensor.value.free_symbols}
-    torques = {quantity_symbol(f"torque_in_shaft_{t.axis}"): t.measured for t in transmissions}
-    found += [(symbol, torque) for symbol, torque in torques.items() if symbol in read]
-    return replace(contributions, values={**contributions.values, **dict(found)})
 
 
 def _switches(contributions: Contributions) -> tuple[Switch, ...]:
@@ -134,63 +98,6 @@ def _limits(contributions: Contributions) -> tuple[Limit, ...]:
         for contribution in contributions.by_effect
         for own in contribution.limits
     )
-
-
-def _mechanics(
-    platform: Platform,
-    contributions: Contributions,
-    transmissions: Sequence[Transmission],
-    rigid: RigidEquations,
-) -> Mechanics:
-    """Add drives, shafts, torques and potentials of the effects to the rigid equations."""
-    joints, gears = platform.axes, contributions.split_axes
-    coordinates = (*map(kinematics.angle, joints), *map(kinematics.gear_angle, gears))
-    rates = (*map(kinematics.rate, joints), *map(kinematics.gear_rate, gears))
-    mass = sp.diag(rigid.mass_matrix, sp.zeros(len(gears)))
-    forcing = sp.Matrix([*rigid.forcing, *([0] * len(gears))])
-    row = {symbol: index for index, symbol in enumerate(rates)}
-    torques = [(kinematics.rate(axis), contributions.input_torque(axis)) for axis in joints]
-    torques += [torque for t in transmissions for torque in t.torques]
-    torques += [torque for c in contributions.by_effect for torque in c.torques.items()]
-    for drive in contributions.drives:
-        rate = contributions.drive_rate(drive)
-        inertia = contributions.resolve(drive.inertia)
-        mass[row[rate], row[rate]] += inertia
-        torques.append((rate, driving_torque(drive, contributions, coordinates[row[rate]])))
-    for symbol, torque in torques:
-        forcing[row[symbol]] += contributions.resolve(torque)
-    potential = contributions.resolve(sum((c.potential for c in contributions.by_effect), ZERO))
-    for index, coordinate in enumerate(coordinates):
-        forcing[index] -= sp.diff(potential, coordinate)
-    mass = mass.applyfunc(contributions.resolve)
-    return Mechanics(coordinates, rates, sp.ImmutableMatrix(mass), sp.ImmutableMatrix(forcing))
-
-
-def _rigid_configuration(platform: Platform, contributions: Contributions) -> RigidConfiguration:
-    """Bodies, and gravity in the base frame less the acceleration of the base."""
-    tilt, azimuth = (contributions.resolve(quantity_symbol(name)) for name in GRAVITY_QUANTITIES)
-    acceleration = [contributions.resolve(quantity_symbol(name)) for name in BASE_ACCELERATION]
-    g = GRAVITY.symbol if platform.gravity else ZERO
-    direction = [
-        sp.sin(tilt) * sp.cos(azimuth),
-        sp.sin(tilt) * sp.sin(azimuth),
-        -sp.cos(tilt),
-    ]
-    bodies = tuple(
-        replace(
-            body,
-            mass=contributions.resolve(body.mass),
-            com=body.com.applyfunc(contributions.resolve),
-            inertia=body.inertia.applyfunc(contributions.resolve),
-        )
-        for contribution in contributions.by_effect
-        for body in contribution.bodies
-    )
-    gravity = [g * d - a for d, a in zip(direction, acceleration, strict=True)]
-    apart = contributions.resolve(contributions.values.get(quantity_symbol(AXIS_OFFSET), ZERO))
-    offsets = {} if apart == 0 else {"tilt": sp.ImmutableMatrix([apart, 0, 0])}
-    base = sp.ImmutableMatrix(gravity)
-    return RigidConfiguration(platform.axes, bodies, base, offsets, platform.linear_axes)
 
 
 def _inputs(platform: Platform, contributions: Contributions) -> list[tuple[Input, str | None]]:

@@ -1,4 +1,4 @@
-"""Joints that follow a given acceleration: their rows, and the power that their motion takes."""
+"""Joints that follow a given acceleration: their rows, and the torques that their motion takes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -62,13 +62,13 @@ def reduced(
     )
 
 
-def constraint_power(
+def constraint_torques(
     full: Mechanics,
     free: Mechanics,
     frictions: Sequence[Friction],
     inputs: Mapping[sp.Symbol, Input],
-) -> sp.Expr:
-    """Power in W of the torques that the prescribed motion takes."""
+) -> dict[sp.Symbol, sp.Expr]:
+    """Torques in N m that the prescribed motion takes, by the rates of its joints."""
     by_rate = {f.rate: f for f in frictions}
     accelerations = []
     for row, rate in enumerate(full.rates):
@@ -79,4 +79,4 @@ def constraint_power(
             acceleration = direction**2 * (acceleration - friction)
         accelerations.append(acceleration)
     torques = full.mass * sp.Matrix(accelerations) - full.forcing
-    return sum((torques[full.rates.index(rate)] * rate for rate in inputs), ZERO)
+    return {rate: torques[full.rates.index(rate)] for rate in inputs}

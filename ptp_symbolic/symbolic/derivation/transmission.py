@@ -17,10 +17,16 @@ from ptp_symbolic.symbolic.symbols import ZERO
 class Transmission:
     """One shaft: torques in N m on the gear output and on the joint, its contact if it has play,
     and the quantities that effects find on its axis. `measured` is its torque in N m as a function
-    of the state alone, whatever the modes.
+    of the state alone, whatever the modes. It twists at `speed` in rad/s, before which the rate of
+    the gear output is multiplied by `ratio`; `spring` and `loss` are the parts of its torque that
+    store and that take energy.
     """
 
     axis: str
+    ratio: sp.Expr
+    speed: sp.Expr
+    spring: sp.Expr
+    loss: sp.Expr
     torques: tuple[tuple[sp.Symbol, sp.Expr], ...]
     measured: sp.Expr
     quantities: Mapping[sp.Symbol, sp.Expr]
@@ -48,10 +54,14 @@ def transmission(shaft: Shaft, contributions: Contributions) -> Transmission:
     spring, losses = (e.subs(here) for e in (sp.diff(shaft.energy, twist), shaft.losses))
     torque = spring + losses
     transmitted = pushing * torque
-    lost = pushing * losses - (1 - pushing) * spring
+    lost = touching * (pushing * losses - (1 - pushing) * spring)
     total = sp.diff(shaft.energy, twist) + shaft.losses
     return Transmission(
         axis=axis,
+        ratio=ratio,
+        speed=speed,
+        spring=touching * spring,
+        loss=lost,
         measured=_pressed(total.subs(twist_rate, speed), twist, separation, half_gap),
         torques=((gear, -transmitted * ratio), (joint, transmitted)),
         quantities={quantity(f"shaft_torque_{axis}"): transmitted}
@@ -62,7 +72,7 @@ def transmission(shaft: Shaft, contributions: Contributions) -> Transmission:
         ledger=Ledger(
             stored=touching * shaft.energy.subs(here),
             power_in=ZERO,
-            dissipated=touching * lost * speed,
+            dissipated=lost * speed,
         ),
     )
 

@@ -165,20 +165,68 @@ class Play:
 
 @dataclass(frozen=True)
 class Drive:
-    """A motor on `axis`: inertia in kg m^2 and torque in N m, both seen at the gear output.
+    """A motor on `axis`: it turns `ratio` times as fast as the gear output does at its `rate`.
 
-    The inertia may depend on the joint angle (a linkage); it then moves along with the joint.
-    `inputs` replaces the torque input of the axis; `power_in`, `stored` and `dissipated` are the
-    electrical part of the energy ledger in W, J and W.
+    Its winding takes a `voltage` in V at a `current`; of this the `resistance` in ohm turns `loss`
+    in W to heat (the product of both and the current, unless something shares it). A rotor of
+    inertia `rotor` in kg m^2 turns against `damping` in N m s/rad. The ratio may depend on the
+    joint angle (a linkage); the inertia seen at the gear output then moves along with the joint.
+    `inputs` replaces the torque input of the axis.
     """
 
     axis: str
-    inertia: sp.Expr
-    torque: sp.Expr
+    rate: sp.Symbol
+    ratio: sp.Expr
+    current: sp.Symbol
+    voltage: sp.Expr
+    inductance: sp.Expr
+    resistance: sp.Expr
+    loss: sp.Expr
+    constant: sp.Expr
+    rotor: sp.Expr
+    damping: sp.Expr
     inputs: tuple[Input, ...]
-    power_in: sp.Expr
-    stored: sp.Expr
-    dissipated: sp.Expr
+
+    @property
+    def speed(self) -> sp.Expr:
+        """Rate of the rotor in rad/s."""
+        return self.ratio * self.rate
+
+    @property
+    def back_emf(self) -> sp.Expr:
+        """Voltage in V that the turning rotor induces."""
+        return self.constant * self.speed
+
+    @property
+    def current_slope(self) -> sp.Expr:
+        """Rate of change of the current in A/s."""
+        drop = self.resistance * self.current + self.back_emf
+        return (self.voltage - drop) / self.inductance
+
+    @property
+    def inertia(self) -> sp.Expr:
+        """Inertia of the rotor in kg m^2, seen at the gear output."""
+        return self.rotor * self.ratio**2
+
+    @property
+    def torque(self) -> sp.Expr:
+        """Torque in N m at the gear output, before the rotor takes of it."""
+        return self.ratio * (self.constant * self.current - self.damping * self.speed)
+
+    @property
+    def power_in(self) -> sp.Expr:
+        """Electrical power in W."""
+        return self.voltage * self.current
+
+    @property
+    def stored(self) -> sp.Expr:
+        """Energy of the winding in J."""
+        return self.inductance * self.current**2 / 2
+
+    @property
+    def dissipated(self) -> sp.Expr:
+        """Power in W lost in winding and rotor."""
+        return self.loss + self.damping * self.speed**2
 
 
 @dataclass(frozen=True)

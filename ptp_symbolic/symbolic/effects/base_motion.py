@@ -59,7 +59,7 @@ def _contribute(place: Place) -> Contribution:
 BASE_MOTION = Effect(
     id="base_motion",
     title="base that shakes",
-    reference="inertial force of an accelerated frame, thesis section 1.2 (mobile platforms)",
+    reference="inertial force in an accelerated frame; Landau and Lifshitz (1976), section 39",
     parameters=PARAMETERS,
     contribute=_contribute,
     on_axis=False,

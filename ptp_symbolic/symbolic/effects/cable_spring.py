@@ -60,5 +60,5 @@ CABLE_SPRING = Effect(
     members=MEMBERS,
     linear={"separating_experiment": "Unplug or unwind the cable and repeat."},
     separating_experiment="Unplug or unwind the cable and repeat; or sweep beyond +-180 deg, where"
-    " gravity turns over and a spring does not.",
+    " what turns with the angle comes back and a spring does not.",
 )

@@ -38,36 +38,34 @@ PARAMETERS = (*MOTOR, RATIO)
 
 def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Contribution:
     """Voltage-driven motor that turns `ratio` times as fast as the gear output of `place`, or by
-    `motor_lead_<axis>` faster where the gear between does not run true.
-
-    `damping` in N m s/rad acts on the rotor. The parameters of the motor are those of `dc_motor`.
+    `motor_lead_<axis>` faster where the gear does not run true; `damping` in N m s/rad brakes it.
     """
     ratio = ratio * place.quantity("motor_lead_{axis}")
     inductance, resistance, constant, rotor = place.symbols(MOTOR)
     current, applied = real(f"i_{place.axis}"), real(f"u_{place.axis}")
     winding, loss = map(place.quantity, (WINDING, LOSS))
     voltage, amplified, switched, command = map(place.quantity, VOLTAGES)
-    speed = ratio * place.gear_rate
-    derivative = (voltage - winding * current - constant * speed) / inductance
     drive = Drive(
         axis=place.own_axis,
-        inertia=rotor * ratio**2,
-        torque=ratio * (constant * current - damping * speed),
+        rate=place.gear_rate,
+        ratio=ratio,
+        current=current,
+        voltage=voltage,
+        inductance=inductance,
+        resistance=winding,
+        loss=loss,
+        constant=constant,
+        rotor=rotor,
+        damping=damping,
         inputs=(Input(str(applied), "V", f"voltage of the {place.axis} motor"),),
-        power_in=voltage * current,
-        stored=inductance * current**2 / 2,
-        dissipated=loss + damping * speed**2,
     )
     values = (resistance, winding * current**2, amplified, switched, command, applied)
     names = (n.format(axis=place.axis) for n in (WINDING, LOSS, *VOLTAGES))
     defined = dict(zip(names, values, strict=True))
-    state = State(str(current), "A", f"current of the {place.axis} motor", derivative)
-    rate = Sensor(f"omega_motor_{place.axis}", "rad/s", f"rate of the {place.axis} motor", speed)
+    motor = f"{place.axis} motor"
+    state = State(str(current), "A", f"current of the {motor}", drive.current_slope)
+    rate = Sensor(f"omega_motor_{place.axis}", "rad/s", f"rate of the {motor}", drive.speed)
     return Contribution(quantities=defined, drives=(drive,), states=(state,), sensors=(rate,))
-
-
-def _contribute(place: Place) -> Contribution:
-    return electric_drive(place, place.parameter(RATIO.name))
 
 
 DC_MOTOR = Effect(
@@ -75,6 +73,6 @@ DC_MOTOR = Effect(
     title="geared DC motor",
     reference="thesis Eq. 3.10, Eq. 3.11 with erratum 8",
     parameters=PARAMETERS,
-    contribute=_contribute,
+    contribute=lambda place: electric_drive(place, place.parameter(RATIO.name)),
     structural=True,
 )

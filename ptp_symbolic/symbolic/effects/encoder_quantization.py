@@ -49,7 +49,7 @@ def _contribute(place: Place) -> Contribution:
 ENCODER_QUANTIZATION = Effect(
     id="encoder_quantization",
     title="encoder that counts",
-    reference="thesis Table 5.7: 7200 counts per turn (1800 lines, four edges each)",
+    reference="thesis 3.2.3.1 (7200 counts per turn) and 4.2.2 (1800 lines, four edges each)",
     parameters=PARAMETERS,
     contribute=_contribute,
     structural=True,

@@ -51,7 +51,7 @@ def _contribute(place: Place) -> Contribution:
 RATE_DEPENDENT_BREAKAWAY = Effect(
     id="rate_dependent_breakaway",
     title="breakaway torque that grows with the time at rest",
-    reference="Rabinowicz (1958), logarithm of the dwell time; thesis section 5.4 (slow ramp)",
+    reference="Rabinowicz (1958), logarithm of the dwell time; thesis section 5.4.2 (slow ramp)",
     parameters=PARAMETERS,
     contribute=_contribute,
     needs=("breakaway_torque_{axis}",),

@@ -33,7 +33,7 @@ def _contribute(place: Place) -> Contribution:
 VOLTAGE_SATURATION = Effect(
     id="voltage_saturation",
     title="supply voltage that limits the drive",
-    reference="saturation at the supply rails, thesis section 3.2 (24 V supply)",
+    reference="saturation at the supply rails, thesis sections 5.3 and 5.4 (24 V)",
     parameters=PARAMETERS,
     contribute=_contribute,
     needs=("motor_voltage_{axis}",),

@@ -1,0 +1,165 @@
+"""The parts of a declared platform: what its effects add up to before equations are written.
+
+Equations of motion, the energy ledger and the bond graph are all made from these.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from ptp_symbolic.platform import Platform
+from ptp_symbolic.symbolic.derivation.contributions import (
+    AXIS_OFFSET,
+    BASE_ACCELERATION,
+    GRAVITY_QUANTITIES,
+    Contributions,
+    collect,
+)
+from ptp_symbolic.symbolic.derivation.equations import Contact
+from ptp_symbolic.symbolic.derivation.friction import (
+    Mechanics,
+    Term,
+    driving_torque,
+    resolved_frictions,
+)
+from ptp_symbolic.symbolic.derivation.lagrange import lagrange
+from ptp_symbolic.symbolic.derivation.placement import GRAVITY, place_effects
+from ptp_symbolic.symbolic.derivation.prescribed import constraint_torques, reduced, released
+from ptp_symbolic.symbolic.derivation.rigid_play import rigid_contact
+from ptp_symbolic.symbolic.derivation.transmission import Transmission, transmission
+from ptp_symbolic.symbolic.effect_interface.contribution import Friction
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.place import Place
+from ptp_symbolic.symbolic.effect_interface.place import quantity as quantity_symbol
+from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
+from ptp_symbolic.symbolic.symbols import ZERO
+
+
+@dataclass(frozen=True)
+class Machine:
+    """What a platform consists of.
+
+    `full` and `full_rigid` are the mechanics with the rows of all joints, `mechanics` and
+    `rigid_equations` those in which a prescribed joint follows its input; `constraint_torques` in
+    N m, by the rates of these joints, make it do so. `loads` are named functions of what frictions
+    carry.
+    """
+
+    placed: list[tuple[Effect, Place]]
+    contributions: Contributions
+    transmissions: tuple[Transmission, ...]
+    rigid: RigidConfiguration
+    full_rigid: RigidEquations
+    full: Mechanics
+    rigid_equations: RigidEquations
+    mechanics: Mechanics
+    contacts: tuple[Contact, ...]
+    frictions: tuple[Friction, ...]
+    loads: tuple[Term, ...]
+    constraint_torques: Mapping[sp.Symbol, sp.Expr]
+
+
+def machine(platform: Platform) -> Machine:
+    """The parts of `platform`.
+
+    Raises InputError for an unknown effect, a parameter that no effect declares, a wrong unit or a
+    value out of bounds, and for effects that cannot be combined.
+    """
+    placed = place_effects(platform)
+    measured = {s.signal for s in platform.signals if s.role == "output"}
+    contributions = released(collect(platform.axes, placed, measured))
+    transmissions = [transmission(shaft, contributions) for shaft in contributions.shafts]
+    contributions = _with_twists(contributions, transmissions)
+    rigid = _rigid_configuration(platform, contributions)
+    full_rigid = lagrange(rigid)
+    full = _mechanics(platform, contributions, transmissions, full_rigid)
+    mechanics, rigid_equations = reduced(full, full_rigid, contributions.prescribed)
+    contacts = [t.contact for t in transmissions if t.contact is not None]
+    contacts += [rigid_contact(play, contributions, mechanics) for play in contributions.plays]
+    frictions, loads = resolved_frictions(contributions, mechanics)
+    return Machine(
+        placed=placed,
+        contributions=contributions,
+        transmissions=tuple(transmissions),
+        rigid=rigid,
+        full_rigid=full_rigid,
+        full=full,
+        rigid_equations=rigid_equations,
+        mechanics=mechanics,
+        contacts=tuple(contacts),
+        frictions=frictions,
+        loads=loads,
+        constraint_torques=constraint_torques(full, mechanics, frictions, contributions.prescribed),
+    )
+
+
+def _with_twists(
+    contributions: Contributions, transmissions: Sequence[Transmission]
+) -> Contributions:
+    """`contributions` in which the torque and the twist of every shaft are quantities, and the
+    torque that a sensor shows, where one is read.
+    """
+    found = [item for t in transmissions for item in t.quantities.items()]
+    read = {symbol for sensor in contributions.sensors for symbol in sensor.value.free_symbols}
+    torques = {quantity_symbol(f"torque_in_shaft_{t.axis}"): t.measured for t in transmissions}
+    found += [(symbol, torque) for symbol, torque in torques.items() if symbol in read]
+    return replace(contributions, values={**contributions.values, **dict(found)})
+
+
+def _mechanics(
+    platform: Platform,
+    contributions: Contributions,
+    transmissions: Sequence[Transmission],
+    rigid: RigidEquations,
+) -> Mechanics:
+    """Add drives, shafts, torques and potentials of the effects to the rigid equations."""
+    joints, gears = platform.axes, contributions.split_axes
+    coordinates = (*map(kinematics.angle, joints), *map(kinematics.gear_angle, gears))
+    rates = (*map(kinematics.rate, joints), *map(kinematics.gear_rate, gears))
+    mass = sp.diag(rigid.mass_matrix, sp.zeros(len(gears)))
+    forcing = sp.Matrix([*rigid.forcing, *([0] * len(gears))])
+    row = {symbol: index for index, symbol in enumerate(rates)}
+    torques = [(kinematics.rate(axis), contributions.input_torque(axis)) for axis in joints]
+    torques += [torque for t in transmissions for torque in t.torques]
+    torques += [torque for c in contributions.by_effect for torque in c.torques.items()]
+    for drive in contributions.drives:
+        rate = contributions.drive_rate(drive)
+        inertia = contributions.resolve(drive.inertia)
+        mass[row[rate], row[rate]] += inertia
+        torques.append((rate, driving_torque(drive, contributions, coordinates[row[rate]])))
+    for symbol, torque in torques:
+        forcing[row[symbol]] += contributions.resolve(torque)
+    potential = contributions.resolve(sum((c.potential for c in contributions.by_effect), ZERO))
+    for index, coordinate in enumerate(coordinates):
+        forcing[index] -= sp.diff(potential, coordinate)
+    mass = mass.applyfunc(contributions.resolve)
+    return Mechanics(coordinates, rates, sp.ImmutableMatrix(mass), sp.ImmutableMatrix(forcing))
+
+
+def _rigid_configuration(platform: Platform, contributions: Contributions) -> RigidConfiguration:
+    """Bodies, and gravity in the base frame less the acceleration of the base."""
+    tilt, azimuth = (contributions.resolve(quantity_symbol(name)) for name in GRAVITY_QUANTITIES)
+    acceleration = [contributions.resolve(quantity_symbol(name)) for name in BASE_ACCELERATION]
+    g = GRAVITY.symbol if platform.gravity else ZERO
+    direction = [
+        sp.sin(tilt) * sp.cos(azimuth),
+        sp.sin(tilt) * sp.sin(azimuth),
+        -sp.cos(tilt),
+    ]
+    bodies = tuple(
+        replace(
+            body,
+            mass=contributions.resolve(body.mass),
+            com=body.com.applyfunc(contributions.resolve),
+            inertia=body.inertia.applyfunc(contributions.resolve),
+        )
+        for contribution in contributions.by_effect
+        for body in contribution.bodies
+    )
+    gravity = [g * d - a for d, a in zip(direction, acceleration, strict=True)]
+    apart = contributions.resolve(contributions.values.get(quantity_symbol(AXIS_OFFSET), ZERO))
+    offsets = {} if apart == 0 else {"tilt": sp.ImmutableMatrix([apart, 0, 0])}
+    base = sp.ImmutableMatrix(gravity)
+    return RigidConfiguration(platform.axes, bodies, base, offsets, platform.linear_axes)
