@@ -61,14 +61,16 @@ def same(one: Key, other: Key) -> bool:
     return one[0] == other[0] and (one[1] == other[1] or None in (one[1], other[1]))
 
 
-def _is_right(kind: str, verdict: str, complete: bool) -> bool:
-    """Whether an answer without a dishonest name is right; `complete`: every truth is named."""
+def _is_right(kind: str, verdict: str, complete: bool, allowed: bool) -> bool:
+    """Whether an answer without a dishonest name is right; `complete`: every truth is named;
+    `allowed`: what no truth lists may be named, and is.
+    """
     if kind == "perfect":
         return verdict == "nothing_missing"
     if kind in ("slightly_wrong", "structure_null"):
         return verdict in UNTOLD
     if kind == "unlisted":
-        return verdict in OPEN_END
+        return verdict in OPEN_END or (complete and allowed and verdict in TOLD)
     return complete and verdict in TOLD
 
 
@@ -98,7 +100,9 @@ def score(truth: Data, diagnosis: Data | None) -> Score:
             dishonest.append(write_key(key))
             if deviating & set(one["parameters"]):
                 small.append(write_key(key))
-    right = not dishonest and _is_right(truth["kind"], verdict, covered == set(listed))
+    right = not dishonest and _is_right(
+        truth["kind"], verdict, covered == set(listed), bool(allowed) and len(named) > len(direct)
+    )
     return Score(
         answer="wrong" if dishonest else "right" if right else "missed",
         group=right and bool(covered - direct),

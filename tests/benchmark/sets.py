@@ -26,7 +26,7 @@ from tests.benchmark.structures import (
     VISIBLE_FLOORS,
     Structure,
 )
-from tests.benchmark.unlisted import DECLARED_VALUE, UNLISTED, shape_of
+from tests.benchmark.unlisted import DECLARED_VALUE, LISTED_SINCE, UNLISTED, shape_of
 
 MOST_DRAWS = 6
 LEAST_LEVEL = 0.6  # of the level asked for, where a limit cuts the size
@@ -237,6 +237,9 @@ def _truth(
         "input_noise": noise,
         "variation": asdict(variation),
     }
+    now_listed = [one for one in entry.planted if one.effect in LISTED_SINCE]
+    if now_listed:
+        truth["allowed"] = [f"{LISTED_SINCE[one.effect]}@{one.axis}" for one in now_listed]
     if entry.kind in OF_STRUCTURES:
         truth["effects"] = [effect for effect, _, _ in hidden.named]
         truth["axes"] = [axis for _, axis, _ in hidden.named]

@@ -162,3 +162,12 @@ def test_intervals_hold_angles_up_to_a_turn_and_count_a_parameter_once() -> None
     assert not found["J_pan"].holds
     assert found["alpha_base"].holds
     assert found["alpha_base"].added
+
+
+def test_a_torque_that_the_catalogue_describes_by_now_may_be_named() -> None:
+    decay = truth("unlisted", unlisted=("decaying_friction",)) | {"allowed": ["friction_drift@pan"]}
+    drift = ("friction_drift", "pan", ())
+    assert score(decay, answer("explained", drift)).answer == "right"
+    assert score(decay, answer("unexplained")).answer == "right"
+    assert score(decay, answer("nothing_missing")).answer == "missed"
+    assert score(decay, answer("explained", ("cogging", "pan", ()))).answer == "wrong"

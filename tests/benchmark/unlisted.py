@@ -57,6 +57,7 @@ def torque_by_angle_and_rate(scene: Scene) -> Shape:
     return _own("torque_by_angle_and_rate", scene, guess=0.1 * least, limit=least)
 
 
+LISTED_SINCE = {"decaying_friction": "friction_drift"}  # what the catalogue describes by now
 UNLISTED: dict[str, Callable[[Scene], Shape]] = {
     made.__name__: made
     for made in (
