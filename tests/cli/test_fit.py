@@ -170,7 +170,7 @@ def test_a_diagnosis_prints_what_the_logs_do_not_settle(capsys) -> None:
 
 
 def test_thousands_of_counts_are_first_a_matter_of_the_signals(capsys) -> None:
-    """Not hundreds of a coarse encoder, and not those of a fine one that are little of the motion."""
+    """Not hundreds of a coarse encoder, nor those of a fine one that are little of the motion."""
 
     def error(counts: float, share: float) -> dict[str, Any]:
         percent = 100.0 * (1.0 - share)
