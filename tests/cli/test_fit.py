@@ -9,6 +9,7 @@ import pytest
 
 from ptp_symbolic.cli.diagnose import _print_diagnosis, _print_fit
 from ptp_symbolic.platform import read_platform
+from ptp_symbolic.workflows.fit import _what_to_check
 
 SAMPLE = Path(__file__).parents[2] / "ptp_symbolic" / "samples" / "tilted_base"
 PHASE = r"(?m)^\[ *\d+\.\d s\] .+\n"
@@ -186,3 +187,23 @@ def test_a_diagnosis_prints_what_the_logs_do_not_settle(capsys) -> None:
     assert told[1] == "  F_s_pan = 0.3 N m  [0, 1]  (at its bound)"
     assert told[2] == "  F_v_pan = 0.4 N m  [0, 1]  (seen only together with b_pan)"
     assert not any("  b_pan" in line for line in lines)
+
+
+def test_thousands_of_counts_are_first_a_matter_of_the_signals(capsys) -> None:
+    """Not hundreds of a coarse encoder, nor those of a fine one that are little of the motion."""
+
+    def error(counts: float, share: float) -> dict[str, Any]:
+        percent = 100.0 * (1.0 - share)
+        return {"rmse_counts": counts, "rmse": 1e-3, "unit": "rad", "fit_percent": percent}
+
+    assert _what_to_check(error(700.0, 2.0)) == _what_to_check(error(9e5, 0.01)) == ()
+    (text,) = _what_to_check(error(39_800.0, 1.39))
+    assert text.startswith(
+        "The fit leaves 3.98e+04 counts rms, 139 % of the motion: check the unit,"
+    )
+    errors = {w: {"total": error(4e4, 1.4)} for w in ("before", "after", "noise_floor")}
+    summary = {"parameters": {}, "windows": None, "error": errors, "remarks": [text]}
+    _print_fit({**summary, "far_from_floor": True})
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == f"Note: {text}"
+    assert lines[-1].endswith("the model does not fit these logs; check the signals as said above.")
