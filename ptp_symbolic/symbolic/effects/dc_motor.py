@@ -45,24 +45,14 @@ def electric_drive(place: Place, ratio: sp.Expr, damping: sp.Expr = ZERO) -> Con
     """
     ratio = ratio * place.quantity("motor_lead_{axis}")
     inductance, resistance, constant, rotor = place.symbols(MOTOR)
-    current = real(f"i_{place.axis}")
-    applied = real(f"u_{place.axis}")
+    current, applied = real(f"i_{place.axis}"), real(f"u_{place.axis}")
     winding, loss = map(place.quantity, (WINDING, LOSS))
     voltage, amplified, switched, command = map(place.quantity, VOLTAGES)
-    drive = Drive(
-        axis=place.own_axis,
-        rate=place.gear_rate,
-        ratio=ratio,
-        current=current,
-        voltage=voltage,
-        inductance=inductance,
-        resistance=winding,
-        loss=loss,
-        constant=constant,
-        rotor=rotor,
-        damping=damping,
-        inputs=(Input(str(applied), "V", f"voltage of the {place.axis} motor"),),
-    )
+    inputs = (Input(str(applied), "V", f"voltage of the {place.axis} motor"),)
+    electrical = {"current": current, "voltage": voltage, "inductance": inductance}
+    electrical |= {"resistance": winding, "loss": loss, "constant": constant}
+    turning = {"rate": place.gear_rate, "ratio": ratio, "rotor": rotor, "damping": damping}
+    drive = Drive(axis=place.own_axis, inputs=inputs, **electrical, **turning)
     names = (WINDING, LOSS, *VOLTAGES)
     values = (resistance, winding * current**2, amplified, switched, command, applied)
     defined = {n.format(axis=place.axis): v for n, v in zip(names, values, strict=True)}
