@@ -34,7 +34,7 @@ def test_what_friction_holds_is_the_torque_of_motor_and_shaft() -> None:
         sp.Symbol(name, real=True)
         for name in ("K_t_pan", "N_pan", "i_pan", "T_shaft_pan", "active_pan")
     )
-    assert sp.expand(row(friction, "T_holding_gear_pan") - (K_t * N * i - active * T)) == 0
+    assert sp.expand(row(friction, "F_sticking_gear_pan") - (K_t * N * i - active * T)) == 0
     static, differs = (sp.Symbol(name, real=True) for name in ("F_s_pan", "a_F_s_pan"))
     assert sp.expand(row(friction, "F_ahead_gear_pan") - static * (1 + differs)) == 0
     assert sp.expand(row(friction, "F_back_gear_pan") - static * (1 - differs)) == 0

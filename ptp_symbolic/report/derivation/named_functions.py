@@ -2,7 +2,7 @@
 
 from ptp_symbolic.symbolic.codegen.letters import SLOPE
 
-MEANINGS = {
+MEANINGS = {  # in LaTeX
     "linkage_cos": ("twice ground link times arm times the cosine of their angle at zero", "m^2"),
     "linkage_sin": ("twice ground link times arm times the sine of their angle at zero", "m^2"),
     "length": ("length of the actuator", "m"),
@@ -14,10 +14,13 @@ MEANINGS = {
     "load_torque": ("torque of the rest of the machine on the joint", "N m"),
     "load_inertia": ("inertia of the rest of the machine at the joint", "kg m^2"),
     "raised": (
-        "2 pi T_raise over lead F of thesis Eq. 3.12: power in over out, the motor driving",
+        r"$2\pi T_\mathrm{raise}/(lF)$ with thesis Eq.~3.12: power in over out, the motor driving",
         "1",
     ),
-    "lowered": ("-2 pi T_lower over lead F of thesis Eq. 3.12: efficiency, the load driving", "1"),
+    "lowered": (
+        r"$-2\pi T_\mathrm{lower}/(lF)$ with thesis Eq.~3.12: efficiency, the load driving",
+        "1",
+    ),
     "carried": (
         "torque that the screw would carry without friction, times the sum of the inertias",
         "kg m^2 N m",
