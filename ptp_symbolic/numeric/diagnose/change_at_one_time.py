@@ -13,16 +13,19 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from ptp_symbolic.numeric.diagnose.linear import projected_off
-from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MOST, TEST_ALARM
+from ptp_symbolic.numeric.identify.constants import (
+    CHANGE_TIMES,
+    FALSE_ALARM,
+    LEAST_DEGREES,
+    MOST,
+    NEARLY_ALL,
+    SHOWN_OF_CHANGE,
+    TEST_ALARM,
+    TIMES_APART,
+    TRIM,
+)
 
 FloatArray = NDArray[np.float64]
-
-TRIM = 0.1  # 1; share of a log at either end in which no change is looked for; usual (Andrews 1993)
-TIMES = 81  # 1; of a log at which a change is looked for: steps of 1 % of it; derived
-NEARLY_ALL = 0.7  # 1; share of the logs that are nearly all; stated
-APART = 0.04  # 1; of the duration of a log: times of a change that agree; stated
-LEAST_DEGREES = 4.0  # 1; of freedom: the variance is then good to a factor of two; derived
-SHOWN = 0.1  # 1; square of a step that the motion leaves unexplained, so that it shows; stated
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +64,7 @@ def change_at_one_time(logs: Sequence[LogRows]) -> Change | None:
     independent ones would (binomial). Blind where fewer than three logs reach the time.
     """
     duration = max((float(np.ptp(log.time)) for log in logs), default=0.0)
-    near = APART * duration
+    near = TIMES_APART * duration
     found = [_change_of(log.time, log.left, log.beside) for log in logs]
     times = [each for each in found if each is not None]
     best: Change | None = None
@@ -123,7 +126,7 @@ def _step_in(time: FloatArray, left: FloatArray, beside: FloatArray) -> tuple[fl
     is that of the largest square of a normalised Brownian bridge (Miller and Siegmund, 1982, eq.
     8), the residual an AR(1).
     """
-    times = np.linspace(*_trimmed(time), TIMES)
+    times = np.linspace(*_trimmed(time), CHANGE_TIMES)
     steps = (time[:, None] >= times).astype(np.float64)
     best, size, square, rest = _best_change(left, steps, np.ones(len(time)), beside)
     noise, independent = long_run(rest, beside.shape[1] + 2)  # size and time of the step too
@@ -143,15 +146,15 @@ def _change_in(
     (Bonferroni), the residual an AR(1) of a `pole` that all columns are freed of (Prais and
     Winsten, 1954), for what drifts slowly hardly weighs on a column that does not.
     """
-    times, along = np.linspace(*_trimmed(time), TIMES), beside[:, column]
+    times, along = np.linspace(*_trimmed(time), CHANGE_TIMES), beside[:, column]
     changes = (time[:, None] >= times) * along[:, None]
     table = _whitened(np.column_stack([left, along, changes, beside]), pole)
-    changes, beside = table[:, 2 : TIMES + 2], table[:, TIMES + 2 :]
+    changes, beside = table[:, 2 : CHANGE_TIMES + 2], table[:, CHANGE_TIMES + 2 :]
     best, size, square, rest = _best_change(table[:, 0], changes, table[:, 1], beside)
     degrees = len(rest) - beside.shape[1] - 2.0
     noise = max(float(rest @ rest) / degrees, 1e-300)
     statistic = abs(size) * float(np.sqrt(square / noise))
-    chance = 2.0 * TIMES * float(stats.t.sf(statistic, degrees))
+    chance = 2.0 * CHANGE_TIMES * float(stats.t.sf(statistic, degrees))
     return min(chance, 1.0), float(times[best]), size
 
 
@@ -168,7 +171,7 @@ def _best_change(
     rest, changes = table[:, 0], table[:, 1:]
     square = np.sum(changes**2, axis=0)
     size = changes.T @ rest / np.maximum(square, 1e-300)
-    size = np.where(square > SHOWN * raw, size, 0.0)
+    size = np.where(square > SHOWN_OF_CHANGE * raw, size, 0.0)
     best = int(np.argmax(size**2 * square))
     stays = rest - size[best] * changes[:, best]
     return best, float(size[best]), float(square[best]), stays

@@ -16,14 +16,13 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.linear import projected_off, stacked_jacobian
 from ptp_symbolic.numeric.diagnose.responses import response_columns
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
-from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MOST, NOTHING, REACH
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MOST, NOTHING, REACH, TOLD
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
 
 FloatArray = NDArray[np.float64]
 
 # Standard deviations, of either sign, with which 95 % are found at 5 % of false alarms.
 SEEN = float(np.sum(stats.norm.isf([FALSE_ALARM, MOST * FALSE_ALARM])))
-TOLD = 10  # effects; a line of progress after so many
 
 
 @dataclass(frozen=True)
