@@ -7,9 +7,9 @@ import pytest
 from scipy.signal import lfilter
 
 from ptp_symbolic.numeric.data import log_files, read_logs
-from ptp_symbolic.numeric.diagnose.change_at_one_time import _change_of
 from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.hints import (
+    LOOKED,
     LogRows,
     Recorded,
     _said_change,
@@ -19,6 +19,7 @@ from ptp_symbolic.numeric.diagnose.hints import (
     lost_motion,
     resonance,
 )
+from ptp_symbolic.numeric.diagnose.one_change import change_of
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.preparation import model_of, task_for, workers
@@ -119,7 +120,7 @@ def test_a_log_of_noise_changes_nowhere_in_95_of_100(pole: float) -> None:
     """With all that a residual may follow beside it; the test of one log is at 5 %."""
     rng = np.random.default_rng(6)
     logs = [moving_rows(rng, 8.0, pole, 1.0) for _ in range(100)]
-    shown = [_change_of(log.time, log.left, log.beside) is not None for log in logs]
+    shown = [change_of(log.time, log.left, log.beside, LOOKED) is not None for log in logs]
     assert sum(shown) <= 10  # 5 +- 2.2
 
 

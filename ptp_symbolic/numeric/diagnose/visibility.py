@@ -16,7 +16,7 @@ from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.linear import projected_off, stacked_jacobian
 from ptp_symbolic.numeric.diagnose.responses import response_columns
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
-from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MOST, NOTHING, REACH, TOLD
+from ptp_symbolic.numeric.identify.constants import FALSE_ALARM, MOST, NOTHING, REACH
 from ptp_symbolic.numeric.identify.coordinates import slopes, to_search
 
 FloatArray = NDArray[np.float64]
@@ -71,7 +71,7 @@ def visible_amounts(task: Task, start: Trial) -> list[Visible]:
 
     amount = f"{len(simplest)} effects, each simulated at several amounts"
     for done, rows in enumerate(task.executor.map(amounts, simplest.values())):
-        if done % TOLD == 0:
+        if done % max(len(simplest) // 4, 1) == 0:
             task.progress(f"predicting what {len(task.train)} runs can show: {done} of {amount}")
         found += rows
     return found

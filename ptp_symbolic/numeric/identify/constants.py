@@ -82,18 +82,9 @@ REACH = 3.0  # 1; size of a response over the residual, beyond which it is not l
 ROUNDING = 1.0 / np.sqrt(12.0)  # counts; standard deviation of rounding; derived
 SAME = 1e-3  # 1; relative difference of directions or values that count as one; scaled
 NOTHING = 1e-10  # 1; share of a sum of 1e5 squares, above its rounding of 2e-11; derived
-TOLD = 10  # effects; a line of progress after so many; stated
 ROUNDS = 40  # 1; at most, until a loop has converged; halvings: to 1e-12; derived
 
 # Sequences
 LENGTHS = (8.0, 4.0, 2.0, 1.0, 0.5)  # s; lengths of windows that are tried, by halves; scaled
 AMOUNTS = tuple(2.0**k for k in range(-3, 3))  # 1; times its start, of an effect, by twos; scaled
 HALF_WIDTHS = (0.08, 0.11, 0.16, 0.22)  # s; windows of rows, by root two; scaled
-
-# A change at one time
-TRIM = 0.1  # 1; share of a log at either end in which no change is looked for; usual (Andrews 1993)
-CHANGE_TIMES = 81  # 1; of a log at which a change is looked for: steps of 1 % of it; derived
-NEARLY_ALL = 0.7  # 1; share of the logs that are nearly all; stated
-TIMES_APART = 0.04  # 1; of the duration of a log: times of a change that agree; stated
-LEAST_DEGREES = 4.0  # 1; of freedom: the variance is then good to a factor of two; derived
-SHOWN_OF_CHANGE = 0.1  # 1; square of a change that the motion does not explain, to show; stated
