@@ -9,14 +9,17 @@ from scipy.signal import lfilter
 from ptp_symbolic.numeric.data import log_files, read_logs
 from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.hints import (
+    LOOKED,
     LogRows,
     Recorded,
+    _said_change,
     change_at_one_time,
     further_hints,
     input_ceiling,
     lost_motion,
     resonance,
 )
+from ptp_symbolic.numeric.diagnose.one_change import change_of
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.preparation import model_of, task_for, workers
@@ -76,6 +79,49 @@ def test_noise_changes_at_no_common_time(pole: float) -> None:
         change_at_one_time([rows_of(rng, s, pole) for s in (8.0, 9.0, 12.0)]) for _ in range(DRAWS)
     ]
     assert sum(f is not None for f in found) <= 2
+
+
+def moving_rows(
+    rng: np.random.Generator, seconds: float, pole: float, noise: float, taken_off: float = np.inf
+) -> LogRows:
+    """Rows of a turntable of 0.05 kg m^2 under a torque, declared with that inertia, from which a
+    payload of 0.02 kg m^2 is `taken_off` at some time in s.
+    """
+    time = np.arange(0.0, seconds, 0.02)
+    torque = steps_of(rng, len(time), 60)
+    angle, rate, speeding = np.zeros((3, len(time)))
+    for k, at in enumerate(time):
+        speeding[k] = (torque[k] - 0.1 * rate[k]) / (0.05 if at < taken_off else 0.03)
+        if k + 1 < len(time):
+            rate[k + 1] = rate[k] + 0.02 * speeding[k]
+            angle[k + 1] = angle[k] + 0.02 * rate[k]
+    left = np.where(time < taken_off, 0.0, 0.02) * speeding
+    left += noise * autoregression(rng, len(time), pole)
+    moved = [np.ones(len(time)), angle, rate, np.sign(rate), rate * np.abs(rate)]
+    beside = np.column_stack([*moved, torque, torque * np.abs(torque)])
+    return LogRows(time, left, beside, torque[:, None])
+
+
+def test_a_payload_that_is_taken_off_is_found_at_its_time_though_nothing_steps() -> None:
+    """Without it the torque goes into more acceleration: from 10 s on the residual follows that."""
+    rng = np.random.default_rng(4)
+    logs = [moving_rows(rng, 20.0, 0.5, 0.02, taken_off=10.0) for _ in range(6)]
+    found = change_at_one_time(logs)
+    assert found is not None
+    assert found.time == pytest.approx(10.0, abs=found.interval)
+    assert found.shown >= 5
+    assert found.column == 5
+    (said,) = _said_change(found, "residual torque of pan", "N m", ("",) * 5 + ("tau_pan", ""))
+    assert f"follows the tau_pan differently from then on, beginning at {found.time:.3g} s" in said
+
+
+@pytest.mark.parametrize("pole", [0.0, 0.9, 0.97])
+def test_a_log_of_noise_changes_nowhere_in_95_of_100(pole: float) -> None:
+    """With all that a residual may follow beside it; the test of one log is at 5 %."""
+    rng = np.random.default_rng(6)
+    logs = [moving_rows(rng, 8.0, pole, 1.0) for _ in range(100)]
+    shown = [change_of(log.time, log.left, log.beside, LOOKED) is not None for log in logs]
+    assert sum(shown) <= 10  # 5 +- 2.2
 
 
 def recorded(rng: np.random.Generator, log: int, left: np.ndarray) -> Recorded:

@@ -4,6 +4,7 @@ A change at one time in all logs, a resonance, lost motion at reversals, a ceili
 Each has a test with a stated level; none is an accepted effect, all are places to look.
 """
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,13 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import signal, stats
 
-from ptp_symbolic.numeric.diagnose.change_at_one_time import (
-    Change,
-    LogRows,
-    change_at_one_time,
-    long_run,
-)
 from ptp_symbolic.numeric.diagnose.linear import projected_off
+from ptp_symbolic.numeric.diagnose.one_change import Looked, change_of, long_run, trimmed
 from ptp_symbolic.numeric.diagnose.trial import Trial
 from ptp_symbolic.numeric.identify.constants import (
     CYCLES,
@@ -35,6 +31,12 @@ from ptp_symbolic.numeric.identify.weak_form import averages
 
 FloatArray = NDArray[np.float64]
 
+TRIM = 0.1  # 1; share of a log at either end in which no change is looked for; usual (Andrews 1993)
+TIMES = 81  # 1; of a log at which a change is looked for: steps of 1 % of it; derived
+NEARLY_ALL = 0.7  # 1; share of the logs that are nearly all; stated
+APART = 0.04  # 1; of the duration of a log: times of a change that agree; stated
+LEAST_DEGREES = 4.0  # 1; of freedom: the variance is then good to a factor of two; derived
+SHOWN = 0.1  # 1; square of a change that the motion leaves unexplained, so that it shows; stated
 SEGMENT_TIME = 2.0  # s; of a periodogram, resolves 0.5 Hz; halved for windows below twice; stated
 BACKGROUND = 2.0  # 1; factor of frequency on either side of a line, its background; stated
 CORE = 1.15  # 1; factor of frequency on either side that belongs to the line; stated
@@ -48,6 +50,36 @@ LEAST_REVERSALS = 6  # 1; whose median has an interval at 97 %; derived
 REVERSAL_ALARM = 1e-3  # 1; false alarms of the test of lost motion; stated level
 LEVELS = 40  # 1; of |input| where a ceiling may begin, from its median to its largest; stated
 SHOWS_ALONE = 1e-3  # 1; share of the excess of an input that nothing else explains; stated
+
+
+LOOKED = Looked(TRIM, TIMES, SHOWN, LEAST_DEGREES)
+
+
+@dataclass(frozen=True, eq=False)
+class LogRows:
+    """What is left of one log: `time` [n] in s, `left` [n] in N m (or output units), `beside`
+    [n, m] what else it may follow (a constant first, then motion, inputs), and the `input` [n, nu].
+    """
+
+    time: FloatArray
+    left: FloatArray
+    beside: FloatArray
+    input: FloatArray
+
+
+@dataclass(frozen=True)
+class Change:
+    """A change at `time` in s, within `interval` s in `shown` of `logs` logs: of how the residual
+    follows the `column` of what stands beside it, by `size` (median) in the unit of the residual
+    over that of the column; a step where that is the constant, 0.
+    """
+
+    time: float
+    interval: float
+    shown: int
+    logs: int
+    size: float
+    column: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -282,6 +314,54 @@ def _response(space: EquationSpace, p: FloatArray, column: int) -> FloatArray:
         table[:, column] = 1.0
         added.append(table)
     return space.rows(p, added)
+
+
+def change_at_one_time(logs: Sequence[LogRows]) -> Change | None:
+    """The time at which the residual of nearly all logs steps, or follows motion or inputs
+    differently from then on (a payload that is taken off), where their inputs do not change.
+
+    Every log has its own test for one change of one coefficient at an unknown time (Andrews, 1993),
+    at 5 % over all of them; the times have to agree more closely than 1 % of
+    independent ones would (binomial). Blind where fewer than three logs reach the time.
+    """
+    duration = max((float(np.ptp(log.time)) for log in logs), default=0.0)
+    near = APART * duration
+    found = [change_of(log.time, log.left, log.beside, LOOKED) for log in logs]
+    times = [each for each in found if each is not None]
+    best: Change | None = None
+    for centre, _, _ in times:
+        reach = [
+            log
+            for log in logs
+            if trimmed(log.time, TRIM)[0] <= centre <= trimmed(log.time, TRIM)[1]
+        ]
+        close = [each for each in times if abs(each[0] - centre) <= near]
+        share = np.mean(
+            [min(2.0 * near / max(np.ptp(trimmed(r.time, TRIM)), 1e-300), 1.0) for r in reach]
+        )
+        chance = len(times) * float(stats.binom.sf(len(close) - 1, len(reach), share))
+        enough = len(close) >= max(3, NEARLY_ALL * len(reach))
+        if not enough or chance > TEST_ALARM or _inputs_change(reach, centre, near):
+            continue
+        if best is None or len(close) > best.shown:
+            time = float(np.median([t for t, _, _ in close]))
+            column = Counter(c for _, _, c in close).most_common(1)[0][0]
+            size = float(np.median([abs(size) for _, size, c in close if c == column]))
+            best = Change(time, near, len(close), len(reach), size, column)
+    return best
+
+
+def _inputs_change(logs: Sequence[LogRows], centre: float, near: float) -> bool:
+    """Whether the size of an input steps at the time in more than half of the logs."""
+    for column in range(logs[0].input.shape[1]):
+        sizes = [np.abs(log.input[:, column]) for log in logs]
+        steps = [
+            change_of(log.time, size, np.ones((len(size), 1)), LOOKED)
+            for log, size in zip(logs, sizes, strict=True)
+        ]
+        if np.mean([s is not None and abs(s[0] - centre) <= near for s in steps]) > MOST:
+            return True
+    return False
 
 
 def resonance(runs: Sequence[Recorded]) -> Resonance | None:

@@ -23,7 +23,6 @@ FloatArray = NDArray[np.float64]
 
 # Standard deviations, of either sign, with which 95 % are found at 5 % of false alarms.
 SEEN = float(np.sum(stats.norm.isf([FALSE_ALARM, MOST * FALSE_ALARM])))
-TOLD = 10  # effects; a line of progress after so many
 
 
 @dataclass(frozen=True)
@@ -72,7 +71,7 @@ def visible_amounts(task: Task, start: Trial) -> list[Visible]:
 
     amount = f"{len(simplest)} effects, each simulated at several amounts"
     for done, rows in enumerate(task.executor.map(amounts, simplest.values())):
-        if done % TOLD == 0:
+        if done % max(len(simplest) // 4, 1) == 0:
             task.progress(f"predicting what {len(task.train)} runs can show: {done} of {amount}")
         found += rows
     return found
