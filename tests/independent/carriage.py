@@ -36,6 +36,7 @@ m_pan = {{ value = {1e3 * MASS}, unit = "g" }}
 b_pan = {{ value = {1e-3 * VISCOUS}, unit = "N s/mm" }}
 F_c_pan = {{ value = {COULOMB}, unit = "N" }}
 F_s_pan = {{ same_as = "F_c_pan" }}
+v_s_pan = {{ value = 0.01, unit = "m/s" }}
 F_v_pan = {{ value = 0.0, unit = "N s/m" }}
 k1_cable_pan = {{ value = {1e-3 * SPRING}, unit = "N/mm" }}
 theta0_cable_pan = {{ value = {1e3 * REST}, unit = "mm" }}

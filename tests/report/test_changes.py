@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from ptp_symbolic.cli import commands
+from ptp_symbolic.cli.commands import commands
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, read_platform
 from ptp_symbolic.report.changes import render_changes, shown_of

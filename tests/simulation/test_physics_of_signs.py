@@ -77,6 +77,7 @@ def test_time_at_rest_goes_on_until_the_end_of_rest(method: str) -> None:
         Platform("rests", "Rests", ("pan", "tilt"), 9.81, tuple(declared), (), ())
     )
     heavy = {"J_pan": 0.5, "J_y_tilt": 0.5, "F_v_tilt": 0.0, "F_s_tilt": 0.2401}
+    heavy["a_rest_pan"] = 1e-6  # an effect that does nothing counts no time
     start = {"omega_pan": 0.02, "omega_tilt": 0.4}
     found = simulate(model, 2.0, None, heavy, start, method=method)
     pan_stops, tilt_stops = (
