@@ -8,13 +8,15 @@ from ptp_symbolic.platform import Platform, effect_key
 from ptp_symbolic.workflows.result import read_diagnosis
 
 
-def group_of(folder: Path, platform: Platform) -> tuple[tuple[str, ...], dict[str, float]]:
+def group_of(
+    diagnosis: Path | Mapping[str, Any], platform: Platform
+) -> tuple[tuple[str, ...], dict[str, float]]:
     """The named set and those that may stand in its place, as keys joined by ``+``, and fitted
-    values of parameters in SI; no set where the diagnosis in `folder` leaves nothing open.
+    values of parameters in SI; no set where the `diagnosis`, a summary or its folder, leaves nothing open.
 
     Raises InputError for a folder without a diagnosis of `platform`.
     """
-    fitted, named, ranking = read_diagnosis(folder, platform, _open_parts)
+    fitted, named, ranking = read_diagnosis(diagnosis, platform, _open_parts)
     sets = [tuple(named)]
     for key, others in named.items():
         sets += [tuple(other if k == key else k for k in named) for other in others]
