@@ -172,9 +172,6 @@ class Diagnosis(_Result):
         write_files_atomically(place.parent, {place.name: self.output.files["report.html"]})
         return place
 
-    def _repr_html_(self) -> str:
-        return super()._repr_html_()
-
     def _heading(self) -> str:
         return f"{self.verdict}: {self.summary['summary']}"
 
@@ -236,10 +233,9 @@ class FrictionMap(_Result):
         return f"Friction of '{self.summary['source']}': {self.law}"
 
     def _tables(self) -> tuple[Table, ...]:
-        rows = tuple(
-            (n, p["value"], p["low"], p["high"], p["unit"]) for n, p in self.parameters.items()
-        )
-        return (Table("Parameter", ("parameter", "value", "low", "high", "unit"), rows),)
+        keys = ("value", "low", "high", "unit")
+        rows = tuple((n, *(p[key] for key in keys)) for n, p in self.parameters.items())
+        return (Table("Parameter", ("parameter", *keys), rows),)
 
 
 def fit(platform: Source, logs: Logs, *, progress: Progress = _silent) -> FitResult:
@@ -370,7 +366,7 @@ def friction_map(
     axis: str = "pan",
     confidence: float = 0.95,
 ) -> FrictionMap:
-    """Fit laws of friction to steady points, a CSV of rates [rpm] and torques [mN m], and name the
+    r"""Fit laws of friction to steady points, a CSV of rates [rpm] and torques [mN m], and name the
     smallest that predicts as well as any other; `save` writes it as part of a platform.
 
     `rate`, `torque` and `spread` name the columns; `nominal` is the torque that % is of. A point at
@@ -378,7 +374,7 @@ def friction_map(
 
     >>> import ptp_symbolic as ptp, pathlib
     >>> rows = ["rate [rad/s],torque [N m]", *(f"{w},{0.2 + 0.1 * w}" for w in (1, 2, 3, 4, 5))]
-    >>> size = pathlib.Path("points.csv").write_text("\\n".join(rows))
+    >>> size = pathlib.Path("points.csv").write_text("\n".join(rows))
     >>> round(ptp.friction_map("points.csv").parameters["F_v_pan"]["value"], 6)
     0.1
     """

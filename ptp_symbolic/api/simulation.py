@@ -197,9 +197,9 @@ def _feedback(
             f"The controller is of type {type(controller).__name__}; give a function of t and y."
         )
     if names is None:
-        measured: tuple[str, ...] = machine.output_names
+        measured: tuple[str, ...] | None = machine.output_names
     elif isinstance(names, str):
-        measured = machine.state_names if names == STATES else (names,)
+        measured = None if names == STATES else (names,)
     else:
         measured = tuple(names)
     return Feedback(controller, period, measured)

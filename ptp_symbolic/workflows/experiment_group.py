@@ -12,7 +12,8 @@ def group_of(
     diagnosis: Path | Mapping[str, Any], platform: Platform
 ) -> tuple[tuple[str, ...], dict[str, float]]:
     """The named set and those that may stand in its place, as keys joined by ``+``, and fitted
-    values of parameters in SI; no set where the `diagnosis`, a summary or its folder, leaves nothing open.
+    values of parameters in SI; no set where the `diagnosis`, a summary or its folder, leaves
+    nothing open.
 
     Raises InputError for a folder without a diagnosis of `platform`.
     """

@@ -45,8 +45,7 @@ def read_diagnosis(
     if isinstance(source, Path):
         path = source if source.is_file() else source / "diagnosis.json"
     try:
-        given = isinstance(source, Mapping)
-        found = source if given else json.loads(path.read_text(encoding="utf-8"))
+        found = json.loads(path.read_text("utf-8")) if isinstance(source, Path) else source
         name, part = found["platform"]["name"], wanted(found)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise InputError(

