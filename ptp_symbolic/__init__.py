@@ -37,6 +37,8 @@ _HOMES = {
     "experiment": "ptp_symbolic.api.results",
     "FrictionMap": "ptp_symbolic.api.results",
     "friction_map": "ptp_symbolic.api.results",
+    "Effect": "ptp_symbolic.symbolic.effect_interface.effect",
+    "check_effect": "ptp_symbolic.api.effect_laws",
 }
 __all__ = ["__version__", *_HOMES]
 

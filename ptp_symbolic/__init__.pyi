@@ -1,5 +1,6 @@
 """Types of what `__init__.py` imports on demand."""
 
+from ptp_symbolic.api.effect_laws import check_effect as check_effect
 from ptp_symbolic.api.linearization import Linearization as Linearization
 from ptp_symbolic.api.logs import Log as Log
 from ptp_symbolic.api.logs import read_log as read_log
@@ -27,5 +28,6 @@ from ptp_symbolic.numeric.simulation.events.names import Event as Event
 from ptp_symbolic.numeric.simulation.run import SimulationError as SimulationError
 from ptp_symbolic.platform import Platform as Platform
 from ptp_symbolic.platform import read_platform as read_platform
+from ptp_symbolic.symbolic.effect_interface.effect import Effect as Effect
 
 __version__: str

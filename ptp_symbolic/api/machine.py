@@ -315,7 +315,7 @@ def load(source: Source) -> Machine:
 
     >>> import ptp_symbolic as ptp
     >>> ptp.load("payload").title
-    'Pan-tilt platform of the thesis with a payload'
+    'Pan-tilt platform of the thesis with its payload'
     """
     if isinstance(source, Model):
         return machine_of(source)

@@ -77,6 +77,10 @@ def inverse_dynamics(
     Raises InputError for a motion or parameters that do not fit.
     Source: Murray, Li and Sastry, A Mathematical Introduction to Robotic Manipulation, 1994,
     Eq. 4.24.
+
+    >>> import ptp_symbolic as ptp
+    >>> ptp.inverse_dynamics("ideal", ([[0.0, 0.0]], [[0.0, 2.0]], [[0.0, 0.0]]))
+    array([[0. , 0.2]])
     """
     axes, forward, backward = _compiled(_with_values(_platform(machine), parameters or {}))
     angles, rates, accelerations, times = _motion(motion).arrays(axes)
