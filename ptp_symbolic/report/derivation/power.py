@@ -162,8 +162,7 @@ def _modes(
 ) -> dict[sp.Symbol, FloatArray]:
     """The modes [n] of a switch at `points`: on beyond its threshold while it is driven there."""
     deviation, threshold, drive = (
-        np.broadcast_to(evaluated(sp.sympify(e, strict=True), points, given), SAMPLES)
-        for e in _conditions(switch)
+        np.broadcast_to(evaluated(e, points, given), SAMPLES) for e in _conditions(switch)
     )
     beyond = np.where(np.abs(deviation) > threshold, np.sign(deviation), 0.0)
     return {
