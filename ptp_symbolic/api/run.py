@@ -31,9 +31,9 @@ MOST_LINES = 60  # events that a plot marks; more would hide the signals
 class Run(Displayed, Trajectory):
     """A run of `model`: states, outputs and inputs at the times `t` [k] in s, events and energies.
 
-    `run[name]` is a state, an output, an input or an energy [k] in its SI unit (`run.units`); an
-    output of the name of a state is what the sensor shows. `x` [k, n] has the states in the order
-    of `state_names`. Runs pickle.
+    `run[name]` is a state, an output, an input or an energy [k] in its SI unit (`run.units`). Where
+    an output has the name of a state, what its sensor shows is `run.outputs[name]`. `x` [k, n] has
+    the states in the order of `state_names`. Runs pickle.
 
     >>> import ptp_symbolic as ptp
     >>> run = ptp.load("ideal").simulate(0.5, tau_pan=0.1)
@@ -104,14 +104,13 @@ class Run(Displayed, Trajectory):
 
     def __getitem__(self, name: str) -> FloatArray:
         """The signal `name` [k] in SI. Raises KeyError, which lists the names, for another."""
-        whole = self.state_names == self.model.state_names
-        if whole and name in self.model.output_names:
-            return self.outputs[name]
         for signals in (self.states, self.energy):
             if name in signals:
                 return signals[name]
         if name in self.model.input_names:
             return self.inputs[name]
+        if name in self._names():
+            return self.outputs[name]
         raise KeyError(str(unknown("signal", name, self._names())))
 
     def __getstate__(self) -> dict[str, Any]:

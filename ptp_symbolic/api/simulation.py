@@ -161,9 +161,9 @@ def _times(machine: Machine, times: Times, inputs: Inputs | None) -> FloatArray:
 
 def _sorted(machine: Machine, values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, float]]:
     """The inputs among `values`, and the parameters in SI. Raises InputError for other names."""
-    options = tuple(n for n in signature(simulate).parameters if n not in ("model", "values"))
     for name in values:
         if name not in (*machine.input_names, *machine.parameter_names):
+            options = [n for n in signature(simulate).parameters if n not in ("model", "values")]
             known = (*machine.input_names, *machine.parameter_names, *options)
             raise unknown("input, parameter or argument", name, known)
     inputs = {n: v for n, v in values.items() if n in machine.input_names}

@@ -9,6 +9,7 @@ import pytest
 
 import ptp_symbolic as ptp
 from ptp_symbolic.platform import read_platform
+from tests.diagnose.spring_table import PLATFORM as TABLE
 
 SAMPLE = ptp.sample("tilted_base")
 PLATFORM = SAMPLE / "platform.toml"
@@ -143,3 +144,28 @@ def test_the_point_map_of_coulomb_and_viscous_friction_is_named(tmp_path: Path) 
         "friction.png",
         "friction.toml",
     ]
+
+
+def test_an_experiment_is_an_input_within_its_limits(tmp_path: Path) -> None:
+    source = tmp_path / "table.toml"
+    source.write_text(TABLE)
+    found = ptp.experiment(
+        source,
+        parameters=["b_pan"],
+        limits={"tau_pan": "300 mN m", "theta_pan": "-20..30 deg"},
+        duration=3.0,
+        period=0.01,
+        tries=60,
+        initial={"theta_pan": "5 deg"},
+    )
+    given = found.input["signals"]["tau_pan"]
+    assert -0.3 <= given["lowest"] < given["highest"] <= 0.3
+    assert found.input["initial"]["theta_pan"] == pytest.approx(0.0872664626)
+    assert "tau_pan" in repr(found)
+    folder = found.save(tmp_path / "next")
+    run = ptp.simulate(
+        source, inputs=folder / "input.csv", x0={"theta_pan": "5 deg"}, largest_step=0.01
+    )
+    assert np.degrees(run["theta_pan"]).max() <= 30.0
+    assert np.degrees(run["theta_pan"]).min() >= -20.0
+    assert run.t[-1] == pytest.approx(3.0)

@@ -262,3 +262,29 @@ def test_a_jitted_controller_is_called_the_same_way(ideal: ptp.Machine) -> None:
 def test_a_machine_that_samples_by_itself_takes_no_second_controller() -> None:
     with pytest.raises(ptp.InputError, match="has a sampled controller of its own"):
         ptp.simulate("thesis-pan-servo", 0.1, controller=lambda t, y: 0.0, period=1e-3)
+
+
+def test_a_state_is_the_motion_and_an_output_what_its_sensor_shows() -> None:
+    """A sensor of first order lags behind a sine by atan(w T) and shows 1 / sqrt(1 + w^2 T^2)."""
+    from ptp_symbolic.platform import EffectDeclaration, Platform
+
+    effects = tuple(
+        EffectDeclaration(name, None if name == "rigid_bodies" else "pan", None)
+        for name in ("rigid_bodies", "viscous_friction", "measurement_lag")
+    )
+    machine = ptp.load(Platform("lagging", "Lagging sensor", ("pan",), 9.81, effects, (), ()))
+    (lag,) = [p.name for p in machine.parameters if p.unit == "s"]
+    rate, size, lasting = 8.0, 0.3, 3.0
+    torque = lambda t: -J * rate**2 * size * math.sin(rate * t)  # noqa: E731
+    run = machine.simulate(
+        lasting,
+        tau_pan=torque,
+        x0={"omega_pan": rate * size},
+        **{"J_pan": J, "b_pan": 0.0, lag: 0.05},
+    )
+    late = run.t > 1.0
+    phase, gain = math.atan(rate * 0.05), 1.0 / math.hypot(1.0, rate * 0.05)
+    t = run.t[late]
+    assert run["theta_pan"][late] == pytest.approx(size * np.sin(rate * t), abs=1e-6)
+    shown = gain * size * np.sin(rate * t - phase)
+    assert run.outputs["theta_pan"][late] == pytest.approx(shown, abs=1e-6)

@@ -29,7 +29,7 @@ def test_import_leaves_sympy_alone(tmp_path: Path) -> None:
 
 
 def test_import_is_free_of_what_takes_time(tmp_path: Path) -> None:
-    """Numba and SymPy come with the first name that needs them; a committed model needs no SymPy."""
+    """Numba comes with the first name that needs it; a committed model needs no SymPy."""
     program = (
         "import sys, ptp_symbolic as ptp; heavy = {'sympy', 'numba', 'matplotlib'};"
         "print(sorted(heavy & set(sys.modules)));"
