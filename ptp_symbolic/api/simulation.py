@@ -1,5 +1,7 @@
 """Simulation and sensitivities, of whatever names a machine."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from inspect import signature
 from typing import Any
@@ -26,7 +28,7 @@ STATES = "states"  # as `feedback`: all of them
 
 def simulate(
     model: Source,
-    times: Times = None,
+    times: float | ArrayLike | None = None,
     inputs: Inputs | None = None,
     parameters: Values | None = None,
     initial: Values | None = None,
@@ -106,7 +108,7 @@ def simulate(
 
 def sensitivity(
     model: Source,
-    times: Times,
+    times: float | ArrayLike | None,
     inputs: Inputs | None = None,
     parameters: Values | None = None,
     initial: Values | None = None,

@@ -76,5 +76,5 @@ def _named(
 ) -> dict[str, float]:
     for name in given:
         if name not in names:
-            raise unknown(what.lower(), name, names)
+            raise unknown(what.lower().split()[-1], name, names)
     return {n: quantity(v, model.units[n], f"{what} '{n}'") for n, v in given.items()}
