@@ -3,24 +3,44 @@
 from __future__ import annotations
 
 import importlib
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from ptp_symbolic.numeric.runtime.model import Model
-    from ptp_symbolic.numeric.sensitivities.forward import sensitivity
-    from ptp_symbolic.numeric.simulation.run import simulate
+from typing import Any
 
 __version__ = "0.1.0"
-__all__ = ["__version__", "inverse_dynamics", "load", "sensitivity", "simulate"]
 
-# Imported when they are first asked for: importing the package stays free of SymPy and numba. Some
-# of them stand above rooms that import this file, so that not even a type checker may follow them.
+# Imported when they are first asked for: importing the package stays free of SymPy and numba. The
+# types are in `__init__.pyi`: they stand above rooms that import this file.
 _HOMES = {
+    "InputError": "ptp_symbolic.errors",
+    "SimulationError": "ptp_symbolic.numeric.simulation.run",
+    "Platform": "ptp_symbolic.platform",
+    "read_platform": "ptp_symbolic.platform",
+    "Model": "ptp_symbolic.numeric.runtime.model",
+    "Machine": "ptp_symbolic.api.machine",
+    "Jacobian": "ptp_symbolic.api.machine",
+    "load": "ptp_symbolic.api.machine",
+    "Linearization": "ptp_symbolic.api.linearization",
+    "Run": "ptp_symbolic.api.run",
+    "Event": "ptp_symbolic.numeric.simulation.events.names",
+    "simulate": "ptp_symbolic.api.simulation",
+    "sensitivity": "ptp_symbolic.api.simulation",
+    "Sensitivities": "ptp_symbolic.numeric.sensitivities.forward",
     "inverse_dynamics": "ptp_symbolic.models.inverse_dynamics",
-    "sensitivity": "ptp_symbolic.numeric.sensitivities.forward",
-    "simulate": "ptp_symbolic.numeric.simulation.run",
+    "Log": "ptp_symbolic.api.logs",
+    "read_log": "ptp_symbolic.api.logs",
+    "sample": "ptp_symbolic.api.logs",
+    "Estimate": "ptp_symbolic.api.results",
+    "FitResult": "ptp_symbolic.api.results",
+    "fit": "ptp_symbolic.api.results",
+    "Diagnosis": "ptp_symbolic.api.results",
+    "diagnose": "ptp_symbolic.api.results",
+    "Experiment": "ptp_symbolic.api.results",
+    "experiment": "ptp_symbolic.api.results",
+    "FrictionMap": "ptp_symbolic.api.results",
+    "friction_map": "ptp_symbolic.api.results",
+    "Effect": "ptp_symbolic.symbolic.effect_interface.effect",
+    "check_effect": "ptp_symbolic.api.effect_laws",
 }
+__all__ = ["__version__", *_HOMES]
 
 
 def __getattr__(name: str) -> Any:
@@ -30,19 +50,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_HOMES})
-
-
-def load(source: str | Path) -> Model:
-    """Load a model by the name of a committed one, a packaged preset, or a platform file.
-
-    Raises InputError when there is no such model, or the platform cannot be used.
-    """
-    from ptp_symbolic.numeric.runtime.loader import load_model, model_names
-
-    if str(source) in model_names():
-        return load_model(str(source))
-    from ptp_symbolic.models.committed import declared_platform
-    from ptp_symbolic.models.emission import emit
-
-    return emit(declared_platform(source))
+    return sorted(__all__)

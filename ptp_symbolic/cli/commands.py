@@ -1,5 +1,6 @@
 """All commands in one group, and what becomes of what goes wrong in them."""
 
+import re
 import sys
 
 import click
@@ -47,10 +48,22 @@ def run(command: click.Command) -> None:
     except click.ClickException as wrong:
         _refuse(" ".join(wrong.format_message().split()))
     except InputError as wrong:
-        _refuse(str(wrong))
+        _refuse(in_options(str(wrong), command))
     except OSError as wrong:
         _refuse(f"{wrong.filename or 'A file'}: {wrong.strerror or wrong}; check path and rights.")
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def in_options(message: str, command: click.Command) -> str:
+    """`message` with every `argument` of a Python function as the option of `command`."""
+    own = command.commands.values() if isinstance(command, click.Group) else (command,)
+    options = {
+        str(p.name): max(p.opts, key=len)
+        for each in own
+        for p in each.params
+        if isinstance(p, click.Option)
+    }
+    return re.sub(r"`(\w+)`", lambda found: options.get(found[1], found[0]), message)
 
 
 def _refuse(message: str) -> None:

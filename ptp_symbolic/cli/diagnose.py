@@ -42,9 +42,7 @@ def repeated(args: Sequence[str], options: Collection[str]) -> list[str]:
 @click.option("--train", multiple=True, required=True, help="Logs or folders to fit.")
 @click.option("--validate", multiple=True, required=True, help="Logs never fitted, to judge.")
 @click.option("--out", type=Path, required=True, help="Folder for the results.")
-@click.option(
-    "--black-box", "rivals", is_flag=True, help="Compare with models that know no physics."
-)
+@click.option("--black-box", is_flag=True, help="Compare with models that know no physics.")
 @click.option(
     "--time-limit",
     type=float,
@@ -56,7 +54,7 @@ def diagnose(
     train: tuple[str, ...],
     validate: tuple[str, ...],
     out: Path,
-    rivals: bool,
+    black_box: bool,
     time_limit: float | None,
     as_json: bool,
 ) -> None:
@@ -68,11 +66,11 @@ def diagnose(
     platform = declared_platform(source)
     check_writable(out)
     words = ["diagnose", "--platform", source, "--train", *train, "--validate", *validate]
-    words += ["--black-box"] * rivals
+    words += ["--black-box"] * black_box
     words += [] if time_limit is None else ["--time-limit", f"{time_limit:g}"]
     command = shlex.join(["ptp-symbolic", *words, "--out", str(out)])
     with progress_line() as say:
-        found = diagnose_platform(platform, train, validate, say, command, rivals, time_limit)
+        found = diagnose_platform(platform, train, validate, say, command, black_box, time_limit)
     write_files_atomically(out, found.files)
     note_defaults(platform)
     if as_json:

@@ -18,10 +18,11 @@ from ptp_symbolic.errors import InputError
 @click.option("--platform", "source", required=True, help="Platform TOML or packaged name.")
 @click.option("--diagnosis", type=Path, help="Folder of a diagnosis that ended with a group.")
 @click.option("--between", multiple=True, help="Effects to tell apart, such as cogging@pan.")
-@click.option("--parameter", multiple=True, help="Free parameters to know better.")
+@click.option("--parameter", "parameters", multiple=True, help="Free parameters to know better.")
 @click.option("--train", multiple=True, help="Logs or folders so far.")
 @click.option(
     "--limit",
+    "limits",
     multiple=True,
     help="Of an input, state or output: NAME=HIGH or NAME=LOW..HIGH with a unit, such as"
     " 'u_pan=12 V' or theta_pan=-90..90deg.",
@@ -37,9 +38,9 @@ def experiment(
     source: str,
     diagnosis: Path | None,
     between: tuple[str, ...],
-    parameter: tuple[str, ...],
+    parameters: tuple[str, ...],
     train: tuple[str, ...],
-    limit: tuple[str, ...],
+    limits: tuple[str, ...],
     duration: float,
     period: float | None,
     initial: tuple[str, ...],
@@ -63,14 +64,14 @@ def experiment(
     known: Mapping[str, float] = {}
     if diagnosis is not None:
         group, known = group_of(diagnosis, platform)
-        if not (between or parameter or group):
+        if not (between or parameters or group):
             raise InputError(
                 f"{diagnosis}: this diagnosis leaves no group; say by --between or --parameter what"
                 " the experiment is for."
             )
-        between = between or (() if parameter else group)
+        between = between or (() if parameters else group)
     states = initial_states(load(source), initial) if initial else {}
-    request = Request(between, parameter, limit, duration, period, states, known, tries, seed)
+    request = Request(between, parameters, limits, duration, period, states, known, tries, seed)
     with progress_line() as say:
         found = design_experiment(platform, request, train, say)
     write_files_atomically(out, found.files)

@@ -1,6 +1,5 @@
 """`ptp-symbolic friction-map`: the law of steady friction that points of rate and torque show."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -40,33 +39,28 @@ def friction_map(
     A point at rate 0 is a breakaway torque. The torque drives the joint: it has the sign of the
     rate. Intervals are profile likelihoods for normal scatter.
     """
-    from ptp_symbolic.atomic_files import check_writable, write_files_atomically
-    from ptp_symbolic.errors import InputError
-    from ptp_symbolic.numeric.friction_map.fragment import platform_fragment
-    from ptp_symbolic.numeric.friction_map.points import Columns, read_points
-    from ptp_symbolic.numeric.friction_map.summary import friction_map as fit_map
-    from ptp_symbolic.report.friction_map import friction_map_picture
+    from ptp_symbolic.api import results
+    from ptp_symbolic.atomic_files import check_writable
 
-    if not 0.5 <= confidence < 1.0:
-        raise InputError(f"--confidence {confidence:g}: give at least 0.5 and less than 1.")
-    read = read_points(points, Columns(rate, torque, spread, nominal))
-    if source is not None:
-        _check_axis(source, axis, points, read.units.rate)
     if out is not None:
         check_writable(out)
-    summary = fit_map(read, axis, confidence)
-    text = json.dumps(summary, indent=2) + "\n"
+    found = results.friction_map(
+        points,
+        rate=rate,
+        torque=torque,
+        spread=spread,
+        nominal=nominal,
+        axis=axis,
+        confidence=confidence,
+    )
+    if source is not None:
+        _check_axis(source, axis, points, found.summary["units"]["rate"])
     if out is not None:
-        files: dict[str, str | bytes] = {
-            "friction.toml": platform_fragment(summary),
-            "friction.png": friction_map_picture(summary),
-            "friction.json": text,
-        }
-        write_files_atomically(out, files)
+        found.save(out)
     if as_json:
-        click.echo(text, nl=False)
+        click.echo(found.output.files["friction.json"], nl=False)
     else:
-        _print(summary)
+        _print(found.summary)
 
 
 def _check_axis(source: str, axis: str, points: Path, rate: str) -> None:

@@ -71,13 +71,12 @@ def simulate(
     out: Path,
 ) -> None:
     """Simulate a platform; writes trajectory.csv, which is a log too, and events.csv."""
-    from ptp_symbolic import load
+    from ptp_symbolic.api.machine import load
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.cli.tables import table_text, trajectory_columns
     from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.models.declared import refuse_unknown_signals
     from ptp_symbolic.numeric.simulation.output_times import output_times
-    from ptp_symbolic.numeric.simulation.run import simulate as run
 
     if step is not None and method != FIXED_STEP:
         raise InputError(
@@ -87,15 +86,14 @@ def simulate(
     platform, model = declared_platform(source), load(source)
     refuse_unknown_signals(platform, model)
     signals, end = _signals(platform, model, inputs, duration)
-    found = run(
-        model,
+    found = model.simulate(
         output_times(end, every),
-        signals,
-        initial=initial_states(model, initial),
+        inputs=signals,
+        x0=initial_states(model, initial),
         method=method,
         step=1e-4 if step is None else step,
     )
-    columns = trajectory_columns(platform, model, found, signals)
+    columns = trajectory_columns(platform, found)
     events = [(e.time, e.element, e.mode) for e in found.events]
     files: dict[str, str | bytes] = {
         "trajectory.csv": table_text(list(columns), zip(*columns.values(), strict=True)),
@@ -126,11 +124,11 @@ def sensitivity(
     by_initial: tuple[str, ...],
 ) -> None:
     """Derivatives of states by parameters and initial states; writes sensitivity.csv."""
-    from ptp_symbolic import load
+    from ptp_symbolic.api.machine import load
+    from ptp_symbolic.api.simulation import sensitivity as run
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.cli.tables import sensitivity_headings, table_text
     from ptp_symbolic.models.committed import declared_platform
-    from ptp_symbolic.numeric.sensitivities.forward import sensitivity as run
     from ptp_symbolic.numeric.simulation.output_times import output_times
 
     check_writable(out)
@@ -139,8 +137,8 @@ def sensitivity(
     found = run(
         model,
         output_times(end, every),
-        signals,
-        initial=initial_states(model, initial),
+        inputs=signals,
+        x0=initial_states(model, initial),
         by_parameters=by or None,
         by_initial=by_initial,
     )

@@ -11,18 +11,11 @@ from pathlib import Path
 from ptp_symbolic.atomic_files import write_text_if_changed
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.emission import module_of
-from ptp_symbolic.numeric.runtime.loader import generated_folder
+from ptp_symbolic.numeric.runtime.loader import COMMITTED, generated_folder
 from ptp_symbolic.platform import Platform, platform_file, read_platform
 from ptp_symbolic.symbolic.codegen.module import sealed
 from ptp_symbolic.symbolic.derivation.placement import refuse_undeclared
 
-COMMITTED = {
-    "ideal": "thesis-ideal",
-    "payload": "thesis-payload",
-    "pan_drive": "thesis-pan-drive",
-    "tilt_drive": "thesis-tilt-drive",
-    "full": "thesis-full",
-}
 LINE_LENGTH = 100
 # Packages that emitted modules and those who call them import, installed here or not.
 IMPORTED = (

@@ -22,7 +22,8 @@ def emit(platform: Platform) -> Model:
     equations = _possible(platform)
     path = emitted(equations, parameters_of(place_effects(platform)))
     own = {p.name: (p.default, p.lower, p.upper) for p in equations.parameters}
-    return replace(load_module(path, path.stem), declared=(platform.name, platform.title, own))
+    declared = (platform.name, platform.title, own)
+    return replace(load_module(path, path.stem), declared=declared, platform=platform)
 
 
 def module_of(platform: Platform) -> str:

@@ -1,7 +1,8 @@
 """Inverse dynamics: the torques on the joints that a prescribed motion takes."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -9,11 +10,10 @@ import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.models.committed import COMMITTED, declared_platform
+from ptp_symbolic.models.committed import declared_platform
 from ptp_symbolic.models.variants import torque_driven
-from ptp_symbolic.numeric.runtime.loader import load_model
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.platform import ParameterDeclaration, Platform, read_platform
+from ptp_symbolic.platform import ParameterDeclaration, Platform
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
@@ -22,6 +22,7 @@ from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.symbols import real
 
 FloatArray = NDArray[np.float64]
+Torques = Callable[..., Sequence[FloatArray]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,12 +77,28 @@ def inverse_dynamics(
     Raises InputError for a motion or parameters that do not fit.
     Source: Murray, Li and Sastry, A Mathematical Introduction to Robotic Manipulation, 1994,
     Eq. 4.24.
+
+    >>> import ptp_symbolic as ptp
+    >>> ptp.inverse_dynamics("ideal", ([[0.0, 0.0]], [[0.0, 2.0]], [[0.0, 0.0]]))
+    array([[0. , 0.2]])
     """
-    platform = _with_values(_platform(machine), parameters or {})
+    axes, forward, backward = _compiled(_with_values(_platform(machine), parameters or {}))
+    angles, rates, accelerations, times = _motion(motion).arrays(axes)
+    directions = np.where(rates != 0.0, np.sign(rates), np.sign(accelerations))
+    columns = (*angles.T, *rates.T, *accelerations.T, *directions.T, times)
+    found = []
+    for plus, minus in zip(forward(*columns), backward(*columns), strict=True):
+        found.append(np.broadcast_to(np.where(plus >= 0.0, plus, minus), times.shape))
+    return np.column_stack(found)
+
+
+@lru_cache(maxsize=16)
+def _compiled(platform: Platform) -> tuple[tuple[str, ...], Torques, Torques]:
+    """The axes of `platform`, and the torques on its joints where they push forwards, and
+    backwards; derived once.
+    """
     equations = assemble(torque_driven(platform))
     refuse_impossible(equations, platform)
-    angles, rates, accelerations, times = _motion(motion).arrays(equations.axes)
-    directions = np.where(rates != 0.0, np.sign(rates), np.sign(accelerations))
     wanted = [real(f"alpha_{axis}") for axis in equations.axes]
     sliding = [slide(axis) for axis in equations.axes]
     arguments = [*equations.coordinates, *equations.rates, *wanted, *sliding, kinematics.TIME]
@@ -89,11 +106,7 @@ def inverse_dynamics(
         sp.lambdify(arguments, _torques(equations, wanted, sign), "numpy", cse=True)
         for sign in (1, -1)
     )
-    columns = (*angles.T, *rates.T, *accelerations.T, *directions.T, times)
-    found = []
-    for plus, minus in zip(forward(*columns), backward(*columns), strict=True):
-        found.append(np.broadcast_to(np.where(plus >= 0.0, plus, minus), times.shape))
-    return np.column_stack(found)
+    return equations.axes, forward, backward
 
 
 def _motion(given: Motion | tuple[ArrayLike, ...]) -> Motion:
@@ -134,10 +147,9 @@ def _platform(machine: Model | Platform | str | Path) -> Platform:
         return machine
     if not isinstance(machine, Model):
         return declared_platform(machine)
-    name = machine.name
-    if name not in COMMITTED or machine.module is not load_model(name).module:
-        raise InputError(f"Model '{name}' is not a committed one; give its platform instead.")
-    return read_platform(COMMITTED[name])
+    if machine.platform is None:
+        raise InputError(f"Model '{machine.name}' does not know its platform; give that instead.")
+    return machine.platform
 
 
 def _with_values(platform: Platform, values: Mapping[str, float]) -> Platform:

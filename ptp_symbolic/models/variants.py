@@ -9,7 +9,7 @@ from ptp_symbolic.symbolic.derivation.placement import (
     available_quantities,
     place_effects,
 )
-from ptp_symbolic.symbolic.effects import EFFECTS
+from ptp_symbolic.symbolic.effects import catalogue
 
 
 def candidate_effects(platform: Platform) -> tuple[EffectDeclaration, ...]:
@@ -17,14 +17,14 @@ def candidate_effects(platform: Platform) -> tuple[EffectDeclaration, ...]:
     which may itself be one of them.
     """
     declared = {(effect.id, place.axis) for effect, place in place_effects(platform)}
-    order = {effect.id: number for number, effect in enumerate(EFFECTS)}
+    order = {effect.id: number for number, effect in enumerate(catalogue())}
     found: list[EffectDeclaration] = []
     while True:
         extended = replace(platform, effects=(*platform.effects, *found))
         available = available_quantities(place_effects(extended))
         added = [
             EffectDeclaration(effect.id, axis, None)
-            for effect in EFFECTS
+            for effect in catalogue()
             for axis in (platform.axes if effect.on_axis else (None,))
             if effect.searched
             and not (platform.linear_axes and effect.instead_on_linear)

@@ -39,6 +39,10 @@ def read_platform(source: str | Path) -> Platform:
     Numbers are converted to SI and unit texts replaced by their SI equivalents. Whether the effects
     and parameters exist is not known here. Raises InputError (one line) for a file that is missing,
     unreadable, not TOML, or says something that is not allowed.
+
+    >>> import ptp_symbolic as ptp
+    >>> ptp.read_platform("thesis-payload").axes
+    ('pan', 'tilt')
     """
     path = platform_file(source)
     where = str(path)

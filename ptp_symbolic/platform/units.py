@@ -77,6 +77,7 @@ _BASE_SYMBOLS = {
 # Only integer exponents and no bare numbers, so that nothing in a file can make pint compute.
 _FACTOR = r"[A-Za-zµμΩΩ°%][A-Za-z_]*+(?:\^-?[1-9])?"
 _GRAMMAR = re.compile(rf"(?:1(?=/)|\(|{_FACTOR})(?:[ /()]|{_FACTOR})*+")
+_QUANTITY = re.compile(r"([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.ASCII)
 _AMBIGUOUS = re.compile(r"/ ?[^ /()]+ [^ /)]")
 
 
@@ -117,6 +118,33 @@ def compatible(unit: str, other: str) -> bool:
     if {"Hz", "rad"} <= set(re.findall("Hz|rad", first + " " + second)):
         return False
     return _dimension(first) == _dimension(second)
+
+
+def quantity(given: float | str, unit: str, what: str) -> float:
+    """Return `given`, a number in the SI `unit` or a text with a unit such as "30 deg", in `unit`.
+
+    `what` begins the message. Raises InputError for what is neither, is not finite, or has a unit
+    that does not fit.
+    """
+    text = f"{given!r} {unit}" if isinstance(given, int | float) else repr(given)
+    number, own = given, unit
+    if isinstance(given, str):
+        found = _QUANTITY.fullmatch(given.strip())
+        if found is None:
+            raise InputError(f"{what} = {text}; write a number, or a number and a unit ({unit}).")
+        number, own = float(found[1]), found[2] or unit
+    try:
+        value = float(number)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"{what} is of type {type(given).__name__}; give a number in {unit}, or a text with a"
+            " unit."
+        ) from error
+    if not math.isfinite(value):
+        raise InputError(f"{what} = {text}; give a finite number.")
+    if own != unit and not compatible(own, unit):
+        raise InputError(f"{what} = {text}: {own} does not fit its unit {unit}.")
+    return value if own == unit else value * to_si(own)[0]
 
 
 def _tidy(text: str) -> str:

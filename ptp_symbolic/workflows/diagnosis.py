@@ -37,7 +37,7 @@ def diagnose_platform(
     """
     limit = TIME_LIMIT if time_limit is None else time_limit
     if not limit > 0.0:
-        raise InputError(f"--time-limit: {limit:g} s is no time; give one above zero, such as 300.")
+        raise InputError(f"`time_limit`: {limit:g} s is no time; give one above zero, such as 300.")
     if rivals:
         require_library()
     fitted, judging = log_files(train), log_files(validate)
@@ -64,5 +64,5 @@ def diagnose_platform(
 def _cut_short(time_limit: float) -> str:
     return (
         f"The search came to its limit of {time_limit:g} s: what it had not tried by then may be"
-        " found with a higher --time-limit."
+        " found with more time."
     )

@@ -87,25 +87,25 @@ def design_experiment(
 def _refuse_odd(request: Request) -> None:
     if bool(request.between) == bool(request.parameters):
         raise InputError(
-            "Say what the experiment is for: either --between two effects or more (or --diagnosis),"
-            " or --parameter."
+            "Say what the experiment is for: either `between` two effects or more (or `diagnosis`),"
+            " or `parameters`."
         )
     if len(set(request.between)) == 1:
-        raise InputError(f"--between {request.between[0]}: give two effects or more to tell apart.")
+        raise InputError(f"`between` {request.between[0]}: give two effects or more to tell apart.")
     if request.tries < FEWEST_TRIES:
-        raise InputError(f"--tries {request.tries}: give at least {FEWEST_TRIES}.")
+        raise InputError(f"`tries` {request.tries}: give at least {FEWEST_TRIES}.")
 
 
 def _conditions(request: Request, rivals: Rivals) -> Conditions:
     period = rivals.period if request.period is None else request.period
     for option, value in (("duration", request.duration), ("period", period)):
         if not (np.isfinite(value) and value > 0.0):
-            raise InputError(f"--{option} {value:g} s: give a time above zero.")
+            raise InputError(f"`{option}` {value:g} s: give a time above zero.")
     count = round(request.duration / period) + 1
     if not FEWEST_SAMPLES <= count <= MOST_SAMPLES:
         raise InputError(
-            f"--duration {request.duration:g} s has {count} samples of {period:g} s; give"
-            f" {FEWEST_SAMPLES} to {MOST_SAMPLES} by --duration or --period."
+            f"`duration` {request.duration:g} s has {count} samples of {period:g} s; give"
+            f" {FEWEST_SAMPLES} to {MOST_SAMPLES} by `duration` or `period`."
         )
     t = np.linspace(0.0, (count - 1) * period, count)
     limits = read_limits(request.limits, rivals.contenders[0].model)
@@ -136,7 +136,7 @@ def _found(
     if not np.isfinite(best[0].worth):
         raise InputError(
             f"None of {request.tries} inputs keeps to the limits and shows anything; widen them,"
-            " change --initial, or give a longer --duration."
+            " change `initial`, or give a longer `duration`."
         )
     if not request.between:
         return best[0]

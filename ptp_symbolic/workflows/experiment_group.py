@@ -9,21 +9,25 @@ from ptp_symbolic.platform import Platform, effect_key
 from ptp_symbolic.workflows.result import read_diagnosis
 
 
-def group_of(folder: Path, platform: Platform) -> tuple[tuple[str, ...], dict[str, float]]:
+def group_of(
+    diagnosis: Path | Mapping[str, Any], platform: Platform
+) -> tuple[tuple[str, ...], dict[str, float]]:
     """The named set and those that may stand in its place, as keys joined by ``+``, and fitted
-    values of parameters in SI; no set where the diagnosis in `folder` leaves nothing open.
+    values of parameters in SI; no set where the `diagnosis`, a summary or its folder, leaves
+    nothing open.
 
     Raises InputError for a folder without a diagnosis of `platform`, and for the platform that it
     has written in place of the one that was diagnosed.
     """
-    fitted, named, ranking, file = read_diagnosis(folder, platform, _open_parts)
+    fitted, named, ranking, file = read_diagnosis(diagnosis, platform, _open_parts)
     declared = {effect_key(e.effect, e.axis) for e in platform.effects}
     already = [key for key in named if key in declared]
     if already:
+        where = f" in {diagnosis}" if isinstance(diagnosis, Path) else ""
         diagnosed = f", {file}" if file else ""
         raise InputError(
             f"{platform.source or platform.name}: declares {' and '.join(already)} already, which"
-            f" the diagnosis in {folder} has added; give the platform that was diagnosed"
+            f" the diagnosis{where} has added; give the platform that was diagnosed"
             f"{diagnosed}, in place of the extended one."
         )
     sets = [tuple(named)]

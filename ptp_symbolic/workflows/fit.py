@@ -7,6 +7,7 @@ from typing import Any
 
 from ptp_symbolic.models import variants
 from ptp_symbolic.numeric.data import log_files, read_logs
+from ptp_symbolic.numeric.diagnose.curves import curves_of
 from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.errors import error_of
 from ptp_symbolic.numeric.diagnose.floor import floor_of
@@ -85,7 +86,9 @@ def fit_platform(
         "provenance": sources,
     }
     files = {"platform.toml": platform_text(fitted), "fit.json": json_text(summary)}
-    return Output(summary, files)
+    first = trial if begun.fit.failed else begun
+    curves = {} if trial.fit.failed else curves_of({"fit": (first.fit, trial.fit)})
+    return Output(summary, files, fitted, curves)
 
 
 def _what_to_check(error: Mapping[str, Any]) -> tuple[str, ...]:

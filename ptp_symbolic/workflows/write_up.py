@@ -132,7 +132,7 @@ def written_up(
     files.update({f"curves/{name}": text for name, text in write_curves_csv(curves).items()})
     files |= changes.result()  # pdflatex runs beside the drawing
     files["diagnosis.json"] = json_text(summary)
-    return Output(summary, files)
+    return Output(summary, files, extended, curves)
 
 
 def _ranking(choice: Choice) -> list[dict[str, Any]]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from ptp_symbolic.cli import commands, in_options
 from tests.cli.conftest import Call, Done
 
 SAMPLE = Path(__file__).parents[2] / "ptp_symbolic" / "samples" / "tilted_base"
@@ -141,3 +142,9 @@ def test_output_that_cannot_be_written(tmp_path: Path) -> None:
 def test_unknown_command_and_missing_option() -> None:
     assert "No such command" in refused(apart, "diagnoze")
     assert "--platform" in refused(apart, "diagnose")
+
+
+def test_arguments_of_functions_become_options_of_commands() -> None:
+    said = in_options("`time_limit` or `black_box`, `parameters` but `nothing`", commands)
+    assert said == "--time-limit or --black-box, --parameter but `nothing`"
+    assert in_options("`time_limit`", commands.commands["fit"]) == "`time_limit`"

@@ -104,7 +104,7 @@ def test_without_a_platform_of_signals_inputs_have_the_names_of_the_model(
         (("--every", "0"), "Output every 0 s; give a positive number of seconds"),
         (("--initial", "theta_pan=high"), "give theta_pan=VALUE, a number in rad."),
         (("--initial", "omega_pan"), "give omega_pan=VALUE, a number in rad/s."),
-        (("--initial", "omega_pan=nan"), "State 'omega_pan' starts at nan rad/s; give a finite"),
+        (("--initial", "omega_pan=nan"), "Initial state 'omega_pan' = nan rad/s; give a finite"),
         (("--initial", "teta_pan=1"), "Unknown state 'teta_pan': did you mean 'theta_pan'?"),
         (("--input", "tau_pam=step:1@0"), "Unknown input 'tau_pam': did you mean 'tau_pan'?"),
         (("--input", "tau_pan=step:nan@0.5"), "nan is no finite number; use one of constant:3"),

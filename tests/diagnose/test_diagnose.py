@@ -43,8 +43,8 @@ def test_a_search_that_is_cut_short_says_so(sample) -> None:
     ).summary
     assert [a["effect"] for a in short["added"]] == ["base_tilt"]
     (remark,) = [text for text in short["remarks"] if "limit of 0.001 s" in text]
-    assert "--time-limit" in remark
-    assert not any("--time-limit" in text for text in sample.summary["remarks"])
+    assert "with more time" in remark
+    assert not any("with more time" in text for text in sample.summary["remarks"])
 
 
 def test_rivals_explain_the_torque_of_a_leaning_base_and_predict_worse_in_free_motion(

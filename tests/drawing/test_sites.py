@@ -87,7 +87,7 @@ def test_dry_friction_without_a_drive_sits_at_the_joint() -> None:
 
 def test_an_effect_never_seen_before_has_a_site(monkeypatch: pytest.MonkeyPatch) -> None:
     wind = replace(QUADRATIC_DRAG, id="wind")
-    monkeypatch.setattr(placement, "EFFECTS", (*EFFECTS, wind))
+    monkeypatch.setattr(placement, "catalogue", lambda: (*EFFECTS, wind))
     platform = read_platform("thesis-payload")
     added = EffectDeclaration("wind", "tilt", None)
     platform = replace(platform, effects=(*platform.effects, added))

@@ -1,11 +1,11 @@
-"""Emitted modules run as plain Python: what a formula says is seen without compiling it."""
+"""Emitted text run as plain Python, before it is a module."""
 
 import re
-from dataclasses import replace
-from pathlib import Path
 from types import ModuleType
 
-from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.runtime.plain import as_python
+
+__all__ = ["as_python", "module_as_python"]
 
 
 def module_as_python(text: str) -> ModuleType:
@@ -13,9 +13,3 @@ def module_as_python(text: str) -> ModuleType:
     module = ModuleType("plain")
     exec(re.sub(r"^@njit.*?\n|^from numba.*?\n", "", text, flags=re.M), module.__dict__)
     return module
-
-
-def as_python(model: Model) -> Model:
-    """`model` with functions that are not compiled."""
-    text = Path(str(model.module.__file__)).read_text(encoding="utf-8")
-    return replace(model, module=module_as_python(text))

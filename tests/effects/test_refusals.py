@@ -27,7 +27,7 @@ def effect(
 
 def machine(monkeypatch: pytest.MonkeyPatch, *own: Effect) -> Platform:
     """A pan axis with effects that are added to the catalogue."""
-    monkeypatch.setattr(placement, "EFFECTS", (*EFFECTS, *own))
+    monkeypatch.setattr(placement, "catalogue", lambda: (*EFFECTS, *own))
     declared = [EffectDeclaration("rigid_bodies", None, None)]
     declared += [EffectDeclaration(e.id, "pan", None) for e in own]
     return Platform("own", "Own effects", ("pan",), 9.81, tuple(declared), (), ())

@@ -49,7 +49,7 @@ def test_a_torque_at_rest_has_the_direction_of_its_sign(tmp_path: Path) -> None:
         ("rate,torque [N m]", ROWS, Columns(), r"write 'rate \[rad/s\]'"),
         ("rate [mm],torque [N m]", ROWS, Columns(), "is in mm; give rad/s"),
         ("rate [rpm],torque [N]", ROWS, Columns(), "is in N; give N m"),
-        ("rate [rpm],torque [%]", ROWS, Columns(), "add --nominal"),
+        ("rate [rpm],torque [%]", ROWS, Columns(), "add `nominal`"),
         ("rate [rpm],torque [%]", ROWS, Columns(nominal="9.84"), "no nominal torque"),
         ("rate [rpm],torque [%]", ROWS, Columns(nominal="0 N m"), "no nominal torque"),
         ("rate [rpm],torque [%]", ROWS, Columns(nominal="1 fish"), "no nominal torque|not a unit"),

@@ -10,6 +10,7 @@ import ptp_symbolic
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission, variants
 from ptp_symbolic.models.inverse_dynamics import Motion
+from ptp_symbolic.numeric.runtime.loader import load_model
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, multisine
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from tests.independent import rigid_platform
@@ -200,9 +201,17 @@ def test_a_motor_on_a_prescribed_axis_is_refused() -> None:
 
 
 def test_a_platform_of_ones_own_with_the_name_of_a_committed_model_is_not_taken_for_it() -> None:
+    """At rest the payload of the committed model takes a torque, a balanced body none."""
     own = replace(read_platform("thesis-ideal"), name="payload")
-    with pytest.raises(InputError, match="'payload' is not a committed one; give its platform"):
-        ptp_symbolic.inverse_dynamics(emission.emit(own), (np.zeros((1, 2)),) * 3)
+    assert np.all(ptp_symbolic.inverse_dynamics(emission.emit(own), (np.zeros((1, 2)),) * 3) == 0.0)
+    assert np.any(ptp_symbolic.inverse_dynamics("payload", (np.zeros((1, 2)),) * 3) != 0.0)
+
+
+def test_a_model_that_does_not_know_its_platform_is_refused() -> None:
+    with pytest.raises(InputError, match="'ideal' does not know its platform; give that instead"):
+        ptp_symbolic.inverse_dynamics(
+            replace(load_model("ideal"), platform=None), (np.zeros((1, 2)),) * 3
+        )
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])

@@ -28,6 +28,17 @@ def test_import_leaves_sympy_alone(tmp_path: Path) -> None:
     assert ran.stdout == "[]\n", ran.stderr
 
 
+def test_import_is_free_of_what_takes_time(tmp_path: Path) -> None:
+    """Numba comes with the first name that needs it; a committed model needs no SymPy."""
+    program = (
+        "import sys, ptp_symbolic as ptp; heavy = {'sympy', 'numba', 'matplotlib'};"
+        "print(sorted(heavy & set(sys.modules)));"
+        "ptp.load('ideal').rhs([0.0] * 4); print(sorted((heavy - {'numba'}) & set(sys.modules)))"
+    )
+    ran = run_python(tmp_path, "-c", program)
+    assert ran.stdout == "[]\n[]\n", ran.stderr
+
+
 @pytest.mark.parametrize("room", NUMERIC_WING)
 def test_numeric_wing_works_where_sympy_is_missing(room: str, tmp_path: Path) -> None:
     program = f"import sys; sys.modules['sympy'] = None; import ptp_symbolic.numeric.{room}"

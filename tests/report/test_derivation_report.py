@@ -111,7 +111,7 @@ def test_an_effect_without_a_title_and_a_reference_has_its_section(
     nameless = tuple(
         replace(e, title="", reference="") if e.id == "viscous_friction" else e for e in EFFECTS
     )
-    monkeypatch.setattr(placement, "EFFECTS", nameless)
+    monkeypatch.setattr(placement, "catalogue", lambda: nameless)
     text = str(render_derivation(read_platform("thesis-ideal"))["derivation.tex"])
     own = text[text.index(r"\subsection{Viscous\_friction, pan axis}") :]
     assert r"\texttt{viscous\_friction}; it names no reference." in own

@@ -17,7 +17,7 @@ def test_an_interval_that_does_not_divide_the_duration_keeps_its_length() -> Non
 
 
 def test_too_many_samples_are_refused_with_an_interval_that_would_do() -> None:
-    with pytest.raises(InputError, match=r"1e\+12 samples, at most 5000000 .*\(--every 202\)"):
+    with pytest.raises(InputError, match=r"1e\+12 samples, at most 5000000 .*\(`every` 202\)"):
         output_times(1e9)
     assert len(output_times(1e9, 202.0)) < 5_000_000
 

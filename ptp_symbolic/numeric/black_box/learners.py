@@ -48,7 +48,7 @@ def require_library() -> None:
         import sklearn  # noqa: F401
     except ImportError as error:
         raise InputError(
-            "--black-box needs scikit-learn; run pip install 'ptp-symbolic[black-box]', or leave"
+            "`black_box` needs scikit-learn; run pip install 'ptp-symbolic[black-box]', or leave"
             " the option out."
         ) from error
 

@@ -33,7 +33,7 @@ def read_split_logs(
                 raise InputError(
                     f"{file}: holds {'the same run as' if whole else 'samples of'} {other}, which"
                     " is given to be fitted; a fit is judged by runs that it has never seen: give"
-                    " others to --validate."
+                    " others to `validate`."
                 )
     return fitted, judging
 

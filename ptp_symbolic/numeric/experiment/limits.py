@@ -43,7 +43,7 @@ def read_limits(texts: Sequence[str], model: Model) -> dict[str, Limit]:
         name, unit = missing[0], model.units[missing[0]]
         raise InputError(
             f"Input {name} has no limit; say how far it may go in {unit}, such as"
-            f" --limit '{name}=10 {unit}'."
+            f" `limits` '{name}=10 {unit}'."
         )
     return found
 

@@ -108,14 +108,14 @@ def refuse_rest_outside(machine: Contender, conditions: Conditions) -> None:
     if signals is None:
         raise InputError(
             f"The model {machine.name} does not simulate from where the experiment begins; change"
-            " --initial."
+            " `initial`."
         )
     worst, name = excess(conditions.limits, signals)
     if np.isinf(worst):
         limit, unit = conditions.limits[name], machine.model.units[name]
         raise InputError(
             f"The experiment begins with {name} = {signals[name][0]:.4g} {unit}, outside its limits"
-            f" {limit.lower:.4g} to {limit.upper:.4g} {unit}; change --initial or --limit."
+            f" {limit.lower:.4g} to {limit.upper:.4g} {unit}; change `initial` or `limits`."
         )
     if worst > 1.0:
         raise InputError(_moves_at_rest(machine, conditions, signals, name))

@@ -122,7 +122,7 @@ def _torque_factor(table: Table, place: int, units: Units, nominal: str | None) 
     text = percent[1] if percent else nominal
     if text is None:
         raise InputError(
-            f"{where} is in % of a {units.word} that nobody declares; add --nominal"
+            f"{where} is in % of a {units.word} that nobody declares; add `nominal`"
             f" '{units.nominal}', or write '{name} [% of {units.nominal}]'."
         )
     return 0.01 * _nominal(where, text, units)
@@ -177,7 +177,7 @@ def _check(path: Path, points: Points) -> None:
         line = int(np.argmin(points.spread)) + 2
         raise InputError(
             f"{path}:{line}: the standard deviation is {points.spread.min():g}"
-            f" {points.units.torque}; give a positive one in every row, or leave out --spread."
+            f" {points.units.torque}; give a positive one in every row, or leave out `spread`."
         )
     if points.torque @ points.rate < 0.0:
         raise InputError(

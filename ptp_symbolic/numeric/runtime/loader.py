@@ -4,14 +4,23 @@ import hashlib
 import importlib
 import importlib.util
 import sys
+from dataclasses import replace
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import CodeType, ModuleType
 
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.platform import read_platform
 
 TRAILER = "# END sha256 "
+COMMITTED = {
+    "ideal": "thesis-ideal",
+    "payload": "thesis-payload",
+    "pan_drive": "thesis-pan-drive",
+    "tilt_drive": "thesis-tilt-drive",
+    "full": "thesis-full",
+}
 
 
 def generated_folder() -> Path:
@@ -31,7 +40,9 @@ def load_model(name: str) -> Model:
     """
     if name not in model_names():
         raise unknown("model", name, model_names())
-    return load_module(generated_folder() / f"{name}.py", f"ptp_symbolic.generated.{name}")
+    found = load_module(generated_folder() / f"{name}.py", f"ptp_symbolic.generated.{name}")
+    preset = COMMITTED.get(name)
+    return found if preset is None else replace(found, platform=read_platform(preset))
 
 
 def load_module(path: Path, import_name: str) -> Model:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import ModuleType
 
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError, out_of_bounds, unknown
 from ptp_symbolic.numeric.runtime.element_layout import contact_count
-from ptp_symbolic.platform import effect_key
+from ptp_symbolic.platform import Platform, effect_key
 
 FloatArray = NDArray[np.float64]
 
@@ -69,11 +69,13 @@ class Model:
     `state_derivative(t, x, u, p, dx)` writes dx/dt in place; `rhs(t, x, u, p)` returns it. Arrays
     are float64 in the order of `state_names` [n], `input_names` [nu] and `parameter_names` [np],
     in the SI units of `units`. In models with friction or backlash the modes follow from the
-    state: resting friction holds as long as it can.
+    state: resting friction holds as long as it can. `platform` is the machine that they were
+    derived from, None where nobody said it.
     """
 
     module: ModuleType
     declared: tuple[str, str, Mapping[str, tuple[float, float, float]]] | None = None
+    platform: Platform | None = field(default=None, compare=False, repr=False)
 
     @cached_property
     def name(self) -> str:

@@ -53,7 +53,7 @@ class Solution:
 
     At the output times x [k, n], tangents s [k, n, ns] and ledger [k, 3] (stored, supplied,
     dissipated in J; no rows if not asked for); the first events [e, 3] (time in s, element, mode
-    entered) and the number of all, steps tried.
+    entered) and the number of all, steps tried; the modes at the start and at the end.
     """
 
     status: int
@@ -65,6 +65,8 @@ class Solution:
     events: FloatArray
     event_count: int
     steps: int
+    first_modes: FloatArray
+    last_modes: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -248,6 +250,7 @@ def _integrate(
     watch = new_watch(model, n, p)
     hybrid.evaluate_inputs(stops[0], 1, *inputs.arrays, cursor, u[0])
     module.initial_modes(stops[0], x, u[0], p, watch.m)
+    first_modes = watch.m.copy()
     refuse_start(model, x, u[0], p, watch)
     record = new_record(times, n, s.shape[1], len(times) if ledger else 0, event_room)
     sampled, stands_still = len(model.sampler_periods) > 0, held or not any(module.INPUT_ACTS)
@@ -287,6 +290,8 @@ def _integrate(
         record.events[: record.counts[EVENTS]],
         int(record.counts[EVENTS]),
         int(record.counts[STEPS]),
+        first_modes,
+        watch.m,
     )
 
 

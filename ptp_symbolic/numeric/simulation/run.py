@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.buffers import limited_states
 from ptp_symbolic.numeric.simulation.events.names import Event, named_events
+from ptp_symbolic.numeric.simulation.feedback import Commands, Feedback, integrate_with_feedback
 from ptp_symbolic.numeric.simulation.fixed_integration import (
     FixedSolution,
     integrate_in_fixed_steps,
@@ -58,7 +59,8 @@ class Trajectory:
     """States x [k, n] at times t [k] in s, the events between them, and the energy ledger in J.
 
     stored - stored[0] = supplied - dissipated along every trajectory, each [k], or [0] where no
-    ledger was asked for. `state_names` are those that were saved.
+    ledger was asked for. `state_names` are those that were saved; `commands` what a controller in
+    the loop returned, None without one.
     """
 
     t: FloatArray
@@ -69,9 +71,12 @@ class Trajectory:
     supplied: FloatArray
     dissipated: FloatArray
     steps: int
+    commands: Commands | None = None
 
     def __getitem__(self, name: str) -> FloatArray:
-        """State `name` [k]."""
+        """State `name` [k]. Raises KeyError for another name."""
+        if name not in self.state_names:
+            raise KeyError(str(unknown("state", name, self.state_names)))
         return self.x[:, self.state_names.index(name)]
 
 
@@ -89,8 +94,10 @@ def simulate(
     ledger: bool = True,
     save: Sequence[str] | None = None,
     most_steps: int = MOST_STEPS,
+    feedback: Feedback | None = None,
 ) -> Trajectory:
-    """Simulate `model` from 0 to a duration in s (output every ms) or at given `times` [k] in s.
+    """Simulate `model` from 0 to a duration in s or over a span (start, end) in s, with an output
+    every ms, or at given `times` [k] in s; under `feedback`, if any.
 
     Inputs are signals or profiles as text ("step:1@0.5"), zero where not given; `parameters` and
     `initial` states are in SI. rtol and atol bound the local error, atol in rad for angles (see
@@ -114,10 +121,19 @@ def simulate(
     t = output_times(times)
     x, p = start_of(model, initial or {}), checked_parameters(model, parameters or {})
     table = input_table(model, inputs or {}, p, float(t[-1]))
-    chosen, kept = chosen_method(model, method), _columns_of(model, save)
+    kept = _columns_of(model, save)
+    chosen = chosen_method(model, method, (*METHODS, FIXED_STEP) if feedback is None else METHODS)
     accuracy = checked_accuracy(model, rtol, atol, largest_step, most_steps)
 
+    commands = None
+
     def run(event_room: int) -> Solution | FixedSolution:
+        nonlocal commands
+        if feedback is not None:
+            found, commands = integrate_with_feedback(
+                model, chosen, p, x, table, feedback, t, accuracy, ledger
+            )
+            return found
         if chosen == FIXED_STEP:
             return integrate_in_fixed_steps(model, p, x, table, t, step, event_room)
         return integrate(
@@ -135,7 +151,7 @@ def simulate(
         )
 
     found = run(EVENT_ROOM)
-    if found.event_count > EVENT_ROOM:
+    if found.event_count > EVENT_ROOM and feedback is None:
         found = run(found.event_count)
     refuse_failure(model, p, found.status, found.reached, found.state)
     if isinstance(found, FixedSolution):
@@ -150,6 +166,7 @@ def simulate(
         energies[:, 1],
         energies[:, 2],
         found.steps,
+        commands,
     )
 
 
@@ -190,7 +207,7 @@ def input_table(
 
 
 def chosen_method(
-    model: Model, method: str | None, known: Sequence[str] = (*METHODS, FIXED_STEP)
+    model: Model, method: str | None, known: Iterable[str] = (*METHODS, FIXED_STEP)
 ) -> str:
     """`method`, or the one that suits `model` (None). Raises InputError for one not `known`."""
     if method is None:

@@ -18,7 +18,8 @@ from ptp_symbolic.report.latex_text import numbered
 from ptp_symbolic.symbolic.codegen.laws import Law
 from ptp_symbolic.symbolic.codegen.statements import by_name
 from ptp_symbolic.symbolic.derivation.equations import Equations, Ledger
-from ptp_symbolic.symbolic.effect_interface.place import slide
+from ptp_symbolic.symbolic.effect_interface.contribution import Switch
+from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 from ptp_symbolic.symbolic.symbols import real
 
 SAMPLES = 4000
@@ -139,11 +140,35 @@ def _sampled(net: sp.Expr, law: Law, given: Setting, equations: Equations) -> Fl
         if found is not None:
             return evaluated(net, found.points, given)
     random = np.random.default_rng(1)
+    switches = [s for s in own.switches if net.has(side(s.name)) or net.has(active(s.name))]
+    drawn = {*net.free_symbols}
+    for switch in switches:
+        drawn |= set().union(*(e.free_symbols for e in _conditions(switch)))
     points = {
         symbol: random.uniform(*_range(symbol, net, given, equations), SAMPLES)
-        for symbol in sorted(net.free_symbols - given.values.keys(), key=str)
+        for symbol in sorted(drawn - given.values.keys(), key=str)
     }
+    for switch in switches:
+        points |= _modes(switch, points, given)
     return evaluated(net, points, given) if points else np.zeros(1)
+
+
+def _conditions(switch: Switch) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    return switch.deviation, switch.threshold, switch.drive
+
+
+def _modes(
+    switch: Switch, points: dict[sp.Symbol, FloatArray], given: Setting
+) -> dict[sp.Symbol, FloatArray]:
+    """The modes [n] of a switch at `points`: on beyond its threshold while it is driven there."""
+    deviation, threshold, drive = (
+        np.broadcast_to(evaluated(e, points, given), SAMPLES) for e in _conditions(switch)
+    )
+    beyond = np.where(np.abs(deviation) > threshold, np.sign(deviation), 0.0)
+    return {
+        side(switch.name): beyond,
+        active(switch.name): np.where(beyond * drive > 0.0, 1.0, 0.0),
+    }
 
 
 def _range(

@@ -16,17 +16,17 @@ from ptp_symbolic.symbolic.derivation.contributions import TORQUES, machine_quan
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
-from ptp_symbolic.symbolic.effects import EFFECTS
+from ptp_symbolic.symbolic.effects import catalogue
 
 GRAVITY = Parameter("gravity", "m/s^2", STANDARD_GRAVITY, 0.0, 1e3, "gravitational acceleration")
 
 
 def find_effect(identifier: str) -> Effect:
     """Return the effect `identifier`; raises InputError with the list of choices."""
-    for effect in EFFECTS:
+    for effect in catalogue():
         if effect.id == identifier:
             return effect
-    raise unknown("effect", identifier, (effect.id for effect in EFFECTS))
+    raise unknown("effect", identifier, (effect.id for effect in catalogue()))
 
 
 def _of_kind(effect: Effect, kind: str | None) -> Effect:
@@ -58,7 +58,7 @@ def place_effects(platform: Platform) -> list[tuple[Effect, Place]]:
 
 
 def _placed(platform: Platform) -> list[tuple[Effect, Place]]:
-    order = [effect.id for effect in EFFECTS]
+    order = [effect.id for effect in catalogue()]
     found = [(_of_kind(find_effect(d.effect), d.kind), d) for d in platform.effects]
     found.sort(key=lambda pair: order.index(pair[0].id))
     shafts = frozenset(d.axis for e, d in found if e.splits_axis and d.axis is not None)
@@ -178,7 +178,7 @@ def effects_that_define(quantity: str, axes: tuple[str, ...], linear: bool = Fal
 
 def _everywhere(axes: tuple[str, ...], linear: bool) -> Iterator[tuple[Effect, Place]]:
     """Every effect of the catalogue at its places on a machine with these axes."""
-    for effect in EFFECTS:
+    for effect in catalogue():
         if not (linear and effect.instead_on_linear):
             for axis in axes if effect.on_axis else (None,):
                 yield effect, Place(axes, axis, None, frozenset(), linear)

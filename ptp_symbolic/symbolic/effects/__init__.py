@@ -1,5 +1,15 @@
-"""The catalogue of effects: one file each, listed here in the order of the catalogue."""
+"""The catalogue of effects: one file each, listed here in the order of the catalogue.
 
+Effects of other packages follow: those that they name as entry points of the group
+``ptp_symbolic.effects``, each an `Effect`.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from importlib.metadata import entry_points
+
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effects.actuator_lag import ACTUATOR_LAG
 from ptp_symbolic.symbolic.effects.axis_offset import AXIS_OFFSET
@@ -50,7 +60,7 @@ from ptp_symbolic.symbolic.effects.voltage_offset import VOLTAGE_OFFSET
 from ptp_symbolic.symbolic.effects.voltage_saturation import VOLTAGE_SATURATION
 from ptp_symbolic.symbolic.effects.winding_heating import WINDING_HEATING
 
-EFFECTS: tuple[Effect, ...] = (
+PACKAGED: tuple[Effect, ...] = (
     RIGID_BODIES,
     PAYLOAD,
     PAYLOAD_COM_OFFSET,
@@ -98,3 +108,47 @@ EFFECTS: tuple[Effect, ...] = (
     MEASUREMENT_LAG,
     ENCODER_QUANTIZATION,
 )
+
+GROUP = "ptp_symbolic.effects"
+
+
+def effects_of_others() -> tuple[Effect, ...]:
+    """The effects that installed packages name, by the names of their entry points.
+
+    Raises InputError for one that cannot be imported, is no effect, or has an id that is taken.
+    """
+    found: list[Effect] = []
+    for point in sorted(entry_points(group=GROUP), key=lambda p: p.name):
+        where = f"Effect '{point.name}' of the entry point {point.value}"
+        try:
+            effect = point.load()
+        except Exception as error:  # what another package raises when it is imported
+            raise InputError(f"{where} cannot be loaded: {error}; mend or uninstall it.") from error
+        if not isinstance(effect, Effect):
+            raise InputError(f"{where} is of type {type(effect).__name__}; it must be an Effect.")
+        if effect.id in {e.id for e in (*PACKAGED, *found)}:
+            raise InputError(f"{where} has the id '{effect.id}', which is taken; choose another.")
+        found.append(effect)
+    return tuple(found)
+
+
+EFFECTS: tuple[Effect, ...] = (*PACKAGED, *effects_of_others())
+
+_ON_TRIAL: ContextVar[tuple[Effect, ...]] = ContextVar("effects on trial", default=())
+
+
+def catalogue() -> tuple[Effect, ...]:
+    """All effects that a platform may name: those of the catalogue, and those on trial."""
+    own = _ON_TRIAL.get()
+    ids = {effect.id for effect in own}
+    return (*(effect for effect in EFFECTS if effect.id not in ids), *own) if own else EFFECTS
+
+
+@contextmanager
+def on_trial(effect: Effect) -> Iterator[None]:
+    """Let platforms name `effect` inside, in place of one of its id in the catalogue, if any."""
+    token = _ON_TRIAL.set(() if effect in EFFECTS else (effect,))
+    try:
+        yield
+    finally:
+        _ON_TRIAL.reset(token)

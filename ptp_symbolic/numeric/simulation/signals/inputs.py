@@ -5,7 +5,7 @@ values: `side` +1 asks for the one after it (signals are right-continuous), -1 f
 which is what an integration step that ends at the jump must see.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
@@ -203,6 +203,48 @@ def table(times: ArrayLike, values: ArrayLike, interpolation: str = "hold") -> I
         raise InputError(f"Table: interpolation {interpolation!r}; choose hold, linear or cubic.")
     end = at[-1] + (at[-1] - at[-2] if len(at) > 1 else 1.0)
     return InputSignal(np.append(at, end), coefficients)
+
+
+NODES = np.array([0.0, 1.0, 2.0, 3.0]) / 3.0  # of the cubic on a piece
+BETWEEN = np.array([1.0, 5.0]) / 6.0  # where it is compared with the function
+AGREEMENT = 1e-10  # of cubic and function, relative to the largest value that was met
+FIRST_PIECES = 64
+SHORTEST_PIECE = 1e-9  # of the run: a jump is as short
+
+
+def function(of_time: Callable[[float], float], t0: float, t1: float) -> InputSignal:
+    """The function `of_time` (s) between t0 and t1 in s, as cubics on pieces that are halved until
+    they agree with it to 1e-10 of its largest value; a jump becomes a piece of a billionth of the
+    time. What is shorter than a hundredth of the run and zero elsewhere may be missed.
+
+    Raises InputError for what does not return a finite number.
+    """
+
+    def value(t: float) -> float:
+        found = np.asarray(of_time(t), dtype=np.float64)
+        if found.size != 1 or not np.isfinite(found).all():
+            raise InputError(
+                f"The input function returns {found.tolist()!r} at {t:g} s; it must return one"
+                " finite number."
+            )
+        return float(found.reshape(()) if found.ndim == 0 else found.reshape(-1)[0])
+
+    to_cubic = np.linalg.inv(np.vander(NODES, 4, increasing=True))
+    between = np.vander(BETWEEN, 4, increasing=True)
+    edges = np.linspace(t0, t1, FIRST_PIECES + 1)
+    open_pieces, rows, largest = list(pairwise(edges.tolist()))[::-1], [], 0.0
+    while open_pieces:
+        a, b = open_pieces.pop()
+        length = b - a
+        values = np.array([value(a + node * length) for node in NODES])
+        largest = max(largest, float(np.abs(values).max()))
+        cubic = to_cubic @ values
+        miss = np.abs(between @ cubic - [value(a + at * length) for at in BETWEEN]).max()
+        if miss > AGREEMENT * largest and length > SHORTEST_PIECE * (t1 - t0):
+            open_pieces += [(0.5 * (a + b), b), (a, 0.5 * (a + b))]
+        else:
+            rows.append((a, *(cubic / length ** np.arange(4))))
+    return InputSignal(np.array([*(row[0] for row in rows), t1]), np.array([r[1:] for r in rows]))
 
 
 @dataclass(frozen=True, eq=False)

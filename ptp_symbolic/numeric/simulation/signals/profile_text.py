@@ -29,6 +29,7 @@ _FORMS = {
 }
 
 
+PROFILES = tuple(_FORMS)
 _STRANGE = re.compile(r"(?<![a-z])(?:nan|inf(?:inity)?)(?![a-z])", re.IGNORECASE)
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pint
 
+from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.runtime.model import Model
 
 
@@ -18,8 +19,8 @@ def unit_factor(unit: str) -> float:
 
 
 def refuse_misfit(model: Model, effect: str, load: str, travel: str = "1") -> None:
-    """Fail where the units of `model` do not fit its functions; `load` is the unit of what acts on
-    a joint, `travel` that of its coordinate (1 for rad).
+    """Raise InputError where the units of `model` do not fit its functions; `load` is the unit of
+    what acts on a joint, `travel` that of its coordinate (1 for rad).
     """
     units, rng = model.units, np.random.default_rng(2)
     names = (model.state_names, model.input_names, model.parameter_names)
@@ -51,4 +52,8 @@ def refuse_misfit(model: Model, effect: str, load: str, travel: str = "1") -> No
         known = np.isfinite(factors)
         wanted = (here * factors)[known]
         fits = np.isclose(other[known], wanted, rtol=1e-9, atol=1e-12)
-        assert fits.all(), f"units of {effect} do not fit {function.__name__}: {fits}"
+        if not fits.all():
+            raise InputError(
+                f"Effect '{effect}': units do not fit {function.__name__}, entries"
+                f" {np.flatnonzero(~fits).tolist()} of those known; correct a unit or the law."
+            )

@@ -1,0 +1,151 @@
+"""Inputs as a program gives them: numbers, texts, functions, samples, tables and logs."""
+
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.numeric.data import Log, read_inputs
+from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.inputs import (
+    InputSignal,
+    constant,
+    function,
+    table,
+)
+from ptp_symbolic.numeric.simulation.signals.profile_text import PROFILES, parse_profile
+from ptp_symbolic.platform.units import quantity
+
+FloatArray = NDArray[np.float64]
+Input = InputSignal | float | str | Path | Callable[[float], float] | ArrayLike | tuple[Any, ...]
+Inputs = Mapping[str, Input] | Log | str | Path | Any
+
+LOG_FILES = (".csv", ".tsv", ".txt", ".mat", ".parquet", ".bag", ".mcap", ".db3")
+TIME_COLUMNS = ("time", "t", "time [s]", "t [s]")
+
+
+def whole_duration(model: Model, given: Inputs) -> float | None:
+    """The time in s that inputs which bring their own times last; None where none does."""
+    if given is None or isinstance(given, Mapping):
+        return None
+    time, _ = _columns(model, given)
+    return float(time[-1] - time[0])
+
+
+def input_signals(model: Model, given: Inputs | None, times: FloatArray) -> dict[str, InputSignal]:
+    """The inputs `given` to a run of `model` over `times` [k] in s, as signals by name.
+
+    All inputs at once are a log (a `Log`, or the path of one) or a DataFrame; by name each is one
+    of what `input_signal` takes. Raises InputError for unknown names and as `input_signal` does.
+    """
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        time, columns = _columns(model, given)
+        return {name: table(time - time[0], values) for name, values in columns.items()}
+    for name in given:
+        if name not in model.input_names:
+            raise unknown("input", name, model.input_names)
+    return {name: input_signal(model, name, value, times) for name, value in given.items()}
+
+
+def input_signal(model: Model, name: str, given: Input, times: FloatArray) -> InputSignal:
+    """The input `name` of `model` over a run at `times` [k] in s.
+
+    `given` is a number in SI, a text ("3 V", or a profile such as "step:24@0.5"), a function of
+    the time in s, samples [k] at `times`, a pair (times, samples), or a log or a DataFrame with a
+    column of that name; samples hold until the next (zero-order hold). Raises InputError for
+    anything else.
+    """
+    what, unit = f"Input '{name}'", model.units[name]
+    start, end = float(times[0]), float(times[-1])
+    if isinstance(given, InputSignal):
+        return given
+    if isinstance(given, str) and given.strip().partition(":")[0] in PROFILES:
+        try:
+            return parse_profile(given, end - start)
+        except InputError as error:
+            raise InputError(f"{what}: {error}") from error
+    if _is_whole(given):
+        time, columns = _columns(model, given)
+        if name not in columns:
+            raise InputError(f"{what}: the table has {', '.join(columns)}, and no such column.")
+        return table(time - time[0], columns[name])
+    if isinstance(given, str):
+        return constant(quantity(given, unit, what))
+    if callable(given):
+        try:
+            return function(given, start, end)
+        except InputError as error:
+            raise InputError(f"{what}: {error}") from error
+    if isinstance(given, tuple) and len(given) == 2 and np.ndim(given[0]) == 1:
+        return table(_numbers(given[0], what), _numbers(given[1], what))
+    samples = _numbers(given, what)
+    if samples.ndim == 0:
+        return constant(quantity(float(samples), unit, what))
+    if samples.shape != times.shape:
+        raise InputError(
+            f"{what} has shape {samples.shape}, and there are {len(times)} output times; give as"
+            " many samples, or a pair (times, samples)."
+        )
+    return table(times, samples)
+
+
+def _numbers(given: object, what: str) -> FloatArray:
+    try:
+        return np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"{what} is of type {type(given).__name__}; give a number, a text such as '3 V' or"
+            " 'step:24@0.5', a function of time, samples, a pair (times, samples), a log or a"
+            " DataFrame."
+        ) from error
+
+
+def _is_whole(given: object) -> bool:
+    """Whether `given` is a table of several columns: a log, its path, or a DataFrame."""
+    if isinstance(given, Path | Log) or _is_frame(given):
+        return True
+    return isinstance(given, str) and given.lower().endswith(LOG_FILES)
+
+
+def _is_frame(given: object) -> bool:
+    pandas = sys.modules.get("pandas")
+    return pandas is not None and isinstance(given, pandas.DataFrame)
+
+
+def _columns(model: Model, given: Any) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Times [m] in s, and the inputs [m] by name that a log, its path or a DataFrame holds."""
+    if _is_frame(given):
+        return _columns_of_frame(model, given)
+    platform = model.platform
+    if not isinstance(given, Log | str | Path):
+        raise InputError(
+            f"Inputs of type {type(given).__name__}; give them by name, or as a log, its path or a"
+            " DataFrame."
+        )
+    if platform is None:
+        raise InputError("The model does not know its platform, which names the columns of a log.")
+    names = [s.signal for s in platform.signals if s.role == "input"]
+    if isinstance(given, Log):
+        time, values = given.time, given.inputs
+    else:
+        time, values = read_inputs(Path(given), platform)
+    return time, dict(zip(names, values.T, strict=True))
+
+
+def _columns_of_frame(model: Model, frame: Any) -> tuple[FloatArray, dict[str, FloatArray]]:
+    clock = next((c for c in TIME_COLUMNS if c in frame.columns), None)
+    time = frame.index if clock is None else frame[clock]
+    names = [name for name in model.input_names if name in frame.columns]
+    if not names:
+        raise InputError(
+            f"The DataFrame has the columns {', '.join(map(str, frame.columns))}; name those of the"
+            f" inputs {', '.join(model.input_names)}."
+        )
+    columns = {name: _numbers(frame[name], f"Column '{name}'") for name in names}
+    return _numbers(time, "Time of the DataFrame"), columns

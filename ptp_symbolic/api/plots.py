@@ -1,0 +1,72 @@
+"""Figures of runs, logs and fits, for a notebook or a file."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ptp_symbolic.report.figures import AFTER, BEFORE, BORDER, MEASURED, STYLE
+
+FloatArray = NDArray[np.float64]
+
+WIDTH, PANEL, EDGE = 9.0, 1.8, 0.6  # inches
+
+
+def panels_by_unit(
+    time: FloatArray,
+    signals: Mapping[str, FloatArray],
+    units: Mapping[str, str],
+    marks: Iterable[float] = (),
+) -> Figure:
+    """The `signals` [k] over `time` [k] in s, those of one unit in one panel, `marks` in s."""
+    groups: dict[str, list[str]] = {}
+    for name in signals:
+        groups.setdefault(units[name], []).append(name)
+    with matplotlib.rc_context(STYLE):
+        figure, grid = _sheet(len(groups))
+        for axes, (unit, names) in zip(grid, groups.items(), strict=True):
+            for name in names:
+                axes.plot(time, signals[name], linewidth=1.0, label=name)
+            for mark in marks:
+                axes.axvline(mark, color=BORDER, linewidth=0.5)
+            axes.set_ylabel(unit)
+            axes.legend(loc="upper right", frameon=False)
+        grid[-1].set_xlabel("time [s]")
+    return figure
+
+
+def measured_and_simulated(
+    curves: Mapping[str, Mapping[str, Any]], hidden: Sequence[str] = ()
+) -> Figure:
+    """Every run of `curves` in a column of its own: signals as measured, and as simulated before
+    and after the fit, but for stages that are `hidden`.
+    """
+    rows = max(len(curve["signals"]) for curve in curves.values())
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(
+            figsize=(max(WIDTH, 3.5 * len(curves)), EDGE + PANEL * rows), layout="constrained"
+        )
+        grid = figure.subplots(rows, len(curves), squeeze=False)
+        for column, curve in zip(grid.T, curves.values(), strict=True):
+            column[0].set_title(f"{curve['run']} ({curve['set']})")
+            for axes, (name, signal) in zip(column, curve["signals"].items(), strict=False):
+                _draw(axes, curve["time"], signal, hidden)
+                axes.set_ylabel(f"{name} [{signal['unit']}]")
+            column[-1].set_xlabel("time [s]")
+        grid[0, 0].legend(loc="upper right", frameon=False)
+    return figure
+
+
+def _draw(axes: Axes, time: FloatArray, signal: Mapping[str, Any], hidden: Sequence[str]) -> None:
+    for stage, colour in (("measured", MEASURED), ("before", BEFORE), ("after", AFTER)):
+        if signal.get(stage) is not None and stage not in hidden:
+            axes.plot(time, signal[stage], color=colour, linewidth=1.0, label=stage)
+
+
+def _sheet(rows: int) -> tuple[Figure, Sequence[Axes]]:
+    figure = Figure(figsize=(WIDTH, EDGE + PANEL * rows), layout="constrained")
+    return figure, list(figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0])
