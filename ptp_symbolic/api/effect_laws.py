@@ -5,7 +5,7 @@ breaks it.
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -186,7 +186,8 @@ def energy_is_accounted_for(case: Case) -> None:
     symbols = sorted(free - {symbol for symbol, _ in named}, key=str)
     function = sp.lambdify(symbols, parts, "numpy", cse=lambda written: (named, written))
     for _ in range(LEDGER_POINTS):
-        values = _admissible_values(case, symbols, random)
+        modes = random_modes(equations, random)
+        values = admissible_values(equations, symbols, modes, random)
         change, supplied, dissipated, flowing = (float(v) for v in function(*values))
         size = flowing + abs(supplied) + abs(dissipated)
         lacking = change - supplied + dissipated
@@ -197,7 +198,7 @@ def energy_is_accounted_for(case: Case) -> None:
         )
 
 
-def _random_modes(equations: Equations, random: np.random.Generator) -> dict[str, float]:
+def random_modes(equations: Equations, random: np.random.Generator) -> dict[str, float]:
     """Modes of friction and contact, and the rates that they force: a friction at rest rests."""
     modes: dict[str, float] = {}
     for friction in equations.frictions:
@@ -213,13 +214,14 @@ def _random_modes(equations: Equations, random: np.random.Generator) -> dict[str
     return modes
 
 
-def _admissible_values(
-    case: Case, symbols: Sequence[sp.Symbol], random: np.random.Generator
+def admissible_values(
+    equations: Equations,
+    symbols: Sequence[sp.Symbol],
+    modes: Mapping[str, float],
+    random: np.random.Generator,
 ) -> list[float]:
-    """Random values of `symbols`, drawn until the parameters fit each other."""
-    equations = case.equations
+    """Random values of `symbols` in given modes, drawn until the parameters fit each other."""
     defaults = {p.name: p.default or 0.1 for p in equations.parameters}
-    modes = _random_modes(equations, random)
     for _ in range(1000):
         values = []
         for name in (s.name for s in symbols):
@@ -230,9 +232,7 @@ def _admissible_values(
         given = dict(zip(symbols, values, strict=True))
         if all(requirement.holds.subs(given) != sp.false for requirement in equations.requirements):
             return values
-    raise InputError(
-        f"Effect '{case.effect.id}': no values near the defaults meet its `requires`; change them."
-    )
+    raise InputError("No values near the defaults meet what effects `requires`; change them.")
 
 
 def dissipation_only_takes(case: Case) -> None:

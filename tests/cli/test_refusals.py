@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from ptp_symbolic.cli import commands, in_options
+from ptp_symbolic.cli.commands import commands, in_options
 from tests.cli.conftest import Call, Done
 
 SAMPLE = Path(__file__).parents[2] / "ptp_symbolic" / "samples" / "tilted_base"

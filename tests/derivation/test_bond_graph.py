@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from ptp_symbolic.api.effect_laws import admissible_values, random_modes
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from ptp_symbolic.symbolic.codegen import dynamics
 from ptp_symbolic.symbolic.derivation.assembly import assemble
@@ -14,7 +15,6 @@ from ptp_symbolic.symbolic.derivation.bond_graph import BondGraph, acceleration,
 from ptp_symbolic.symbolic.derivation.causality import strokes
 from ptp_symbolic.symbolic.effects import EFFECTS, Effect
 from tests.effects.bases import IDS, with_effect
-from tests.effects.test_energy_laws import admissible_values, random_modes
 
 STATES = 20
 MOTOR_WITH_GEAR_AND_PAYLOAD = """

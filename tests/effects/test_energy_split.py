@@ -9,6 +9,7 @@ a field gives back was stored.
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,9 +20,10 @@ from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.run import Trajectory
 from ptp_symbolic.numeric.simulation.signals.inputs import multisine
-from ptp_symbolic.platform import EffectDeclaration, Platform
+from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
 from ptp_symbolic.symbolic.effects import EFFECTS
-from tests.effects.bases import BASES
+
+PLATFORMS = Path(__file__).parents[1] / "platforms"
 
 DURATION, STEP = 1.5, 2e-5  # s
 CLOSE = 2e-5  # of all that went through: the quadrature, over jumps of friction and contact
@@ -435,11 +437,11 @@ def declared(effects: str, base: Platform | None = None) -> Platform:
 @cache
 def machine(name: str) -> Model:
     """One of the two that carry many effects, all switched off, or one of its own."""
-    bases = {"joints": BASES[2], "drive": BASES[1]}
+    bases = {"joints": "fieldlog_two_axis.toml", "drive": "fieldlog_pan.toml"}
     if name not in bases:
         return emission.emit(declared(name))
     own = " ".join(case.effect for case in CASES if case.machine == name)
-    return emission.emit(declared(own, bases[name]))
+    return emission.emit(declared(own, read_platform(PLATFORMS / bases[name])))
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.effect)
