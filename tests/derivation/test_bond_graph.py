@@ -151,7 +151,10 @@ def check_powers(platform: Platform) -> None:
         (graph.ledger.power_in - equations.ledger.power_in, equations.ledger.power_in),
         (graph.ledger.dissipated - equations.ledger.dissipated, equations.ledger.dissipated),
     ):
-        expressions += [part, sp.Add(*map(sp.Abs, sp.Add.make_args(sp.expand(whole))))]
+        expressions += [
+            part,
+            sp.Add(*map(sp.Abs, sp.Add.make_args(sp.expand(whole, power_exp=False)))),
+        ]
     expressions = [e.subs(touching).subs(own) for e in expressions]
     named = list(definitions.items())
     free = set().union(*(e.free_symbols for e in (*expressions, *definitions.values())))
@@ -178,7 +181,9 @@ def power_size(graph: BondGraph, name: str) -> sp.Expr:
     own = graph.node(name).ledger
     parts = [b.power for b in graph.bonds if name in (b.tail, b.head)]
     parts += [own.power_in, own.dissipated, graph.motion.growth(own.stored)]
-    return sp.Add(*(sp.Abs(term) for p in parts for term in sp.Add.make_args(sp.expand(p))))
+    return sp.Add(
+        *(sp.Abs(term) for p in parts for term in sp.Add.make_args(sp.expand(p, power_exp=False)))
+    )
 
 
 def contact_torques(graph: BondGraph) -> dict[sp.Symbol, sp.Expr]:
