@@ -19,7 +19,7 @@ from ptp_symbolic.symbolic.derivation.placement import (
 )
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
-from ptp_symbolic.symbolic.effects import EFFECTS
+from ptp_symbolic.symbolic.effects import catalogue
 
 Site = tuple[Effect, str | None]  # an effect, of one of its kinds, and its axis
 
@@ -73,7 +73,7 @@ def structures(platform: Platform) -> tuple[tuple[Rebuilt, ...], dict[str, str]]
 
 def _everywhere(platform: Platform) -> Iterator[Site]:
     """Every kind of every effect of the catalogue, on every axis."""
-    for each in EFFECTS:
+    for each in catalogue():
         for effect in (each, *each.kinds):
             for axis in platform.axes if effect.on_axis else (None,):
                 yield effect, axis

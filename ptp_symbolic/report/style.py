@@ -2,7 +2,7 @@
 
 matplotlib reads a `matplotlibrc` of the folder one stands in, or of the user, when it is imported:
 one of another program changes figures, and a damaged one is a traceback. It is imported here, where
-an empty one is found first, before another module of the reports asks for it.
+an empty one is found first, before another module of the reports imports it.
 """
 
 import os

@@ -1,4 +1,4 @@
-"""Which structure the logs ask for: the declared platform and those one structure away from it are
+"""Which structure explains the logs: the declared platform and those one structure away from it are
 fitted, the best go on into the search for terms, and what each ends with is compared.
 """
 
@@ -144,7 +144,7 @@ def _led_on(platform: Platform, fitted: Fitted, terms: Searched, logs: Logs) -> 
     every = [rebuilt for rebuilt in structures(beside)[0] if rebuilt.keys in own]
     led = fit_structures(beside, every, logs)
     led = led if led.quiet else led.led_on(logs)
-    return led if led.order else fitted
+    return led if led.order else fitted.led_on(logs)
 
 
 def _at_length(
@@ -215,7 +215,7 @@ def _is_enough(structure: FittedStructure, platform: Platform) -> bool:
 def _chosen(
     terms: Outcome, outcomes: Sequence[Outcome], others: Sequence[FittedStructure], logs: Logs
 ) -> tuple[Outcome, dict[str, str]]:
-    """The outcome that the logs ask for, and why structures that were followed are not named."""
+    """The outcome that predicts best, and why structures that were followed are not named."""
     refused: dict[str, str] = {}
     accepted: list[Outcome] = []
     rivals: list[Rival] = []

@@ -100,10 +100,8 @@ def _begun(
     model = model_of(platform)
     task = task_for(platform, model, logs.train, logs.validate, (), logs.executor, logs.progress)
     if rebuilt is None:
-        return begin_structure("as declared", (), frozenset(), task, (), known)
-    return begin_structure(
-        rebuilt.title, rebuilt.keys, rebuilt.provides, task, rebuilt.starts, known
-    )
+        return begin_structure((), frozenset(), task, (), known)
+    return begin_structure(rebuilt.keys, rebuilt.provides, task, rebuilt.starts, known)
 
 
 def _better_half(begun: Sequence[Begun], declared: FittedStructure) -> tuple[int, ...]:

@@ -108,13 +108,13 @@ def fits(declared: tuple[Platform, list[Path]]) -> dict[tuple[str, ...], FittedS
     rebuilt = [s for s in structures(platform)[0] if s.keys in wanted]
     found = {}
     with workers() as executor:
-        for there, title, keys, provides, starts in (
-            (platform, "as declared", (), frozenset[str](), ()),
-            *((s.platform, s.title, s.keys, s.provides, s.starts) for s in rebuilt),
+        for there, keys, provides, starts in (
+            (platform, (), frozenset[str](), ()),
+            *((s.platform, s.keys, s.provides, s.starts) for s in rebuilt),
         ):
             model = model_of(there)
             task = task_for(there, model, logs, logs, (), executor, lambda text: None)
-            found[keys] = begin_structure(title, keys, provides, task, starts, {}).finished().fitted
+            found[keys] = begin_structure(keys, provides, task, starts, {}).finished().fitted
         yield found
 
 

@@ -57,7 +57,7 @@ LOOKED = Looked(TRIM, TIMES, SHOWN, LEAST_DEGREES)
 
 @dataclass(frozen=True, eq=False)
 class LogRows:
-    """What is left of one log: `time` [n] in s, `left` [n] in N m (or output units), `beside`
+    """The residual of one log: `time` [n] in s, `left` [n] in N m (or output units), `beside`
     [n, m] what else it may follow (a constant first, then motion, inputs), and the `input` [n, nu].
     """
 

@@ -30,7 +30,6 @@ class FittedStructure:
     parameters that they brought (none for the declared structure), `provides` its mechanisms.
     """
 
-    title: str
     added: tuple[Candidate, ...]
     provides: frozenset[str]
     task: Task
@@ -83,7 +82,6 @@ def _alike(one: Trial, other: Trial) -> bool:
 
 
 def begin_structure(
-    title: str,
     keys: Sequence[str],
     provides: frozenset[str],
     task: Task,
@@ -105,7 +103,7 @@ def begin_structure(
     begun = [fitted(task, (), v, None, executor=task.executor) for v in values]
     trial = (halving(task, begun, 2, 1) or begun[:1])[0]
     proposals = replace(proposals, start=trial.values)
-    return Begun(FittedStructure(title, effects_of(task, keys), provides, task, trial), proposals)
+    return Begun(FittedStructure(effects_of(task, keys), provides, task, trial), proposals)
 
 
 def effects_of(task: Task, keys: Sequence[str]) -> tuple[Candidate, ...]:
@@ -179,7 +177,7 @@ def alternatives(
     chosen: FittedStructure, found: Sequence[FittedStructure]
 ) -> list[FittedStructure]:
     """Structures that the chosen one does not predict clearly better than; one that contains it
-    holds nothing more that these logs ask for.
+    adds nothing that these logs show.
     """
     return [
         s

@@ -72,7 +72,7 @@ def _is_whole(path: str) -> bool:
 
 
 def _cache_of(py_func: FunctionType) -> caching.Cache | caching.NullCache:
-    """The cache of a function that asks for one: sealed if it is ours, none where none can be."""
+    """The cache of a function: sealed if it is ours, none where none can be."""
     root = py_func.__module__.split(".")[0]
     if root not in ROOTS and not root.startswith(EMITTED):
         return caching.FunctionCache(py_func)

@@ -26,13 +26,14 @@ PARAMETERS = (
 )
 
 
-def _lag(before: str, after: str, state: str, unit: str) -> Callable[[Place], Contribution]:
+def _lag(
+    before: str, after: str, state: str, word: str, unit: str
+) -> Callable[[Place], Contribution]:
     """The quantity `after` follows `before` with one time constant."""
 
     def contribute(place: Place) -> Contribution:
         (time,) = place.symbols(PARAMETERS)
         output = real(f"{state}_actuator_{place.axis}")
-        word = {"tau": "torque", "u": "voltage"}[state]
         rate = (place.quantity(f"{before}_{{axis}}") - output) / time
         return Contribution(
             changes={f"{after}_{place.axis}": Change(through=lambda _: output)},
@@ -48,7 +49,7 @@ ACTUATOR_LAG = Effect(
     title="actuator behind a lag of first order",
     reference="equivalent time constant of a closed current loop; Leonhard (2001), section 7",
     parameters=PARAMETERS,
-    contribute=_lag("command_torque", "input_torque", "tau", "N m"),
+    contribute=_lag("command_torque", "input_torque", "tau", "torque", "N m"),
     structural=True,
     needs=("input_torque_{axis}",),
     structure=Structure(needs=("input_torque_{axis}",)),
@@ -60,7 +61,7 @@ VOLTAGE_LAG = replace(
     ACTUATOR_LAG,
     kind="voltage",
     title="amplifier behind a lag of first order",
-    contribute=_lag("drive_voltage", "amplifier_voltage", "u", "V"),
+    contribute=_lag("drive_voltage", "amplifier_voltage", "u", "voltage", "V"),
     needs=("amplifier_voltage_{axis}",),
     structure=Structure(needs=("amplifier_voltage_{axis}",)),
     separating_experiment="Step the command and log the voltage at the motor: it settles as an"
