@@ -67,6 +67,13 @@ column = "angle"
 unit = "rad"
 counts_per_revolution = 65536
 """
+GYRO_NOISE = 0.002  # rad/s
+GYRO = f"""[signals.omega_pan]
+role = "output"
+column = "gyro"
+unit = "rad/s"
+noise = {GYRO_NOISE}
+"""
 
 
 def log(
@@ -75,9 +82,11 @@ def log(
     gust: float = 0.0,
     lasting: int = 1,
     late: int = 0,
+    gyro: bool = False,
 ) -> Log:
     """Six seconds under a torque that changes every half second, so many samples `late`, and under
-    one that is not logged and changes after so many samples, `gust` (rms) in N m.
+    one that is not logged and changes after so many samples, `gust` (rms) in N m. The rate is
+    logged too where there is a `gyro`.
     """
     rng = np.random.default_rng(seed)
     torque = np.repeat(rng.uniform(-0.5, 0.5, SAMPLES // 50), 50)
@@ -86,32 +95,46 @@ def log(
     flow = np.zeros((3, 3))
     flow[0, 1], flow[1] = 1.0, [-stiffness / INERTIA, -DAMPING / INERTIA, 1.0 / INERTIA]
     step = expm(PERIOD * flow)
-    state, angle = np.zeros(2), np.zeros(SAMPLES)
+    state = np.zeros((SAMPLES, 2))
     for k in range(SAMPLES - 1):
-        state = (step @ [*state, acting[k]])[:2]
-        angle[k + 1] = state[0]
-    reading = np.rint(angle / COUNT) * COUNT
-    return Log(f"run_{seed}", PERIOD * np.arange(SAMPLES), torque[:, None], reading[:, None])
+        state[k + 1] = (step @ [*state[k], acting[k]])[:2]
+    reading = np.rint(state[:, :1] / COUNT) * COUNT
+    if gyro:
+        rate = state[:, 1:] + GYRO_NOISE * rng.standard_normal((SAMPLES, 1))
+        reading = np.hstack([reading, rate])
+    return Log(f"run_{seed}", PERIOD * np.arange(SAMPLES), torque[:, None], reading)
 
 
 @contextmanager
 def spring_table(
-    folder: Path, stiffness: float = STIFFNESS, gust: float = 0.0, lasting: int = 1
+    folder: Path,
+    stiffness: float = STIFFNESS,
+    gust: float = 0.0,
+    lasting: int = 1,
+    gyro: bool = False,
 ) -> Iterator[Task]:
     """The task, its platform written to `folder`; the other arguments are those of `log`."""
-    with table_of(folder, lambda seed: log(seed, stiffness, gust, lasting)) as task:
+    text = PLATFORM + GYRO if gyro else PLATFORM
+
+    def logged(seed: int) -> Log:
+        return log(seed, stiffness, gust, lasting, gyro=gyro)
+
+    with table_of(folder, logged, text=text) as task:
         yield task
 
 
 @contextmanager
 def table_of(
-    folder: Path, logged: Callable[[int], Log], validation: tuple[int, ...] = (3,)
+    folder: Path,
+    logged: Callable[[int], Log],
+    validation: tuple[int, ...] = (3,),
+    text: str = PLATFORM,
 ) -> Iterator[Task]:
-    """The task of the platform, written to `folder`, with what is `logged` by seed, two logs to be
-    fitted, and others for `validation`.
+    """The task of the platform `text`, written to `folder`, with what is `logged` by seed, two logs
+    to be fitted, and others for `validation`.
     """
     path = folder / "table.toml"
-    path.write_text(PLATFORM)
+    path.write_text(text)
     platform = read_platform(path)
     model = emission.emit(variants.with_candidates(platform))
     train, validate = (

@@ -24,15 +24,20 @@ from tests.diagnose.spring_table import DAMPING, INERTIA, PAYLOAD, STIFFNESS, sp
 GUST = 0.05  # N m: a tenth of the largest logged torque
 
 
-def grown(folder: Path, stiffness: float, lasting: int = 1) -> AlongMotion | None:
-    with spring_table(folder, stiffness, GUST, lasting) as task:
+def grown(
+    folder: Path, stiffness: float, lasting: int = 1, gyro: bool = False
+) -> AlongMotion | None:
+    with spring_table(folder, stiffness, GUST, lasting, gyro) as task:
         declared = fitted(task, (), declared_start(task), None)
         return grown_along_motion(task, propose(task), declared, task.train)
 
 
-def test_a_spring_is_found_beside_gusts_and_the_intervals_tell_how_well(tmp_path: Path) -> None:
+@pytest.mark.parametrize("gyro", [False, True])
+def test_a_spring_is_found_beside_gusts_and_the_intervals_tell_how_well(
+    gyro: bool, tmp_path: Path
+) -> None:
     """No value is further off than two intervals, four standard deviations."""
-    found = grown(tmp_path, STIFFNESS)
+    found = grown(tmp_path, STIFFNESS, gyro=gyro)
     assert found is not None
     assert found.trial.keys == ("cable_spring@pan",)
     assert found.gains["cable_spring@pan"].lower > 0.5

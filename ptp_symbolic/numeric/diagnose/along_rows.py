@@ -12,6 +12,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.diagnose.candidates import Candidate, with_what_needs_it
 from ptp_symbolic.numeric.diagnose.confirm import answers_to_inputs, why_unconfirmed
@@ -32,6 +33,8 @@ from ptp_symbolic.numeric.identify.evaluate import Evaluation
 from ptp_symbolic.numeric.identify.fit import Fit
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.simulations import POLISH
+
+FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +194,7 @@ class _Motion:
         runs, evaluations = [], []
         for number, whole in enumerate(space.runs):
             own = order[run[order] == number]
-            runs.append(replace(whole, time=time[own], measured=residual[own, None]))
+            runs.append(_of_rows(whole, time[own], residual[own]))
             evaluations.append(Evaluation(residual[own], table[own], np.zeros((own.size, 0))))
         cost = float(residual @ residual)
         return Fit(task.model, tuple(runs), free, values, (), cost, tuple(evaluations))
@@ -213,3 +216,17 @@ class _Motion:
         squares = [np.minimum((r / scale) ** 2, FAR**2) for r in rows]
         losses = [np.asarray(np.bincount(block, s), np.float64) for s in squares]
         return compared(losses[0], losses[1]).share >= self.task.material
+
+
+def _of_rows(run: Run, time: FloatArray, residual: FloatArray) -> Run:
+    """The run with residual torques [k] of the equations, in units of their noise, as what was
+    measured at `time`: one signal, whatever the sensors of the run.
+    """
+    return replace(
+        run,
+        time=time,
+        measured=residual[:, None],
+        weight=np.ones(1),
+        counts=np.full(1, np.nan),
+        signals=("torque",),
+    )
