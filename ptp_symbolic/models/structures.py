@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.models.variants import candidate_effects
+from ptp_symbolic.models.variants import candidate_effects, described_by
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, effect_key
 from ptp_symbolic.symbolic.derivation.placement import (
     available_quantities,
@@ -86,6 +86,8 @@ def _lacking(platform: Platform, effect: Effect, axis: str | None) -> str | None
     if effect.structure is None:
         if effect.searched:
             missing = _missing(platform, effect.needs, axis)
+            if not missing:
+                return f"not tried: {described_by(platform, effect, axis)} describes the same"
             return f"not tried: it acts on {missing}, which no declared effect defines"
         return "not tried: it is declared, never searched for"
     missing = _missing(platform, effect.structure.needs, axis)

@@ -9,12 +9,13 @@ from ptp_symbolic.symbolic.derivation.placement import (
     available_quantities,
     place_effects,
 )
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effects import catalogue
 
 
 def candidate_effects(platform: Platform) -> tuple[EffectDeclaration, ...]:
     """Effects that could be added to `platform`: searchable, not declared, with what they need,
-    which may itself be one of them.
+    which may itself be one of them; none that describes what a declared effect does.
     """
     declared = {(effect.id, place.axis) for effect, place in place_effects(platform)}
     order = {effect.id: number for number, effect in enumerate(catalogue())}
@@ -30,10 +31,27 @@ def candidate_effects(platform: Platform) -> tuple[EffectDeclaration, ...]:
             and not (platform.linear_axes and effect.instead_on_linear)
             and (effect.id, axis) not in declared | {(e.effect, e.axis) for e in found}
             and {need.format(axis=axis) for need in effect.needs} <= available
+            and described_by(platform, effect, axis) is None
         ]
         if not added:
             return tuple(sorted(found, key=lambda e: order[e.effect]))
         found += added
+
+
+def described_by(platform: Platform, effect: Effect, axis: str | None) -> str | None:
+    """The declared effect that describes a parameter of `effect` on `axis` already; None if none
+    does. LuGre friction does so to Coulomb friction.
+    """
+    own = {p.name.format(axis=axis) for p in effect.parameters}
+    return next(
+        (
+            other.id
+            for other, place in place_effects(platform)
+            if (other.id, place.axis) != (effect.id, axis)
+            and own & {p.name for p in other.parameters_at(place)}
+        ),
+        None,
+    )
 
 
 def with_candidates(platform: Platform) -> Platform:

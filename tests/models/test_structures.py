@@ -7,8 +7,9 @@ from dataclasses import replace
 import pytest
 
 from ptp_symbolic.models.structures import structures
-from ptp_symbolic.models.variants import candidate_effects
+from ptp_symbolic.models.variants import candidate_effects, with_candidates
 from ptp_symbolic.platform import EffectDeclaration, Platform, effect_key, read_platform
+from ptp_symbolic.symbolic.derivation.placement import place_effects
 from ptp_symbolic.symbolic.effects import EFFECTS
 
 BODIES = [("rigid_bodies", None), ("payload", None)]
@@ -53,6 +54,17 @@ def test_bristles_take_the_place_of_dry_friction_and_keep_its_values() -> None:
     effects = {e.effect for e in lugre.platform.effects}
     assert "lugre_friction" in effects and "csvs_friction" not in effects
     assert [e.effect for e in lugre.removed] == ["csvs_friction"]
+
+
+def test_terms_are_searched_for_beside_bristles_but_not_the_friction_that_they_are() -> None:
+    """The platform with all candidates is one that can be: each parameter is described once."""
+    platform = platform_of(*BODIES, ("dc_motor", "pan"), ("lugre_friction", "pan"))
+    candidates = {e.effect for e in candidate_effects(platform)}
+    assert "csvs_friction" not in candidates and "cogging" in candidates
+    place_effects(with_candidates(platform))
+    assert (
+        structures(platform)[1]["csvs_friction@pan"] == f"not tried: {bristles} describes the same"
+    )
 
 
 def test_friction_that_needs_the_one_replaced_is_a_reason_not_a_crash() -> None:
