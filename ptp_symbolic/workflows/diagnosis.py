@@ -49,7 +49,7 @@ def diagnose_platform(
         logs = Logs(tuple(train_logs), tuple(validate_logs), executor, progress)
         choice = chosen_structure(platform, logs, limit)
         chosen = choice.chosen
-        if chosen.found.is_cut_short or choice.terms.found.is_cut_short:
+        if choice.is_cut_short:
             noted = (*noted, _cut_short(limit))
         if chosen.verdict.leaves_more:
             noted = (*noted, *turned_inputs(chosen.found.task, chosen.found.declared))

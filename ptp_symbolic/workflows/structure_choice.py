@@ -2,6 +2,7 @@
 fitted, the best go on into the search for terms, and what each ends with is compared.
 """
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -39,6 +40,8 @@ from ptp_symbolic.numeric.identify.windows import parted_like
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import effect_keys, model_of, task_for, with_effects
 from ptp_symbolic.workflows.structure_fits import FOLLOWED, Fitted, Logs, fit_structures
+
+LEAST_SHARE = 0.1  # of the time limit, for the brief search beside a structure that fits well
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,23 +89,25 @@ class Searched:
 @dataclass(frozen=True, eq=False)
 class Choice:
     """The chosen outcome, `terms` (the outcome of the declared structure), a row for every
-    structure, and why candidates were not tried, by key.
+    structure, and why candidates were not tried, by key; `is_cut_short` says that time ran out.
     """
 
     chosen: Outcome
     terms: Outcome
     rows: tuple[dict[str, Any], ...]
     untried: Mapping[str, str]
+    is_cut_short: bool
 
 
 def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choice:
     """Search for terms of the declared platform, and where that adds any or leaves more than noise
     fit every structure one step away from it; search for terms in the best of them too, and choose.
-    Every search ends after `time_limit` in s.
+    After `time_limit` in s nothing new is begun; structures that were fitted are searched briefly.
 
-    All are brief at first. The whole one follows where no answer is found soon: of the structure
-    that fits best, and of the declared one where that is beaten by little.
+    All searches are brief at first. The whole one follows where no answer is found soon: of the
+    structure that fits best, and of the declared one where that is beaten by little.
     """
+    end = time.monotonic() + time_limit
     every, untried = structures(platform)
     platforms = {rebuilt.keys: rebuilt.platform for rebuilt in every}
 
@@ -110,25 +115,28 @@ def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choic
         name = " + ".join(structure.keys) if structure else ""
         logs.progress(f"searching for terms beside {name or 'what is declared'}")
         there = platforms[structure.keys] if structure else platform
-        return _searched(there, structure, logs, time_limit, brief=brief)
+        left = max(end - time.monotonic(), LEAST_SHARE * time_limit)
+        return _searched(there, structure, logs, left, brief=brief)
 
     terms = searched(None, brief=bool(every))
     if not every or (terms.is_quiet and not terms.found.chosen.candidates):
         why = "not tried: the declared structure leaves noise alone"
         untried = {**untried, **{key: why for each in every for key in each.keys}}
-        return Choice(terms.outcome, terms.outcome, (), untried)
+        return Choice(terms.outcome, terms.outcome, (), untried, terms.found.is_cut_short)
     fitted = fit_structures(platform, every, logs)
-    if not terms.is_quiet and not fitted.quiet:
+    if not terms.is_quiet and not fitted.quiet and time.monotonic() < end:
         fitted = _led_on(platform, fitted, terms, logs)
     followed = fitted.quiet or ([] if terms.is_quiet else fitted.order[:FOLLOWED])
     outcomes = [searched(s, brief=True) for s in followed]
-    if not terms.is_quiet:
+    is_late = not terms.is_quiet and time.monotonic() > end
+    if not terms.is_quiet and not is_late:
         outcomes, terms = _at_length(outcomes, terms, searched)
     chosen, refused = _chosen(terms.outcome, [s.outcome for s in outcomes], fitted.every, logs)
     order = fitted.order
     rest = [s for s in fitted.every if s not in order]
     rows = tuple(_row(s, fitted.declared, chosen, refused) for s in [*order, *rest])
-    return Choice(chosen, terms.outcome, rows, {**untried, **fitted.failed})
+    is_cut_short = is_late or any(s.found.is_cut_short for s in [terms, *outcomes])
+    return Choice(chosen, terms.outcome, rows, {**untried, **fitted.failed}, is_cut_short)
 
 
 def _led_on(platform: Platform, fitted: Fitted, terms: Searched, logs: Logs) -> Fitted:
