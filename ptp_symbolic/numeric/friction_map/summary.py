@@ -162,7 +162,7 @@ def _remarks(found: Comparison, member: Member, estimates: Profile) -> Iterator[
     mean = sum((w["F_c"] for w in weights.values()), 0.0 * weights[estimates.signs[0]]["F_c"])
     low = estimates.linear(mean / len(weights)).low
     if low is not None and low <= 0.0:
-        yield "Coulomb friction cannot be told from none: its interval reaches zero."
+        yield "Coulomb friction is not significant: its interval reaches zero."
     if not member.rise:
         at_rest = bool((points.rate == 0.0).any())
         yield (
