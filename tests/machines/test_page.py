@@ -55,7 +55,7 @@ def test_candidates_errors_and_files_of_a_machine_are_on_its_page() -> None:
         "31.0 % (10.0 to 50.0 %)" in page
         and "its amount is not significantly different from zero" in page
     )
-    assert "by itself): cable_spring (12.3 %)." in page
+    assert "of each alone): cable_spring (12.3 %)." in page
     assert "training 143, validation 157" in page
     assert "held_out.csv" in page and "0f3e" in page
 
