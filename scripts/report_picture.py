@@ -17,8 +17,8 @@ from environment import CHECKOUT, leave
 REPORT = CHECKOUT / "out" / "demo" / "report.html"
 PICTURE = CHECKOUT / "docs" / "_static" / "report.png"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
-SIZE = (1000, 900)  # pixels: the answer, and errors of validation runs
-COLOURS = 64
+SIZE = (1000, 1090)  # pixels: the answer, and errors of validation runs
+COLOURS = 256
 
 
 def main(arguments: list[str]) -> int:

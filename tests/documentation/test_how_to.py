@@ -1,5 +1,6 @@
 """Every block of every how-to page works as it stands there, in the order of reading."""
 
+import math
 import re
 import sys
 import tomllib
@@ -10,7 +11,9 @@ import pytest
 
 from ptp_symbolic.cli import main
 from ptp_symbolic.cli.commands import commands
-from ptp_symbolic.platform import read_platform
+from ptp_symbolic.platform import Platform, read_platform
+from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
+from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.placement import undeclared_parameters
 from ptp_symbolic.symbolic.effects import EFFECTS, GROUP
 from tests.documentation.pages import Reader, blocks
@@ -73,3 +76,29 @@ def test_effects_and_commands_that_pages_name_exist(page: Path) -> None:
     declared = re.findall(r'effect = "(\w+)"', text)
     own = set(re.findall(r'id="(\w+)"', text))
     assert set(declared) <= {effect.id for effect in EFFECTS} | own
+
+
+def declared(page: str, folder: Path) -> Platform:
+    """The platform that a how-to page declares."""
+    (block,) = (b for b in blocks((FOLDER / page).read_text(encoding="utf-8")) if b.file)
+    file = folder / str(block.file)
+    file.write_text(block.text, encoding="utf-8")
+    return read_platform(file)
+
+
+def test_the_turret_with_a_payload_is_read_in_si(tmp_path: Path) -> None:
+    platform = declared("platform.md", tmp_path)
+    values = {parameter.name: parameter.value for parameter in platform.parameters}
+    assert values["m_payload"] == 4.992
+    assert values["J_x_payload"] == pytest.approx(5.3e-3)
+    assert values["c_x_payload"] == pytest.approx(0.1)
+    free = [parameter.name for parameter in platform.parameters if parameter.free]
+    assert free == ["F_c_pan", "F_s_pan", "F_v_pan", "b_tilt"]
+    refuse_impossible(assemble(platform), platform)
+
+
+def test_raw_columns_are_read_in_si(tmp_path: Path) -> None:
+    pwm, angle, gyro = declared("raw-columns.md", tmp_path).signals
+    assert (pwm.scale, pwm.offset) == (0.1875, 128)
+    assert angle.scale == pytest.approx(-2 * math.pi / 7200)
+    assert (gyro.delay, gyro.offset) == pytest.approx((0.009, math.radians(3.0)))
