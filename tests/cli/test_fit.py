@@ -185,7 +185,7 @@ def test_a_diagnosis_prints_what_the_logs_do_not_settle(capsys) -> None:
     told = lines[lines.index("Declared parameters that these logs do not identify:") + 1 :]
     assert told[0] == "  F_c_pan = 0.2 N m  [0, 1]  (not identified)"
     assert told[1] == "  F_s_pan = 0.3 N m  [0, 1]  (at its bound)"
-    assert told[2] == "  F_v_pan = 0.4 N m  [0, 1]  (seen only together with b_pan)"
+    assert told[2] == "  F_v_pan = 0.4 N m  [0, 1]  (identifiable only together with b_pan)"
     assert not any("  b_pan" in line for line in lines)
 
 

@@ -68,7 +68,7 @@ def test_repeatability_is_told_where_runs_repeat() -> None:
 def test_torque_maps_say_their_share() -> None:
     html = page("unexplained")
     torques = html[html.index('<section id="torques">') : html.index('<section id="ranking">')]
-    for text in ("62 % of the variance", "angle [deg]", "rate [deg/s]", "torque left [N m]"):
+    for text in ("62 % of the variance", "angle [deg]", "rate [deg/s]", "residual torque [N m]"):
         assert text in torques
 
 

@@ -62,7 +62,7 @@ def _line(
     if not rows / ROWS_PER_WINDOW < apart <= SCANNED:
         return None
     task.progress(
-        f"simulating {candidate.key} at all frequencies, {apart} of which can be told apart"
+        f"simulating {candidate.key} at all frequencies, {apart} of which are resolved"
     )
     away = stacked_jacobian(trial.fit)
     residual = projected_off(stacked_residual(trial.fit)[:, None], away)[:, 0]
