@@ -66,7 +66,7 @@ def test_the_example_platform_is_accepted(readme: str, tmp_path: Path) -> None:
     file = tmp_path / "turret.toml"
     file.write_text(block.text, encoding="utf-8")
     platform = read_platform(file)
-    assert {p.name: p.start for p in platform.parameters} == {"J_pan": 0.03, "b_pan": 0.1}
+    assert {p.name: p.value for p in platform.parameters} == {"J_pan": 0.03, "b_pan": 0.1}
     assert all(parameter.free for parameter in platform.parameters)
     assert undeclared_parameters(platform) == ()
     refuse_impossible(assemble(platform), platform)
