@@ -1,6 +1,6 @@
 """Pages whose blocks run in the order of reading, in one folder, as a reader would paste them.
 
-A block whose first line is a comment with the name of a file is that file. Else Python and shell
+A block whose first line is a comment with the name of a file is that file. Other Python and shell
 blocks run, and a `text` block after them is what they print: the same words, and numbers within 2 %
 (machines differ in the last digits).
 """
@@ -58,13 +58,12 @@ class Reader:
     done: int = 0
 
     def paste(self, block: Block) -> None:
-        """Do what the block says; a `text` block is compared with what was printed before it."""
+        """Do what the block says; `text` that is no file is compared with what was printed."""
         self.done += 1
-        if block.language == "text":
-            assert_prints(self.printed, block.text)
-            return
         if block.file:
             (self.folder / block.file).write_text(block.text, encoding="utf-8")
+        elif block.language == "text":
+            assert_prints(self.printed, block.text)
         elif block.language == "python":
             out = io.StringIO()
             with contextlib.redirect_stdout(out):
