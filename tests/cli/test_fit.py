@@ -36,7 +36,7 @@ def test_a_fit_far_from_the_floor_says_so(call, tmp_path: Path) -> None:
     far = r", noise floor (\S+): the model does not fit these logs; run diagnose"
     (floor,) = re.findall(far, done.out)
     assert 0.288 < float(floor) < 0.31
-    assert "Runs were cut into 8 windows of 1 s on average, each with a start" in done.out
+    assert "Runs were cut into 8 windows of 1 s on average, each with its own" in done.out
     assert "b_pan = 0.06 N m s/rad" in done.out
 
     summary = json.loads((out / "fit.json").read_text(encoding="utf-8"))
