@@ -113,3 +113,25 @@ def test_installed_models_load_from_the_wheel_alone(unpacked: Path, tmp_path: Pa
     assert Path(emitted) == unpacked / "ptp_symbolic" / "generated"
     assert stranger == "None"
     assert states == "('theta_pan', 'theta_tilt', 'omega_pan', 'omega_tilt')"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "shown"),
+    [
+        (("platforms",), "thesis-payload"),
+        (("effects", "cable_spring"), "k1_cable_<axis>"),
+        (("diagnose", "--help"), "--validate"),
+    ],
+)
+def test_commands_run_from_the_wheel_alone(
+    arguments: tuple[str, ...], shown: str, unpacked: Path, tmp_path: Path
+) -> None:
+    ran = subprocess.run(
+        [sys.executable, "-m", "ptp_symbolic", *arguments],
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(unpacked), "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PATH": ""},
+        capture_output=True,
+        text=True,
+    )
+    assert ran.returncode == 0, ran.stderr
+    assert shown in ran.stdout
