@@ -29,8 +29,8 @@ def _silent(text: str) -> None:
 @dataclass(frozen=True)
 class Estimate:
     """A fitted parameter: `value` and 95 % `interval` (lower, upper) in `unit`; None where an end
-    is not known. `start` is the declared value; `at_bound` and `identified` tell whether the fit
-    ended on a bound, and whether the logs determine the value at all.
+    is not known. `start` is the declared value; `at_bound` says whether the
+    fit ended on a bound, `identified` whether the logs determine the value.
     """
 
     name: str
@@ -112,7 +112,7 @@ class FitResult(_Result):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Diagnosis(_Result):
-    """What a platform lacks, as its logs show it; see `diagnose`."""
+    """The effects that are missing from a platform, as its logs show; see `diagnose`."""
 
     output: "Output"
 
@@ -190,7 +190,7 @@ WHENS = ("before", "after", "noise_floor")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Experiment(_Result):
-    """The input that is worth most; see `experiment`."""
+    """The most informative input; see `experiment`."""
 
     output: "Output"
 
@@ -264,12 +264,12 @@ def diagnose(
     black_box: bool = False,
     progress: Progress = _silent,
 ) -> Diagnosis:
-    """Fit `platform` to the logs `train`, find the effect that it lacks, and judge on the logs
-    `validate`, which are never fitted.
+    """Fit `platform` to the logs `train`, find the effect that is missing, and validate it on the
+    logs `validate`, which are never fitted.
 
     `platform` is what `load` takes; logs are files, folders, or logs of `read_log`. The search ends
     after `time_limit` s (None: 300) with what it has tried; with `black_box` the result is compared
-    with models that know no physics. Raises InputError for logs and platforms that do not fit each
+    with black-box models. Raises InputError for logs and platforms that do not fit each
     other, for a run in both parts, and for a limit that is no time.
 
     >>> import ptp_symbolic as ptp
@@ -308,10 +308,10 @@ def experiment(
     seed: int = 1,
     progress: Progress = _silent,
 ) -> Experiment:
-    """Design the run that tells the effects `between` apart, or shows `parameters` best.
+    """Design the run that separates the effects `between`, or determines `parameters` best.
 
     `limits` say how far inputs, states and outputs may go: {"u_pan": "12 V", "theta_pan":
-    "-90..45 deg"}. A `diagnosis` that ended with a group is what it left open. `duration` and
+    "-90..45 deg"}. A `diagnosis` that ended with a group gives its effects. `duration` and
     `period` (None: that of the logs) are in s, `initial` states by name in SI or with units.
     Raises InputError for names, limits, states and times that do not fit the platform.
 
@@ -330,7 +330,7 @@ def experiment(
         group, known = group_of(_saved(diagnosis), declared)
         if not (between or parameters or group):
             raise InputError(
-                "This `diagnosis` leaves no group; say by `between` or `parameters` what the"
+                "This `diagnosis` ended without a group; say by `between` or `parameters` what the"
                 " experiment is for."
             )
         between = between or (() if parameters else group)

@@ -1,4 +1,4 @@
-"""`ptp-symbolic check`: what logs hold, and what they can show, before anything is fitted."""
+"""`ptp-symbolic check`: the contents of logs, and what they can show, before anything is fitted."""
 
 import json
 from collections.abc import Mapping
@@ -30,9 +30,9 @@ EVEN = 1e-4  # of a period, rms: less is rounding of the time column
 @click.option("--out", type=Path, help="Folder for check.html and check.json.")
 @click.option("--json", "as_json", is_flag=True, help="Print check.json instead of tables.")
 def check(source: str, logs: tuple[str, ...], out: Path | None, as_json: bool) -> None:
-    """Say what logs hold, and how small a parameter or an effect they can show.
+    """Print the contents of logs, and the smallest parameter change and effect they can show.
 
-    The sizes are predicted by the declared model at its start values, for white noise.
+    The amounts are predicted by the declared model at its start values, for white noise.
     """
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.models.committed import declared_platform
@@ -80,7 +80,7 @@ def _print_logs(summary: Mapping[str, Any]) -> None:
         Console().print(signals)
     same = summary["repeatability"]
     if same is None:
-        click.echo("No two runs have the same inputs: how well the machine repeats is not known.")
+        click.echo("No two runs have the same inputs: its repeatability is not known.")
     else:
         pairs = ", ".join(" = ".join(pair) for pair in same["runs"])
         click.echo(f"Runs with the same inputs: {pairs}.")
@@ -117,7 +117,7 @@ def _print_visible(summary: Mapping[str, Any]) -> None:
     table = Table("", "parameter", "smallest", box=None)
     rows = sorted(summary["visible"], key=lambda r: (r["effect"] is not None, r["effect"] or ""))
     for row in rows:
-        size = "cannot be seen"
+        size = "not visible"
         if row["smallest"] is not None:
             size = f"{row['smallest']:.2g} {row['unit']}"
         elif row["largest"] is not None:

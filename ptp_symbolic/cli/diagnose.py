@@ -39,14 +39,18 @@ def repeated(args: Sequence[str], options: Collection[str]) -> list[str]:
 
 @click.command(cls=SeveralValues)
 @click.option("--platform", "source", required=True, help="Platform TOML or packaged name.")
-@click.option("--train", multiple=True, required=True, help="Logs or folders to fit.")
-@click.option("--validate", multiple=True, required=True, help="Logs never fitted, to judge.")
+@click.option(
+    "--train", multiple=True, required=True, help="Logs or folders to fit (training runs)."
+)
+@click.option(
+    "--validate", multiple=True, required=True, help="Logs that are never fitted (validation runs)."
+)
 @click.option("--out", type=Path, required=True, help="Folder for the results.")
-@click.option("--black-box", is_flag=True, help="Compare with models that know no physics.")
+@click.option("--black-box", is_flag=True, help="Compare with black-box models.")
 @click.option(
     "--time-limit",
     type=float,
-    help="Seconds that the search may take; default 300. The verdict and the report come on top.",
+    help="Limit of the search in s; default 300. Verdict and report follow after it.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print diagnosis.json instead of tables.")
 def diagnose(
@@ -58,7 +62,7 @@ def diagnose(
     time_limit: float | None,
     as_json: bool,
 ) -> None:
-    """Find the effect that a declared platform lacks, from its logs."""
+    """Find the effect that is missing from a declared platform, from its logs."""
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.workflows.diagnosis import diagnose_platform
@@ -88,7 +92,7 @@ def diagnose(
 def fit(source: str, logs: tuple[str, ...], out: Path, as_json: bool) -> None:
     """Fit the free parameters of a platform to logs or folders of logs.
 
-    Writes fit.json, and platform.toml with the fitted values as starts.
+    Writes fit.json, and platform.toml with the fitted values as start values.
     """
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.models.committed import declared_platform
@@ -127,10 +131,10 @@ def _print_fit(summary: Mapping[str, Any]) -> None:
     )
     advice = ""
     if summary["far_from_floor"]:
-        is_odd = any(text.startswith("The fit leaves") for text in summary["remarks"])
+        is_odd = any(text.startswith("The residual is") for text in summary["remarks"])
         next_step = "check the signals as said above" if is_odd else "run diagnose"
         advice = f": the model does not fit these logs; {next_step}"
-    click.echo(f"{after:.4g} {unit} rms over all runs ({begun}), floor {floor:.2g}{advice}.")
+    click.echo(f"{after:.4g} {unit} rms over all runs ({begun}), noise floor {floor:.2g}{advice}.")
 
 
 def _print_remarks(summary: Mapping[str, Any]) -> None:
@@ -148,18 +152,18 @@ def _print_diagnosis(summary: Mapping[str, Any]) -> None:
     for effect in summary["added"]:
         _print_parameters({name: fitted[name] for name in effect["parameters"]})
         if effect["confusable_with"]:
-            click.echo(f"  What would tell it apart: {effect['separating_experiment']}")
+            click.echo(f"  Experiment that separates them: {effect['separating_experiment']}")
     doubtful = {
         name: p
         for name, p in fitted.items()
         if name not in added and (p["at_bound"] or not p["identified"])
     }
     if doubtful:
-        click.echo("Declared parameters that these logs do not settle:")
+        click.echo("Declared parameters that these logs do not identify:")
         _print_parameters(doubtful)
     _print_windows(summary)
     if summary["refused"]:
-        click.echo("Gained something, but were not named:")
+        click.echo("Improved the fit, but rejected:")
     for key, why in summary["refused"].items():
         click.echo(f"  {key}: {why}")
     for text in summary["hints"]:
@@ -173,8 +177,8 @@ def _print_windows(summary: Mapping[str, Any]) -> None:
         return
     count, seconds = summary["windows"]["count"], summary["windows"]["seconds"]
     click.echo(
-        f"Runs were cut into {count} windows of {seconds:.2g} s on average, each with a start"
-        " of its own: where samples are missing, or where errors of a start or of the inputs grow."
+        f"Runs were cut into {count} windows of {seconds:.2g} s on average, each with its own"
+        " initial state: where samples are missing, or where errors grow."
     )
 
 
@@ -188,7 +192,7 @@ def _print_rivals(summary: Mapping[str, Any]) -> None:
     for axis, part in ({} if found is None else found["axes"]).items():
         models = [f"{MODELS[key]} {said(m)}" for key, m in part["models"].items()]
         click.echo(
-            f"Torque left on {axis} along the validation runs, rms in {part['unit']}:"
+            f"Residual torque on {axis} along the validation runs, rms in {part['unit']}:"
             f" {', '.join(models)}."
         )
     if found is not None and found["free"]:
@@ -215,7 +219,7 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
     for part, title in (("train", "fitted"), ("validate", "never fitted")):
         error = errors[part]
         click.echo(f"{part} ({title}), {unit} rms, {over(error['before'].get('windows'))}:")
-        table = Table("run", "before", "after", "floor", box=None)
+        table = Table("run", "before", "after", "noise floor", box=None)
         for run in (*error["before"]["by_run"], "total"):
             cells = [
                 error[when]["total"] if run == "total" else error[when]["by_run"][run]

@@ -1,4 +1,4 @@
-"""`ptp-symbolic experiment`: the input that tells rivals apart, or shows a parameter best."""
+"""`ptp-symbolic experiment`: the input that separates effects, or determines a parameter best."""
 
 import json
 from collections.abc import Mapping
@@ -17,9 +17,11 @@ from ptp_symbolic.errors import InputError
 @click.command(cls=SeveralValues)
 @click.option("--platform", "source", required=True, help="Platform TOML or packaged name.")
 @click.option("--diagnosis", type=Path, help="Folder of a diagnosis that ended with a group.")
-@click.option("--between", multiple=True, help="Effects to tell apart, such as cogging@pan.")
-@click.option("--parameter", "parameters", multiple=True, help="Free parameters to know better.")
-@click.option("--train", multiple=True, help="Logs or folders so far.")
+@click.option("--between", multiple=True, help="Effects to separate, such as cogging@pan.")
+@click.option(
+    "--parameter", "parameters", multiple=True, help="Free parameters to determine better."
+)
+@click.option("--train", multiple=True, help="Logs or folders recorded so far.")
 @click.option(
     "--limit",
     "limits",
@@ -49,7 +51,7 @@ def experiment(
     out: Path,
     as_json: bool,
 ) -> None:
-    """Design the run that tells rival effects apart, or a parameter best, within limits.
+    """Design the run that separates alternative effects, or determines a parameter best.
 
     Writes input.csv, ready to play and for `simulate --input`, experiment.json and experiment.png.
     """
@@ -66,8 +68,8 @@ def experiment(
         group, known = group_of(diagnosis, platform)
         if not (between or parameters or group):
             raise InputError(
-                f"{diagnosis}: this diagnosis leaves no group; say by --between or --parameter what"
-                " the experiment is for."
+                f"{diagnosis}: this diagnosis ended without a group; say by --between or"
+                " --parameter what the experiment is for."
             )
         between = between or (() if parameters else group)
     states = initial_states(load(source), initial) if initial else {}
@@ -121,8 +123,8 @@ def _print_separation(summary: Mapping[str, Any]) -> None:
     share = min(pair["share_after"] for pair in pairs if pair["machine"] == likeliest)
     enough = "enough" if share >= needed else "too little: give a longer run or wider limits"
     click.echo(
-        f"diagnose names {likeliest} alone if it takes away {100.0 * needed:.0f} % of the squared"
-        f" error of every other: at least {100.0 * share:.0f} % is predicted, {enough}."
+        f"diagnose names {likeliest} alone if it reduces the sum of squares of every other"
+        f" by {100.0 * needed:.0f} %: at least {100.0 * share:.0f} % is predicted, {enough}."
     )
 
 

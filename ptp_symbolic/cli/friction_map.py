@@ -97,13 +97,13 @@ def _print(summary: Mapping[str, Any]) -> None:
         ends = ["open" if of[end] is None else f"{of[end]:.4g}" for end in ("low", "high")]
         table.add_row(name, f"{of['value']:.4g}", " to ".join(ends), of["unit"])
     Console().print(table)
-    members = Table("parameters", "rms", "left out", "p", "law", box=None)
+    members = Table("parameters", "rms", "cross-validated", "p", "law", box=None)
     for row in summary["members"]:
         if row["p_value"] is not None:
             left_out = "" if row["left_out"] is None else f"{row['left_out']:.3g}"
             cells = (f"{row['rms']:.3g}", left_out, f"{row['p_value']:.2g}", row["member"])
             members.add_row(str(row["parameters"]), *cells)
-    click.echo("Laws tested, the named one last (p: chance that larger ones fit so much better):")
+    click.echo("Laws tested, the named one last (p: F tests against all larger laws together):")
     Console().print(members)
     for text in summary["remarks"]:
         click.echo(f"Note: {text}")

@@ -78,7 +78,7 @@ def _explain(name: str, as_json: bool) -> None:
         for need in kind["needs"]:
             click.echo(f"  needs {need['quantity']}, from {' or '.join(need['from'])}")
         if kind["separating_experiment"]:
-            click.echo(f"  to tell it apart: {kind['separating_experiment']}")
+            click.echo(f"  to separate it: {kind['separating_experiment']}")
         if kind["parameters"]:
             click.echo()
             _print_table([_as_row(parameter) for parameter in kind["parameters"]])

@@ -25,7 +25,7 @@ def report() -> None:
     help="Operating point to linearise about: theta_tilt=30deg,omega_pan=0.2rad/s. Repeatable.",
 )
 def derivation(source: str, out: Path, points: tuple[str, ...]) -> None:
-    """Write the derivation of a platform's equations in LaTeX, and as PDF where pdflatex is."""
+    """Write the derivation of a platform's equations in LaTeX, and as PDF with pdflatex."""
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.platform import naming_file
@@ -56,7 +56,7 @@ def derivation(source: str, out: Path, points: tuple[str, ...]) -> None:
 )
 @click.option("--out", type=Path, required=True, help="Folder for the document.")
 def changes(before: str, after: str, diagnosis: Path | None, out: Path) -> None:
-    """Write what platform AFTER has that BEFORE has not, in LaTeX (and PDF where pdflatex is)."""
+    """Write what AFTER adds to the platform BEFORE, in LaTeX (and PDF with pdflatex)."""
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.report.changes import render_changes, shown_of

@@ -12,7 +12,7 @@ from ptp_symbolic.cli.progress import progress_line
 @click.option("--out", type=Path, required=True, help="Folder for the report.")
 @click.option("--json", "as_json", is_flag=True, help="Print thesis.json instead of file names.")
 def thesis(out: Path, as_json: bool) -> None:
-    """Recompute the thesis: thesis.json, figures, thesis.tex, and thesis.pdf where pdflatex is."""
+    """Recompute the thesis: thesis.json, figures, thesis.tex, and thesis.pdf with pdflatex."""
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.report.pdf import compile_pdf
     from ptp_symbolic.thesis.document import thesis_files

@@ -63,8 +63,8 @@ def machines(data: Path, progress: Progress = lambda text: None) -> dict[str, An
     ]
     if not found:
         raise InputError(
-            f"{data}: has none of the folders emps, servo_pendulum and screw_drives; the README"
-            " names the sources of their files."
+            f"{data}: has none of the folders emps, servo_pendulum and screw_drives;"
+            " docs/development/benchmark.md names the sources of their files."
         )
     now = datetime.now(UTC).isoformat(timespec="seconds")
     return {"version": version("ptp-symbolic"), "date": now, "machines": found}

@@ -46,23 +46,23 @@ VERDICTS = {
     ),
     "explained_up_to_group": Verdict(
         "found",
-        "explained, with look-alikes",
-        "Missing effect{s} found, up to look-alikes: {effects}",
-        "With it the model reproduces the validation runs, but these logs cannot tell it from"
-        " the look-alikes named below.",
+        "explained up to a group",
+        "Missing effect{s} found, up to a group of alternatives: {effects}",
+        "With it the model reproduces the validation runs. The alternatives named below reproduce"
+        " these logs as well.",
     ),
     "partly_explained": Verdict(
         "partly",
         "partly explained",
         "Part of the error explained by: {effects}",
-        "The error falls clearly, but not to the noise floor: something else is missing too.",
+        "The error falls significantly, but not to the noise floor: something else is missing too.",
     ),
     "unexplained": Verdict(
         "open",
         "unexplained",
         "Something is missing, and no known effect could be confirmed",
-        "More than noise is left, yet no candidate could be confirmed. The closest one is shown"
-        " with its figures, as a hint and not as a finding.",
+        "The residual exceeds the noise, yet no candidate could be confirmed. The closest one is"
+        " shown with its figures, as a hint and not as a finding.",
     ),
 }
 

@@ -40,7 +40,7 @@ def friction_map_picture(summary: Mapping[str, Any]) -> bytes:
         above.legend(frameon=False, loc="lower right")
         below.axhline(0.0, color="#c9cfd6", linewidth=0.8)
         below.plot(points["rate"], left, ".", color=AFTER, ms=7)
-        below.set_ylabel(f"left [{unit}]")
+        below.set_ylabel(f"residual [{unit}]")
         below.set_title(f"measured − law, rms {scale * summary['rms']['law']:.3g} {unit}")
         below.set_xlabel(f"rate [{rate}]")
         buffer = io.BytesIO()

@@ -81,7 +81,7 @@ def torque_map_figure(maps: Sequence[Mapping[str, Any]], unit: str) -> str:
             axes.errorbar(x, found["mean"], bars, color=AFTER, marker=".", elinewidth=0.9)
             axes.set_xlabel(f"{found['against']} [{shown}]")
             axes.set_title(f"{100.0 * found['share']:.0f} % of the variance")
-        grid[0].set_ylabel(f"{'force' if unit == 'N' else 'torque'} left [{unit}]")
+        grid[0].set_ylabel(f"residual {'force' if unit == 'N' else 'torque'} [{unit}]")
         return svg_of(figure)
 
 

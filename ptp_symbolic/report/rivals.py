@@ -1,4 +1,4 @@
-"""The named effect beside rivals that know no physics: a figure and words for the page."""
+"""The named effect beside black-box models: a figure and words for the page."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -66,7 +66,7 @@ def rival_figure(part: Mapping[str, Any]) -> str:
         axes.set_yticks(range(len(runs)), runs)
         axes.set_ylim(len(runs) - 0.5, -0.5)
         axes.set_xlabel(
-            f"{'force' if part['unit'] == 'N' else 'torque'} left, rms [{part['unit']}]"
+            f"residual {'force' if part['unit'] == 'N' else 'torque'}, rms [{part['unit']}]"
         )
         axes.legend(
             loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, frameon=False, borderpad=0.0

@@ -162,7 +162,7 @@ def doubts(parameter: Record) -> list[str]:
     partners = parameter.get("only_with") or []
     found = ["at its bound"] if parameter.get("at_bound") else []
     if partners:
-        found.append(f"seen only together with {', '.join(partners)}")
+        found.append(f"identifiable only together with {', '.join(partners)}")
     elif parameter.get("identified") is False:
         found.append("not identified")
     return found

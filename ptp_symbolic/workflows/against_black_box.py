@@ -14,15 +14,15 @@ from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
 from ptp_symbolic.platform import Platform
 
 FITTED = (
-    "The declared model and the named effects were fitted to the training runs. The"
-    " rivals were fitted to the torque (force of a linear joint) that the fitted declared model"
-    " lacks along the measured motion of the same runs, as a function of angles, rates, their signs"
-    " and inputs; how strongly they are regularised was chosen by leaving out blocks of these runs"
-    " in turn. No model was fitted to the validation runs. All are judged by that torque, averaged"
-    " over windows in which the joint slides (the measure that the rivals were fitted to), and in"
-    " free simulation: there the torque of a rival acts on the joints of the declared model, held"
-    " from sample to sample, from the fitted start of the declared or of the final model, whichever"
-    " leaves less."
+    "The declared model and the named effects were fitted to the training runs. The black-box"
+    " models were fitted to the residual torque (force of a linear joint) of the fitted declared"
+    " model along the measured motion of the same runs, as a function of angles, rates, their signs"
+    " and inputs; how strongly they are regularised was chosen by cross-validation over blocks of"
+    " these runs. No model was fitted to the validation runs. All are judged by that torque,"
+    " averaged over windows in which the joint slides, and in free simulation: there the torque of"
+    " a black-box model acts on the joints of the declared model, constant between samples, from"
+    " the fitted initial state of the declared or of the final model, whichever has the smaller"
+    " error."
 )
 NO_ROWS = "The equations of this machine have no residual torque along its measured motion."
 

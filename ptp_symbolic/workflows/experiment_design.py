@@ -91,7 +91,7 @@ def _refuse_odd(request: Request) -> None:
             " or `parameters`."
         )
     if len(set(request.between)) == 1:
-        raise InputError(f"`between` {request.between[0]}: give two effects or more to tell apart.")
+        raise InputError(f"`between` {request.between[0]}: give two effects or more to separate.")
     if request.tries < FEWEST_TRIES:
         raise InputError(f"`tries` {request.tries}: give at least {FEWEST_TRIES}.")
 

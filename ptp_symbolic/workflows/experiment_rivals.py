@@ -78,8 +78,8 @@ def rivals_of(
     for key in (key for keys in between for key in keys.split("+")):
         if key in own:
             raise InputError(
-                f"--between {key}: {platform.source or platform.name} declares it already; give the"
-                " platform without the effects to tell apart."
+                f"`between` {key}: {platform.source or platform.name} declares it already; give the"
+                " platform without the effects to separate."
             )
     progress("deriving the equations")
     model = model_of(variants.with_candidates(platform) if between else platform)
@@ -185,7 +185,7 @@ def _assumed(contender: Contender, effects: Sequence[Candidate], known: Mapping[
         for c in effects
         for f in c.defining
     )
-    return f"{contender.name} is taken with {amounts}, {from_where}; logs would tell more."
+    return f"{contender.name} is taken with {amounts}, {from_where}; logs would add information."
 
 
 def _is_off(contender: Contender, task: Task) -> bool:

@@ -101,7 +101,7 @@ def _what_to_check(error: Mapping[str, Any]) -> tuple[str, ...]:
         return ()
     left = f"{counts:.3g} counts" if counts else f"{error['rmse']:.3g} {error['unit']}"
     return (
-        f"The fit leaves {left} rms, {100.0 * share:.0f} % of the motion: check the unit, sign,"
+        f"The residual is {left} rms, {100.0 * share:.0f} % of the motion: check the unit, sign,"
         " scale and delay of every signal first, then the declared inertias and lengths; if these"
         " are right, run diagnose.",
     )

@@ -120,7 +120,7 @@ def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choic
 
     terms = searched(None, brief=bool(every))
     if not every or (terms.is_quiet and not terms.found.chosen.candidates):
-        why = "not tried: the declared structure leaves noise alone"
+        why = "not tried: the residual of the declared structure is noise alone"
         untried = {**untried, **{key: why for each in every for key in each.keys}}
         return Choice(terms.outcome, terms.outcome, (), untried, terms.found.is_cut_short)
     fitted = fit_structures(platform, every, logs)
@@ -331,7 +331,7 @@ def _row(
     failed = structure.trial.fit.failed
     accepted = structure is chosen.structure
     if accepted:
-        why = "the structure of the final model: it predicts blocks left out clearly better"
+        why = "the structure of the final model: it predicts blocks left out significantly better"
     elif failed:
         why = f"the fit failed: {failed}"
     else:

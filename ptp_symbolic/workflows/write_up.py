@@ -50,8 +50,8 @@ from ptp_symbolic.workflows.result import SCHEMA_VERSION, Output, json_text
 from ptp_symbolic.workflows.structure_choice import Choice
 
 TAKEN_OVER = (
-    "The declared model fits better from where an extended one ended than from its own starts: that"
-    " is the error before, and fit alone may end in a worse place."
+    "The declared model fits better from the values of an extended model than from its declared"
+    " start values. The error before is that of the better fit; fit alone may end in the worse one."
 )
 NOT_TRIED = "not tried: "  # begins a reason that lies in the effect, not in the platform
 
@@ -254,16 +254,16 @@ def _carried_remarks(platform: Platform, floor: Floor) -> list[str]:
     if not names or np.all(floor.carried.usual <= floor.noise):
         return []
     return [
-        f"The noise of {' and '.join(names)}, estimated from the logs, leaves more than that of the"
-        " outputs. Where an input is logged as it was commanded, declare `noise = 0.0` for it: then"
-        " smaller effects show."
+        f"The noise of {' and '.join(names)}, estimated from the logs, causes a larger error than"
+        " that of the outputs. Where an input is logged as it was commanded, declare `noise = 0.0`"
+        " for it: then smaller effects are visible."
     ]
 
 
 def _tied_remarks(platform: Platform) -> list[str]:
     """Ties that may be what is wrong: no candidate undoes one."""
     return [
-        f"{p.name} is declared the same as {p.same_as}, which is not put in doubt; with a `start`"
+        f"{p.name} is declared the same as {p.same_as}, which is not tested; with a `start`"
         " in place of `same_as` it is fitted."
         for p in platform.parameters
         if p.same_as is not None

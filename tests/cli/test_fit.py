@@ -33,10 +33,10 @@ def test_a_fit_far_from_the_floor_says_so(call, tmp_path: Path) -> None:
     done = call("fit", "--platform", path, LOG, "--out", out)
     assert done.code == 0 and not re.sub(PHASE, "", done.err)
     # Rounding, 0.289 counts, and what the noise of the torques adds to it.
-    far = r", floor (\S+): the model does not fit these logs; run diagnose"
+    far = r", noise floor (\S+): the model does not fit these logs; run diagnose"
     (floor,) = re.findall(far, done.out)
     assert 0.288 < float(floor) < 0.31
-    assert "Runs were cut into 8 windows of 1 s on average, each with a start" in done.out
+    assert "Runs were cut into 8 windows of 1 s on average, each with its own" in done.out
     assert "b_pan = 0.06 N m s/rad" in done.out
 
     summary = json.loads((out / "fit.json").read_text(encoding="utf-8"))
@@ -132,12 +132,12 @@ def test_hints_are_printed(capsys) -> None:
 
 
 def test_what_was_refused_and_remarks_on_the_logs_are_printed(capsys) -> None:
-    refused = {"gear_eccentricity@pan": "takes away only 3 % of the error"}
+    refused = {"gear_eccentricity@pan": "reduces the sum of squares by 3 % only"}
     _print_diagnosis({**diagnosis(0.3, 5e-4), "refused": refused, "remarks": ["An axis rests."]})
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "Note: An axis rests."
-    at = lines.index("Gained something, but were not named:")
-    assert lines[at + 1] == "  gear_eccentricity@pan: takes away only 3 % of the error"
+    at = lines.index("Improved the fit, but rejected:")
+    assert lines[at + 1] == "  gear_eccentricity@pan: reduces the sum of squares by 3 % only"
 
 
 def test_a_fit_without_an_encoder_is_reported_in_rad(capsys) -> None:
@@ -147,7 +147,7 @@ def test_a_fit_without_an_encoder_is_reported_in_rad(capsys) -> None:
     errors = {"before": error(0.02), "after": error(5e-4), "noise_floor": error(4e-4)}
     summary = {"parameters": {}, "windows": None, "error": errors, "remarks": []}
     _print_fit({**summary, "far_from_floor": False})
-    text = "0.0005 rad rms over all runs (0.02 at the start values), floor 0.0004."
+    text = "0.0005 rad rms over all runs (0.02 at the start values), noise floor 0.0004."
     assert text in capsys.readouterr().out
 
 
@@ -181,11 +181,11 @@ def test_a_diagnosis_prints_what_the_logs_do_not_settle(capsys) -> None:
     lines = capsys.readouterr().out.splitlines()
     assert "  beta_base = 0.07 N m  [0, 1]" in lines
     assert "  alpha_base = -0.6 N m  [0, 1]  (not identified)" in lines
-    assert "  What would tell it apart: Turn further." in lines
-    told = lines[lines.index("Declared parameters that these logs do not settle:") + 1 :]
+    assert "  Experiment that separates them: Turn further." in lines
+    told = lines[lines.index("Declared parameters that these logs do not identify:") + 1 :]
     assert told[0] == "  F_c_pan = 0.2 N m  [0, 1]  (not identified)"
     assert told[1] == "  F_s_pan = 0.3 N m  [0, 1]  (at its bound)"
-    assert told[2] == "  F_v_pan = 0.4 N m  [0, 1]  (seen only together with b_pan)"
+    assert told[2] == "  F_v_pan = 0.4 N m  [0, 1]  (identifiable only together with b_pan)"
     assert not any("  b_pan" in line for line in lines)
 
 
@@ -199,7 +199,7 @@ def test_thousands_of_counts_are_first_a_matter_of_the_signals(capsys) -> None:
     assert _what_to_check(error(700.0, 2.0)) == _what_to_check(error(9e5, 0.01)) == ()
     (text,) = _what_to_check(error(39_800.0, 1.39))
     assert text.startswith(
-        "The fit leaves 3.98e+04 counts rms, 139 % of the motion: check the unit,"
+        "The residual is 3.98e+04 counts rms, 139 % of the motion: check the unit,"
     )
     errors = {w: {"total": error(4e4, 1.4)} for w in ("before", "after", "noise_floor")}
     summary = {"parameters": {}, "windows": None, "error": errors, "remarks": [text]}

@@ -35,7 +35,7 @@ def test_every_effect_is_explained(call, effect: str) -> None:
 def test_friction_has_its_parameters_with_units_and_bounds(call) -> None:
     text = call("effects", "csvs_friction").out
     assert "F_c_<axis>  N m        none: declare it  0 to 10000" in text
-    assert "to tell it apart: Crawl through standstill" in text
+    assert "to separate it: Crawl through standstill" in text
     needs = call("effects", "direction_dependent_friction").out
     assert "needs coulomb_torque_<axis>, from csvs_friction" in needs
 

@@ -111,7 +111,7 @@ MISTAKES = {
     "a machine that never moved": (
         PLATFORM,
         "time [s],torque [N m],enc [deg]\n" + rows(angle=np.zeros(300)),
-        "without motion nothing can be told of the machine: give logs in which it moves",
+        "without motion nothing can be identified: give logs in which the machine moves",
         PLATFORM,
         GOOD,
     ),

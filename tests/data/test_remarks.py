@@ -78,7 +78,7 @@ def test_an_encoder_that_is_set_anew_is_noted_with_time_and_size() -> None:
     """A jump of 900 counts within one sample; an impact that only turns the motion is none."""
     jumped = MOVING + np.where(TIME >= 0.5, 900.0 * COUNT, 0.0)
     (text,) = remarks([log(jumped)], PLATFORM)
-    assert "'pan_angle' jumps by 90" in text and "at 0.5 s" in text and "set anew" in text
+    assert "'pan_angle' jumps by 90" in text and "at 0.5 s" in text and "reset, at an index" in text
     spiked = MOVING.copy()
     spiked[120] += 1.0
     (text,) = remarks([log(spiked)], PLATFORM)

@@ -43,9 +43,11 @@ def doubt_for(*sizes: float) -> str | None:
 def test_more_than_is_left_is_taken_away_surely(sizes: tuple[float, ...], doubted: bool) -> None:
     doubt = doubt_for(*sizes)
     assert (doubt is not None) is doubted
-    assert doubt is None or "too little where more than noise is left" in doubt
+    assert doubt is None or "too little while the residual exceeds the noise" in doubt
 
 
 def test_the_reason_gives_the_share_and_what_is_sure() -> None:
     doubt = doubt_for(1.0, 1.0, 1.0, 1.0, 1.0, 3.5)
-    assert doubt is not None and doubt.startswith("takes away 59 % of the error, surely 24 %")
+    assert doubt is not None and doubt.startswith(
+        "reduces the sum of squares by 59 % (lower 95 % limit 24 %)"
+    )

@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ptp_symbolic.cli.diagnose import _print_diagnosis
 from ptp_symbolic.platform import read_platform
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
+from tests.documentation.pages import assert_prints, blocks
 
 pytestmark = pytest.mark.early
 
@@ -33,6 +35,15 @@ def test_sample_made_by_mujoco_is_explained_by_base_tilt(sample) -> None:
     assert found["error"]["validate"]["before"]["total"]["rmse_counts"] > 10.0
     for run in found["error"]["validate"]["after"]["by_run"].values():
         assert run["rmse_counts"] < 0.35
+
+
+def test_the_readme_shows_what_the_demo_prints(
+    sample, checkout: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _print_diagnosis(sample.summary)
+    page = (checkout / "README.md").read_text(encoding="utf-8")
+    shown = next(block for block in blocks(page) if block.language == "text")
+    assert_prints(capsys.readouterr().out, shown.text)
 
 
 def test_a_search_that_is_cut_short_says_so(sample) -> None:

@@ -25,4 +25,4 @@ def test_a_torque_with_its_sign_turned_is_said(
         task, declared = fit_declared(task, propose(task))
         found = turned_inputs(task, declared)
     assert len(found) == (1 if sign < 0.0 else 0)
-    assert all("sign of 'tau_pan' turned" in text for text in found)
+    assert all("sign of 'tau_pan' inverted" in text for text in found)

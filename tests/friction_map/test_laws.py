@@ -173,7 +173,7 @@ def test_torques_with_a_larger_declared_scatter_weigh_less() -> None:
 def test_viscous_friction_alone_leaves_no_coulomb_friction() -> None:
     found = friction_map(drawn(0, Side(0.0, 0.0, 1.0, 0.1), Side(0.0, 0.0, 1.0, 0.1)), "pan", 0.95)
     assert found["parts"] == ["Coulomb", "viscous"]
-    assert any("Coulomb friction cannot be told from none" in text for text in found["remarks"])
+    assert any("Coulomb friction is not significant" in text for text in found["remarks"])
 
 
 @pytest.mark.parametrize("law", [np.sign, lambda v: v], ids=["Coulomb", "viscous"])

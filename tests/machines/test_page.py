@@ -15,7 +15,7 @@ RANKING = [
         "effect": "cogging",
         "gain": {"share": 0.31, "ci95": [0.1, 0.5]},
         "accepted": False,
-        "why": "its amount cannot be told from zero",
+        "why": "its amount is not significantly different from zero",
     },
     {
         "effect": "cable_spring",
@@ -51,8 +51,11 @@ PARTS = ("train", "validate")
 def test_candidates_errors_and_files_of_a_machine_are_on_its_page() -> None:
     page = render_machines({"version": "1", "date": "today", "machines": [machine()]})
     assert "80.0 % (70.0 to 90.0 %)" in page and "accepted" in page
-    assert "31.0 % (10.0 to 50.0 %)" in page and "its amount cannot be told from zero" in page
-    assert "by itself): cable_spring (12.3 %)." in page
+    assert (
+        "31.0 % (10.0 to 50.0 %)" in page
+        and "its amount is not significantly different from zero" in page
+    )
+    assert "of each alone): cable_spring (12.3 %)." in page
     assert "training 143, validation 157" in page
     assert "held_out.csv" in page and "0f3e" in page
 
@@ -65,7 +68,7 @@ def test_a_set_that_grew_along_the_motion_is_accepted_with_what_its_members_gain
     ]
     one = {**machine(), "ranking": [grown], "added": members}
     page = render_machines({"version": "1", "date": "today", "machines": [one]})
-    assert "accepted: grown in the torque along the measured motion" in page
+    assert "accepted by the torque along the measured motion" in page
     assert "backlash 60.0 % (30.0 to 90.0 %), cogging 20.0 % (10.0 to 30.0 %)" in page
 
 

@@ -1,6 +1,6 @@
 """What the README shows works as it stands there."""
 
-import math
+import json
 import re
 import subprocess
 import sys
@@ -9,10 +9,12 @@ from pathlib import Path
 import pytest
 
 from ptp_symbolic.platform import read_platform
+from ptp_symbolic.report.diagnosis import VERDICTS
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.placement import undeclared_parameters
-from ptp_symbolic.symbolic.effects import EFFECTS
+from ptp_symbolic.symbolic.effects import PACKAGED
+from tests.documentation.pages import Reader, blocks, command_lines, in_a_shell
 
 COMMANDS = (
     "platforms",
@@ -34,54 +36,74 @@ def readme(checkout: Path) -> str:
     return (checkout / "README.md").read_text(encoding="utf-8")
 
 
-def block(readme: str, language: str) -> str:
-    """The fenced blocks of a language, one after the other."""
-    found = re.findall(rf"^```{language}\n(.*?)^```", readme, re.MULTILINE | re.DOTALL)
+def section(readme: str, title: str) -> str:
+    """The text below a heading, up to the next."""
+    found = re.search(rf"^## {title}\n(.*?)(?=^## |\Z)", readme, re.MULTILINE | re.DOTALL)
     assert found
-    return "".join(found)
+    return found[1]
+
+
+def test_it_is_read_at_once(readme: str) -> None:
+    lines = readme.splitlines()
+    assert len(lines) <= 150
+    assert any("`diagnose`" in line for line in lines[:8])
+    assert max(map(len, lines)) <= 356
+
+
+def test_its_two_commands_exist(readme: str, checkout: Path) -> None:
+    (block,) = (b for b in blocks(section(readme, "Two commands")) if b.language == "sh")
+    commands = list(command_lines(block.text))
+    assert commands == [["python3", "scripts/demo.py"], ["python3", "scripts/test.py"]]
+    for _, script in commands:
+        compile((checkout / script).read_text(encoding="utf-8"), script, "exec")
+    ran = subprocess.run([sys.executable, checkout / "scripts/demo.py", "--help"], check=True)
+    assert ran.returncode == 0
+    assert "python3 scripts/test.py" in (checkout / ".ci" / "run").read_text(encoding="utf-8")
 
 
 def test_the_example_platform_is_accepted(readme: str, tmp_path: Path) -> None:
+    (block,) = (b for b in blocks(readme) if b.language == "toml")
     file = tmp_path / "turret.toml"
-    file.write_text(block(readme, "toml"), encoding="utf-8")
+    file.write_text(block.text, encoding="utf-8")
     platform = read_platform(file)
-    values = {parameter.name: parameter.value for parameter in platform.parameters}
-    assert values["m_payload"] == 4.992
-    assert values["J_x_payload"] == pytest.approx(5.3e-3)
-    assert values["c_x_payload"] == pytest.approx(0.1)
-    free = [parameter.name for parameter in platform.parameters if parameter.free]
-    assert free == ["F_c_pan", "F_s_pan", "F_v_pan", "b_tilt"]
-
-
-def test_the_examples_of_raw_signals_are_accepted(readme: str, tmp_path: Path) -> None:
-    lines = re.findall(r"^\w+ = \{ role = .*(?:delay|scale).*", readme, re.MULTILINE)
-    file = tmp_path / "turret.toml"
-    head = '[platform]\nname = "a"\naxes = ["pan"]\n[[effects]]\neffect = "rigid_bodies"\n'
-    file.write_text("\n".join([head, "[signals]", *lines]), encoding="utf-8")
-    pwm, angle, gyro = read_platform(file).signals
-    assert (pwm.scale, pwm.offset) == (0.1875, 128)
-    assert angle.scale == pytest.approx(-2 * math.pi / 7200)
-    assert (gyro.delay, gyro.offset) == pytest.approx((0.009, math.radians(3.0)))
-
-
-def test_the_example_platform_declares_all_that_its_effects_need(
-    readme: str, tmp_path: Path
-) -> None:
-    file = tmp_path / "turret.toml"
-    file.write_text(block(readme, "toml"), encoding="utf-8")
-    platform = read_platform(file)
+    assert {p.name: p.value for p in platform.parameters} == {"J_pan": 0.03, "b_pan": 0.1}
+    assert all(parameter.free for parameter in platform.parameters)
     assert undeclared_parameters(platform) == ()
     refuse_impossible(assemble(platform), platform)
+    assert len(block.text.splitlines()) <= 14
 
 
-def test_the_python_example_runs(readme: str, tmp_path: Path) -> None:
-    program = block(readme, "python") + "print(dx.shape, np.isfinite(dx).all())\n"
-    command = [sys.executable, "-c", program]
-    ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    assert ran.stderr == ""
-    angle, equations = ran.stdout.splitlines()
-    assert 0.0 < float(angle) < 10.0
-    assert equations == "(4,) True"
+def test_a_log_is_made_checked_diagnosed_and_fitted_as_shown(
+    readme: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All blocks of the two sections, as one would paste them into a shell and into Python."""
+    monkeypatch.chdir(tmp_path)
+    reader = Reader(tmp_path, in_a_shell)
+    pasted = section(readme, "Your log in five minutes") + section(readme, "In Python")
+    for block in blocks(pasted):
+        reader.paste(block)
+    assert reader.done == len(blocks(readme)) - 2  # the two commands, and what the demo prints
+    found = json.loads((tmp_path / "out" / "diagnosis.json").read_text(encoding="utf-8"))
+    (spring,) = found["added"]
+    assert (spring["effect"], spring["axis"]) == ("cable_spring", "pan")
+    assert spring["parameters"]["k1_cable_pan"]["value"] == pytest.approx(0.5, rel=1e-4)
+    values = {n: p["value"] for n, p in found["fit"]["after"]["parameters"].items()}
+    assert values["J_pan"] == pytest.approx(0.025, rel=1e-4)
+    assert values["b_pan"] == pytest.approx(0.12, rel=1e-4)
+    for name in ("report.html", "platform.toml", "equations.tex", "turret.py"):
+        assert (tmp_path / "out" / name).is_file()
+
+
+def test_the_verdicts_are_those_of_the_program(readme: str) -> None:
+    rows = re.findall(r"^\| `(\w+)` \|", section(readme, "The five verdicts"), re.MULTILINE)
+    assert rows == ["verdict", *VERDICTS]
+
+
+def test_the_picture_is_small_and_of_the_size_of_a_page(readme: str, checkout: Path) -> None:
+    (name,) = re.findall(r"!\[[^\]]+\]\(([\w./]+)\)", readme)
+    data = (checkout / name).read_bytes()
+    assert data.startswith(b"\x89PNG") and len(data) < 150_000
+    assert int.from_bytes(data[16:20], "big") == 1000  # pixels wide
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -94,15 +116,17 @@ def test_every_command_explains_itself(command: str, readme: str, tmp_path: Path
     assert "Usage:" in ran.stdout
 
 
-def test_the_effects_it_names_exist(readme: str) -> None:
-    section = readme.partition("## Effects")[2].partition("To add one")[0]
-    named = set(re.findall(r"`(\w+)`", section))
-    assert named
-    assert named <= {effect.id for effect in EFFECTS}
+def test_it_names_every_effect_as_searched_or_declared(readme: str) -> None:
+    rows = section(readme, "What it can name").splitlines()
+    named = {row: set(re.findall(r"`(\w+)`", row)) for row in rows if row.startswith("|")}
+    (declared,) = (names for row, names in named.items() if row.startswith("| declared only"))
+    searched = set().union(*named.values()) - declared
+    assert searched == {e.id for e in PACKAGED if e.searched or e.structure}
+    assert declared == {e.id for e in PACKAGED if not (e.searched or e.structure)}
 
 
 def test_the_files_it_names_exist(readme: str, checkout: Path) -> None:
     mentioned = re.findall(r"`((?:scripts|tests|ptp_symbolic|\.ci)/[\w./]*)`", readme)
-    mentioned += re.findall(r"\]\(([\w./]+)\)", readme)
+    mentioned += re.findall(r"\]\(([\w./-]+)\)", readme)
     assert len(mentioned) >= 5
     assert [name for name in mentioned if not (checkout / name).exists()] == []

@@ -1,28 +1,65 @@
-"""The wheel holds every file of the package, maps `generated/` inside it, claims no other name."""
+"""Wheel and source distribution hold what they should, and work outside of the checkout."""
 
 import shutil
 import subprocess
 import sys
+import tarfile
 import zipfile
 from pathlib import Path
 
 import pytest
 
-NOT_INSTALLED = shutil.ignore_patterns("__pycache__", "*.egg-info")
+NOT_INSTALLED = shutil.ignore_patterns("__pycache__", "*.egg-info", "_build")
+
+
+SOURCES = ("ptp_symbolic", "generated", "docs", "scripts", "tests")
+BESIDE = (
+    "pyproject.toml",
+    "MANIFEST.in",
+    "README.md",
+    "LICENSE",
+    "CHANGELOG.md",
+    "CITATION.cff",
+    "CONTRIBUTING.md",
+)
+
+
+def built(kind: str, source: Path) -> Path:
+    """The distribution of a `kind`, wheel or sdist, built from the folder `source`."""
+    build = f"from setuptools.build_meta import build_{kind}; print(build_{kind}('dist'))"
+    command = [sys.executable, "-c", build]
+    ran = subprocess.run(command, cwd=source, check=True, capture_output=True, text=True)
+    return source / "dist" / ran.stdout.splitlines()[-1]
 
 
 @pytest.fixture(scope="module")
-def wheel(checkout: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A wheel built from a copy of the checkout, so that no stale build folder can help."""
+def sdist(checkout: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A source distribution, unpacked; built from a copy of the checkout, so that no stale build
+    folder can help.
+    """
     source = tmp_path_factory.mktemp("source")
-    for file in ("pyproject.toml", "README.md", "LICENSE"):
+    for file in BESIDE:
         shutil.copy(checkout / file, source)
-    for folder in ("ptp_symbolic", "generated"):
+    for folder in SOURCES:
         shutil.copytree(checkout / folder, source / folder, ignore=NOT_INSTALLED)
-    build = "from setuptools.build_meta import build_wheel; build_wheel('dist')"
-    subprocess.run([sys.executable, "-c", build], cwd=source, check=True, capture_output=True)
-    (built,) = (source / "dist").glob("*.whl")
-    return built
+    archive = built("sdist", source)
+    with tarfile.open(archive) as packed:
+        packed.extractall(source / "unpacked", filter="data")
+    (folder,) = (source / "unpacked").iterdir()
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(sdist: Path) -> Path:
+    """A wheel built from the source distribution, as `pip install` of it does."""
+    return built("wheel", sdist)
+
+
+def test_the_source_distribution_holds_what_the_checkout_does(checkout: Path, sdist: Path) -> None:
+    assert [file for file in BESIDE if not (sdist / file).is_file()] == []
+    for folder in SOURCES:
+        expected = files_below(checkout / folder, folder)
+        assert expected <= files_below(sdist / folder, folder), "adapt MANIFEST.in"
 
 
 @pytest.fixture(scope="module")
@@ -76,3 +113,25 @@ def test_installed_models_load_from_the_wheel_alone(unpacked: Path, tmp_path: Pa
     assert Path(emitted) == unpacked / "ptp_symbolic" / "generated"
     assert stranger == "None"
     assert states == "('theta_pan', 'theta_tilt', 'omega_pan', 'omega_tilt')"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "shown"),
+    [
+        (("platforms",), "thesis-payload"),
+        (("effects", "cable_spring"), "k1_cable_<axis>"),
+        (("diagnose", "--help"), "--validate"),
+    ],
+)
+def test_commands_run_from_the_wheel_alone(
+    arguments: tuple[str, ...], shown: str, unpacked: Path, tmp_path: Path
+) -> None:
+    ran = subprocess.run(
+        [sys.executable, "-m", "ptp_symbolic", *arguments],
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(unpacked), "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PATH": ""},
+        capture_output=True,
+        text=True,
+    )
+    assert ran.returncode == 0, ran.stderr
+    assert shown in ran.stdout

@@ -108,7 +108,7 @@ ADDED: dict[str, Any] = {
     "separating_experiment": "Sweep the pan axis over a full turn.",
 }
 REFUSED = {
-    "gear_eccentricity@pan": "takes away only 3 % of the error",
+    "gear_eccentricity@pan": "reduces the sum of squares by 3 % only",
     "encoder_quantization": "the validation runs are predicted no better with it",
 }
 EQUATION = {
@@ -144,7 +144,7 @@ def ranking(winner: str | None, best: float) -> list[dict[str, Any]]:
             if effect == "base_tilt"
             else {"k": {"value": 0.3, "unit": "N m/rad"}},
             "accepted": effect == winner,
-            "why": "every effect in it gains clearly" if effect == winner else "predicts worse",
+            "why": "every effect in it is significant" if effect == winner else "predicts worse",
         }
         for effect, train, share in tried
     ]

@@ -68,7 +68,7 @@ def test_repeatability_is_told_where_runs_repeat() -> None:
 def test_torque_maps_say_their_share() -> None:
     html = page("unexplained")
     torques = html[html.index('<section id="torques">') : html.index('<section id="ranking">')]
-    for text in ("62 % of the variance", "angle [deg]", "rate [deg/s]", "torque left [N m]"):
+    for text in ("62 % of the variance", "angle [deg]", "rate [deg/s]", "residual torque [N m]"):
         assert text in torques
 
 
@@ -83,8 +83,8 @@ def test_look_alikes_come_with_the_experiment_that_separates_them() -> None:
 def test_gains_are_in_percent_with_their_interval() -> None:
     html = page("explained")
     cards = html[: html.index("<nav")]
-    assert "98.7 % (98.5 to 98.9 %), predicted on the training runs" in cards
-    assert "on the validation runs, 97.5 % (97.1 to 97.9 %) is taken away" in cards
+    assert "98.7 % (98.5 to 98.9 %), cross-validated on the training runs" in cards
+    assert "on the validation runs falls by 97.5 % (97.1 to 97.9 %)" in cards
     table = html[html.index('<section id="ranking">') : html.index('<section id="limits">')]
     assert "92.0 % (91.8 to 92.2 %)" in table
     assert "−0.2 % (−0.4 to 0.0 %)" in table
@@ -105,7 +105,7 @@ def test_the_closest_fit_is_shown_with_its_figures_where_nothing_was_confirmed()
 def test_what_was_refused_is_listed_with_its_reason() -> None:
     html = page("explained")
     part = html[html.index('<section id="refused">') : html.index('<section id="ranking">')]
-    assert "Gained something, but were not named" in part
+    assert "Improved the fit, but rejected" in part
     for key, why in REFUSED.items():
         effect, _, axis = key.partition("@")
         named = f"<code>{effect}</code>" + (
@@ -135,7 +135,7 @@ def test_errors_without_an_encoder_are_in_rad_and_every_signal_is_in_its_own_uni
 
 def test_remarks_on_the_logs_stand_with_what_they_cannot_tell() -> None:
     diagnosis = synthetic_diagnosis("nothing_missing")
-    diagnosis["remarks"] = ["'pan_angle' never moves: nothing can be told of that axis."]
+    diagnosis["remarks"] = ["'pan_angle' never moves: nothing can be identified of that axis."]
     html = unescape(render_diagnosis(diagnosis, {}))
     assert diagnosis["remarks"][0] in html[html.index('<section id="limits">') :]
 
@@ -178,7 +178,7 @@ def test_windows_are_marked_in_the_figures_and_their_length_is_in_the_captions()
         curve["borders"] = [float(t) for t in np.linspace(*curve["time"][[0, -1]], 11)[1:-1]]
     html = render_diagnosis(synthetic_diagnosis("explained"), curves)
     length = float(np.ptp(curves["step"]["time"])) / 10.0
-    assert f"starts anew every {number(length, 2)} s" in html
+    assert f"restarts every {number(length, 2)} s" in html
     assert html.count(f"windows of {number(length, 2)} s") >= len(curves)
     for run, curve in curves.items():
         panels = without[run].count(f"stroke: {BORDER}")
@@ -213,7 +213,7 @@ def test_errors_stand_beside_the_windows_that_they_were_taken_over() -> None:
 
 
 def test_the_share_that_earns_a_name_is_stated() -> None:
-    assert "a name asks for 5 % at least" in page("explained")
+    assert "an effect needs 5 % at least" in page("explained")
 
 
 def test_every_parameter_has_its_meaning_and_a_search_from_several_starts_a_dash() -> None:

@@ -10,14 +10,14 @@ from tests.report.test_summary import _trial, _verdict
 @pytest.mark.parametrize(
     ("train", "validate", "words"),
     [
-        (2.0, 3.0, "3.000 counts rms on validation runs, the floor is 0.300 counts rms."),
-        (0.3, 3.0, "3.000 counts rms on validation runs, the floor is 0.300 counts rms."),
-        (0.3, 0.3, "0.300 counts rms on validation runs, the floor is 0.300 counts rms."),
+        (2.0, 3.0, "3.000 counts rms on validation runs, the noise floor is 0.300 counts rms."),
+        (0.3, 3.0, "3.000 counts rms on validation runs, the noise floor is 0.300 counts rms."),
+        (0.3, 0.3, "0.300 counts rms on validation runs, the noise floor is 0.300 counts rms."),
         (
             2.0,
             0.32,
-            "2.000 counts rms on training runs, the floor is 0.300 counts rms, and that of the"
-            " validation runs is reached.",
+            "2.000 counts rms on training runs, the noise floor is 0.300 counts rms; the"
+            " validation runs reach theirs.",
         ),
     ],
 )
@@ -32,4 +32,4 @@ def test_the_runs_that_show_that_something_is_missing_are_quoted(
         for part, left in (("train", train), ("validate", validate))
     }
     text = summary.headline(_verdict(UNEXPLAINED, _trial()), errors, {})
-    assert text == f"Something is missing that has no name here: {words}"
+    assert text == f"Something is missing, and no known effect could be confirmed: {words}"

@@ -38,7 +38,7 @@ def test_every_model_has_its_torque_and_its_free_simulation() -> None:
         "98.0\N{NO-BREAK SPACE}%",
         "5 x 1249 weights",
         "sweep",
-        "torque left, rms [N m]",
+        "residual torque, rms [N m]",
         "rms error [counts]",
         '<th scope="row">with sparse regression</th><td class="n">3.44</td>',
         '<th scope="row">with a neural network</th><td class="n">–</td>',

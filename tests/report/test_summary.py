@@ -165,7 +165,7 @@ def test_the_headline_says_where_one_window_holds_most_of_the_error() -> None:
     assert stage["without"]["rmse_counts"] == pytest.approx(1.0)
     errors = {"validate": {"before": stage, "after": stage, "noise_floor": stage}}
     text = summary.headline(_verdict(EXPLAINED, _trial(_candidate("x"))), errors, {})
-    assert text.endswith("Most of that lies in run#2; the others leave 1.000 counts rms.")
+    assert text.endswith("Most of that lies in run#2; the error of the others is 1.000 counts rms.")
     even = SimpleNamespace(runs=fit.runs, pairs=fit.pairs)
     assert error_of(even, UNITS)["without"] is None
 
@@ -174,8 +174,8 @@ def test_look_alikes_and_a_remainder_are_in_the_headline() -> None:
     alike = {"x": ("gear_eccentricity@pan", "cogging@pan"), "y": ()}
     found = _verdict(PARTLY, _trial(_candidate("x")), confusable=alike)
     text = summary.headline(found, _errors(), {})
-    assert "These logs cannot tell it from: gear_eccentricity@pan, cogging@pan." in text
-    assert "a remainder is left unexplained" in text
+    assert "In these logs it is indistinguishable from: gear_eccentricity@pan, cogging@pan." in text
+    assert "part of the residual is unexplained" in text
 
 
 def test_what_cannot_be_confirmed_is_a_hint_and_not_a_name() -> None:
@@ -193,9 +193,9 @@ def test_what_is_left_where_nothing_is_missing_is_noise_or_errors_of_the_values(
     errors["validate"]["before"] = {"total": total, "without": {"run": "waves", **total}}
     text = summary.headline(_verdict(NOTHING_MISSING, _trial()), errors, {})
     assert text == (
-        "Nothing is missing: noise (0.500 counts rms) and errors of the fitted values leave 1.000"
-        " counts rms on validation runs. Most of that lies in waves; the others leave 1.000 counts"
-        " rms."
+        "Nothing is missing: noise (0.500 counts rms) and errors of fitted values explain 1.000"
+        " counts rms on validation runs. Most of that lies in waves; the error of the others"
+        " is 1.000 counts rms."
     )
 
 
@@ -228,7 +228,7 @@ def test_the_ranking_has_every_fitted_set_by_its_error_and_the_others_after_it()
         tried=Tried([worse, best]),
         proposals=SimpleNamespace(regression=rows_along),
     )
-    refused = {"backlash": "takes away only 3 % of the error"}
+    refused = {"backlash": "reduces the sum of squares by 3 % only"}
     found = _verdict(EXPLAINED, best, refused=refused)
     others = (idle[0].candidate, _candidate("hidden"))
     rows = summary.ranking(search, found, (first, second, *others))
@@ -238,7 +238,7 @@ def test_the_ranking_has_every_fitted_set_by_its_error_and_the_others_after_it()
     assert rows[2]["gain_along_motion"]["share"] == pytest.approx(0.2, abs=0.08)
     assert rows[3]["gain_along_motion"] is None
     assert rows[0]["axis"] == "pan"
-    assert rows[1]["why"] == "backlash takes away only 3 % of the error"
+    assert rows[1]["why"] == "backlash reduces the sum of squares by 3 % only"
     share = rows[0]["gain"]["share"]
     assert share > rows[1]["gain"]["share"] > 0.9 and rows[2]["gain"] is None
     rows = summary.ranking(search, _verdict(UNEXPLAINED, _trial(left=3.0)), ())

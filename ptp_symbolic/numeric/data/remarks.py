@@ -54,7 +54,7 @@ def refuse_motionless(logs: Sequence[Log], platform: Platform) -> None:
         verb = "stays" if len(angles) == 1 else "stay"
         raise InputError(
             f"{names} {verb} within {FEW_COUNTS:.0f} counts in all logs to be fitted; without"
-            " motion nothing can be told of the machine: give logs in which it moves."
+            " motion nothing can be identified: give logs in which the machine moves."
         )
 
 
@@ -67,10 +67,10 @@ def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
     inputs = [s for s in platform.signals if s.role == "input"]
     for k, signal in enumerate(outputs):
         if signal.is_position and not _moves(logs, k, signal):
-            found.append(f"'{signal.column}' never moves: nothing can be told of that axis.")
+            found.append(f"'{signal.column}' never moves: nothing can be identified of that axis.")
     if inputs and all(np.ptp(log.inputs[:, k]) == 0.0 for log in logs for k in range(len(inputs))):
         found.append(
-            "No input changes within a run: what depends on the inputs can hardly be told apart."
+            "No input changes within a run: what depends on the inputs is hardly identifiable."
         )
     for signal, columns in (
         *((s, [log.outputs[:, k] for log in logs]) for k, s in enumerate(outputs)),
@@ -80,7 +80,7 @@ def remarks(logs: Sequence[Log], platform: Platform) -> tuple[str, ...]:
         if share > SATURATED:
             found.append(
                 f"'{signal.column}' is at its largest or smallest value in {100 * share:.0f} % of"
-                " the samples: it may be saturated, and the rest tells little."
+                " the samples: it may be saturated, and the rest carries little information."
             )
     for log in logs:
         found += [_wrap_remark(log.name, wraps) for wraps in log.wraps]
@@ -124,7 +124,7 @@ def _jump_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]
         more = f" and {cut.size - 1} more times" if cut.size > 1 else ""
         return [
             f"{log.name}: '{signal.column}' jumps by {size:.6g} counts at {log.time[cut[0]]:.6g} s"
-            f"{more}; a new window begins there. Was the encoder set anew, at an index?"
+            f"{more}; a new window begins there. Was the encoder reset, at an index?"
         ]
     step, period = np.abs(np.diff(log.outputs[:, column])), np.diff(log.time)
     rate = np.maximum(step, signal.count) / period
@@ -137,7 +137,7 @@ def _jump_remarks(log: Log, column: int, signal: SignalDeclaration) -> list[str]
     more = f" and {len(lone) - 1} more" if len(lone) > 1 else ""
     return [
         f"{log.name}: '{signal.column}' jumps by {size:.6g} counts at {time:.6g} s{more},"
-        " between samples that hardly move: was the encoder set anew, at an index?"
+        " between samples that hardly move: was the encoder reset, at an index?"
     ]
 
 

@@ -39,14 +39,14 @@ def why_unconfirmed(
     if bound is not None:
         return f"{bound} ends at its bound"
     if not leaves_noise and not is_amount_known(fit, candidate):
-        return "its amount cannot be told from zero"
+        return "its amount is not significantly different from zero"
     if leaves_noise and is_done_by_others(fit, candidate):
-        return "the other parameters of the model can do all that it does"
+        return "other parameters of the model reproduce all that it does"
     if not leads(fit, candidate):
-        return "what it adds to its simplest form is larger than that"
+        return "its higher harmonics are larger than its first"
     run = unstable_without(fit, candidate, refit)
     if run is not None:
-        return f"its value does not hold when {run} is left out"
+        return f"its value changes significantly without {run}"
     return None
 
 

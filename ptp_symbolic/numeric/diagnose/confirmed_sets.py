@@ -163,7 +163,7 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> Weak
         if not seeker.is_needed(step):
             return Weakness(step, _too_little(step.gain, seeker.task.material))
         if leaves_noise_of_inputs(step.without, excused):
-            return Weakness(step, "the noise of the inputs leaves as much without it")
+            return Weakness(step, "without it the residual is within the noise of the inputs")
         member = with_what_needs_it(step.candidate, trial.candidates)
         reason = why_unconfirmed(fit, member, quiet, refit)
         if reason is not None:
@@ -172,13 +172,15 @@ def _weakness(seeker: Seeker, trial: Trial, steps: list[Step], fit: Fit) -> Weak
         if space is not None and breaks_its_law(
             seeker.task, space, trial.candidates, trial.values, step.candidate
         ):
-            return Weakness(step, "its torque goes with the speed in another way", breaks_law=True)
+            return Weakness(
+                step, "its torque depends on the speed in another way than its law", breaks_law=True
+            )
         if not quiet:
             doubt = _doubt_beside_a_remainder(seeker.task, trial, step)
             if doubt is not None:
                 return Weakness(step, doubt)
     if not answers_to_inputs(seeker.task, trial):
-        return Weakness(by_gain[0], "with it the model no longer answers to its inputs")
+        return Weakness(by_gain[0], "with it the simulated motion no longer depends on the inputs")
     return None
 
 
@@ -189,19 +191,19 @@ def _doubt_beside_a_remainder(task: Task, trial: Trial, step: Step) -> str | Non
     if not step.gain.is_most:
         share, least = (100.0 * max(x, 0.0) for x in (step.gain.share, step.gain.lower))
         return (
-            f"takes away {share:.0f} % of the error, surely {least:.0f} %, "
-            "too little where more than noise is left"
+            f"reduces the sum of squares by {share:.0f} % (lower 95 % limit {least:.0f} %), "
+            "too little while the residual exceeds the noise"
         )
     if gain_in_innovations(trial, step.without).share < task.material:
-        return "takes away slow drift alone, which other effects left out may have caused as well"
+        return "reduces slow drift alone, which other missing effects can cause as well"
     return None
 
 
 def _too_little(earned: Gain, material: float) -> str:
     """Why a gain earns no name, which asks for a `material` share."""
     if earned.share <= 0.0:
-        return "predicts blocks that were left out no better"
+        return "does not improve the prediction of blocks left out"
     share = f"{100.0 * earned.share:.0f} %"
     if earned.share < material:
-        return f"takes away only {share} of the error, where {100.0 * material:g} % earn a name"
-    return f"takes away {share} of the error, which may be chance"
+        return f"reduces the sum of squares by {share} only; {100.0 * material:g} % are required"
+    return f"reduces the sum of squares by {share}, which is not significant"

@@ -61,9 +61,7 @@ def _line(
     apart = int((highest - lowest) * span)
     if not rows / ROWS_PER_WINDOW < apart <= SCANNED:
         return None
-    task.progress(
-        f"simulating {candidate.key} at all frequencies, {apart} of which can be told apart"
-    )
+    task.progress(f"simulating {candidate.key} at all frequencies, {apart} of which are resolved")
     away = stacked_jacobian(trial.fit)
     residual = projected_off(stacked_residual(trial.fit)[:, None], away)[:, 0]
 

@@ -72,7 +72,7 @@ def hints(found: Mapping[str, Any] | None) -> list[str]:
     sides += [
         (
             line["share"],
-            f"The {what} that is left on {line['axis']} has a line at {line['frequency']:.3g}"
+            f"The residual {what} on {line['axis']} has a spectral line at {line['frequency']:.3g}"
             f" {line['unit']} ({100.0 * line['share']:.0f} % of its variance).",
         )
         for line in found["lines"]
@@ -83,7 +83,7 @@ def hints(found: Mapping[str, Any] | None) -> list[str]:
 def _said(m: Mapping[str, Any], what: str, unit: str) -> str:
     largest = float(np.max(np.abs(m["mean"])))
     return (
-        f"The {what} that is left on {m['axis']} follows the {m['against']}"
+        f"The residual {what} on {m['axis']} follows the {m['against']}"
         f" ({100.0 * m['share']:.0f} % of its variance, up to {largest:.3g} {unit})."
     )
 

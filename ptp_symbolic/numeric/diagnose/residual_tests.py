@@ -13,11 +13,11 @@ from ptp_symbolic.numeric.identify.fit import Fit
 FloatArray = NDArray[np.float64]
 
 WHITE = (
-    "neighbouring residuals should not resemble each other; rounding and noise of the inputs make"
-    " them do so a little where nothing is missing, so that this test alone proves nothing"
+    "residuals should not be autocorrelated; rounding and noise of the inputs correlate them a"
+    " little where nothing is missing, so that this test alone proves nothing"
 )
 INDEPENDENT = (
-    "what is left over should not follow {name}; where it does, the model lacks something, or the"
+    "the residual should be uncorrelated with {name}; where it is not, an effect is missing, or the"
     " log of {name} is noisy"
 )
 

@@ -222,14 +222,15 @@ def why_rejected(
     if not is_earned(earned, 1.0, tests, task.material):
         return (
             earned,
-            f"reduces the squared error by {share:.0f} %, surely by {least:.0f} %: may be chance",
+            f"reduces the sum of squares by {share:.0f} % (lower 95 % limit {least:.0f} %), which"
+            " is not significant",
         )
     if not quiet and not earned.is_most:
-        why = f"reduces the squared error by {share:.0f} %, surely by {least:.0f} %"
-        return earned, f"{why}, too little where more than noise is left"
+        why = f"reduces the sum of squares by {share:.0f} % (lower 95 % limit {least:.0f} %)"
+        return earned, f"{why}, too little while the residual exceeds the noise"
     first = structure.added[0]
     if not is_told(first, trial):
-        return earned, f"no parameter of {first.key} can be told from these logs"
+        return earned, f"no parameter of {first.key} is identifiable from these logs"
     if not answers_to_inputs(replace(task, train=trial.fit.runs), trial):
-        return earned, "with it the model no longer answers to its inputs"
+        return earned, "with it the simulated motion no longer depends on the inputs"
     return earned, None

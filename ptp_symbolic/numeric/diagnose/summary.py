@@ -38,11 +38,9 @@ def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -
         if rms[0] <= ABOVE_NOISE * rms[1]:
             taken = _over_windows(errors["validate"]["before"])
             return f"Nothing is missing: {before} on validation runs{taken} is the noise floor."
-        text = (
-            f"Nothing is missing: noise ({floor}) and errors of the fitted values leave {before} on"
-        )
+        text = f"Nothing is missing: noise ({floor}) and errors of fitted values explain {before}"
         usual = _mostly_in_one_run(errors["validate"]["before"]["without"])
-        return " ".join([f"{text} validation runs.", *usual])
+        return " ".join([f"{text} on validation runs.", *usual])
     if found.word in (EXPLAINED, UP_TO_GROUP, PARTLY):
         causes = " and ".join(
             f"{cause(c, found.final)}{f' ({sizes[c.key]})' if c.key in sizes else ''}"
@@ -57,13 +55,13 @@ def headline(found: Verdict, errors: dict[str, Any], sizes: Mapping[str, str]) -
         alike = {key: ", ".join(keys) for key, keys in found.confusable.items() if keys}
         alone = len(found.final.candidates) == 1
         sentences += [
-            f"These logs cannot tell {'it' if alone else key} from: {others}."
+            f"In these logs {'it' if alone else key} is indistinguishable from: {others}."
             for key, others in alike.items()
         ]
         if found.word == PARTLY:
-            sentences.append(f"The floor is {floor}: a remainder is left unexplained.")
+            sentences.append(f"The noise floor is {floor}: part of the residual is unexplained.")
         return " ".join(sentences)
-    text = f"Something is missing that has no name here: {_most_left(errors)}."
+    text = f"Something is missing, and no known effect could be confirmed: {_most_left(errors)}."
     if found.closest is not None:
         text += f" The closest candidate, not confirmed: {' + '.join(found.closest.keys)}."
     return text
@@ -81,8 +79,9 @@ def _most_left(errors: Mapping[str, Any]) -> str:
     training = is_at_floor("validate") and not is_at_floor("train")
     part, name = ("train", "training") if training else ("validate", "validation")
     before, floor = (_worded(errors[part][w]["total"]) for w in ("before", "noise_floor"))
-    text = f"{before} on {name} runs{_over_windows(errors[part]['before'])}, the floor is {floor}"
-    return f"{text}, and that of the validation runs is reached" if training else text
+    taken = _over_windows(errors[part]["before"])
+    text = f"{before} on {name} runs{taken}, the noise floor is {floor}"
+    return f"{text}; the validation runs reach theirs" if training else text
 
 
 def _over_windows(error: Mapping[str, Any]) -> str:
@@ -95,7 +94,9 @@ def _mostly_in_one_run(without: Mapping[str, Any] | None) -> list[str]:
     """Where most of the error after lies in one run or window: which, and what the others leave."""
     if without is None:
         return []
-    return [f"Most of that lies in {without['run']}; the others leave {_worded(without)}."]
+    return [
+        f"Most of that lies in {without['run']}; the error of the others is {_worded(without)}."
+    ]
 
 
 def _worded(error: Mapping[str, Any]) -> str:
@@ -293,19 +294,17 @@ def _unfitted(search: Search, forms: Sequence[Candidate]) -> dict[str, Any]:
 def _why(search: Search, found: Verdict, trial: Trial) -> str:
     if found.final.candidates and trial.keys == found.final.keys:
         if found.is_along_motion:
-            return (
-                "every effect in it gains clearly along the measured motion, to which it is fitted"
-            )
-        return "every effect in it gains clearly, and none outside would add to it"
+            return "every effect in it is significant in the torque along the measured motion"
+        return "every effect in it is significant, and no other effect improves it"
     rival = next((r for r in found.rivals if r.trial.keys == trial.keys), None)
     if rival is not None:
-        noise = "leaves no more than the noise of the inputs usually does"
+        noise = "its residual is within the propagated noise of the inputs"
         return noise if rival.excused else "predicts as well as the accepted set"
     refused = [f"{key} {why}" for key, why in found.refused.items() if key in trial.keys]
     if refused:
         return "; ".join(refused)
     if found.final.candidates and set(found.final.keys) < set(trial.keys):
-        return "what it adds to the accepted set gains too little"
+        return "what it adds to the accepted set reduces the error too little"
     if any(c.id.startswith(DECLARED_VALUE) for c in trial.candidates):
         return "a changed declared value explains less than the best"
     return "predicts worse than the best"

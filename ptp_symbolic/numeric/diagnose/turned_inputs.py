@@ -25,7 +25,7 @@ def turned_inputs(task: Task, declared: Trial) -> tuple[str, ...]:
     for k, name in enumerate(task.model.input_names):
         if task.model.units[name] in DRIVING and takes_away_most(_turned(task, k), declared):
             found.append(
-                f"The declared model fits far better with the sign of '{name}' turned: one of"
+                f"The declared model fits far better with the sign of '{name}' inverted: one of"
                 " motor and sensor is wired the other way round; give one of their signals a"
                 " negative scale."
             )

@@ -156,10 +156,10 @@ def _settled(
         trial, steps, fit, alike = simplest_alike(seeker, trial, steps, fit, alike)
         floor = floor_of(seeker.task, trial, seeker.carried)
         step = doubtful(trial, steps, confusable(trial, alike), floor)
-        why = "others predict as well, and more than noise is left"
+        why = "alternatives predict as well, and the residual exceeds the noise"
         if step is None:
             step = denied(seeker.task, trial, steps)
-            why = "without it the others clearly leave less of the error of the validation runs"
+            why = "the validation runs are predicted significantly better without it"
         if step is None:
             break
         refused.note(step.candidate.key, why)
@@ -223,7 +223,7 @@ def _judged(found: Search, declared: Trial, sets: Sequence[_Set], refused: Refus
         unusual = at_noise and leaves_unusual_noise(final, floor)
         if held_out is None or is_borne_out(held_out, quiet, unusual, task.material):
             break
-        why = "takes away too little of the error of the validation runs, or not clearly"
+        why = "reduces the error of the validation runs too little, or not significantly"
         for key in final.keys:
             refused.note(key, why)
     word = word_of(final, one.confusable, quiet and at_noise)

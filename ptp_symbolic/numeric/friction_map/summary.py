@@ -156,13 +156,13 @@ def _remarks(found: Comparison, member: Member, estimates: Profile) -> Iterator[
     if len(estimates.signs) == 1:
         yield (
             f"All points move one way: a difference by direction, and a constant {word} beside"
-            " Coulomb friction, cannot be told; measure the other direction too."
+            " Coulomb friction, are not identifiable; measure the other direction too."
         )
     weights = estimates.weights()
     mean = sum((w["F_c"] for w in weights.values()), 0.0 * weights[estimates.signs[0]]["F_c"])
     low = estimates.linear(mean / len(weights)).low
     if low is not None and low <= 0.0:
-        yield "Coulomb friction cannot be told from none: its interval reaches zero."
+        yield "Coulomb friction is not significant: its interval reaches zero."
     if not member.rise:
         at_rest = bool((points.rate == 0.0).any())
         yield (
@@ -188,7 +188,7 @@ def _remarks(found: Comparison, member: Member, estimates: Profile) -> Iterator[
     if COULOMB in member.by_direction:
         yield (
             f"Coulomb friction that differs by direction and a constant {word} on the joint are the"
-            " same at steady rates; turn the axis over, or back-drive it, to tell them apart."
+            " same at steady rates; turn the axis over, or back-drive it, to separate them."
         )
     if found.extra:
         yield (

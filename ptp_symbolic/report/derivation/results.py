@@ -43,10 +43,10 @@ def equations_of_motion(equations: Equations) -> str:
         ("The functions named in these equations are", ("term",)),
         ("Drives and effects have states of their own:", ("state",)),
         (
-            "Held in between, and set anew at the instants $t_k$, from the values before them:",
+            "Constant in between, and updated at the instants $t_k$ from the values before them:",
             ("sampler",),
         ),
-        ("Inputs that act late, and what sensors show:", ("input", "output")),
+        ("Delayed inputs, and sensor readings:", ("input", "output")),
     ):
         own = [s for s in found if s.key[0] in kinds]
         if own:

@@ -29,7 +29,7 @@ PARAMETERS = (
     Parameter("n_u_{axis}", "1", 128.0, 1.0, 1e12, "steps of the command up to the largest"),
 )
 STATES = (
-    ("command_{axis}", "V", "voltage that the {axis} controller asks for"),
+    ("command_{axis}", "V", "voltage that the {axis} controller commands"),
     ("integral_{axis}", "rad s", "errors of the {axis} controller, summed over time"),
     ("derivative_{axis}", "rad/s", "rate of the error as the {axis} controller sees it"),
     ("last_error_{axis}", "rad", "error of the {axis} controller at the last derivative"),
