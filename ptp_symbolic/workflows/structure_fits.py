@@ -13,6 +13,8 @@ from ptp_symbolic.numeric.diagnose.structures import (
     FittedStructure,
     begin_structure,
     by_fit,
+    is_better,
+    is_told,
     misfit,
 )
 from ptp_symbolic.platform import Platform
@@ -60,8 +62,12 @@ class Fitted:
 
     @property
     def quiet(self) -> list[FittedStructure]:
-        """The best that leaves noise alone, if any does."""
-        return [s for s in self.order if s.is_quiet][:1]
+        """The best that leaves noise alone, if any does: the logs tell a parameter of what it is
+        named after, where they do so of any.
+        """
+        quiet = [s for s in self.order if s.is_quiet]
+        told = [s for s in quiet if is_told(s.added[0], s.trial)]
+        return (told or quiet)[:1]
 
     def led_on(self, logs: Logs) -> "Fitted":
         """The declared structure and the better half led over windows."""
@@ -91,7 +97,8 @@ def fit_structures(platform: Platform, every: Sequence[Rebuilt], logs: Logs) -> 
     logs.progress(f"fitting the better {len(better)} of them to their end")
     tried = {key for b in begun for key in b.fitted.keys}
     failed = {r.keys[0]: b for r, b in results if isinstance(b, str) and r.keys[0] not in tried}
-    return Fitted(alone, _each(Begun.finished, begun, better), better, failed)
+    finished = _each(Begun.finished, begun, better)
+    return Fitted(alone, _from_those_that_contain(finished, better, alone.fitted), better, failed)
 
 
 def _begun(
@@ -109,6 +116,23 @@ def _better_half(begun: Sequence[Begun], declared: FittedStructure) -> tuple[int
     cost = [misfit(b.fitted, declared) for b in begun]
     best_first = sorted(range(len(begun)), key=cost.__getitem__)
     return tuple(best_first[: max(FOLLOWED, (len(begun) + 1) // 2)])
+
+
+def _from_those_that_contain(
+    begun: tuple[Begun, ...], better: Sequence[int], declared: FittedStructure
+) -> tuple[Begun, ...]:
+    """Structures fitted again from where one that contains them fits clearly better: without a gap
+    that is not there a shaft has to fit as well as with it.
+    """
+
+    def again(one: Begun) -> Begun:
+        larger = [b.fitted for b in begun if one.fitted.provides < b.fitted.provides]
+        best = min(larger, key=lambda s: misfit(s, declared), default=None)
+        if best is None or not is_better(best, one.fitted):
+            return one
+        return one.from_values(best.trial.values)
+
+    return _each(again, begun, better)
 
 
 def _each(

@@ -159,3 +159,23 @@ def test_runs_of_one_model_are_parted_as_those_of_another(
         np.testing.assert_array_equal(ours.time, theirs.time)
         np.testing.assert_array_equal(ours.measured, theirs.measured)
         assert len(ours.start) == len(shaft.model.state_names)
+
+
+def test_a_structure_goes_on_from_the_values_of_one_that_contains_it_and_keeps_what_fits_better(
+    declared: tuple[Platform, list[Path]],
+) -> None:
+    platform, paths = declared
+    logs = read_logs(log_files(paths), platform)
+    shaft = next(s for s in structures(platform)[0] if s.keys == ("shaft_compliance@pan",))
+    stiff = {"k_shaft_pan": 5e4, "d_shaft_pan": 10.0}
+    true = {"k_shaft_pan": STIFFNESS, "d_shaft_pan": DAMPING, "J_pan": J_LOAD, "b_pan": DRAG}
+    with workers() as executor:
+        model = model_of(shaft.platform)
+        task = task_for(shaft.platform, model, logs, logs, (), executor, lambda text: None)
+        begun = begin_structure(shaft.keys, shaft.provides, task, (stiff,), {})
+        led = begun.from_values(true)
+        kept = led.from_values(stiff)
+        assert led.fitted.is_quiet
+    values = led.fitted.trial.values
+    assert values["k_shaft_pan"] / values["J_pan"] == pytest.approx(STIFFNESS / J_LOAD, rel=0.01)
+    assert kept.fitted.trial.fit.cost <= led.fitted.trial.fit.cost * (1.0 + 1e-9)

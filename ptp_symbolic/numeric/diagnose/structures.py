@@ -17,8 +17,15 @@ from ptp_symbolic.numeric.diagnose.floor import floor_of, leaves_noise_alone
 from ptp_symbolic.numeric.diagnose.gain import Gain, gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.proposals import Proposals, propose
-from ptp_symbolic.numeric.diagnose.refits import inside, refitted_in
-from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted, halving, misfits, ranked
+from ptp_symbolic.numeric.diagnose.refits import inside, polished, refitted_in
+from ptp_symbolic.numeric.diagnose.trial import (
+    Task,
+    Trial,
+    fitted,
+    halving,
+    misfits,
+    ranked,
+)
 from ptp_symbolic.numeric.identify.intervals import estimates
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.windows import parted_like
@@ -68,6 +75,17 @@ class Begun:
         if self.fitted.is_quiet:
             return self
         return self._with(*led_over_windows(self.fitted.task, self.proposals))
+
+    def from_values(self, values: Mapping[str, float]) -> "Begun":
+        """The structure fitted to the end from `values` of another one that contains it, where that
+        leads to a better fit.
+        """
+        task = self.fitted.task
+        own = {f.name for f in task.free}
+        start = {**self.fitted.trial.values, **{n: v for n, v in values.items() if n in own}}
+        begun = fitted(task, (), start, None, executor=task.executor)
+        best = (halving(task, [begun], 1) or [begun])[0]
+        return self._with(task, polished(task, best, carried_noise(task, best.fit)))
 
     def _with(self, task: Task, trial: Trial) -> "Begun":
         """The structure with a trial, or with its own where that fits better in the same runs."""
@@ -139,7 +157,8 @@ def gain_over(one: FittedStructure, other: FittedStructure) -> Gain:
 
 def by_fit(declared: FittedStructure, found: Sequence[FittedStructure]) -> list[FittedStructure]:
     """The structures that predict a material share better than the declared one, the best fit
-    first; those with fewer parameters before those that predict no material share better.
+    first; before it those with fewer parameters that predict materially as well, or that it
+    contains and does not surely better.
     """
     better = [
         s
@@ -150,11 +169,20 @@ def by_fit(declared: FittedStructure, found: Sequence[FittedStructure]) -> list[
     left, ordered = sorted(better, key=lambda s: cost[id(s)]), []
     while left:
         best = left[0]
-        simpler = [s for s in left[1:] if _size(s) < _size(best) and not is_better(best, s)]
+        simpler = [s for s in left[1:] if _size(s) < _size(best) and _is_as_good(s, best)]
         best = min(simpler, key=_size, default=best)
         ordered.append(best)
         left.remove(best)
     return ordered
+
+
+def _is_as_good(simpler: FittedStructure, best: FittedStructure) -> bool:
+    """Whether a simpler structure may stand for the best fit: a wide interval alone, as where much
+    is unexplained, makes a lag no equal of a shaft.
+    """
+    if simpler.provides < best.provides:
+        return not is_better(best, simpler)
+    return gain_over(best, simpler).share < best.task.material
 
 
 def is_better(one: FittedStructure, other: FittedStructure) -> bool:
