@@ -7,6 +7,7 @@ from ptp_symbolic.symbolic.codegen.kernel import MODE_ARGUMENTS, Vectors, kernel
 from ptp_symbolic.symbolic.codegen.kernel_lines import shared_lines, used_names, variables
 from ptp_symbolic.symbolic.codegen.sharing import Line, share
 from ptp_symbolic.symbolic.codegen.term_names import vocabulary
+from ptp_symbolic.symbolic.derivation.contributions import slope_symbol
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
 
@@ -27,19 +28,22 @@ def output_jacobian_text(
 ) -> str:
     """Text of `output_jacobian`: by the chain rule through accelerations where outputs have any."""
     accelerated = any(e.has(*solve.accelerations) for _, _, e in equations.outputs)
-    outputs = []
+    outputs, slopes = [], []
     for letter, symbols in variables(equations):
         for j, variable in enumerate(symbols if letter != "u" else ()):
-            by = dynamics.acceleration_derivative(grouped, solve, variable) if accelerated else []
+            named = [slope_symbol(a, variable) for a in solve.accelerations]
+            if accelerated:
+                values = dynamics.acceleration_derivative(grouped, solve, variable)
+                slopes += [(str(name), value) for name, value in zip(named, values, strict=True)]
             for i, (_, _, expression) in enumerate(equations.outputs):
                 value = (
-                    dynamics.derivative_of(grouped, solve, expression, variable, by)
+                    dynamics.derivative_of(grouped, solve, expression, variable, named)
                     if accelerated
                     else derivative(equations.written_out(expression), variable)
                 )
                 outputs.append((f"y{letter}[{i}, {j}]", value))
     doc = "Write the non-zero derivatives of outputs by state and parameter."
-    definitions = (*solve.definitions, *solve.chain.lines) if accelerated else ()
+    definitions = (*solve.definitions, *solve.chain.lines, *slopes) if accelerated else ()
     lines = shared_lines(grouped if accelerated else equations, definitions, outputs)
     first = _modes_first(lines, vectors)
     return kernel_text("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines, first)

@@ -39,11 +39,11 @@ def assemble(platform: Platform) -> Equations:
         [t.ledger for t in parts.transmissions],
         replace(
             parts.rigid_equations,
-            kinetic=parts.rigid_equations.kinetic.xreplace(parts.at_rest),
-            potential=parts.rigid_equations.potential.xreplace(parts.at_rest),
+            kinetic=parts.rigid_equations.kinetic.xreplace(parts.base.at_rest),
+            potential=parts.rigid_equations.potential.xreplace(parts.base.at_rest),
         ),
     )
-    outside = (*parts.constraint_torques.items(), *parts.base_torques.items())
+    outside = (*parts.constraint_torques.items(), *parts.base.torques.items())
     power = sum((torque * rate for rate, torque in outside), ZERO)
     equations = Equations(
         name=platform.name,
@@ -53,7 +53,7 @@ def assemble(platform: Platform) -> Equations:
         rates=mechanics.rates,
         mass_matrix=mechanics.mass,
         forcing=mechanics.forcing,
-        terms=(*contributions.terms.items(), *parts.loads),
+        terms=(*parts.base.terms.items(), *contributions.terms.items(), *parts.loads),
         extra_states=_extra_states(contributions, (*mechanics.coordinates, *mechanics.rates)),
         samplers=_samplers(contributions),
         inputs=tuple(given for given, _ in inputs),

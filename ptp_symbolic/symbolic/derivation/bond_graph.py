@@ -204,7 +204,7 @@ def _bodies(found: _Parts) -> None:
     """Inertia and gravity of the rigid bodies, one field each over all joints, and what a base
     exerts on them whose motion is measured.
     """
-    rigid, still = found.machine.full_rigid, found.machine.at_rest
+    rigid, still = found.machine.full_rigid, found.machine.base.at_rest
     rigid = replace(
         rigid,
         forcing=rigid.forcing.xreplace(still),

@@ -27,6 +27,7 @@ from ptp_symbolic.symbolic.derivation.friction import (
     resolved_frictions,
 )
 from ptp_symbolic.symbolic.derivation.lagrange import lagrange
+from ptp_symbolic.symbolic.derivation.moving_base import MovingBase, moving_base
 from ptp_symbolic.symbolic.derivation.newton_euler import acceleration, newton_euler_steps
 from ptp_symbolic.symbolic.derivation.placement import GRAVITY, place_effects
 from ptp_symbolic.symbolic.derivation.prescribed import constraint_torques, reduced, released
@@ -38,6 +39,7 @@ from ptp_symbolic.symbolic.effect_interface.place import Place, quantity_name
 from ptp_symbolic.symbolic.effect_interface.place import quantity as quantity_symbol
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
+from ptp_symbolic.symbolic.simplify.reduction import reduce_trigonometry
 from ptp_symbolic.symbolic.symbols import ZERO
 
 MOTION_OF_BODIES = ("spin_", "specific_force_")  # how the names of these quantities begin
@@ -57,6 +59,7 @@ class Machine:
     contributions: Contributions
     transmissions: tuple[Transmission, ...]
     rigid: RigidConfiguration
+    base: MovingBase
     full_rigid: RigidEquations
     full: Mechanics
     rigid_equations: RigidEquations
@@ -67,22 +70,11 @@ class Machine:
     constraint_torques: Mapping[sp.Symbol, sp.Expr]
 
     @property
-    def at_rest(self) -> dict[sp.Symbol, sp.Expr]:
-        """Zero for every measured motion of the base, by the symbols of these inputs."""
-        given = (*self.rigid.gravity, *self.rigid.base_spin, *self.rigid.base_spin_rate)
-        inputs = {i.symbol for c in self.contributions.by_effect for i in c.inputs}
-        found = inputs & {symbol for e in given for symbol in e.free_symbols}
-        return dict.fromkeys(sorted(found, key=str), ZERO)
-
-    @property
     def base_torques(self) -> dict[sp.Symbol, sp.Expr]:
-        """Torques in N m that the measured motion of the base exerts, by the rates of the joints;
-        those that are zero left out.
+        """Torques in N m that the measured motion of the base exerts, by the rates of the joints,
+        written out; those that are zero left out.
         """
-        rigid, still = self.full_rigid, self.at_rest
-        pairs = zip(rigid.rates, rigid.forcing, strict=True) if still else ()
-        moved = {rate: sp.expand(force - force.xreplace(still)) for rate, force in pairs}
-        return {rate: torque for rate, torque in moved.items() if torque != 0}
+        return {rate: self.base.written_out(torque) for rate, torque in self.base.torques.items()}
 
 
 def machine(platform: Platform) -> Machine:
@@ -97,9 +89,10 @@ def machine(platform: Platform) -> Machine:
     transmissions = [transmission(shaft, contributions) for shaft in contributions.shafts]
     contributions = _with_twists(contributions, transmissions)
     rigid = _rigid_configuration(platform, contributions)
-    contributions = _with_motion_of_bodies(contributions, rigid)
+    base = moving_base(rigid, _inputs_of_base(rigid, contributions))
+    contributions = _with_motion_of_bodies(contributions, base.seen)
     full_rigid = lagrange(rigid)
-    full = _mechanics(platform, contributions, transmissions, full_rigid)
+    full = _mechanics(platform, contributions, transmissions, full_rigid, base)
     mechanics, rigid_equations = reduced(full, full_rigid, contributions.prescribed)
     contacts = [t.contact for t in transmissions if t.contact is not None]
     contacts += [rigid_contact(play, contributions, mechanics) for play in contributions.plays]
@@ -109,6 +102,7 @@ def machine(platform: Platform) -> Machine:
         contributions=contributions,
         transmissions=tuple(transmissions),
         rigid=rigid,
+        base=base,
         full_rigid=full_rigid,
         full=full,
         rigid_equations=rigid_equations,
@@ -157,8 +151,18 @@ def _with_motion_of_bodies(
             for k, value in zip("xyz", vector, strict=True):
                 symbol = quantity_symbol(f"{name}_{k}_{axis}")
                 if symbol in read:
-                    found[symbol] = sp.expand(value.xreplace(joints))
+                    found[symbol] = reduce_trigonometry(value.xreplace(joints))
     return replace(contributions, values={**contributions.values, **found})
+
+
+def _inputs_of_base(
+    rigid: RigidConfiguration, contributions: Contributions
+) -> dict[sp.Symbol, sp.Expr]:
+    """Zero for every input that moves the base of `rigid`, by its symbol."""
+    given = (*rigid.gravity, *rigid.base_spin, *rigid.base_spin_rate)
+    inputs = {i.symbol for c in contributions.by_effect for i in c.inputs}
+    found = inputs & {symbol for e in given for symbol in e.free_symbols}
+    return dict.fromkeys(sorted(found, key=str), ZERO)
 
 
 def _mechanics(
@@ -166,15 +170,18 @@ def _mechanics(
     contributions: Contributions,
     transmissions: Sequence[Transmission],
     rigid: RigidEquations,
+    base: MovingBase,
 ) -> Mechanics:
     """Add drives, shafts, torques and potentials of the effects to the rigid equations."""
     joints, gears = platform.axes, contributions.split_axes
     coordinates = (*map(kinematics.angle, joints), *map(kinematics.gear_angle, gears))
     rates = (*map(kinematics.rate, joints), *map(kinematics.gear_rate, gears))
     mass = sp.diag(rigid.mass_matrix, sp.zeros(len(gears)))
-    forcing = sp.Matrix([*rigid.forcing, *([0] * len(gears))])
+    still = rigid.forcing.xreplace(base.at_rest)
+    forcing = sp.Matrix([*still, *([0] * len(gears))])
     row = {symbol: index for index, symbol in enumerate(rates)}
     torques = [(kinematics.rate(axis), contributions.input_torque(axis)) for axis in joints]
+    torques += base.torques.items()
     torques += [torque for t in transmissions for torque in t.torques]
     torques += [torque for c in contributions.by_effect for torque in c.torques.items()]
     for drive in contributions.drives:

@@ -72,10 +72,11 @@ class Effect:
     on its axis it may sit, if there is a choice. `splits_axis`: the gear output has a coordinate of
     its own; `turns_base`: the base turns, and all of a body's inertia matters. A diagnosis rebuilds
     platforms with it as its `structure` says (None: it does not). `has` tells which of its
-    parameters it has at a place. `members` are nested versions of it, the simplest first and the whole last; where
-    `first_leads`, what the others add to the first can only be smaller. Other `kinds` share its
-    id; this is the usual one. `linear` has the texts that are others on a linear joint, where they
-    do not follow word by word; what makes no sense there says `instead_on_linear` why.
+    parameters it has at a place. `members` are nested versions of it, the simplest first and the
+    whole last; where `first_leads`, what the others add to the first can only be smaller. Other
+    `kinds` share its id; this is the usual one. `linear` has the texts that are others on a linear
+    joint, where they do not follow word by word; what makes no sense there says
+    `instead_on_linear` why.
 
     Raises ValueError for a parameter whose default, starts or vanishing value lie out of its
     bounds, and for a member with parameters that are not the effect's.
