@@ -232,6 +232,11 @@ def _check_needs(platform: Platform, placed: list[tuple[Effect, Place]]) -> None
                     if bringing
                     else f"no effect does on a platform of {' and '.join(place.axes)}; remove it"
                 )
+                if name == OFF_AXIS_MASS:
+                    raise InputError(
+                        f"Effect '{effect.id}' has no effect: no declared body has a mass off its"
+                        f" axis; {next_step}."
+                    )
                 raise InputError(
                     f"Effect '{effect.id}' acts on '{name}', which no declared effect"
                     f" defines; {next_step}."
