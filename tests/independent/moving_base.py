@@ -1,4 +1,4 @@
-"""A pan-tilt platform on a base that moves, by Newton and Euler: every body in the axes of the base.
+"""A pan-tilt platform on a moving base, by Newton and Euler: every body in the axes of the base.
 
 Written from the physics, with rotation matrices and cross products alone. The base is given by its
 rate and angular acceleration, and by the specific force of the point where the axes cross
