@@ -33,13 +33,13 @@ from ptp_symbolic.symbolic.derivation.placement import GRAVITY, place_effects
 from ptp_symbolic.symbolic.derivation.prescribed import constraint_torques, reduced, released
 from ptp_symbolic.symbolic.derivation.rigid_play import rigid_contact
 from ptp_symbolic.symbolic.derivation.transmission import Transmission, transmission
+from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
 from ptp_symbolic.symbolic.effect_interface.contribution import Friction
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.place import Place, quantity_name
 from ptp_symbolic.symbolic.effect_interface.place import quantity as quantity_symbol
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
-from ptp_symbolic.symbolic.simplify.reduction import reduce_trigonometry
 from ptp_symbolic.symbolic.symbols import ZERO
 
 MOTION_OF_BODIES = ("spin_", "specific_force_")  # how the names of these quantities begin
@@ -151,7 +151,7 @@ def _with_motion_of_bodies(
             for k, value in zip("xyz", vector, strict=True):
                 symbol = quantity_symbol(f"{name}_{k}_{axis}")
                 if symbol in read:
-                    found[symbol] = reduce_trigonometry(value.xreplace(joints))
+                    found[symbol] = normal_form(value.xreplace(joints))
     return replace(contributions, values={**contributions.values, **found})
 
 

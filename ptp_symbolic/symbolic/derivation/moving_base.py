@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.newton_euler import newton_euler
+from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
 from ptp_symbolic.symbolic.mechanics.bodies import NO_SPIN, RigidConfiguration
-from ptp_symbolic.symbolic.simplify.reduction import reduce_trigonometry
 from ptp_symbolic.symbolic.symbols import ZERO, real
 
 VECTORS = ("base_rate", "base_slope", "base_pull")  # rad/s, rad/s^2 and m/s^2
@@ -68,15 +68,14 @@ def moving_base(rigid: RigidConfiguration, at_rest: Mapping[sp.Symbol, sp.Expr])
 
 def _collected(torque: sp.Expr, motion: list[sp.Symbol]) -> sp.Expr:
     """`torque` as products of the base's `motion`, each with what it is multiplied by."""
-    reduced = reduce_trigonometry(torque)
+    reduced = normal_form(torque)
     present = [symbol for symbol in motion if symbol in reduced.free_symbols]
     if not present:
         return ZERO
     polynomial = sp.Poly(reduced, *present)
     return sp.Add(
         *(
-            sp.Mul(*(s**n for s, n in zip(present, powers, strict=True)))
-            * reduce_trigonometry(factor)
+            sp.Mul(*(s**n for s, n in zip(present, powers, strict=True))) * normal_form(factor)
             for powers, factor in polynomial.terms()
         )
     )

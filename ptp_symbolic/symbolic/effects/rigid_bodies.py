@@ -37,7 +37,7 @@ def _contribute(place: Place) -> Contribution:
     if place.linear:
         none = sp.ImmutableMatrix(sp.zeros(3))
         return Contribution(bodies=(Body("pan_body", "pan", SLIDING.symbol, at_axes, none),))
-    defined = {}
+    defined: dict[str, sp.Expr] = {}
     for axis in place.axes:
         names = [f"{axis}_body_mass", *(f"{axis}_body_com_{k}" for k in "xyz")]
         defined |= dict.fromkeys(names if axis == "pan" else names[:1], ZERO)
