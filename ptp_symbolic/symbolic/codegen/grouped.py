@@ -15,9 +15,7 @@ def in_base_parameters(equations: Equations) -> Equations:
     """
     varying = equations.varying_inertia
     constant = equations.mass_matrix - varying
-    given = equations.rigid_equations
-    still = given.forcing.xreplace({i.symbol: sp.Integer(0) for i in equations.inputs})
-    form = base_form(replace(given, forcing=still), constant, equations.forcing)
+    form = base_form(equations.rigid_at_rest, constant, equations.forcing)
     mass = sp.ImmutableMatrix(form.mass_matrix + varying)
     raw, written = (
         [*matrix, *forcing]

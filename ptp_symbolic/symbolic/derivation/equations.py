@@ -128,6 +128,18 @@ class Equations:
         return linear_words(rotary) if self.rigid.sliding else rotary
 
     @property
+    def rigid_at_rest(self) -> RigidEquations:
+        """The rigid equations on a base whose measured motion, if it has any, is zero."""
+        zero = {given.symbol: ZERO for given in self.inputs}
+        rigid = self.rigid_equations
+        return replace(
+            rigid,
+            forcing=rigid.forcing.xreplace(zero),
+            kinetic=rigid.kinetic.xreplace(zero),
+            potential=rigid.potential.xreplace(zero),
+        )
+
+    @property
     def state_symbols(self) -> tuple[sp.Symbol, ...]:
         """States in the order of the emitted module: joints, drives, effects that can vanish (last
         those that have a motion of their own while they do), what samplers set.
