@@ -5,7 +5,12 @@ from functools import lru_cache
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import variants
-from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
+from ptp_symbolic.platform import (
+    EffectDeclaration,
+    Platform,
+    SignalDeclaration,
+    read_platform,
+)
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.placement import available_quantities, place_effects
@@ -52,7 +57,22 @@ def _packaged_bases() -> tuple[Platform, ...]:
 
 
 def machine_with(effect: Effect) -> Platform:
-    """The first base that has `effect`, or that it can be added to. Raises InputError for none."""
+    """The first base that has `effect`, or that it can be added to, with all that it can measure as
+    outputs. Raises InputError for none.
+    """
+    platform = _machine_with(effect)
+    own = [e.contribution_at(place) for e, place in place_effects(platform) if e.id == effect.id]
+    known = {signal.signal for signal in platform.signals}
+    shown = tuple(
+        SignalDeclaration(sensor.name, sensor.name, sensor.unit, "output")
+        for added in own
+        for sensor in added.sensors
+        if sensor.name not in known
+    )
+    return replace(platform, signals=(*platform.signals, *shown))
+
+
+def _machine_with(effect: Effect) -> Platform:
     for base in bases():
         if any(e.effect == effect.id for e in base.effects):
             return base

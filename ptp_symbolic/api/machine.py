@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 Source = Model | Platform | str | Path
 
+INPUT_STEP = 2.0**-10  # SI: central difference by an input, exact where outputs are quadratic in it
+
 
 class Jacobian(NamedTuple):
     """Derivatives of dx/dt by state `x` [n, n], input `u` [n, nu] and parameter `p` [n, np], SI."""
@@ -247,8 +249,8 @@ class Machine(Displayed, Model):
         by_u, ends = np.zeros((count, len(u))), np.zeros((2, count))
         for k in range(len(u)):
             for end, sign in zip(ends, (1.0, -1.0), strict=True):
-                self.module.outputs(t, x, u + sign * np.eye(len(u))[k], p, end)
-            by_u[:, k] = (ends[0] - ends[1]) / 2.0
+                self.module.outputs(t, x, u + sign * INPUT_STEP * np.eye(len(u))[k], p, end)
+            by_u[:, k] = (ends[0] - ends[1]) / (2.0 * INPUT_STEP)
         return by_x, by_u
 
     @cached_property

@@ -14,7 +14,8 @@ from ptp_symbolic.api.extras import extra_library
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.run import Trajectory
-from ptp_symbolic.numeric.simulation.signals.input_values import evaluate_inputs
+from ptp_symbolic.numeric.simulation.signals.delays import delays_of
+from ptp_symbolic.numeric.simulation.signals.input_values import values_at
 from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, stack
 
 if TYPE_CHECKING:
@@ -74,6 +75,9 @@ class Run(Displayed, Trajectory):
         if self.state_names != self.model.state_names:
             raise InputError("Outputs follow from all states; leave out `save`.")
         y, u = np.zeros((len(self.t), len(self.model.output_names))), self.inputs_at(self.t)
+        for column, delay in enumerate(delays_of(self.model, self.p)):
+            if delay:
+                u[:, column] = self.inputs_at(self.t - delay)[:, column]
         for time, x, given, row in zip(self.t, self.x, u, y, strict=True):
             self.model.module.outputs(time, x, given, self.p, row)
         return MappingProxyType(dict(zip(self.model.output_names, y.T, strict=True)))
@@ -93,10 +97,7 @@ class Run(Displayed, Trajectory):
     def inputs_at(self, times: FloatArray) -> FloatArray:
         """Inputs [m, nu] in SI at `times` [m] in s, after a jump where there is one."""
         names = self.model.input_names
-        signals = stack([self.given.get(name, constant(0.0)) for name in names])
-        cursor, u = signals.new_cursor(), np.zeros((len(times), len(names)))
-        for row, time in zip(u, times, strict=True):
-            evaluate_inputs(time, 1, *signals.arrays, cursor, row)
+        u = values_at(stack([self.given.get(name, constant(0.0)) for name in names]), times)
         if self.commands is not None:
             held = np.searchsorted(self.commands.t, times + 1e-12, side="right") - 1
             u += self.commands.u[np.maximum(held, 0)]

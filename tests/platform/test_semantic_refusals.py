@@ -36,8 +36,8 @@ def declared(folder: Path, text: str) -> Platform:
         ),
         (
             '[[effects]]\neffect = "base_tilt"',
-            "Effect 'base_tilt' acts on 'payload_com_x', which no declared effect defines; declare"
-            " payload too, or remove it.",
+            "Effect 'base_tilt' has no effect: no declared body has a mass off its axis; declare"
+            " payload or pan_com_offset too, or remove it.",
         ),
         (
             '[[effects]]\neffect = "winding_heating"\naxis = "pan"',

@@ -20,6 +20,7 @@ from ptp_symbolic.numeric.simulation.integration import (
 from ptp_symbolic.numeric.simulation.kernels.calls import call, output_addresses
 from ptp_symbolic.numeric.simulation.kernels.records import DONE
 from ptp_symbolic.numeric.simulation.signals.delays import delay_columns, delayed, delays_of
+from ptp_symbolic.numeric.simulation.signals.input_values import values_at
 
 FloatArray = NDArray[np.float64]
 
@@ -216,7 +217,7 @@ def evaluate(
             run.time,
             found.x,
             found.s,
-            run.held_inputs,
+            values_at(table, run.time) if np.any(late) else run.held_inputs,
             p,
             run.measured,
             columns,

@@ -34,9 +34,12 @@ from ptp_symbolic.numeric.simulation.run import (
     start_of,
 )
 from ptp_symbolic.numeric.simulation.signals.delays import delay_columns
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal
+from ptp_symbolic.numeric.simulation.signals.input_values import slopes_at, values_at
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, InputTable
 
 FloatArray = NDArray[np.float64]
+
+OF_DELAY = 1e-6  # s: step of the central difference by a delay
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +116,7 @@ def sensitivity(
     if found.status == STIFF and method is None:
         found = run(IMPLICIT)
     refuse_failure(model, p, found.status, found.reached, found.state)
-    y, signals = _measured(model, t, found.x, found.s, p, columns)
+    y, signals = _measured(model, t, found.x, found.s, p, columns, table)
     return Sensitivities(t, found.x, y, (*wanted, *by_initial), found.s, signals)
 
 
@@ -124,15 +127,26 @@ def _measured(
     s: FloatArray,
     p: FloatArray,
     columns: NDArray[np.int64],
+    table: InputTable,
 ) -> tuple[FloatArray, FloatArray]:
-    ny, u = len(model.output_names), np.zeros(len(model.input_names))
+    """Signals y [k, ny] and their derivatives [k, ny, m], by way of delayed inputs too, which act
+    at once on what depends on accelerations.
+    """
+    ny, u, slopes = len(model.output_names), values_at(table, t), slopes_at(table, t)
     y, signals = np.zeros((len(t), ny)), np.zeros((len(t), ny, s.shape[2]))
     yx, yp = np.zeros((ny, x.shape[1])), np.zeros((ny, len(p)))
+    ends = np.zeros((2, ny))
     for k, time in enumerate(t):
-        model.module.outputs(time, x[k], u, p, y[k])
-        model.module.output_jacobian(time, x[k], u, p, yx, yp)
+        model.module.outputs(time, x[k], u[k], p, y[k])
+        model.module.output_jacobian(time, x[k], u[k], p, yx, yp)
         signals[k] = yx @ s[k]
         signals[k, :, : len(columns)] += yp[:, columns]
+        for j, column in enumerate(delay_columns(model, columns)):
+            if column >= 0 and slopes[k, j] != 0.0:
+                for end, sign in zip(ends, (1.0, -1.0), strict=True):
+                    later = u[k] + sign * OF_DELAY * slopes[k, j] * np.eye(u.shape[1])[j]
+                    model.module.outputs(time, x[k], later, p, end)
+                signals[k, :, column] -= (ends[0] - ends[1]) / (2.0 * OF_DELAY)
     return y, signals
 
 

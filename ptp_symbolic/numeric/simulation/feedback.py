@@ -13,6 +13,7 @@ from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.integration import Accuracy, Solution, integrate
 from ptp_symbolic.numeric.simulation.kernels.records import DONE
 from ptp_symbolic.numeric.simulation.signals.delays import delays_of
+from ptp_symbolic.numeric.simulation.signals.input_values import values_at
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 
 FloatArray = NDArray[np.float64]
@@ -135,7 +136,8 @@ class _Loop:
         names = self.feedback.measured
         if names is None:
             return x.copy()
-        self.model.module.outputs(t, x, self.last, self.p, self.y)
+        acting = self.last + values_at(self.given, np.array([t]))[0]
+        self.model.module.outputs(t, x, acting, self.p, self.y)
         return np.array(
             [self.y[self.outputs[n]] if n in self.outputs else x[self.states[n]] for n in names]
         )

@@ -28,7 +28,7 @@ def coupled_axes(equations: Equations) -> str:
     if len(equations.axes) != AXES:
         return ""
     values = {p.symbol: p.default for p in equations.parameters}
-    found = conditions(equations.rigid_equations)
+    found = conditions(equations.rigid_at_rest)
     numbers = [float(c.expression.xreplace(values)) for c in found]
     kind = strongest(c.kind for c, n in zip(found, numbers, strict=True) if n)
     own = distribution_of(equations.rigid, values)
@@ -63,7 +63,7 @@ def coupled_axes(equations: Equations) -> str:
 
 def _row(equations: Equations, mass: MassDistribution, own: str) -> list[str]:
     """A distribution of mass; of the one here with its `own` kind of coupling, by its numbers."""
-    found = distributed(equations.rigid, mass)
+    found = distributed(equations.bodies_at_rest, mass)
     name = rf"\textbf{{{mass.name}}} (here)" if own else mass.name
     entry = sp.collect(normal_form(found.mass_matrix[0, 1]), _functions(found.mass_matrix[0, 1]))
     coupled = coupling(found)

@@ -30,6 +30,9 @@ def three_routes(equations: Equations) -> str:
     reference = derived["Lagrange"]
     numbers = {real(p.name): float(p.default) or 0.01 for p in equations.parameters}
     numbers[TIME] = 1.0  # any instant of a base that shakes
+    numbers |= {given.symbol: 0.5 for given in equations.inputs}  # any motion of the base
+    at_rest = equations.rigid_at_rest
+    moved = at_rest.forcing != equations.rigid_equations.forcing
     rows = []
     for name in ("Newton--Euler", "Kane"):
         proof = prove_equal(derived[name], reference)
@@ -37,8 +40,13 @@ def three_routes(equations: Equations) -> str:
         left = "0" if proof.equal else "not 0"
         rows.append([f"{name} -- Lagrange", f"${left}$", f"${_power(worst)}$"])
     motions, loads = newton_euler_steps(equations.rigid)
+    spins = zip(equations.rigid.base_spin, equations.rigid.base_spin_rate, strict=True)
     slopes = lagrange_rows(
-        reference.coordinates, reference.rates, reference.kinetic, reference.potential
+        reference.coordinates,
+        reference.rates,
+        reference.kinetic,
+        reference.potential,
+        {spin: slope for spin, slope in spins if spin.is_Symbol},
     )
     text = "\n".join(
         [
@@ -48,14 +56,15 @@ def three_routes(equations: Equations) -> str:
             projected_steps(equations.axes, kane_with_steps(equations.rigid)[1]),
             energy_steps(reference.kinetic, reference.potential, slopes),
             r"\subsection{The equations that all three reach}",
-            _by_origin(reference),
+            _by_origin(reference, at_rest),
         ]
     )
     head = ["routes", "symbolic difference", "largest relative difference / cond"]
     claims = [
         f"The mass matrix is {'symmetric' if is_symmetric(reference) else 'not symmetric'}",
-        f"$\\dot M - 2C$ is {'skew' if is_passive(reference) else 'not skew'}",
-        f"the energy ledger of the rigid part leaves ${latex_of(energy_remainder(reference))}$",
+        f"$\\dot M - 2C$ is {'skew' if is_passive(at_rest) else 'not skew'}",
+        f"the energy ledger of the rigid part{' on a base at rest' if moved else ''} leaves"
+        f" ${latex_of(energy_remainder(at_rest))}$",
     ]
     return text + (
         "The routes are compared symbolically (mass matrix and forcing, every entry) and at"
@@ -67,14 +76,17 @@ def three_routes(equations: Equations) -> str:
     )
 
 
-def _by_origin(found: RigidEquations) -> str:
-    """Mass matrix and forcing of the rigid bodies, the terms sorted by where they come from."""
+def _by_origin(found: RigidEquations, at_rest: RigidEquations) -> str:
+    """Mass matrix and forcing of the rigid bodies, the terms sorted by where they come from; what
+    the forcing on a base `at_rest` lacks is of the base.
+    """
     n = len(found.rates)
     rows = [
         (rf"M_{{{i + 1},{j + 1}}}", found.mass_matrix[i, j]) for i in range(n) for j in range(i, n)
     ]
     still = dict.fromkeys(found.rates, 0)
-    for axis, forcing in zip(found.axes, found.forcing, strict=True):
+    moved = found.forcing - at_rest.forcing
+    for axis, forcing, base in zip(found.axes, at_rest.forcing, moved, strict=True):
         gravity = forcing.xreplace(still)
         squares = sum((sp.diff(forcing, w, 2) * w**2 / 2 for w in found.rates), sp.Integer(0))
         mixed = forcing - gravity - squares
@@ -82,14 +94,16 @@ def _by_origin(found: RigidEquations) -> str:
             ("centrifugal", squares),
             ("Coriolis", mixed),
             ("gravity", gravity),
+            ("base", base),
         ):
             rest = normal_form(part)
             if rest != 0:
                 rows.append((rf"h_{{\mathrm{{{axis},{origin}}}}}", rest))
     return (
         r"$M(q)\,\dot\omega = h(q,\omega) + \tau$, where $h$ is the sum of the parts below, by"
-        r" where they come from: squares of one rate (centrifugal), products of two (Coriolis), and"
-        r" gravity. Entries of $M$ off the diagonal couple the axes."
+        r" where they come from: squares of one rate (centrifugal), products of two (Coriolis),"
+        rf" {'gravity, and the motion of the base' if any(moved) else 'and gravity'}."
+        " Entries of $M$ off the diagonal couple the axes."
         + numbered(rows)
         + (_without_payload(found) if _payload(found) else "")
     )

@@ -12,7 +12,7 @@ from ptp_symbolic.symbolic.simplify.steps import ENTRY_STEPS, SimplifiedEquation
 def simplified(equations: Equations) -> SimplifiedEquations:
     """The rigid equations of the machine, simplified step by step."""
     constant = equations.mass_matrix - equations.varying_inertia
-    return simplify_rigid(equations.rigid_equations, constant, equations.forcing)
+    return simplify_rigid(equations.rigid_at_rest, constant, equations.forcing)
 
 
 def simplification(found: SimplifiedEquations, equations: Equations) -> str:

@@ -15,7 +15,7 @@ def in_base_parameters(equations: Equations) -> Equations:
     """
     varying = equations.varying_inertia
     constant = equations.mass_matrix - varying
-    form = base_form(equations.rigid_equations, constant, equations.forcing)
+    form = base_form(equations.rigid_at_rest, constant, equations.forcing)
     mass = sp.ImmutableMatrix(form.mass_matrix + varying)
     raw, written = (
         [*matrix, *forcing]

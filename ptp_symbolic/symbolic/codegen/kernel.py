@@ -60,12 +60,19 @@ class Vectors:
 
 
 def kernel_text(
-    name: str, arguments: str, doc: str, vectors: Vectors, lines: Sequence[Line]
+    name: str,
+    arguments: str,
+    doc: str,
+    vectors: Vectors,
+    lines: Sequence[Line],
+    first: Sequence[str] = (),
 ) -> str:
-    """A compiled function that unpacks what it uses and assigns `lines` in turn."""
+    """A compiled function that runs the statements `first`, unpacks what it uses and assigns
+    `lines` in turn.
+    """
     shapes = "; ".join(vectors.describe(argument) for argument in arguments.split(", "))
     shapes = textwrap.fill(f"{shapes}.", DOC_WIDTH)
-    rows = [f'"""{doc}\n\n{shapes}\n"""', *vectors.unpack(lines)]
+    rows = [f'"""{doc}\n\n{shapes}\n"""', *first, *vectors.unpack(lines)]
     for target, expression in lines:
         rows.append(_assignment(target, expression))
     if not lines:

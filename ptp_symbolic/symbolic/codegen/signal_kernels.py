@@ -1,35 +1,57 @@
 """Kernels of what is read of the state and set in it: outputs, energies, bounds, samplers."""
 
+from collections.abc import Sequence
+
+from ptp_symbolic.symbolic.codegen import dynamics
 from ptp_symbolic.symbolic.codegen.kernel import MODE_ARGUMENTS, Vectors, kernel_text
-from ptp_symbolic.symbolic.codegen.kernel_lines import shared_lines, variables
-from ptp_symbolic.symbolic.codegen.sharing import share
+from ptp_symbolic.symbolic.codegen.kernel_lines import shared_lines, used_names, variables
+from ptp_symbolic.symbolic.codegen.sharing import Line, share
 from ptp_symbolic.symbolic.codegen.term_names import vocabulary
+from ptp_symbolic.symbolic.derivation.contributions import slope_symbol
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
 
-
-def outputs_text(equations: Equations, vectors: Vectors) -> str:
-    """Text of `outputs`."""
-    outputs = [(f"y[{i}]", e) for i, (_, _, e) in enumerate(equations.outputs)]
-    terms = [(str(symbol), term) for symbol, term in equations.terms]
-    lines = share(terms, outputs, vocabulary(equations))
-    return kernel_text(
-        "outputs", "t, x, u, p, y", "Write the measured signals into y.", vectors, lines
-    )
+IMPLIED_MODES = ("m = np.empty(len(MODE_NAMES))", "initial_modes(t, x, u, p, m)")
 
 
-def output_jacobian_text(equations: Equations, vectors: Vectors) -> str:
-    """Text of `output_jacobian`."""
-    outputs = [
-        (f"y{letter}[{i}, {j}]", derivative(equations.written_out(expression), variable))
-        for letter, symbols in variables(equations)
-        if letter != "u"
-        for j, variable in enumerate(symbols)
-        for i, (_, _, expression) in enumerate(equations.outputs)
-    ]
+def outputs_text(grouped: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+    """Text of `outputs`; what depends on accelerations is of the modes that the state implies."""
+    outputs = [(f"y[{i}]", e) for i, (_, _, e) in enumerate(grouped.outputs)]
+    lines = share(solve.definitions, outputs, vocabulary(grouped))
+    doc = "Write the measured signals into y."
+    first = _modes_first(lines, vectors)
+    return kernel_text("outputs", "t, x, u, p, y", doc, vectors, lines, first)
+
+
+def output_jacobian_text(
+    equations: Equations, grouped: Equations, solve: dynamics.Solve, vectors: Vectors
+) -> str:
+    """Text of `output_jacobian`: by the chain rule through accelerations where outputs have any."""
+    accelerated = any(e.has(*solve.accelerations) for _, _, e in equations.outputs)
+    outputs, slopes = [], []
+    for letter, symbols in variables(equations):
+        for j, variable in enumerate(symbols if letter != "u" else ()):
+            named = [slope_symbol(a, variable) for a in solve.accelerations]
+            if accelerated:
+                values = dynamics.acceleration_derivative(grouped, solve, variable)
+                slopes += [(str(name), value) for name, value in zip(named, values, strict=True)]
+            for i, (_, _, expression) in enumerate(equations.outputs):
+                value = (
+                    dynamics.derivative_of(grouped, solve, expression, variable, named)
+                    if accelerated
+                    else derivative(equations.written_out(expression), variable)
+                )
+                outputs.append((f"y{letter}[{i}, {j}]", value))
     doc = "Write the non-zero derivatives of outputs by state and parameter."
-    lines = shared_lines(equations, (), outputs)
-    return kernel_text("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
+    definitions = (*solve.definitions, *solve.chain.lines, *slopes) if accelerated else ()
+    lines = shared_lines(grouped if accelerated else equations, definitions, outputs)
+    first = _modes_first(lines, vectors)
+    return kernel_text("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines, first)
+
+
+def _modes_first(lines: Sequence[Line], vectors: Vectors) -> tuple[str, ...]:
+    """Statements that find the modes of the state, where `lines` depend on any."""
+    return IMPLIED_MODES if used_names(lines) & set(vectors.m) else ()
 
 
 def energy_text(equations: Equations, vectors: Vectors) -> str:

@@ -37,9 +37,14 @@ def assemble(platform: Platform) -> Equations:
         contributions,
         parts.frictions,
         [t.ledger for t in parts.transmissions],
-        parts.rigid_equations,
+        replace(
+            parts.rigid_equations,
+            kinetic=parts.rigid_equations.kinetic.xreplace(parts.base.at_rest),
+            potential=parts.rigid_equations.potential.xreplace(parts.base.at_rest),
+        ),
     )
-    power = sum((torque * rate for rate, torque in parts.constraint_torques.items()), ZERO)
+    outside = (*parts.constraint_torques.items(), *parts.base.torques.items())
+    power = sum((torque * rate for rate, torque in outside), ZERO)
     equations = Equations(
         name=platform.name,
         title=platform.title,
@@ -48,7 +53,7 @@ def assemble(platform: Platform) -> Equations:
         rates=mechanics.rates,
         mass_matrix=mechanics.mass,
         forcing=mechanics.forcing,
-        terms=(*contributions.terms.items(), *parts.loads),
+        terms=(*parts.base.terms.items(), *contributions.terms.items(), *parts.loads),
         extra_states=_extra_states(contributions, (*mechanics.coordinates, *mechanics.rates)),
         samplers=_samplers(contributions),
         inputs=tuple(given for given, _ in inputs),
@@ -196,6 +201,7 @@ def _refuse_undefined(equations: Equations, names: set[str]) -> None:
     """Refuse `names` that are no parameters, where they are not variables of the machine either."""
     variables = {*equations.state_symbols, *equations.mode_symbols, TIME}
     variables |= {symbol for symbol, _ in equations.terms}
+    variables |= {kinematics.acceleration(axis) for axis in equations.axes}
     variables |= {symbol for sampler in equations.samplers for symbol in sampler.terms}
     variables |= {symbol for friction in equations.frictions for symbol in friction.terms}
     known = {str(symbol) for symbol in variables} | {given.name for given in equations.inputs}

@@ -201,8 +201,16 @@ class _Parts:
 
 
 def _bodies(found: _Parts) -> None:
-    """Inertia and gravity of the rigid bodies, one field each over all joints."""
-    rigid = found.machine.full_rigid
+    """Inertia and gravity of the rigid bodies, one field each over all joints, and what a base
+    exerts on them whose motion is measured.
+    """
+    rigid, still = found.machine.full_rigid, found.machine.base.at_rest
+    rigid = replace(
+        rigid,
+        forcing=rigid.forcing.xreplace(still),
+        kinetic=rigid.kinetic.xreplace(still),
+        potential=rigid.potential.xreplace(still),
+    )
     speeds = [acceleration(rate) for rate in rigid.rates]
     inertial = rigid.mass_matrix * sp.Matrix(speeds) - rigid.forcing
     slopes = [sp.diff(rigid.potential, q) for q in rigid.coordinates]
@@ -223,6 +231,11 @@ def _bodies(found: _Parts) -> None:
         axis = kinematics.place_of(next(iter(pulls))) if len(pulls) == 1 else None
         kind = COMPLIANCE if gravity.power_in == 0 else COMPLIANCE + "S"
         found.add(Node("gravity", kind, real("V"), meaning, axis, gravity), pulls)
+    if pushes := found.machine.base_torques:
+        ledger = Ledger(power_in=sp.Add(*(torque * rate for rate, torque in pushes.items())))
+        axis = kinematics.place_of(next(iter(pushes))) if len(pushes) == 1 else None
+        base = Node("base", MODULATED + EFFORT, real("T_base"), "moving base", axis, ledger)
+        found.add(base, {rate: -torque for rate, torque in pushes.items()})
 
 
 def _effect(found: _Parts, effect: Effect, own: Contribution) -> None:

@@ -27,8 +27,18 @@ from ptp_symbolic.symbolic.symbols import ZERO, real
 
 GRAVITY_QUANTITIES = ("gravity_tilt", "gravity_azimuth")
 BASE_ACCELERATION = tuple(f"base_acceleration_{k}" for k in "xyz")
+GRAVITY_SHARE = "gravity_share"  # 0 where what is measured on the base has gravity in it
+BASE_SPIN = tuple(f"base_spin_{k}" for k in "xyz")
+BASE_SPIN_RATE = tuple(f"base_spin_rate_{k}" for k in "xyz")
 AXIS_OFFSET = "tilt_axis_offset"  # of the tilt axis from the pan axis, along x, in m
-PLATFORM_QUANTITIES = (*GRAVITY_QUANTITIES, *BASE_ACCELERATION)
+PLATFORM_QUANTITIES = (
+    *GRAVITY_QUANTITIES,
+    GRAVITY_SHARE,
+    *BASE_ACCELERATION,
+    *BASE_SPIN,
+    *BASE_SPIN_RATE,
+)
+OFF_AXIS_MASS = "off_axis_mass"  # on which gravity and an accelerated base act
 TORQUES = ("input_torque_{axis}", "command_torque_{axis}")  # each from the next, then the input
 
 
@@ -127,7 +137,8 @@ def sensors_on(
     axes: Iterable[str], contributions: Sequence[Contribution], linear: Collection[str] = ()
 ) -> list[Sensor]:
     """The sensors that a machine may have: rates of its joints, torques of its shafts (forces of
-    `linear` ones), and those of its effects.
+    `linear` ones), rates of its bodies in their own axes (thesis Eq. 3.1), and those of its
+    effects.
     """
     rates = [
         (
@@ -155,7 +166,18 @@ def sensors_on(
         for shaft in contribution.shafts
     ]
     own = [linear_sensor(s) if axis in linear else s for axis, s in (*rates, *torques)]
-    return [*own, *(s for c in contributions for s in c.sensors)]
+    gyros = [
+        Sensor(
+            f"omega_{k}_{axis}",
+            "rad/s",
+            f"rate of the {axis} body about its {k} axis, by a gyro",
+            quantity_symbol(f"spin_{k}_{axis}"),
+        )
+        for axis in axes
+        if axis not in linear
+        for k in "xyz"
+    ]
+    return [*own, *gyros, *(s for c in contributions for s in c.sensors)]
 
 
 def collect(
@@ -173,6 +195,7 @@ def collect(
     linear = {str(place.axis) for _, place in placed if place.linear}
     sensors = tuple(s for s in sensors_on(axes, contributions, linear) if s.name in measured)
     values: dict[str, sp.Expr] = {name: ZERO for name in PLATFORM_QUANTITIES}
+    values[GRAVITY_SHARE] = sp.Integer(1)
     values |= input_torques(axes, contributions)
     for axis in axes:
         values[f"transmitted_torque_{axis}"] = _transmitted(axis, contributions)
@@ -252,11 +275,13 @@ def _transmitted(axis: str, contributions: Iterable[Contribution]) -> sp.Expr:
 
 def machine_quantities(axes: Iterable[str], contributions: Sequence[Contribution]) -> set[str]:
     """Names of the quantities on the axes that are there whatever effect defines others: torque
-    inputs, torques that reach a joint (but by its prescribed motion, or rigid backlash), and the
-    errors of gears (of a shaft that may have play, or of a motor without a shaft).
+    inputs, torques that reach a joint (but by its prescribed motion, or rigid backlash), the
+    errors of gears (of a shaft that may have play, or of a motor without a shaft), and whether a
+    mass lies off the axes.
     """
     axes = tuple(axes)
     found = set(input_torques(axes, contributions))
+    found |= {OFF_AXIS_MASS} if _has_off_axis_mass(contributions) else set()
     prescribed = {kinematics.place_of(rate) for c in contributions for rate in c.prescribed}
     loose = {play.axis for c in contributions for play in c.plays}
     found |= {f"transmitted_torque_{a}" for a in axes if a not in prescribed | loose}
@@ -264,6 +289,20 @@ def machine_quantities(axes: Iterable[str], contributions: Sequence[Contribution
     split = loose | {shaft.axis for c in contributions for shaft in c.shafts}
     true |= {drive.axis for c in contributions for drive in c.drives} - split
     return found | {f"transmission_error_{axis}" for axis in true}
+
+
+def _has_off_axis_mass(contributions: Sequence[Contribution]) -> bool:
+    """Whether a body has a mass, and its centre or its frame lies off an axis."""
+    changed = {name for c in contributions for name in c.changes}
+    defined = {name: v for c in contributions for name, v in c.quantities.items()}
+    zero = {quantity_symbol(n): ZERO for n, v in defined.items() if v == 0 and n not in changed}
+    apart = AXIS_OFFSET in defined and quantity_symbol(AXIS_OFFSET) not in zero
+    return any(
+        body.mass.xreplace(zero) != 0
+        and (any(body.com.xreplace(zero)) or (apart and body.frame == "tilt"))
+        for contribution in contributions
+        for body in contribution.bodies
+    )
 
 
 def input_torques(axes: Iterable[str], contributions: Sequence[Contribution]) -> dict[str, sp.Expr]:

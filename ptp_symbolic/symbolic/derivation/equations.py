@@ -17,7 +17,7 @@ from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.linear import linear_unit, linear_words
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
-from ptp_symbolic.symbolic.mechanics.bodies import RigidConfiguration, RigidEquations
+from ptp_symbolic.symbolic.mechanics.bodies import NO_SPIN, RigidConfiguration, RigidEquations
 from ptp_symbolic.symbolic.symbols import ZERO
 
 
@@ -126,6 +126,25 @@ class Equations:
     def worded(self, rotary: str) -> str:
         """A text about a rotary joint in the words of the joints here."""
         return linear_words(rotary) if self.rigid.sliding else rotary
+
+    @property
+    def bodies_at_rest(self) -> RigidConfiguration:
+        """The bodies on a base whose measured motion, if it has any, is zero."""
+        zero = {given.symbol: ZERO for given in self.inputs}
+        gravity = self.rigid.gravity.xreplace(zero)
+        return replace(self.rigid, gravity=gravity, base_spin=NO_SPIN, base_spin_rate=NO_SPIN)
+
+    @property
+    def rigid_at_rest(self) -> RigidEquations:
+        """The rigid equations on a base whose measured motion, if it has any, is zero."""
+        zero = {given.symbol: ZERO for given in self.inputs}
+        rigid = self.rigid_equations
+        return replace(
+            rigid,
+            forcing=rigid.forcing.xreplace(zero),
+            kinetic=rigid.kinetic.xreplace(zero),
+            potential=rigid.potential.xreplace(zero),
+        )
 
     @property
     def state_symbols(self) -> tuple[sp.Symbol, ...]:

@@ -15,7 +15,12 @@ from sympy.physics.mechanics import (
 
 from ptp_symbolic.symbolic.derivation.newton_euler import acceleration
 from ptp_symbolic.symbolic.mechanics import kinematics
-from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration, RigidEquations
+from ptp_symbolic.symbolic.mechanics.bodies import (
+    NO_SPIN,
+    Body,
+    RigidConfiguration,
+    RigidEquations,
+)
 from ptp_symbolic.symbolic.symbols import ZERO
 
 
@@ -53,25 +58,34 @@ def kane_with_steps(configuration: RigidConfiguration) -> tuple[RigidEquations, 
     axes = configuration.axes
     angles = [dynamicsymbols(f"theta_{axis}") for axis in axes]
     speeds = [dynamicsymbols(f"omega_{axis}") for axis in axes]
-    base, origin = ReferenceFrame("base"), Point("foot")
+    still, base, origin = ReferenceFrame("still"), ReferenceFrame("base"), Point("foot")
+    spins = [dynamicsymbols(f"spin_{k}_base") for k in "xyz"]
+    moving = configuration.base_spin != NO_SPIN
+    base.set_ang_vel(still, _vector(sp.Matrix(spins), base) if moving else 0)
+    origin.set_vel(still, 0)
     origin.set_vel(base, 0)
-    frames = _frames(configuration, base, origin, angles, speeds)
-    bodies = [_rigid_body(body, *frames[body.frame], base) for body in configuration.bodies]
+    frames = _frames(configuration, still, base, origin, angles, speeds)
+    bodies = [_rigid_body(body, *frames[body.frame], still) for body in configuration.bodies]
     down = _vector(configuration.gravity, base)
     loads = [(body.masscenter, body.mass * down) for body in bodies]
     kinematic = [q.diff() - u for q, u in zip(angles, speeds, strict=True)]
-    method = KanesMethod(base, q_ind=angles, u_ind=speeds, kd_eqs=kinematic)
+    method = KanesMethod(still, q_ind=angles, u_ind=speeds, kd_eqs=kinematic)
     active, inertial = method.kanes_equations(bodies, loads)
     coordinates = tuple(kinematics.angle(axis) for axis in axes)
     rates = tuple(kinematics.rate(axis) for axis in axes)
     plain = dict(zip((*angles, *speeds), (*coordinates, *rates), strict=True))
+    plain |= dict(zip(spins, configuration.base_spin, strict=True))
+    slopes = (spin.diff() for spin in spins)
+    plain |= dict(zip(slopes, configuration.base_spin_rate, strict=True))
     potential = -sum((b.mass * down.dot(b.masscenter.pos_from(origin)) for b in bodies), ZERO)
-    kinetic = sum((body.kinetic_energy(base) for body in bodies), ZERO)
-    moving = plain | {u.diff(): acceleration(axis) for u, axis in zip(speeds, axes, strict=True)}
+    kinetic = sum((body.kinetic_energy(still) for body in bodies), ZERO)
+    accelerated = plain | {
+        u.diff(): acceleration(axis) for u, axis in zip(speeds, axes, strict=True)
+    }
     steps = KaneSteps(
-        tuple(_partial_velocities(body, base, speeds, plain) for body in bodies),
-        active.xreplace(moving),
-        inertial.xreplace(moving),
+        tuple(_partial_velocities(body, still, speeds, plain) for body in bodies),
+        active.xreplace(accelerated),
+        inertial.xreplace(accelerated),
     )
     found = RigidEquations(
         axes,
@@ -104,6 +118,7 @@ def _partial_velocities(
 
 def _frames(
     configuration: RigidConfiguration,
+    still: ReferenceFrame,
     base: ReferenceFrame,
     foot: Point,
     angles: list[sp.Expr],
@@ -123,9 +138,9 @@ def _frames(
             if axis in configuration.sliding:
                 frame.orient_axis(last, last.x, 0)
                 origin.set_vel(last, speeds[place] * _vector(kinematics.ALONG, last))
-                origin.v1pt_theory(before, base, last)
+                origin.v1pt_theory(before, still, last)
             else:
-                origin.v2pt_theory(before, base, last)
+                origin.v2pt_theory(before, still, last)
                 direction = _vector(kinematics.joint_direction(axis), last)
                 frame.orient_axis(last, direction, angles[place])
                 frame.set_ang_vel(last, speeds[place] * direction)
@@ -135,10 +150,10 @@ def _frames(
 
 
 def _rigid_body(
-    body: Body, frame: ReferenceFrame, origin: Point, base: ReferenceFrame
+    body: Body, frame: ReferenceFrame, origin: Point, still: ReferenceFrame
 ) -> RigidBody:
     centre = origin.locatenew(f"{body.name}_centre", _vector(body.com, frame))
-    centre.v2pt_theory(origin, base, frame)
+    centre.v2pt_theory(origin, still, frame)
     tensor = body.inertia
     dyadic = inertia(
         frame,

@@ -4,13 +4,15 @@ The energies are written from the rotation matrices and their derivatives alone;
 and no constraint force is ever formed.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration, RigidEquations
+from ptp_symbolic.symbolic.symbols import real
 
 
 @dataclass(frozen=True)
@@ -34,12 +36,16 @@ def lagrange_rows(
     rates: tuple[sp.Symbol, ...],
     kinetic: sp.Expr,
     potential: sp.Expr,
+    given: Mapping[sp.Symbol, sp.Expr] | None = None,
 ) -> list[LagrangeRow]:
-    """Lagrange's equations of `kinetic` and `potential` in J, term by term."""
+    """Lagrange's equations of `kinetic` and `potential` in J, term by term; `given` are rates of
+    change of what else the momenta depend on.
+    """
     rows = []
+    changing = {**dict(zip(coordinates, rates, strict=True)), **(given or {})}
     for coordinate, rate in zip(coordinates, rates, strict=True):
         momentum = sp.diff(kinetic, rate)
-        transport = (sp.diff(momentum, q) * w for q, w in zip(coordinates, rates, strict=True))
+        transport = (sp.diff(momentum, q) * w for q, w in changing.items())
         slopes = (sp.diff(energy, coordinate) for energy in (kinetic, potential))
         rows.append(LagrangeRow(coordinate, rate, momentum, sp.Add(*transport), *slopes))
     return rows
@@ -51,21 +57,29 @@ def lagrange(configuration: RigidConfiguration) -> RigidEquations:
     The entries stay as the energies leave them, multiplied out but not reduced. Source: Goldstein,
     Poole and Safko, Classical Mechanics, 3rd edition 2002, Eq. 1.53.
     """
+    spin, spin_rate = configuration.base_spin, configuration.base_spin_rate
+    turning = sp.ImmutableMatrix([real(f"base_spin:{k}") if spin[k] != 0 else 0 for k in range(3)])
+    given = {turning[k]: spin_rate[k] for k in range(3) if turning[k] != 0}
+    put_in = {turning[k]: spin[k] for k in range(3) if turning[k] != 0}
+    configuration = replace(configuration, base_spin=turning)
     coordinates = tuple(kinematics.angle(axis) for axis in configuration.axes)
     rates = tuple(kinematics.rate(axis) for axis in configuration.axes)
     energies = [_energies(body, configuration) for body in configuration.bodies]
     kinetic = sp.Add(*(kinetic for kinetic, _ in energies))
     potential = sp.Add(*(potential for _, potential in energies))
     mass_matrix = sp.hessian(kinetic, rates)
-    rows = lagrange_rows(coordinates, rates, kinetic, potential)
-    forcing = [sp.expand(row.kinetic_slope - row.potential_slope - row.transport) for row in rows]
+    rows = lagrange_rows(coordinates, rates, kinetic, potential, given)
+    forcing = [
+        sp.expand((row.kinetic_slope - row.potential_slope - row.transport).xreplace(put_in))
+        for row in rows
+    ]
     return RigidEquations(
         configuration.axes,
         coordinates,
         rates,
         sp.ImmutableMatrix(mass_matrix.applyfunc(sp.expand)),
         sp.ImmutableMatrix(forcing),
-        kinetic,
+        kinetic.xreplace(put_in),
         potential,
     )
 
@@ -79,11 +93,12 @@ def _energies(body: Body, configuration: RigidConfiguration) -> tuple[sp.Expr, s
     for axis in axes:
         spin += rotation.T * rotation.diff(kinematics.angle(axis)) * kinematics.rate(axis)
     spin = spin.applyfunc(normal_form)
-    angular = sp.Matrix([spin[2, 1], spin[0, 2], spin[1, 0]])
-    carried = sp.zeros(3, 1)
+    base_spin = sp.Matrix(configuration.base_spin)
+    angular = sp.Matrix([spin[2, 1], spin[0, 2], spin[1, 0]]) + rotation.T * base_spin
+    carried = rotation.T * base_spin.cross(sp.Matrix(origin))
     for axis in axes:
         carried += rotation.T * origin.diff(kinematics.angle(axis)) * kinematics.rate(axis)
-    velocity = carried.applyfunc(normal_form) + spin * body.com
+    velocity = carried.applyfunc(normal_form) + angular.cross(sp.Matrix(body.com))
     kinetic = body.mass * velocity.dot(velocity) + angular.dot(body.inertia * angular)
     potential = -body.mass * configuration.gravity.dot(origin + rotation * body.com)
     return sp.expand(kinetic / 2), sp.expand(potential)

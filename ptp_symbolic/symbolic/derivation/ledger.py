@@ -22,8 +22,9 @@ def energy_ledger(
 ) -> Ledger:
     """Sum the ledgers of bodies, drives, shafts, `frictions` and effects.
 
-    Power comes in by torque inputs, at the terminals of motors, and by a base that moves: the
-    partial derivative by time of a potential.
+    Power comes in by torque inputs, at the terminals of motors, and by a base that moves as its
+    parameters say: the partial derivative by time of a potential. `rigid` has the energies of the
+    bodies relative to a base whose motion is measured, as if it stood still.
     """
     powers = (contributions.input_torque(axis) * kinematics.rate(axis) for axis in axes)
     total = Ledger(rigid.kinetic + rigid.potential, sum(powers, ZERO))

@@ -96,7 +96,9 @@ def newton_euler(configuration: RigidConfiguration) -> RigidEquations:
 def _outward(configuration: RigidConfiguration, accelerations: list[sp.Symbol]) -> list[Motion]:
     """Motion of the base and of the frame behind each joint, base first."""
     still = sp.zeros(3, 1)
-    motions = [Motion(still, still, sp.Matrix(configuration.gravity), still, still, still)]
+    spin, spin_rate = sp.Matrix(configuration.base_spin), sp.Matrix(configuration.base_spin_rate)
+    gravity = sp.Matrix(configuration.gravity)
+    motions = [Motion(spin, spin_rate, gravity, still, still, still)]
     for axis, acceleration in zip(configuration.axes, accelerations, strict=True):
         before = motions[-1]
         inwards = configuration.rotation(axis).T

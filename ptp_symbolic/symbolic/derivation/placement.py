@@ -12,7 +12,12 @@ from ptp_symbolic.platform import (
     naming_file,
 )
 from ptp_symbolic.platform.units import compatible
-from ptp_symbolic.symbolic.derivation.contributions import TORQUES, machine_quantities, sensors_on
+from ptp_symbolic.symbolic.derivation.contributions import (
+    OFF_AXIS_MASS,
+    TORQUES,
+    machine_quantities,
+    sensors_on,
+)
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
@@ -62,6 +67,7 @@ def _placed(platform: Platform) -> list[tuple[Effect, Place]]:
     found = [(_of_kind(find_effect(d.effect), d.kind), d) for d in platform.effects]
     found.sort(key=lambda pair: order.index(pair[0].id))
     shafts = frozenset(d.axis for e, d in found if e.splits_axis and d.axis is not None)
+    turns = any(effect.turns_base for effect, _ in found)
     placed = []
     for effect, declaration in found:
         if effect.on_axis and declaration.axis is None:
@@ -84,7 +90,7 @@ def _placed(platform: Platform) -> list[tuple[Effect, Place]]:
                 f"Effect '{effect.id}' makes no sense on a linear joint:"
                 f" {effect.instead_on_linear}; remove it."
             )
-        place = Place(platform.axes, declaration.axis, declaration.site, shafts, linear)
+        place = Place(platform.axes, declaration.axis, declaration.site, shafts, linear, turns)
         placed.append((effect, place))
     return placed
 
@@ -153,9 +159,13 @@ def available_quantities(placed: list[tuple[Effect, Place]]) -> set[str]:
 
 def definitions(placed: list[tuple[Effect, Place]]) -> dict[str, set[str]]:
     """The quantities that every placed effect defines, by its key."""
-    return {
-        effect_key(effect.id, place.axis): set(effect.turning_contribution_at(place).quantities)
+    added = {
+        effect_key(effect.id, place.axis): effect.turning_contribution_at(place)
         for effect, place in placed
+    }
+    return {
+        key: {*own.quantities, *({OFF_AXIS_MASS} & machine_quantities((), (own,)))}
+        for key, own in added.items()
     }
 
 
@@ -169,11 +179,11 @@ def acts_on(effect: Effect, place: Place, defined: Mapping[str, set[str]]) -> tu
 
 def effects_that_define(quantity: str, axes: tuple[str, ...], linear: bool = False) -> list[str]:
     """Ids of the effects that define `quantity` on a machine with these axes, linear or not."""
-    return [
-        effect.id
-        for effect, place in _everywhere(axes, linear)
-        if quantity in effect.turning_contribution_at(place).quantities
-    ]
+    added = [(e, e.turning_contribution_at(place)) for e, place in _everywhere(axes, linear)]
+    if quantity != OFF_AXIS_MASS:
+        return [effect.id for effect, own in added if quantity in own.quantities]
+    bodies = [own for _, own in added if own.bodies and not machine_quantities((), (own,))]
+    return [e.id for e, own in added if quantity in machine_quantities((), (*bodies, own))]
 
 
 def _everywhere(axes: tuple[str, ...], linear: bool) -> Iterator[tuple[Effect, Place]]:
@@ -185,11 +195,16 @@ def _everywhere(axes: tuple[str, ...], linear: bool) -> Iterator[tuple[Effect, P
 
 
 def readings(platform: Platform, placed: list[tuple[Effect, Place]]) -> set[str]:
-    """Quantities of what the declared outputs beside the angles show."""
+    """Quantities of what the declared outputs beside the angles show; gravity and a moving base
+    act on an accelerometer as on a mass off the axes.
+    """
     added = [effect.contribution_at(place) for effect, place in placed]
-    known = {s.name for s in sensors_on(platform.axes, added, platform.linear_axes)}
-    known |= {state.name for c in added for state in c.states}
-    return {f"reading_{s.signal}" for s in platform.signals if s.signal in known}
+    sensors = sensors_on(platform.axes, added, platform.linear_axes)
+    declared = {s.signal for s in platform.signals}
+    known = {s.name for s in sensors} | {state.name for c in added for state in c.states}
+    read = {str(q) for s in sensors if s.name in declared for q in s.value.free_symbols}
+    heavy = {OFF_AXIS_MASS} if any("specific_force" in name for name in read) else set()
+    return {f"reading_{name}" for name in declared & known} | heavy
 
 
 def _check_needs(platform: Platform, placed: list[tuple[Effect, Place]]) -> None:
@@ -217,6 +232,11 @@ def _check_needs(platform: Platform, placed: list[tuple[Effect, Place]]) -> None
                     if bringing
                     else f"no effect does on a platform of {' and '.join(place.axes)}; remove it"
                 )
+                if name == OFF_AXIS_MASS:
+                    raise InputError(
+                        f"Effect '{effect.id}' has no effect: no declared body has a mass off its"
+                        f" axis; {next_step}."
+                    )
                 raise InputError(
                     f"Effect '{effect.id}' acts on '{name}', which no declared effect"
                     f" defines; {next_step}."

@@ -97,6 +97,8 @@ def _sites(
 def _own_sites(own: Contribution, place: Place) -> Iterator[Site]:
     for body in own.bodies:
         yield Site(BODY, body.frame, body.name)
+    if own.sensors and place.axis is None:
+        yield Site(BODY, place.payload_frame, f"{place.payload_frame}_body")
     for drive in own.drives:
         yield Site(MOTOR, drive.axis)
     for axis in (*(s.axis for s in own.shafts), *(p.axis for p in own.plays)):

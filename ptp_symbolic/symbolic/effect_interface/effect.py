@@ -69,12 +69,14 @@ class Effect:
     has nothing to act on; `requires`: what its parameters must fulfil. `dissipative`: its torques
     only take energy out, which tests verify. `structural`: no parameter value makes it vanish (a
     motor, a body): declared, never searched for; nor is one that is `declared_only`. `sites`: where
-    on its axis it may sit, if there is a choice. A diagnosis rebuilds platforms with it as its
-    `structure` says (None: it does not). `has` tells which of its parameters it has at a
-    place. `members` are nested versions of it, the simplest first and the whole last; where
-    `first_leads`, what the others add to the first can only be smaller. Other `kinds` share its
-    id; this is the usual one. `linear` has the texts that are others on a linear joint, where they
-    do not follow word by word; what makes no sense there says `instead_on_linear` why.
+    on its axis it may sit, if there is a choice. `splits_axis`: the gear output has a coordinate of
+    its own; `turns_base`: the base turns, and all of a body's inertia matters. A diagnosis rebuilds
+    platforms with it as its `structure` says (None: it does not). `has` tells which of its
+    parameters it has at a place. `members` are nested versions of it, the simplest first and the
+    whole last; where `first_leads`, what the others add to the first can only be smaller. Other
+    `kinds` share its id; this is the usual one. `linear` has the texts that are others on a linear
+    joint, where they do not follow word by word; what makes no sense there says
+    `instead_on_linear` why.
 
     Raises ValueError for a parameter whose default, starts or vanishing value lie out of its
     bounds, and for a member with parameters that are not the effect's.
@@ -91,6 +93,7 @@ class Effect:
     declared_only: bool = False
     sites: tuple[str, ...] = ()
     splits_axis: bool = False
+    turns_base: bool = False
     needs: tuple[str, ...] = ()
     requires: Callable[[Place], tuple[Requirement, ...]] = _without_conditions
     has: Callable[[Place, Parameter], bool] = _always

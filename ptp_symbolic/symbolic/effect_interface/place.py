@@ -16,7 +16,7 @@ LOADS = ("driving_torque", "load_torque", "load_inertia")
 @dataclass(frozen=True)
 class Place:
     """Where an effect sits: axes of the machine, its own axis and site, axes with a shaft, and
-    whether the joint is a linear one.
+    whether the joint is a linear one, and whether the base turns.
     """
 
     axes: tuple[str, ...]
@@ -24,6 +24,7 @@ class Place:
     site: str | None
     shafts: frozenset[str]
     linear: bool = False
+    base_turns: bool = False
 
     def symbols(self, parameters: Iterable[Parameter]) -> tuple[sp.Symbol, ...]:
         """Symbols of `parameters` of the effect, the name of its axis filled in."""

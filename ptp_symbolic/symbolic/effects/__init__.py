@@ -14,7 +14,9 @@ from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effects.actuator_lag import ACTUATOR_LAG
 from ptp_symbolic.symbolic.effects.axis_offset import AXIS_OFFSET
 from ptp_symbolic.symbolic.effects.backlash import BACKLASH
+from ptp_symbolic.symbolic.effects.base_acceleration import BASE_ACCELERATION
 from ptp_symbolic.symbolic.effects.base_motion import BASE_MOTION
+from ptp_symbolic.symbolic.effects.base_rotation import BASE_ROTATION
 from ptp_symbolic.symbolic.effects.base_tilt import BASE_TILT
 from ptp_symbolic.symbolic.effects.cable_spring import CABLE_SPRING
 from ptp_symbolic.symbolic.effects.cogging import COGGING
@@ -30,6 +32,7 @@ from ptp_symbolic.symbolic.effects.end_stop import END_STOP
 from ptp_symbolic.symbolic.effects.friction_drift import FRICTION_DRIFT
 from ptp_symbolic.symbolic.effects.gear_eccentricity import GEAR_ECCENTRICITY
 from ptp_symbolic.symbolic.effects.harmonic_drive import HARMONIC_DRIVE
+from ptp_symbolic.symbolic.effects.imu import IMU
 from ptp_symbolic.symbolic.effects.input_delay import INPUT_DELAY
 from ptp_symbolic.symbolic.effects.linear_actuator import LINEAR_ACTUATOR
 from ptp_symbolic.symbolic.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION
@@ -37,6 +40,7 @@ from ptp_symbolic.symbolic.effects.lugre_friction import LUGRE_FRICTION
 from ptp_symbolic.symbolic.effects.magnetic_detent import MAGNETIC_DETENT
 from ptp_symbolic.symbolic.effects.maxwell_slip_friction import MAXWELL_SLIP_FRICTION
 from ptp_symbolic.symbolic.effects.measurement_lag import MEASUREMENT_LAG
+from ptp_symbolic.symbolic.effects.pan_com_offset import PAN_COM_OFFSET
 from ptp_symbolic.symbolic.effects.payload import PAYLOAD
 from ptp_symbolic.symbolic.effects.payload_com_offset import PAYLOAD_COM_OFFSET
 from ptp_symbolic.symbolic.effects.pid_controller import PID_CONTROLLER
@@ -66,8 +70,11 @@ PACKAGED: tuple[Effect, ...] = (
     PAYLOAD_COM_OFFSET,
     PRODUCT_OF_INERTIA,
     AXIS_OFFSET,
+    PAN_COM_OFFSET,
     BASE_TILT,
     BASE_MOTION,
+    BASE_ACCELERATION,
+    BASE_ROTATION,
     VISCOUS_FRICTION,
     CSVS_FRICTION,
     LUGRE_FRICTION,
@@ -104,6 +111,7 @@ PACKAGED: tuple[Effect, ...] = (
     END_STOP,
     CONSTANT_TORQUE,
     INPUT_DELAY,
+    IMU,
     ENCODER_ECCENTRICITY,
     MEASUREMENT_LAG,
     ENCODER_QUANTIZATION,

@@ -63,7 +63,7 @@ BASE_MOTION = Effect(
     parameters=PARAMETERS,
     contribute=_contribute,
     on_axis=False,
-    needs=("payload_com_x",),
+    needs=("off_axis_mass",),
     separating_experiment="Hold the axes and log: a shaking base moves them in time, whatever the"
     " angle; an accelerometer on the base tells at once.",
     instead_on_linear="it acts on a payload that turns",

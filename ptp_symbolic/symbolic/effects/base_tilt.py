@@ -1,4 +1,8 @@
-"""A base that is not level, so that gravity reaches the pan axis."""
+"""A base that is not level, so that gravity reaches the pan axis.
+
+It acts on every mass off the axes: a payload, a tilt body ahead of the pan axis, a pan body whose
+centre of mass is off its axis.
+"""
 
 import math
 
@@ -23,7 +27,7 @@ AZIMUTH = Parameter(
     0.0,
     -7.0,
     7.0,
-    "pan angle at which a payload on the boresight would rest",
+    "pan angle at which a mass ahead of the pan axis would rest",
     starts=(-math.pi / 2, 0.0, math.pi / 2, math.pi),
     period=2 * math.pi,
 )
@@ -45,7 +49,7 @@ BASE_TILT = Effect(
     parameters=(TILT, AZIMUTH),
     contribute=_contribute,
     on_axis=False,
-    needs=("payload_com_x",),
+    needs=("off_axis_mass",),
     separating_experiment="Sweep the pan axis over a full turn (a spring keeps growing, gravity"
     " comes back), or level the base with shims and repeat.",
     instead_on_linear="gravity along it is a constant force: declare constant_torque",

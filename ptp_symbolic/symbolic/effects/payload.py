@@ -23,8 +23,8 @@ MASS = Parameter("m_payload", "kg", 4.992, 0.0, 1e5, "payload mass")
 
 
 def _has(place: Place, parameter: Parameter) -> bool:
-    """About a single axis one inertia matters, and no offset along it."""
-    if len(place.axes) > 1 or parameter is MASS:
+    """About a single axis on a base that does not turn one inertia matters, no offset along it."""
+    if len(place.axes) > 1 or place.base_turns or parameter is MASS:
         return True
     about = {"pan": "z", "tilt": "y"}[place.axes[0]]
     return (parameter.name == f"J_{about}_payload") == (parameter in INERTIAS) and (

@@ -22,7 +22,7 @@ SHIFTS = tuple(
 
 def _has(place: Place, parameter: Parameter) -> bool:
     along_axis = {"pan": "dc_z_payload", "tilt": "dc_y_payload"}.get("".join(place.axes))
-    return parameter.name != along_axis
+    return place.base_turns or parameter.name != along_axis
 
 
 def _contribute(place: Place) -> Contribution:

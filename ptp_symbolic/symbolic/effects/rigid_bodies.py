@@ -11,50 +11,52 @@ from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.mechanics.bodies import Body
 from ptp_symbolic.symbolic.symbols import ZERO
 
-PARAMETERS = (
-    Parameter("J_pan", "kg m^2", 5.3e-4, 1e-12, 1e4, "inertia of the pan body about z"),
-    Parameter("J_x_tilt", "kg m^2", 4.1e-4, 1e-12, 1e4, "inertia of the tilt body about x"),
-    Parameter("J_y_tilt", "kg m^2", 6.5e-4, 1e-12, 1e4, "inertia of the tilt body about y"),
-    Parameter("J_z_tilt", "kg m^2", 2.7e-4, 1e-12, 1e4, "inertia of the tilt body about z"),
+BODIES = {
+    "pan": (("J_pan", "z", 5.3e-4), ("J_x_pan", "x", 5.3e-4), ("J_y_pan", "y", 8.7e-4)),
+    "tilt": (("J_x_tilt", "x", 4.1e-4), ("J_y_tilt", "y", 6.5e-4), ("J_z_tilt", "z", 2.7e-4)),
+}
+PARAMETERS = tuple(
+    Parameter(name, "kg m^2", value, 1e-12, 1e4, f"inertia of the {axis} body about {k}")
+    for axis, inertias in BODIES.items()
+    for name, k, value in inertias
 )
 SLIDING = Parameter("m_pan", "kg", 1.0, 1e-9, 1e6, "mass that slides on the linear joint")
-ALONE: dict[tuple[str, ...], str] = {
-    ("pan",): "J_pan",
-    ("tilt",): "J_y_tilt",
-}  # what matters of a body with one axis
+ALONE = {"pan": "J_pan", "tilt": "J_y_tilt"}  # what matters of the first body on a base at rest
 
 
 def _has(place: Place, parameter: Parameter) -> bool:
     if place.linear or parameter is SLIDING:
         return place.linear and parameter is SLIDING
-    return parameter.name == ALONE.get(place.axes, parameter.name)
+    axis = parameter.name.rpartition("_")[2]
+    whole = place.base_turns or axis != place.axes[0]
+    return axis in place.axes and (whole or parameter.name == ALONE[axis])
 
 
 def _contribute(place: Place) -> Contribution:
-    symbol = place.parameter
     at_axes = sp.ImmutableMatrix([0, 0, 0])
     if place.linear:
         none = sp.ImmutableMatrix(sp.zeros(3))
         return Contribution(bodies=(Body("pan_body", "pan", SLIDING.symbol, at_axes, none),))
-    bodies, defined = [], {}
-    if "pan" in place.axes:
-        inertia = sp.ImmutableMatrix(sp.diag(0, 0, symbol("J_pan")))
-        bodies.append(Body("pan_body", "pan", ZERO, at_axes, inertia))
-    if "tilt" in place.axes:
-        full = "pan" in place.axes
-        x, z = (symbol("J_x_tilt"), symbol("J_z_tilt")) if full else (0, 0)
-        inertia = sp.diag(x, symbol("J_y_tilt"), z)
-        mass: sp.Expr = ZERO
-        if full:
-            products = [f"tilt_product_{pair}" for pair in ("xy", "xz", "yz")]
-            names = (*products, "tilt_body_mass", "tilt_axis_offset")
-            defined = dict.fromkeys(names, ZERO)
-            mass = place.quantity("tilt_body_mass")
-            for name in products:
-                i, j = ("xyz".index(letter) for letter in name[-2:])
-                inertia[i, j] = inertia[j, i] = place.quantity(name)
-        inertia = sp.ImmutableMatrix(inertia)
-        bodies.append(Body("tilt_body", "tilt", mass, at_axes, inertia))
+    defined: dict[str, sp.Expr] = {}
+    for axis in place.axes:
+        names = [f"{axis}_body_mass", *(f"{axis}_body_com_{k}" for k in "xyz")]
+        defined |= dict.fromkeys(names if axis == "pan" else names[:1], ZERO)
+    if len(place.axes) > 1:
+        names = [*(f"tilt_product_{pair}" for pair in ("xy", "xz", "yz")), "tilt_axis_offset"]
+        defined |= dict.fromkeys(names, ZERO)
+    bodies = []
+    for axis in place.axes:
+        inertia = sp.zeros(3)
+        for parameter in (p for p in PARAMETERS if _has(place, p)):
+            for k in (k for name, k, _ in BODIES[axis] if name == parameter.name):
+                inertia["xyz".index(k), "xyz".index(k)] = parameter.symbol
+        for name in (n for n in defined if n.startswith(f"{axis}_product")):
+            i, j = ("xyz".index(letter) for letter in name[-2:])
+            inertia[i, j] = inertia[j, i] = place.quantity(name)
+        centre = [place.quantity(n) for n in defined if n.startswith(f"{axis}_body_com")]
+        com = sp.ImmutableMatrix(centre) if centre else at_axes
+        mass = place.quantity(f"{axis}_body_mass")
+        bodies.append(Body(f"{axis}_body", axis, mass, com, sp.ImmutableMatrix(inertia)))
     return Contribution(quantities=defined, bodies=tuple(bodies))
 
 

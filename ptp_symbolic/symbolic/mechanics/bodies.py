@@ -8,6 +8,8 @@ import sympy as sp
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.kinematics import AXES
 
+NO_SPIN = sp.ImmutableMatrix([0, 0, 0])
+
 
 @dataclass(frozen=True)
 class Body:
@@ -39,7 +41,9 @@ class RigidConfiguration:
     `gravity` is given in the base frame; a base that is not level tilts this vector. `axes` is
     ('pan', 'tilt'), ('pan',) or ('tilt',). `offsets` [3] in m are where the origins behind joints
     lie in the frames before them, in the origin unless given. Joints in `sliding` do not turn: the
-    frame behind them moves along the x axis of the one before.
+    frame behind them moves along the x axis of the one before. A base that turns has the rate
+    `base_spin` [3] in rad/s and the angular acceleration `base_spin_rate` [3] in rad/s^2, and
+    `gravity` is less the acceleration of the origin; all in the base frame.
     """
 
     axes: tuple[str, ...]
@@ -47,6 +51,8 @@ class RigidConfiguration:
     gravity: sp.ImmutableMatrix
     offsets: Mapping[str, sp.ImmutableMatrix] = field(default_factory=dict)
     sliding: tuple[str, ...] = ()
+    base_spin: sp.ImmutableMatrix = NO_SPIN
+    base_spin_rate: sp.ImmutableMatrix = NO_SPIN
 
     def offset(self, axis: str) -> sp.ImmutableMatrix:
         """Where [3] the origin behind the joint of `axis` lies in the frame before it, in m."""
@@ -71,6 +77,8 @@ class RigidConfiguration:
             raise ValueError(f"Axes {self.axes}; choose one or both of {AXES}, in this order.")
         if self.gravity.shape != (3, 1):
             raise ValueError("Gravity must be a vector [3].")
+        if self.sliding and self.base_spin != NO_SPIN:
+            raise ValueError("A base that turns carries joints that turn, no sliding ones.")
 
 
 @dataclass(frozen=True)
@@ -79,7 +87,7 @@ class RigidEquations:
 
     `mass_matrix` [n, n] in kg m^2, `forcing` [n] in N m (Coriolis, centrifugal and gravity
     torques, without the joint torques tau), of sliding joints in kg and N; `kinetic` and
-    `potential` in J.
+    `potential` in J, of the motion relative to the origin of the base, in axes that do not turn.
     """
 
     axes: tuple[str, ...]

@@ -28,6 +28,11 @@ def rate(axis: str) -> sp.Symbol:
     return real(f"omega_{axis}")
 
 
+def acceleration(axis: str) -> sp.Symbol:
+    """Joint acceleration accel_<axis> in rad/s^2, which follows from the equations of motion."""
+    return real(f"accel_{axis}")
+
+
 def torque(axis: str) -> sp.Symbol:
     """Torque tau_<axis> on the joint in N m, positive towards a growing angle."""
     return real(f"tau_{axis}")
