@@ -14,13 +14,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.data import labview
 from ptp_symbolic.numeric.data.table import is_unit
 
-BEGIN = b"LabVIEW Measurement"
-_END = b"***End_of_Header***"
-_SEPARATORS = {"Tab": b"\t", "Comma": b","}
-_COMMENT = "Comment"
+LABVIEW = b"LabVIEW Measurement"
+_LABVIEW_END = b"***End_of_Header***"
+_LABVIEW_SEPARATORS = {"Tab": b"\t", "Comma": b","}
+_LABVIEW_COMMENT = "Comment"
 
 
 @dataclass(frozen=True)
@@ -35,22 +34,22 @@ class Measurement:
 
 
 def measurement(path: object, content: bytes) -> Measurement:
-    """Read the headers of a measurement whose text begins with `BEGIN`.
+    """Read the headers of a measurement whose text begins with `LABVIEW`.
 
     Times are its one column of X values, or follow from X0 and Delta_X. Raises InputError for
     several measurements in a file, for an X column of every channel, and for a damaged header.
     """
-    first = content.find(_END)
+    first = content.find(_LABVIEW_END)
     header, rest = content[: max(first, 0)], content[first:].partition(b"\n")[2]
-    if first < 0 or rest.count(_END) != 1:
+    if first < 0 or rest.count(_LABVIEW_END) != 1:
         raise InputError(
             f"{path}: a LabVIEW measurement has one header of its own and one of its channels, and"
-            f" this file {rest.count(_END) if first >= 0 else 0} of channels; save one measurement"
+            f" this file {rest.count(_LABVIEW_END) if first >= 0 else 0} of channels; save one measurement"
             " into each file."
         )
-    channels, _, rows = rest.partition(_END)
+    channels, _, rows = rest.partition(_LABVIEW_END)
     facts = _facts(header)
-    separator = _SEPARATORS.get(facts.get("Separator", "Tab"), b"\t")
+    separator = _LABVIEW_SEPARATORS.get(facts.get("Separator", "Tab"), b"\t")
     if facts.get("X_Columns") == "Multi":
         raise InputError(
             f"{path}: every channel of this LabVIEW measurement has an X column of its own; save it"
@@ -60,7 +59,7 @@ def measurement(path: object, content: bytes) -> Measurement:
     names, _, body = below.partition(b"\n")
     headings = [cell.strip() for cell in names.decode().split(separator.decode())]
     width = body.partition(b"\n")[0].count(separator) + 1
-    if len(headings) > width and headings[-1] == _COMMENT:
+    if len(headings) > width and headings[-1] == _LABVIEW_COMMENT:
         headings.pop()
     first_line = content.count(b"\n", 0, len(content) - len(body)) + 1
     units = ["s", *_row(channels, separator, "Y_Unit_Label")]
@@ -134,8 +133,8 @@ def plain_text(path: object, content: bytes) -> PlainText:
     line names the columns. A row of units may follow the header. Raises InputError for a file
     without one.
     """
-    if content.startswith(labview.BEGIN):
-        found = labview.measurement(path, content)
+    if content.startswith(LABVIEW):
+        found = measurement(path, content)
         body = _with_commas(found.body, found.separator)
         return PlainText(found.headings, found.units, body, found.first_line, found.first_line - 1)
     named = _NAMED.match(content)
