@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.files.content import MOST_NUMBERS, MOST_ROWS, Column, Part
-from ptp_symbolic.numeric.files.messages import Messages, json_messages
-from ptp_symbolic.numeric.files.ros_messages import RosMessages
+from ptp_symbolic.numeric.files.messages import Messages, RosMessages, json_messages
 
 
 def parts(path: Path, paths: Sequence[Path]) -> list[Part]:
