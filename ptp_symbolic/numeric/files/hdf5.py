@@ -12,7 +12,7 @@ from ptp_symbolic.numeric.files.structures import Leaf, Objects, part_of
 MOST_CHARACTERS = 1000  # of a text that names a signal
 
 
-def parts(path: Path) -> Sequence[Part]:
+def hdf5_parts(path: Path) -> Sequence[Part]:
     """The vectors and matrices of numbers, as `structures` names them.
 
     A group that holds itself is walked once. Links to other files and data that lie in other files

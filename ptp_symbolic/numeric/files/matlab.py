@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.files import hdf5
+from ptp_symbolic.numeric.files.hdf5 import hdf5_parts
 from ptp_symbolic.numeric.files.content import NUMERIC, Part
 from ptp_symbolic.numeric.files.structures import Leaf, part_of
 
@@ -26,7 +26,7 @@ def parts(path: Path) -> Sequence[Part]:
     with path.open("rb") as file:
         begin = file.read(520)
     if any(begin[k : k + 8] == _HDF5 for k in _HDF5_AT):
-        return hdf5.parts(path)
+        return hdf5_parts(path)
     from scipy.io import whosmat
 
     tree: dict[str, Any] = {}
