@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.files.hdf5 import hdf5_parts
 from ptp_symbolic.numeric.files.content import NUMERIC, Part
-from ptp_symbolic.numeric.files.structures import Leaf, part_of
+from ptp_symbolic.numeric.files.hdf5 import Leaf, hdf5_parts, part_of
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _HDF5_AT = (0, 512)  # MATLAB puts a text of 512 bytes in front
