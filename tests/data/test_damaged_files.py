@@ -17,7 +17,7 @@ from scipy.io import savemat
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import read_log
 from ptp_symbolic.numeric.data.formats import read_table
-from ptp_symbolic.numeric.files import child, excel, hdf5, outside, parquet, tdms
+from ptp_symbolic.numeric.files import child, excel, matlab, outside, parquet, tdms
 from ptp_symbolic.platform import Platform
 from tests.data.files_of_formats import (
     ANGLE,
@@ -214,7 +214,7 @@ def test_without_the_library_the_extra_is_named(
 ) -> None:
     """As the process that reads a file finds it."""
     for library, read, extra in (
-        ("h5py", hdf5.parts, "matlab"),
+        ("h5py", matlab.hdf5_parts, "matlab"),
         ("pyarrow", parquet.parts, "parquet"),
         ("nptdms", tdms.parts, "tdms"),
         ("openpyxl", excel.text_of, "excel"),
