@@ -8,7 +8,7 @@ import pytest
 
 import ptp_symbolic
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.experiment.limits import Limit, excess, read_limits
+from ptp_symbolic.numeric.experiment.machine import Limit, excess, read_limits
 from ptp_symbolic.numeric.experiment.search import FAMILIES, Family, Found, search, wave_of
 from tests.identify.curves import Floats
 
