@@ -234,7 +234,7 @@ _NUMBERS |= {"double", "single", "logical"}
 
 
 def parts(path: Path) -> Sequence[Part]:
-    """The vectors and matrices of numbers, as `part_of` names them; see `hdf5_parts` for version 7.3.
+    """The vectors and matrices of numbers, named as in `part_of`; of version 7.3 see `hdf5_parts`.
 
     A structure is read as a whole. Raises whatever the libraries raise.
     """
