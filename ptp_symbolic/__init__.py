@@ -23,7 +23,7 @@ _HOMES = {
     "Event": "ptp_symbolic.numeric.simulation.events.names",
     "simulate": "ptp_symbolic.api.simulation",
     "sensitivity": "ptp_symbolic.api.simulation",
-    "Sensitivities": "ptp_symbolic.numeric.sensitivities.forward",
+    "Sensitivities": "ptp_symbolic.numeric.sensitivities",
     "inverse_dynamics": "ptp_symbolic.models.inverse_dynamics",
     "Log": "ptp_symbolic.api.logs",
     "read_log": "ptp_symbolic.api.logs",

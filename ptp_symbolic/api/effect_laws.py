@@ -1,7 +1,8 @@
 """The laws that every effect obeys, whatever it is, as a check for its author.
 
 Each law takes a `Case`, an effect on a machine that has it, and raises InputError where the effect
-breaks it."""
+breaks it.
+"""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
