@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.simulation.advance import accept
+from ptp_symbolic.numeric.simulation.hybrid import accept
 from ptp_symbolic.numeric.simulation.kernels.records import LENGTH
 
 
