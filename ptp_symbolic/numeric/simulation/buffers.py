@@ -7,7 +7,7 @@ from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_g
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.kernels.lanes import padded
 from ptp_symbolic.numeric.simulation.kernels.records import Record, Step, Tangents, Watch
-from ptp_symbolic.numeric.simulation.methods.rodas5p import STAGES
+from ptp_symbolic.numeric.simulation.methods.rosenbrock import STAGES
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
