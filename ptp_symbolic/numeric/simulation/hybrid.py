@@ -24,10 +24,11 @@ from ptp_symbolic.numeric.simulation.ahead import (
     made_once,
 )
 from ptp_symbolic.numeric.simulation.events.crossing import jump_by_delay
-from ptp_symbolic.numeric.simulation.events.domain import is_finite, is_outside
 from ptp_symbolic.numeric.simulation.events.location import (
     TIME_RESOLUTION,
     first_violation,
+    is_finite,
+    is_outside,
     locate_event,
 )
 from ptp_symbolic.numeric.simulation.events.transition import enter, pass_event

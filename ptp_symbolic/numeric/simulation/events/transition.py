@@ -1,8 +1,7 @@
 """Go on in the modes to which new inputs, or an event, have led."""
 
 from ptp_symbolic.numeric.simulation.events.crossing import cross
-from ptp_symbolic.numeric.simulation.events.domain import is_outside
-from ptp_symbolic.numeric.simulation.events.location import fill_violations
+from ptp_symbolic.numeric.simulation.events.location import fill_violations, is_outside
 from ptp_symbolic.numeric.simulation.events.modes import settle
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CHATTERING,

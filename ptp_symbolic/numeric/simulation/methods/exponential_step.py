@@ -27,11 +27,11 @@ tolerance controls them.
 
 import math
 
-from ptp_symbolic.numeric.simulation.events.domain import is_finite
 from ptp_symbolic.numeric.simulation.events.location import (
     NEARLY,
     TIME_RESOLUTION,
     fill_violations,
+    is_finite,
     summit,
 )
 from ptp_symbolic.numeric.simulation.events.pressed import derivative, hold_at_rest, jacobian
