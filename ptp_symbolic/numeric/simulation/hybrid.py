@@ -23,7 +23,7 @@ from ptp_symbolic.numeric.simulation.ahead import (
     SAMPLED_RUNNER,
     made_once,
 )
-from ptp_symbolic.numeric.simulation.events.crossing import jump_by_delay
+from ptp_symbolic.numeric.simulation.events.crossing import enter, jump_by_delay, pass_event
 from ptp_symbolic.numeric.simulation.events.location import (
     TIME_RESOLUTION,
     first_violation,
@@ -31,7 +31,6 @@ from ptp_symbolic.numeric.simulation.events.location import (
     is_outside,
     locate_event,
 )
-from ptp_symbolic.numeric.simulation.events.transition import enter, pass_event
 from ptp_symbolic.numeric.simulation.held_samples import reach_samples_at
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CHATTERING,
