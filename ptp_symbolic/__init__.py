@@ -20,7 +20,7 @@ _HOMES = {
     "load": "ptp_symbolic.api.machine",
     "Linearization": "ptp_symbolic.api.linearization",
     "Run": "ptp_symbolic.api.run",
-    "Event": "ptp_symbolic.numeric.simulation.events.names",
+    "Event": "ptp_symbolic.numeric.simulation.run",
     "simulate": "ptp_symbolic.api.simulation",
     "sensitivity": "ptp_symbolic.api.simulation",
     "Sensitivities": "ptp_symbolic.numeric.sensitivities",

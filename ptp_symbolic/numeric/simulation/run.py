@@ -1,4 +1,7 @@
-"""Simulate a model: inputs as profiles or logs, located events, energy ledger."""
+"""Simulate a model: inputs as profiles or logs, located events, energy ledger.
+
+Changes of mode in words.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.buffers import limited_states
-from ptp_symbolic.numeric.simulation.events.names import Event, named_events
 from ptp_symbolic.numeric.simulation.feedback import Commands, Feedback, integrate_with_feedback
 from ptp_symbolic.numeric.simulation.fixed_integration import (
     FixedSolution,
@@ -41,6 +43,53 @@ from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, InputTab
 from ptp_symbolic.numeric.simulation.signals.profile_text import as_signals
 
 FloatArray = NDArray[np.float64]
+
+SLIDING = {-1.0: "slides backward", 0.0: "sticks", 1.0: "slides forward"}
+SWITCHING = {
+    -2.0: "goes off beyond the lower threshold",
+    -1.0: "goes on at the lower threshold",
+    0.0: "is ready",
+    1.0: "goes on at the upper threshold",
+    2.0: "goes off beyond the upper threshold",
+}
+TOUCHING = {
+    -4.0: "leans on the lower face",
+    -3.0: "bounces off the lower face",
+    -2.0: "lets go of the lower face",
+    -1.0: "touches the lower face",
+    0.0: "is in the gap",
+    1.0: "touches the upper face",
+    2.0: "lets go of the upper face",
+    3.0: "bounces off the upper face",
+    4.0: "leans on the upper face",
+}
+
+
+@dataclass(frozen=True)
+class Event:
+    """A change of mode: time in s, the element (``friction pan``, ``contact pan``), what it did."""
+
+    time: float
+    element: str
+    mode: str
+
+
+def named_events(model: Model, rows: FloatArray) -> tuple[Event, ...]:
+    """The events of `rows` [e, 3]: time in s, element, mode entered."""
+    frictions = [n.removeprefix("slide_") for n in model.mode_names if n.startswith("slide_")]
+    contacts = [n.removeprefix("side_") for n in model.mode_names if n.startswith("side_")]
+    events = []
+    for time, element, mode in rows:
+        index = int(element)
+        if index < len(frictions):
+            events.append(Event(float(time), f"friction {frictions[index]}", SLIDING[mode]))
+        else:
+            number = index - len(frictions)
+            is_switch = number >= len(model.module.CONTACT_ANGLES)
+            what, modes = ("switch", SWITCHING) if is_switch else ("contact", TOUCHING)
+            events.append(Event(float(time), f"{what} {contacts[number]}", modes[mode]))
+    return tuple(events)
+
 
 FIXED_STEP = "fixed_step"
 EVENT_ROOM = 100_000  # events for which there is room at first; a run with more is repeated
