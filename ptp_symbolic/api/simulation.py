@@ -18,7 +18,7 @@ from ptp_symbolic.numeric import sensitivities
 from ptp_symbolic.numeric.simulation import run as numeric
 from ptp_symbolic.numeric.simulation.feedback import Feedback
 from ptp_symbolic.numeric.simulation.integration import MOST_STEPS
-from ptp_symbolic.numeric.simulation.output_times import output_times
+from ptp_symbolic.numeric.simulation.run import output_times
 
 FloatArray = NDArray[np.float64]
 Times = float | ArrayLike | None

@@ -76,7 +76,7 @@ def simulate(
     from ptp_symbolic.cli.tables import table_text, trajectory_columns
     from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.models.declared import refuse_unknown_signals
-    from ptp_symbolic.numeric.simulation.output_times import output_times
+    from ptp_symbolic.numeric.simulation.run import output_times
 
     if step is not None and method != FIXED_STEP:
         raise InputError(
@@ -129,7 +129,7 @@ def sensitivity(
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.cli.tables import sensitivity_headings, table_text
     from ptp_symbolic.models.committed import declared_platform
-    from ptp_symbolic.numeric.simulation.output_times import output_times
+    from ptp_symbolic.numeric.simulation.run import output_times
 
     check_writable(out)
     platform, model = declared_platform(source), load(source)
