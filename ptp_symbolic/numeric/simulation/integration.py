@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.simulation.buffers import (
 from ptp_symbolic.numeric.simulation.events.impacts import STICKS
 from ptp_symbolic.numeric.simulation.held_samples import loop_address
 from ptp_symbolic.numeric.simulation.kernels.calls import addresses
-from ptp_symbolic.numeric.simulation.kernels.lanes import padded
+from ptp_symbolic.numeric.simulation.kernels.linear import padded
 from ptp_symbolic.numeric.simulation.kernels.records import (
     EVENTS,
     EXHAUSTED,

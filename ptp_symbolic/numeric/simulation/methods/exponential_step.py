@@ -35,8 +35,16 @@ from ptp_symbolic.numeric.simulation.events.location import (
     summit,
 )
 from ptp_symbolic.numeric.simulation.events.pressed import derivative, hold_at_rest, jacobian
-from ptp_symbolic.numeric.simulation.kernels.lanes import LANES, load, nothing, plus_times, store
-from ptp_symbolic.numeric.simulation.kernels.linear import add_product, add_sparse_product, multiply
+from ptp_symbolic.numeric.simulation.kernels.linear import (
+    LANES,
+    add_product,
+    add_sparse_product,
+    load,
+    multiply,
+    nothing,
+    plus_times,
+    store,
+)
 from ptp_symbolic.numeric.simulation.kernels.records import (
     INSTANT,
     LARGEST_STATE,

@@ -21,8 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import types
 
-from ptp_symbolic.numeric.simulation.kernels.lanes import padded
-from ptp_symbolic.numeric.simulation.kernels.linear import factor, solve
+from ptp_symbolic.numeric.simulation.kernels.linear import factor, padded, solve
 from ptp_symbolic.numeric.simulation.kernels.records import (
     CUBE,
     INTEGERS,

@@ -11,14 +11,18 @@ L-stable and stiffly accurate: the last stage is the error estimate.
 import numpy as np
 
 from ptp_symbolic.numeric.simulation.events.pressed import derivative, hold_at_rest, jacobian
-from ptp_symbolic.numeric.simulation.kernels.lanes import LANES, load, nothing, plus_times, store
 from ptp_symbolic.numeric.simulation.kernels.linear import (
+    LANES,
     add_product,
     add_scaled,
     add_sparse_product,
     add_stages,
     invert,
+    load,
     multiply,
+    nothing,
+    plus_times,
+    store,
     weighted,
 )
 from ptp_symbolic.numeric.simulation.kernels.records import copy, copy_matrix, inlined, kernel

@@ -9,8 +9,15 @@ assumption, Computers and Mathematics with Applications 62 (2011) 770-775, Table
 import numpy as np
 
 from ptp_symbolic.numeric.simulation.events.pressed import derivative, jacobian
-from ptp_symbolic.numeric.simulation.kernels.lanes import LANES, nothing, plus_times, store
-from ptp_symbolic.numeric.simulation.kernels.linear import add_sparse_product, add_stages, weighted
+from ptp_symbolic.numeric.simulation.kernels.linear import (
+    LANES,
+    add_sparse_product,
+    add_stages,
+    nothing,
+    plus_times,
+    store,
+    weighted,
+)
 from ptp_symbolic.numeric.simulation.kernels.records import copy, inlined, kernel
 from ptp_symbolic.numeric.simulation.methods.drive import fill_drive
 from ptp_symbolic.numeric.simulation.signals.input_values import (
