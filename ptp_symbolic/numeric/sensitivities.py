@@ -33,8 +33,7 @@ from ptp_symbolic.numeric.simulation.run import (
     refuse_failure,
     start_of,
 )
-from ptp_symbolic.numeric.simulation.signals.delays import delay_columns
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, delay_columns
 
 FloatArray = NDArray[np.float64]
 

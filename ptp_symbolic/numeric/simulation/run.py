@@ -39,8 +39,14 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     TOO_FAST,
     UNDECIDED,
 )
-from ptp_symbolic.numeric.simulation.signals.delays import delayed, delays_of
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, InputTable, constant, stack
+from ptp_symbolic.numeric.simulation.signals.inputs import (
+    InputSignal,
+    InputTable,
+    constant,
+    delayed,
+    delays_of,
+    stack,
+)
 from ptp_symbolic.numeric.simulation.signals.profile_text import as_signals
 
 FloatArray = NDArray[np.float64]

@@ -3,10 +3,12 @@
 A signal is piecewise cubic, plus sines, plus linear-frequency sine sweeps. At a jump it has two
 values: `side` +1 asks for the one after it (signals are right-continuous), -1 for the one before,
 which is what an integration step that ends at the jump must see.
+
+Input delays, as tables shifted in time.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -14,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError
+from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -329,3 +332,29 @@ def part_of_held(whole: InputTable, begin: float, end: float) -> InputTable:
         b = max(a + 1, int(np.searchsorted(times, end, side="right")))
         signals.append(table(times[a:b], values[a:b], "hold"))
     return stack(signals)
+
+
+def delays_of(model: Model, p: FloatArray) -> FloatArray:
+    """Delay of every input [nu] in s for parameters p [np]."""
+    index = model.input_delays
+    return np.where(index >= 0, p[np.maximum(index, 0)], 0.0) if len(p) else np.zeros(len(index))
+
+
+def delayed(table: InputTable, delays: FloatArray) -> InputTable:
+    """`table` with every signal delayed by its entry of `delays` [nu] in s."""
+    if not np.any(delays):
+        return table
+    breaks, sines, sweeps = table.breaks.copy(), table.sines.copy(), table.sweeps.copy()
+    for j, delay in enumerate(delays):
+        breaks[table.offsets[j] + j : table.offsets[j + 1] + j + 1] += delay
+        own = slice(table.sine_offsets[j], table.sine_offsets[j + 1])
+        sines[own, 2] -= 2 * np.pi * sines[own, 1] * delay
+        sweeps[table.sweep_offsets[j] : table.sweep_offsets[j + 1], 3:] += delay
+    late = np.unique(np.concatenate([table.stops + delay for delay in delays]))
+    return replace(table, breaks=breaks, sines=sines, sweeps=sweeps, stops=late)
+
+
+def delay_columns(model: Model, columns: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Per input [nu] the tangent column of its delay among parameter `columns`, or -1."""
+    where = {int(c): k for k, c in enumerate(columns)}
+    return np.array([where.get(int(i), -1) if i >= 0 else -1 for i in model.input_delays], np.int64)
