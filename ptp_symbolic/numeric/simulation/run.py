@@ -42,12 +42,12 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
 from ptp_symbolic.numeric.simulation.signals.inputs import (
     InputSignal,
     InputTable,
+    as_signals,
     constant,
     delayed,
     delays_of,
     stack,
 )
-from ptp_symbolic.numeric.simulation.signals.profile_text import as_signals
 
 FloatArray = NDArray[np.float64]
 
