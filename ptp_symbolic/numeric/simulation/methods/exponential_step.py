@@ -56,7 +56,6 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     kernel,
     merged,
 )
-from ptp_symbolic.numeric.simulation.methods.drive import TIME_DIFFERENCE, fill_drive
 from ptp_symbolic.numeric.simulation.methods.propagator import (
     FRACTIONS,
     MIDDLE,
@@ -65,6 +64,7 @@ from ptp_symbolic.numeric.simulation.methods.propagator import (
 )
 from ptp_symbolic.numeric.simulation.methods.steps import larger, over_tolerance
 from ptp_symbolic.numeric.simulation.outputs import next_output
+from ptp_symbolic.numeric.simulation.signals.input_values import TIME_DIFFERENCE, fill_drive
 
 
 @inlined

@@ -26,10 +26,11 @@ from ptp_symbolic.numeric.simulation.kernels.linear import (
     weighted,
 )
 from ptp_symbolic.numeric.simulation.kernels.records import copy, copy_matrix, inlined, kernel
-from ptp_symbolic.numeric.simulation.methods.drive import TIME_DIFFERENCE, fill_drive
 from ptp_symbolic.numeric.simulation.signals.input_values import (
+    TIME_DIFFERENCE,
     evaluate_input_slopes,
     evaluate_inputs,
+    fill_drive,
 )
 
 STAGES = 8

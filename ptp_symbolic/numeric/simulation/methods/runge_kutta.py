@@ -19,10 +19,10 @@ from ptp_symbolic.numeric.simulation.kernels.linear import (
     weighted,
 )
 from ptp_symbolic.numeric.simulation.kernels.records import copy, inlined, kernel
-from ptp_symbolic.numeric.simulation.methods.drive import fill_drive
 from ptp_symbolic.numeric.simulation.signals.input_values import (
     evaluate_input_slopes,
     evaluate_inputs,
+    fill_drive,
 )
 
 STAGES = 7
