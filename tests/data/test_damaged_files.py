@@ -17,7 +17,10 @@ from scipy.io import savemat
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import read_log
 from ptp_symbolic.numeric.data.formats import read_table
-from ptp_symbolic.numeric.files import child, excel, matlab, outside, parquet, tdms
+from ptp_symbolic.numeric.files import child, matlab, outside
+from ptp_symbolic.numeric.files.excel import excel_text
+from ptp_symbolic.numeric.files.parquet import parquet_parts
+from ptp_symbolic.numeric.files.tdms import tdms_parts
 from ptp_symbolic.platform import Platform
 from tests.data.files_of_formats import (
     ANGLE,
@@ -215,9 +218,9 @@ def test_without_the_library_the_extra_is_named(
     """As the process that reads a file finds it."""
     for library, read, extra in (
         ("h5py", matlab.hdf5_parts, "matlab"),
-        ("pyarrow", parquet.parts, "parquet"),
-        ("nptdms", tdms.parts, "tdms"),
-        ("openpyxl", excel.text_of, "excel"),
+        ("pyarrow", parquet_parts, "parquet"),
+        ("nptdms", tdms_parts, "tdms"),
+        ("openpyxl", excel_text, "excel"),
     ):
         monkeypatch.setitem(sys.modules, library, None)
         with pytest.raises(InputError, match=rf"run pip install 'ptp-symbolic\[{extra}\]'"):

@@ -13,7 +13,7 @@ from ptp_symbolic.numeric.files.content import MOST_COLUMNS, MOST_ROWS, lacking
 MOST_BYTES = 400_000_000  # of all that is compressed within a file
 
 
-def text_of(path: Path) -> str:
+def excel_text(path: Path) -> str:
     """The rows of the first sheet that has some, as the text of a CSV.
 
     Raises InputError for a file that unfolds into over 400 MB or too many cells, and where openpyxl

@@ -11,7 +11,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.files.content import Column, Part, lacking, one_by_one, seconds
 
 
-def parts(path: Path) -> Sequence[Part]:
+def parquet_parts(path: Path) -> Sequence[Part]:
     """The numeric columns; dates and durations are in s.
 
     Raises InputError where pyarrow is not installed, and whatever pyarrow raises.

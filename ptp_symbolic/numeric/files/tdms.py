@@ -14,7 +14,7 @@ TIME = "time"  # of channels that have a sampling period and no channel of times
 START, PERIOD = "wf_start_offset", "wf_increment"  # properties of a waveform, in s
 
 
-def parts(path: Path) -> Sequence[Part]:
+def tdms_parts(path: Path) -> Sequence[Part]:
     """The groups, channels of another sampling than others of theirs as parts of their own.
 
     Times are the channel `time` or those of the waveforms. Raises InputError where npTDMS is not
