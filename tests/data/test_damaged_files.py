@@ -18,8 +18,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import read_log
 from ptp_symbolic.numeric.data.formats import read_table
 from ptp_symbolic.numeric.files import child, matlab, outside
-from ptp_symbolic.numeric.files.tables import excel_text, parquet_parts
-from ptp_symbolic.numeric.files.tdms import tdms_parts
+from ptp_symbolic.numeric.files.tables import excel_text, parquet_parts, tdms_parts
 from ptp_symbolic.platform import Platform
 from tests.data.files_of_formats import (
     ANGLE,

@@ -16,8 +16,7 @@ import numpy as np
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.files import bags, matlab
 from ptp_symbolic.numeric.files.content import MOST_COLUMNS, Part, in_a_line
-from ptp_symbolic.numeric.files.tables import excel_text, parquet_parts
-from ptp_symbolic.numeric.files.tdms import tdms_parts
+from ptp_symbolic.numeric.files.tables import excel_text, parquet_parts, tdms_parts
 
 KINDS = {"MATLAB": matlab.parts, "Parquet": parquet_parts, "TDMS": tdms_parts}
 EXCEL, BAG = "Excel", "bag"
