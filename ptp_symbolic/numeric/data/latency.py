@@ -5,6 +5,8 @@ interpolated. Inputs keep the steps at which they really change, and are average
 sample of that clock beside.
 
 What a signal was between its samples: by cubics, not over lost samples, and not over jumps.
+
+A signal that holds its value from sample to sample: its averages between given times.
 """
 
 from collections.abc import Sequence
@@ -17,10 +19,22 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data.continuity import MEDIAN_TO_SIGMA, after_lost, jumps
-from ptp_symbolic.numeric.data.zero_order_hold import held_averages
 from ptp_symbolic.platform import SignalDeclaration
 
 FloatArray = NDArray[np.float64]
+
+
+def held_averages(time: FloatArray, held: FloatArray, edges: FloatArray) -> FloatArray:
+    """Averages [m] between neighbouring `edges` [m + 1] in s of the signal that takes the value
+    `held` [n] at `time` [n] in s; before the first sample it is that.
+    """
+    integral = np.concatenate([[0.0], np.cumsum(held[:-1] * np.diff(time))])
+    at = np.interp(edges, time, integral)
+    at += np.where(edges < time[0], (edges - time[0]) * held[0], 0.0)
+    at += np.where(edges > time[-1], (edges - time[-1]) * held[-1], 0.0)
+    return np.asarray(np.diff(at) / np.diff(edges))
+
+
 IntArray = NDArray[np.intp]
 
 SAME_TIME = 1e-6  # of a sampling period: what rounding may leave between equal times
