@@ -44,8 +44,8 @@ def measurement(path: object, content: bytes) -> Measurement:
     if first < 0 or rest.count(_LABVIEW_END) != 1:
         raise InputError(
             f"{path}: a LabVIEW measurement has one header of its own and one of its channels, and"
-            f" this file {rest.count(_LABVIEW_END) if first >= 0 else 0} of channels; save one"
-            " into each file."
+            f" this file {rest.count(_LABVIEW_END) if first >= 0 else 0} of channels;"
+            " save one measurement into each file."
         )
     channels, _, rows = rest.partition(_LABVIEW_END)
     facts = _facts(header)

@@ -239,7 +239,8 @@ def _integrate(
         len(p),
         nu,
     )
-    solved, functions, c = n if s.shape[1] else model.moving, addresses(module), model.prepared(p)
+    solved, c = n if s.shape[1] else model.moving, model.prepared(p)
+    functions = addresses(module, s.shape[1] > 0)
     acting = model.acting(p, columns)
     if method == IMPLICIT:
         solved = min(solved, acting)
