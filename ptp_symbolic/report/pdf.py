@@ -10,13 +10,6 @@ from pathlib import Path
 PASSES = 3  # of pdflatex: contents, then links, then widths of long tables
 
 
-def passes(name: str) -> list[list[str]]:
-    """The commands that compile ``<name>.tex`` one after the other; the last alone writes a PDF."""
-    command = ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape"]
-    drafts = [[*command, "-draftmode", f"{name}.tex"]] * (PASSES - 1)
-    return [*drafts, [*command, f"{name}.tex"]]
-
-
 def compile_pdf(files: Mapping[str, str | bytes], name: str) -> bytes | None:
     """The PDF of ``<name>.tex`` among `files`; None where pdflatex is missing or fails."""
     if shutil.which("pdflatex") is None:
@@ -25,9 +18,10 @@ def compile_pdf(files: Mapping[str, str | bytes], name: str) -> bytes | None:
         for path, content in files.items():
             data = content.encode() if isinstance(content, str) else content
             (Path(folder) / path).write_bytes(data)
+        command = ["pdflatex", "-interaction=nonstopmode", "-no-shell-escape", f"{name}.tex"]
         # no time in the file: the same numbers give the same bytes
         environment = os.environ | {"SOURCE_DATE_EPOCH": "0", "FORCE_SOURCE_DATE": "1"}
-        for command in passes(name):
+        for _ in range(PASSES):
             done = subprocess.run(
                 command, cwd=folder, capture_output=True, check=False, env=environment
             )
