@@ -23,8 +23,8 @@ from ptp_symbolic.api.simulation import simulate as simulate
 from ptp_symbolic.errors import InputError as InputError
 from ptp_symbolic.models.inverse_dynamics import inverse_dynamics as inverse_dynamics
 from ptp_symbolic.numeric.runtime.model import Model as Model
-from ptp_symbolic.numeric.sensitivities.forward import Sensitivities as Sensitivities
-from ptp_symbolic.numeric.simulation.events.names import Event as Event
+from ptp_symbolic.numeric.sensitivities import Sensitivities as Sensitivities
+from ptp_symbolic.numeric.simulation.run import Event as Event
 from ptp_symbolic.numeric.simulation.run import SimulationError as SimulationError
 from ptp_symbolic.platform import Platform as Platform
 from ptp_symbolic.platform import read_platform as read_platform

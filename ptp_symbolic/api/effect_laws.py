@@ -6,18 +6,20 @@ breaks it.
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from types import FunctionType, ModuleType
+from typing import TypeVar
 
 import numpy as np
 import sympy as sp
+from numba.core.registry import CPUDispatcher
 
 from ptp_symbolic.api.effect_bases import carriage_with, machine_with, machine_without
 from ptp_symbolic.api.units_by_trial import refuse_misfit
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.runtime.plain import as_python
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.platform.units import to_si
 from ptp_symbolic.symbolic.codegen import dynamics
@@ -28,6 +30,20 @@ from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 from ptp_symbolic.symbolic.effects import on_trial
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
+
+AnyModel = TypeVar("AnyModel", bound=Model)
+
+
+def as_python(model: AnyModel) -> AnyModel:
+    """`model` with functions that are not compiled, and call each other as such."""
+    plain = ModuleType(model.module.__name__)
+    space = vars(plain)
+    space.update(vars(model.module))
+    for name, function in vars(model.module).items():
+        if isinstance(function, CPUDispatcher):
+            space[name] = FunctionType(function.py_func.__code__, space, name)
+    return replace(model, module=plain)
+
 
 Expressions = dict[tuple[str, ...], sp.Expr]
 

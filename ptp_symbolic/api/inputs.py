@@ -12,12 +12,13 @@ from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.data import Log, read_inputs
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import (
+    PROFILES,
     InputSignal,
     constant,
     function,
+    parse_profile,
     table,
 )
-from ptp_symbolic.numeric.simulation.signals.profile_text import PROFILES, parse_profile
 from ptp_symbolic.platform.units import quantity
 
 FloatArray = NDArray[np.float64]

@@ -380,9 +380,9 @@ def friction_map(
     """
     import json
 
-    from ptp_symbolic.numeric.friction_map.fragment import platform_fragment
     from ptp_symbolic.numeric.friction_map.points import Columns, read_points
     from ptp_symbolic.numeric.friction_map.summary import friction_map as fit_map
+    from ptp_symbolic.numeric.friction_map.summary import platform_fragment
     from ptp_symbolic.platform import AXES
     from ptp_symbolic.report.friction_map import friction_map_picture
     from ptp_symbolic.workflows.result import Output

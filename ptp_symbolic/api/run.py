@@ -14,9 +14,8 @@ from ptp_symbolic.api.extras import extra_library
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.run import Trajectory
-from ptp_symbolic.numeric.simulation.signals.delays import delays_of
 from ptp_symbolic.numeric.simulation.signals.input_values import values_at
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, stack
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, delays_of, stack
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

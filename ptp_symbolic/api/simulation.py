@@ -14,11 +14,11 @@ from ptp_symbolic.api.machine import Machine, Source, load
 from ptp_symbolic.api.run import Run
 from ptp_symbolic.api.values import Quantity, Values, parameter_values, state_vector
 from ptp_symbolic.errors import InputError, unknown
-from ptp_symbolic.numeric.sensitivities import forward
+from ptp_symbolic.numeric import sensitivities
 from ptp_symbolic.numeric.simulation import run as numeric
 from ptp_symbolic.numeric.simulation.feedback import Feedback
 from ptp_symbolic.numeric.simulation.integration import MOST_STEPS
-from ptp_symbolic.numeric.simulation.output_times import output_times
+from ptp_symbolic.numeric.simulation.run import output_times
 
 FloatArray = NDArray[np.float64]
 Times = float | ArrayLike | None
@@ -121,7 +121,7 @@ def sensitivity(
     *,
     x0: Values | None = None,
     **values: Input | Quantity,
-) -> forward.Sensitivities:
+) -> sensitivities.Sensitivities:
     """Derivatives of states [k, n, m] and outputs [k, ny, m] by parameters (None: all) and by
     initial states, along the run that `simulate` makes of the same arguments.
 
@@ -139,7 +139,7 @@ def sensitivity(
     by_name, own = _sorted(machine, values)
     span = _times(machine, times, inputs)
     start = state_vector(machine, initial if x0 is None else x0, "Initial state")
-    return forward.sensitivity(
+    return sensitivities.sensitivity(
         machine,
         span,
         _joined(machine, inputs, by_name, span),

@@ -18,7 +18,7 @@ class WithProfiles(click.Command):
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the list; read from where it is defined, when it is asked for."""
-        from ptp_symbolic.numeric.simulation.signals.profile_text import profile_forms
+        from ptp_symbolic.numeric.simulation.signals.inputs import profile_forms
 
         with formatter.section("Profiles (times in s, values in the SI unit of the input)"):
             formatter.write_dl(profile_forms())
@@ -76,7 +76,7 @@ def simulate(
     from ptp_symbolic.cli.tables import table_text, trajectory_columns
     from ptp_symbolic.models.committed import declared_platform
     from ptp_symbolic.models.declared import refuse_unknown_signals
-    from ptp_symbolic.numeric.simulation.output_times import output_times
+    from ptp_symbolic.numeric.simulation.run import output_times
 
     if step is not None and method != FIXED_STEP:
         raise InputError(
@@ -129,7 +129,7 @@ def sensitivity(
     from ptp_symbolic.atomic_files import check_writable, write_files_atomically
     from ptp_symbolic.cli.tables import sensitivity_headings, table_text
     from ptp_symbolic.models.committed import declared_platform
-    from ptp_symbolic.numeric.simulation.output_times import output_times
+    from ptp_symbolic.numeric.simulation.run import output_times
 
     check_writable(out)
     platform, model = declared_platform(source), load(source)
@@ -170,8 +170,7 @@ def _signals(
 ) -> tuple[dict[str, Any], float]:
     """The inputs as signals by name, and the end of the simulation in s."""
     from ptp_symbolic.numeric.data import read_inputs
-    from ptp_symbolic.numeric.simulation.signals.inputs import table
-    from ptp_symbolic.numeric.simulation.signals.profile_text import as_signals
+    from ptp_symbolic.numeric.simulation.signals.inputs import as_signals, table
 
     signals: dict[str, Any] = {}
     end = 10.0 if duration is None else duration

@@ -28,6 +28,7 @@ from ptp_symbolic.symbolic.codegen.module import module_text
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 
+DECIDING = ("platform", "symbolic")  # parts of this package from which a module is written
 DIGITS = 16  # of a SHA-256 in a name: 64 bits
 MODULE_NAME = re.compile(rf"ptp_model_[0-9a-f]{{{DIGITS}}}\.py")
 
@@ -136,10 +137,10 @@ def described(value: object) -> str:
 
 @functools.cache
 def _program() -> str:
-    """Digest of the sources of this package and of the version of SymPy."""
+    """Digest of the sources that decide what a module says, and of the version of SymPy."""
     root = Path(__file__).parents[1]
-    sources = [path.read_text(encoding="utf-8") for path in sorted(root.rglob("*.py"))]
-    return _digest(sp.__version__, *sources)
+    sources = [path for wing in DECIDING for path in sorted((root / wing).rglob("*.py"))]
+    return _digest(sp.__version__, *(path.read_text(encoding="utf-8") for path in sources))
 
 
 def _digest(*texts: str) -> str:

@@ -12,8 +12,13 @@ from numpy.typing import NDArray
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.diagnose.visibility import SEEN
 from ptp_symbolic.numeric.experiment.criteria import Worth, least_separation, precision
-from ptp_symbolic.numeric.experiment.limits import read_limits
-from ptp_symbolic.numeric.experiment.machine import Conditions, Played, play, refuse_rest_outside
+from ptp_symbolic.numeric.experiment.machine import (
+    Conditions,
+    Played,
+    play,
+    read_limits,
+    refuse_rest_outside,
+)
 from ptp_symbolic.numeric.experiment.prediction import (
     predicted_curves,
     predicted_pairs,

@@ -9,8 +9,7 @@ import pytest
 
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.black_box.comparison import compared, learn
-from ptp_symbolic.numeric.black_box.learners import folds_of
-from ptp_symbolic.numeric.black_box.rows import AxisRows
+from ptp_symbolic.numeric.black_box.learners import AxisRows, folds_of
 from ptp_symbolic.workflows.diagnosis import diagnose_platform
 
 pytest.importorskip("sklearn")

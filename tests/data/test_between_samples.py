@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.data.between_samples import Samples
 from ptp_symbolic.numeric.data.continuity import jumps
+from ptp_symbolic.numeric.data.latency import Samples
 
 PERIOD = 0.01
 COUNT = 2.0 * np.pi / 4096

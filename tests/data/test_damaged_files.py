@@ -17,7 +17,8 @@ from scipy.io import savemat
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.data import read_log
 from ptp_symbolic.numeric.data.formats import read_table
-from ptp_symbolic.numeric.files import child, excel, hdf5, outside, parquet, tdms
+from ptp_symbolic.numeric.files import child, matlab, outside
+from ptp_symbolic.numeric.files.tables import excel_text, parquet_parts, tdms_parts
 from ptp_symbolic.platform import Platform
 from tests.data.files_of_formats import (
     ANGLE,
@@ -214,10 +215,10 @@ def test_without_the_library_the_extra_is_named(
 ) -> None:
     """As the process that reads a file finds it."""
     for library, read, extra in (
-        ("h5py", hdf5.parts, "matlab"),
-        ("pyarrow", parquet.parts, "parquet"),
-        ("nptdms", tdms.parts, "tdms"),
-        ("openpyxl", excel.text_of, "excel"),
+        ("h5py", matlab.hdf5_parts, "matlab"),
+        ("pyarrow", parquet_parts, "parquet"),
+        ("nptdms", tdms_parts, "tdms"),
+        ("openpyxl", excel_text, "excel"),
     ):
         monkeypatch.setitem(sys.modules, library, None)
         with pytest.raises(InputError, match=rf"run pip install 'ptp-symbolic\[{extra}\]'"):

@@ -4,25 +4,22 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
-from ptp_symbolic.numeric.diagnose import simpler_forms, stepwise
-from ptp_symbolic.numeric.diagnose.candidates import Candidate
 from ptp_symbolic.numeric.diagnose.declared_fit import fit_declared
 from ptp_symbolic.numeric.diagnose.gain import gain
 from ptp_symbolic.numeric.diagnose.left_over import carried_noise
 from ptp_symbolic.numeric.diagnose.nested import declared_from
 from ptp_symbolic.numeric.diagnose.proposals import propose
 from ptp_symbolic.numeric.diagnose.seeker import Seeker
-from ptp_symbolic.numeric.diagnose.starts import from_rows, taken_over
+from ptp_symbolic.numeric.diagnose.simpler_forms import simplified
+from ptp_symbolic.numeric.diagnose.starts import taken_over
 from ptp_symbolic.numeric.diagnose.stepwise import by_effects_alone, extended
 from ptp_symbolic.numeric.diagnose.trial import Trial, fitted
-from ptp_symbolic.numeric.diagnose.tried import Tried, worth_keeping
-from ptp_symbolic.numeric.identify.constants import LARGEST, MOST
-from ptp_symbolic.numeric.identify.fit import Fit
+from ptp_symbolic.numeric.diagnose.tried import worth_keeping
+from ptp_symbolic.numeric.identify.constants import MOST
 from tests.diagnose.spring_table import DAMPING, INERTIA, MASS, PAYLOAD, STIFFNESS, spring_table
 
 
@@ -64,14 +61,13 @@ def test_a_declared_value_beside_the_spring_is_taken_out(seeker: Seeker) -> None
     assert found.keys == ("cable_spring@pan",)
 
 
-def test_declared_values_are_taken_out_together_before_effects_are_searched(
-    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+def test_declared_values_that_make_up_for_each_other_are_taken_out_together(
+    seeker: Seeker,
 ) -> None:
     """None of two that make up for each other can be done without alone."""
     declared = ("declared_value:c_x_payload", "declared_value:m_payload")
     larger = trial(seeker, "cable_spring@pan", *declared)
     assert seeker.is_at_noise(larger)
-    monkeypatch.setattr(stepwise, "extended", lambda *_: pytest.fail("a search for effects"))
     found, _ = by_effects_alone(seeker, larger, [])
     assert found.keys == ("cable_spring@pan",)
 
@@ -97,38 +93,18 @@ def test_a_better_place_that_a_third_candidate_shows_is_kept(seeker: Seeker) -> 
     assert found.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
 
 
-def test_a_simpler_form_that_begins_far_off_is_fitted_to_its_end(
-    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A linear spring beside one with a cubic part, begun without any stiffness: nearly all of the
-    fit is lost there, though linear prediction foresees no loss.
-    """
-    task = seeker.task
-    full = trial(seeker, "cable_spring@pan")
-    nothing = full.values | {"k1_cable_pan": 0.0, "k3_cable_pan": 0.0}
-
-    def far_off(_: Seeker, whole: Trial, candidate: Candidate, form: Candidate) -> Trial:
-        return fitted(task, [form], nothing, whole.fit.z)
-
-    monkeypatch.setattr(simpler_forms, "begun_in_form", far_off)
-    (found,) = simpler_forms.simplified(seeker, full).candidates
+def test_a_spring_without_a_cubic_part_is_found_as_a_linear_one(seeker: Seeker) -> None:
+    (found,) = simplified(seeker, trial(seeker, "cable_spring@pan")).candidates
     assert [f.name for f in found.free] == ["k1_cable_pan", "theta0_cable_pan"]
 
 
-def test_what_is_left_is_fitted_no_worse_than_the_search_has_fitted_it_before(
-    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
+def test_a_spring_in_a_poor_place_finds_its_own_without_a_wrong_declared_value(
+    seeker: Seeker,
 ) -> None:
-    """A wrong declared value beside a spring of half the stiffness: taken out, it leaves the spring
-    in a poor place, and here no refit may leave it.
-    """
-    task = seeker.task
+    """Half of the stiffness beside a centre of mass that makes up for a part of the rest."""
     wrong, right = trial(seeker, "declared_value:c_x_payload"), trial(seeker, "cable_spring@pan")
     half = right.values | {"k1_cable_pan": 0.5 * STIFFNESS}
-    both = fitted(task, [*wrong.candidates, *right.candidates], half, right.fit.z)
-    monkeypatch.setattr("ptp_symbolic.numeric.diagnose.seeker.ITERATIONS", 0)
-    monkeypatch.setattr(seeker, "polished", lambda trial: trial)
-    monkeypatch.setattr(seeker, "restarted", lambda trial: trial)
-    monkeypatch.setattr(seeker, "tried", Tried([right]))
+    both = fitted(seeker.task, [*wrong.candidates, *right.candidates], half, right.fit.z)
     left = seeker.without(both, wrong.candidates[0])
     assert left.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
 
@@ -178,69 +154,24 @@ def test_a_stuck_inertia_takes_over_what_a_moved_payload_made_up_for(tmp_path: P
         assert found.values["J_pan"] == pytest.approx(INERTIA - PAYLOAD, rel=1e-3)
 
 
-def test_forward_selection_stops_where_it_meets_a_set_that_could_not_be_grown(
-    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    grown, begun = Seeker.grown, []
-
-    def counted(self: Seeker, from_trial: Trial) -> Trial | None:
-        begun.append(from_trial.keys)
-        return grown(self, from_trial)
-
-    monkeypatch.setattr(Seeker, "grown", counted)
+def test_forward_selection_meets_the_set_that_another_road_ended_with(seeker: Seeker) -> None:
     end = trial(seeker, "cable_spring@pan")
     found, steps = extended(seeker, seeker.declared, [], end)
     assert found.keys == ("cable_spring@pan",)
     assert [s.candidate.key for s in steps] == ["cable_spring@pan"]
-    assert begun == [()]
 
 
-@pytest.mark.parametrize(
-    ("others", "rounds"), [((), 2 * LARGEST), (("base_tilt", "constant_torque@pan"), LARGEST)]
-)
-def test_a_set_with_room_grows_on_after_candidates_that_led_the_way_were_dropped(
-    seeker: Seeker, monkeypatch: pytest.MonkeyPatch, others: tuple[str, ...], rounds: int
-) -> None:
-    """Every round brings the spring nearer to its stiffness, whatever else was added and dropped: a
-    set of one goes on after three rounds, a full set does not.
-    """
-    full = trial(seeker, "cable_spring@pan", *others)
-    shares = iter(range(10, 90, 10))
-    begun: list[Trial] = []
-
-    def nearer(best: Trial) -> Trial:
-        begun.append(best)
-        part = full.values | {"k1_cable_pan": 0.01 * next(shares) * STIFFNESS}
-        return fitted(seeker.task, full.candidates, part, full.fit.z)
-
-    monkeypatch.setattr(seeker, "grown", nearer)
-    for move in ("completed", "restarted"):
-        monkeypatch.setattr(seeker, move, lambda t: t)
-    monkeypatch.setattr(seeker, "pruned", lambda t: (t, []))
-    found, _ = extended(seeker, seeker.declared, [])
-    assert len(begun) == rounds
-    assert found.values["k1_cable_pan"] == pytest.approx(0.1 * rounds * STIFFNESS)
-
-
-def test_a_set_that_was_begun_anew_from_the_rows_is_not_begun_so_again(
-    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_poor_fits_of_one_set_are_led_to_one_place(seeker: Seeker) -> None:
     """A spring at half its stiffness is led to its place; another at a third takes that end."""
-    task, begun = seeker.task, []
     full = trial(seeker, "cable_spring@pan")
-    poor = [
-        fitted(task, full.candidates, full.values | {"k1_cable_pan": k * STIFFNESS}, full.fit.z)
-        for k in (0.5, 0.3)
-    ]
-
-    def counted(*arguments: Any) -> list[Trial]:
-        begun.append(arguments)
-        return from_rows(*arguments)
-
-    monkeypatch.setattr("ptp_symbolic.numeric.diagnose.seeker.from_rows", counted)
-    monkeypatch.setattr(seeker, "tried", Tried())
-    first, second = (seeker.restarted(t) for t in poor)
-    assert first is second and len(begun) == 1
+    fresh = Seeker(seeker.task, seeker.declared, seeker.proposals, seeker.carried)
+    first, second = (
+        fresh.restarted(
+            fitted(seeker.task, full.candidates, full.values | {"k1_cable_pan": k}, full.fit.z)
+        )
+        for k in (0.5 * STIFFNESS, 0.3 * STIFFNESS)
+    )
+    assert first is second
     assert first.values["k1_cable_pan"] == pytest.approx(STIFFNESS, rel=0.01)
 
 
@@ -284,16 +215,3 @@ def test_what_a_trial_far_behind_gains_is_told_where_its_columns_hardly_differ(
             )
         )
         assert after.share == pytest.approx(before.share, abs=1e-4)
-
-
-def test_the_noise_that_a_trial_carries_is_replayed_once(
-    seeker: Seeker, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    replayed: list[Fit] = []
-    name = "ptp_symbolic.numeric.diagnose.seeker.carried_noise"
-    monkeypatch.setattr(name, lambda _, fit: replayed.append(fit) or seeker.carried)
-    fresh = seeker.among(seeker.task.candidates)
-    first, other = trial(seeker, "cable_spring@pan"), trial(seeker, "base_tilt")
-    for one in (first, first, seeker.declared, first, other, other, first):
-        fresh.follow(one)
-    assert replayed == [first.fit, other.fit, first.fit]

@@ -3,7 +3,7 @@
 import re
 from types import ModuleType
 
-from ptp_symbolic.numeric.runtime.plain import as_python
+from ptp_symbolic.api.effect_laws import as_python
 
 __all__ = ["as_python", "module_as_python"]
 

@@ -1,5 +1,9 @@
 """Modules that were once written are found again, by their mathematics and nothing else."""
 
+import os
+import shutil
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -98,13 +102,40 @@ def test_a_folder_without_room_is_replaced_for_the_process(
     assert other.parent.stat().st_mode & 0o777 == 0o700
 
 
-def test_another_program_writes_anew(
-    machine: Machine, written: list[str], monkeypatch: pytest.MonkeyPatch
+EMIT = """from pathlib import Path
+from ptp_symbolic.models.emission import emit
+from ptp_symbolic.models.module_cache import cache_folder
+from ptp_symbolic.platform import read_platform
+emit(read_platform("thesis-ideal"))
+print(len(list(cache_folder().glob("*.name"))))
+"""
+
+
+def test_edits_of_what_derives_and_emits_write_anew_and_others_do_not(
+    checkout: Path, tmp_path: Path
 ) -> None:
-    module_cache.emitted(*machine)
-    monkeypatch.setattr(module_cache, "_program", lambda: "of tomorrow")
-    module_cache.emitted(*machine)
-    assert len(written) == 2
+    """A copy of the package is edited file by file; how often was the same machine written?"""
+    package = tmp_path / "ptp_symbolic"
+    shutil.copytree(
+        checkout / "ptp_symbolic", package, ignore=shutil.ignore_patterns("__pycache__")
+    )
+    environment = os.environ | {
+        "PYTHONPATH": str(tmp_path),
+        "PTP_SYMBOLIC_CACHE": str(tmp_path / "modules"),
+    }
+    written = []
+    for edited in (
+        (),
+        ("report/style.py", "cli/tables.py", "numeric/runtime/model.py", "models/emission.py"),
+        ("symbolic/effects/cogging.py",),
+    ):
+        for file in edited:
+            with (package / file).open("a", encoding="utf-8") as source:
+                source.write("\n# edited\n")
+        command = [sys.executable, "-c", EMIT]
+        printed = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True)
+        written.append(int(printed.stdout))
+    assert written == [1, 1, 2]
 
 
 def test_the_description_is_the_same_in_every_process(

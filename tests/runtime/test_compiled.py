@@ -46,14 +46,17 @@ def module(tmp_path: Path) -> Path:
     return path
 
 
-def run(module: Path) -> tuple[str, int]:
-    """What the program printed: a value, and how many functions it found compiled."""
+def run(module: Path, folder: Path | None = None) -> tuple[str, int]:
+    """What the program printed: a value, and how many functions it found compiled, beside the
+    module or in a `folder`.
+    """
+    environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM, str(module)],
         capture_output=True,
         text=True,
         check=False,
-        env={k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"},
+        env=environment | ({} if folder is None else {"NUMBA_CACHE_DIR": str(folder)}),
     )
     assert (done.returncode, done.stderr) == (0, "")
     value, found = done.stdout.split()
@@ -92,3 +95,19 @@ def test_functions_of_others_are_kept_as_numba_does() -> None:
     assert type(njit(cache=True)(square)._cache) is FunctionCache
     square.__module__ = "ptp_symbolic.numeric"
     assert type(njit(cache=True)(square)._cache) is compiled.SealedCache
+
+
+def test_a_folder_of_the_caller_serves_every_place_where_the_module_lies(
+    module: Path, tmp_path: Path
+) -> None:
+    """The second copy finds what the first compiled; one with other content does not."""
+    folder, copy, other = tmp_path / "kept", tmp_path / "a" / module.name, tmp_path / "b"
+    copy.parent.mkdir()
+    copy.write_bytes(module.read_bytes())
+    assert run(module, folder) == ("27.0", 0)
+    assert run(copy, folder) == ("27.0", 1)
+    squared = MODULE.replace("x * x * x", "x * x")
+    other.mkdir()
+    edited = other / module.name
+    edited.write_text(f"{squared}{TRAILER}{hashlib.sha256(squared.encode()).hexdigest()}\n")
+    assert run(edited, folder) == ("9.0", 0)

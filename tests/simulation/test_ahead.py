@@ -21,7 +21,7 @@ COMPILE = ahead.COMPILE
 def mark(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A mark in an empty folder, and nothing begun; compiling is to leave a file `done` there."""
     slow = f"import time; time.sleep(0.5); open({str(tmp_path / 'done')!r}, 'w')"
-    monkeypatch.setattr(ahead, "__file__", str(tmp_path / "ahead.py"))
+    monkeypatch.setattr(ahead, "MARKS", tmp_path / "__pycache__")
     monkeypatch.setattr(ahead, "COMPILE", dict.fromkeys(COMPILE, slow))
     monkeypatch.setattr(ahead, "_begun", {})
     (tmp_path / "__pycache__").mkdir()

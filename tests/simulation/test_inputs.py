@@ -19,6 +19,7 @@ from ptp_symbolic.numeric.simulation.signals.inputs import (
     constant,
     cubic_transition,
     multisine,
+    parse_profile,
     ramp,
     sine_sweep,
     stack,
@@ -26,7 +27,6 @@ from ptp_symbolic.numeric.simulation.signals.inputs import (
     table,
     trapezoid,
 )
-from ptp_symbolic.numeric.simulation.signals.profile_text import parse_profile
 
 TIMES = np.linspace(-1.0, 12.0, 1301)
 

@@ -5,7 +5,7 @@ import pytest
 from numba import njit
 
 from ptp_symbolic.numeric.simulation.kernels import linear
-from ptp_symbolic.numeric.simulation.kernels.lanes import LANES, padded
+from ptp_symbolic.numeric.simulation.kernels.linear import LANES, padded
 
 CHANCE = np.random.default_rng(5)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.simulation.output_times import output_times
+from ptp_symbolic.numeric.simulation.run import output_times
 
 
 def test_a_duration_is_cut_into_milliseconds() -> None:

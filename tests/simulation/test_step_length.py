@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from ptp_symbolic.numeric.simulation.hybrid import accept
 from ptp_symbolic.numeric.simulation.kernels.records import LENGTH
-from ptp_symbolic.numeric.simulation.methods.step_length import accept
 
 
 def plan_after(error: float, length: float, planned: float) -> tuple[bool, float]:

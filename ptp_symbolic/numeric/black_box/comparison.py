@@ -8,8 +8,15 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from ptp_symbolic.numeric.black_box.free_motion import FreeRuns, free_error
-from ptp_symbolic.numeric.black_box.learners import Learned, neural_network, sparse_regression
-from ptp_symbolic.numeric.black_box.rows import AxisRows, Values, axis_rows, space_along
+from ptp_symbolic.numeric.black_box.learners import (
+    AxisRows,
+    Learned,
+    Values,
+    axis_rows,
+    neural_network,
+    space_along,
+    sparse_regression,
+)
 from ptp_symbolic.numeric.identify.equation_space import EquationSpace
 from ptp_symbolic.numeric.identify.run import Run
 

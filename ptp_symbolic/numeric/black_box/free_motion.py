@@ -11,7 +11,7 @@ from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.integration import Accuracy, integrate
 from ptp_symbolic.numeric.simulation.kernels.records import DONE
-from ptp_symbolic.numeric.simulation.signals.delays import delayed, delays_of
+from ptp_symbolic.numeric.simulation.signals.inputs import delayed, delays_of
 
 FloatArray = NDArray[np.float64]
 Torque = Callable[[FloatArray], FloatArray]

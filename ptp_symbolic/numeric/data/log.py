@@ -1,11 +1,18 @@
-"""Logs of a machine: the columns that its platform names, in SI units."""
+"""Logs of a machine: the columns that its platform names, in SI units.
+
+One run in several tables: files cut one after the other, groups of signals, topics of a bag.
+
+Training and validation logs: no run may be in both, whole or in part.
+"""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from ptp_symbolic.errors import InputError
@@ -13,9 +20,54 @@ from ptp_symbolic.numeric.data.calibration import calibrated, factor_of, unit_fa
 from ptp_symbolic.numeric.data.continuity import Wraps, unwrapped
 from ptp_symbolic.numeric.data.formats import files_at, name_of, parts_of, read_tables
 from ptp_symbolic.numeric.data.latency import Series, Steps, delayed_inputs, on_one_clock
-from ptp_symbolic.numeric.data.several_tables import groups_of, one_after_the_other
 from ptp_symbolic.numeric.data.table import Table
 from ptp_symbolic.platform import Clock, Platform, SignalDeclaration, naming_file
+
+FloatArray = NDArray[np.float64]
+Part = tuple[Table, FloatArray, FloatArray]  # with times [n] in s and values [n, s]
+
+
+def groups_of(
+    path: Path, tables: Sequence[Table], columns: Sequence[str]
+) -> dict[tuple[str, ...], list[Table]]:
+    """The tables that hold some of the `columns`, by the columns that they hold.
+
+    Raises InputError for a column in none of them, and for one in tables that hold others beside.
+    """
+    groups: dict[tuple[str, ...], list[Table]] = {}
+    for table in tables:
+        own = tuple(column for column in columns if table.place(column) is not None)
+        if own:
+            groups.setdefault(own, []).append(table)
+    for column in columns:
+        found = [tables[0] for own, tables in groups.items() if column in own]
+        if not found:
+            held = ", ".join(name for table in tables for name, _ in table.headings)
+            held = held if len(held) <= 300 else held[:297] + "..."
+            raise InputError(f"{path}: signal '{column}' is missing; the log has {held}.")
+        if len(found) > 1:
+            raise InputError(
+                f"{path}: '{column}' is in {found[0].head} and in {found[1].head}, with other"
+                " signals beside it; leave it in one of them."
+            )
+    return groups
+
+
+def one_after_the_other(parts: Sequence[Part]) -> tuple[FloatArray, FloatArray]:
+    """Times [n] in s and values [n, s] of parts with the same signals, in the order of time.
+
+    Raises InputError for parts whose times overlap.
+    """
+    ordered = sorted(parts, key=lambda part: float(part[1][0]))
+    for (first, before, _), (second, after, _) in pairwise(ordered):
+        if after[0] <= before[-1]:
+            raise InputError(
+                f"{second.head}: its times from {after[0]:.6g} s to {after[-1]:.6g} s overlap those"
+                f" of {first.head}, {before[0]:.6g} s to {before[-1]:.6g} s; parts of one run need"
+                " one clock: give runs of their own as logs of their own."
+            )
+    return np.concatenate([p[1] for p in ordered]), np.concatenate([p[2] for p in ordered])
+
 
 MIN_ROWS = 10
 STEADY = {"rate", "torque"}  # columns of points at steady rates
@@ -277,3 +329,51 @@ def _check_time(
             f"{table.row(int(rows[row]))}: time {float(time[row])!r} {unit} {what}"
             f" {float(time[row - 1])!r} {unit} of the line before; time stamps must increase."
         )
+
+
+EXCERPT = 50  # samples in a row
+CHANGES = 10  # of them differ from the one before, or they say little
+
+
+def read_split_logs(
+    train: Iterable[Path | str], validate: Iterable[Path | str], platform: Platform
+) -> tuple[tuple[Log, ...], tuple[Log, ...]]:
+    """Read the training logs and the validation logs, which must be other runs.
+
+    Raises InputError as `read_logs` does, and for a run that is in both, under whatever name, whole
+    or in part. A part that was resampled is not noticed.
+    """
+    places = [log_files(paths) for paths in (train, validate)]
+    fitted, judging = (read_logs(files, platform) for files in places)
+    seen = [_excerpts(log) for log in fitted]
+    for file, log in zip(places[1], judging, strict=True):
+        own = _excerpts(log)
+        for other, known, excerpts in zip(places[0], fitted, seen, strict=True):
+            whole = _same_run(log, known)
+            if whole or own & excerpts:
+                raise InputError(
+                    f"{file}: holds {'the same run as' if whole else 'samples of'} {other}, which"
+                    " is given to be fitted; a fit is judged by runs that it has never seen: give"
+                    " others to `validate`."
+                )
+    return fitted, judging
+
+
+def _same_run(log: Log, other: Log) -> bool:
+    """Whether both hold the same samples, wherever their clocks started."""
+    return (
+        np.array_equal(log.outputs, other.outputs)
+        and np.array_equal(log.inputs, other.inputs)
+        and np.allclose(log.time - log.time[0], other.time - other.time[0])
+    )
+
+
+def _excerpts(log: Log) -> set[int]:
+    """Hashes of all EXCERPT samples in a row that hold some motion."""
+    rows = np.hstack([log.inputs, log.outputs])
+    if len(rows) < EXCERPT:
+        return set()
+    changed = np.any(np.diff(rows, axis=0) != 0.0, axis=1)
+    moving = np.convolve(changed, np.ones(EXCERPT - 1), "valid") >= CHANGES
+    windows = sliding_window_view(rows, EXCERPT, axis=0)
+    return {hash(window.tobytes()) for window in windows[moving]}

@@ -14,10 +14,11 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.numeric.files import bags, excel, matlab, parquet, tdms
+from ptp_symbolic.numeric.files import bags, matlab
 from ptp_symbolic.numeric.files.content import MOST_COLUMNS, Part, in_a_line
+from ptp_symbolic.numeric.files.tables import excel_text, parquet_parts, tdms_parts
 
-KINDS = {"MATLAB": matlab.parts, "Parquet": parquet.parts, "TDMS": tdms.parts}
+KINDS = {"MATLAB": matlab.parts, "Parquet": parquet_parts, "TDMS": tdms_parts}
 EXCEL, BAG = "Excel", "bag"
 ROOM = 500_000_000  # bytes that reading may take, beside three times the size of the file
 
@@ -46,7 +47,7 @@ def main() -> None:
 def _answer(answer: BinaryIO, request: dict[str, Any]) -> None:
     paths = [Path(path) for path in request["paths"]]
     if request["kind"] == EXCEL:
-        content = excel.text_of(paths[0]).encode()
+        content = excel_text(paths[0]).encode()
         _line(answer, {"bytes": len(content)})
         answer.write(content)
         answer.flush()

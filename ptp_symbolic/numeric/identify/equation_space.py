@@ -41,7 +41,7 @@ from ptp_symbolic.numeric.identify.sample_averages import (
 )
 from ptp_symbolic.numeric.identify.weak_form import averages
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.delays import delays_of
+from ptp_symbolic.numeric.simulation.signals.inputs import delays_of
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

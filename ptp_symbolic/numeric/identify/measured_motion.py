@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.sample_averages import grid_averages, part_averages
 from ptp_symbolic.numeric.identify.weak_form import averages, local_motion, weak_average
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.signals.delays import delays_of
+from ptp_symbolic.numeric.simulation.signals.inputs import delays_of
 
 FloatArray = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from ptp_symbolic.numeric.data.zero_order_hold import held_averages
+from ptp_symbolic.numeric.data.latency import held_averages
 from ptp_symbolic.numeric.identify.constants import FAR, LITTLE
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.simulation.signals.inputs import (

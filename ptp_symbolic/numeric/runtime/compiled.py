@@ -4,11 +4,13 @@ numba runs what it finds. After a loss of power, or on a full disk, a file may b
 zeroed in the middle, which ends in a traceback of its own or in the end of the process. Files of
 functions of this package carry a SHA-256 behind what numba reads: where it does not fit, the
 function is compiled and kept anew. Where nothing can be kept, it is compiled in every process.
+They lie beside the source, or in NUMBA_CACHE_DIR, where checkouts at different places share them.
 
 To import this module is to have it so, for functions that are decorated later.
 """
 
 import hashlib
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from io import BytesIO
@@ -16,7 +18,7 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any
 
-from numba.core import caching, dispatcher
+from numba.core import caching, config, dispatcher
 
 ROOTS = ("ptp_symbolic", "generated")  # packages whose functions are ours
 EMITTED = "ptp_model_"  # how the modules of a user's machines are called
@@ -48,7 +50,11 @@ class SealedCache(caching.FunctionCache):
 
     def __init__(self, py_func: FunctionType) -> None:
         super().__init__(py_func)
-        self._cache_file.__class__ = SealedFiles
+        if config.CACHE_DIR:  # by the name of the module: the same for every checkout
+            self._cache_path = os.path.join(config.CACHE_DIR, py_func.__module__)
+            os.makedirs(self._cache_path, exist_ok=True)
+        stamp = self._impl.locator.get_source_stamp()
+        self._cache_file = SealedFiles(self._cache_path, self._impl.filename_base, stamp)
 
     def load_overload(self, signature: Any, target: Any) -> Any:
         """The compiled function, or None where there is none that can be used."""

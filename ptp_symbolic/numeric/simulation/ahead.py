@@ -24,6 +24,7 @@ COMPILE = {
     HELD_SAMPLES: f"from {PACKAGE}.held_samples import loop; loop()",
     FIXED_RUNNER: f"from {PACKAGE}.fixed_runner import runner; runner()",
 }
+MARKS = Path(numba.config.CACHE_DIR or Path(__file__).parent / "__pycache__")
 
 _begun: dict[str, "subprocess.Popen[bytes]"] = {}
 
@@ -81,4 +82,4 @@ def _mark(kernel: str) -> Path:
     """
     version = f"{numba.__version__}-{sys.implementation.cache_tag}"
     name = f"{kernel}-of-{source_stamp():x}-{version}"
-    return Path(__file__).parent / "__pycache__" / name
+    return MARKS / name

@@ -5,9 +5,9 @@ from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_guards
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.simulation.kernels.lanes import padded
+from ptp_symbolic.numeric.simulation.kernels.linear import padded
 from ptp_symbolic.numeric.simulation.kernels.records import Record, Step, Tangents, Watch
-from ptp_symbolic.numeric.simulation.methods.rodas5p import STAGES
+from ptp_symbolic.numeric.simulation.methods.rosenbrock import STAGES
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

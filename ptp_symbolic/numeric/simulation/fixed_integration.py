@@ -91,7 +91,7 @@ def integrate_in_fixed_steps(
     )
     record = new_record(grid, n, 0, len(grid), event_room)
     status = fixed_runner.runner()(
-        addresses(model.module),
+        addresses(model.module, tangents=False),
         p,
         model.prepared(p),
         model.friction_rates,

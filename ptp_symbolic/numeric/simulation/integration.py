@@ -19,7 +19,7 @@ from ptp_symbolic.numeric.simulation.buffers import (
 from ptp_symbolic.numeric.simulation.events.impacts import STICKS
 from ptp_symbolic.numeric.simulation.held_samples import loop_address
 from ptp_symbolic.numeric.simulation.kernels.calls import addresses
-from ptp_symbolic.numeric.simulation.kernels.lanes import padded
+from ptp_symbolic.numeric.simulation.kernels.linear import padded
 from ptp_symbolic.numeric.simulation.kernels.records import (
     EVENTS,
     EXHAUSTED,
@@ -239,7 +239,8 @@ def _integrate(
         len(p),
         nu,
     )
-    solved, functions, c = n if s.shape[1] else model.moving, addresses(module), model.prepared(p)
+    solved, c = n if s.shape[1] else model.moving, model.prepared(p)
+    functions = addresses(module, s.shape[1] > 0)
     acting = model.acting(p, columns)
     if method == IMPLICIT:
         solved = min(solved, acting)

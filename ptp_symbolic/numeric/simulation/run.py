@@ -1,4 +1,9 @@
-"""Simulate a model: inputs as profiles or logs, located events, energy ledger."""
+"""Simulate a model: inputs as profiles or logs, located events, energy ledger.
+
+Changes of mode in words.
+
+Output times of a simulation.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +16,6 @@ from numpy.typing import ArrayLike, NDArray
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.buffers import limited_states
-from ptp_symbolic.numeric.simulation.events.names import Event, named_events
 from ptp_symbolic.numeric.simulation.feedback import Commands, Feedback, integrate_with_feedback
 from ptp_symbolic.numeric.simulation.fixed_integration import (
     FixedSolution,
@@ -35,12 +39,102 @@ from ptp_symbolic.numeric.simulation.kernels.records import (
     TOO_FAST,
     UNDECIDED,
 )
-from ptp_symbolic.numeric.simulation.output_times import output_times
-from ptp_symbolic.numeric.simulation.signals.delays import delayed, delays_of
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, InputTable, constant, stack
-from ptp_symbolic.numeric.simulation.signals.profile_text import as_signals
+from ptp_symbolic.numeric.simulation.signals.inputs import (
+    InputSignal,
+    InputTable,
+    as_signals,
+    constant,
+    delayed,
+    delays_of,
+    stack,
+)
 
 FloatArray = NDArray[np.float64]
+
+OUTPUT_STEP = 1e-3
+MOST_SAMPLES = 5_000_000
+
+
+def output_times(times: float | ArrayLike, every: float = OUTPUT_STEP) -> FloatArray:
+    """Output times [k] in s: from 0 to a duration in s and `every` so many s between, or as given;
+    a tuple of two is the span (start, end), with `every` so many s between.
+
+    Raises InputError for a duration or an interval that is not positive, for less than two times or
+    times that are not finite and increasing, and for five million or more within a duration.
+    """
+    t = np.array(times, dtype=np.float64)
+    if t.ndim == 0:
+        if not 0.0 < t < np.inf:
+            raise InputError(f"Duration {float(t):g} s; give a positive number of seconds.")
+        t = _regular_times(float(t), every)
+    elif isinstance(times, tuple) and t.shape == (2,) and 0.0 < t[1] - t[0] < np.inf:
+        t = float(t[0]) + _regular_times(float(t[1] - t[0]), every)
+    if t.ndim != 1 or len(t) < 2 or not np.all(np.isfinite(t)) or np.any(np.diff(t) <= 0):
+        raise InputError("Output times must be two or more finite, increasing numbers of seconds.")
+    return t
+
+
+def _regular_times(duration: float, every: float) -> FloatArray:
+    if not 0.0 < every < np.inf:
+        raise InputError(f"Output every {every:g} s; give a positive number of seconds.")
+    count = duration / every
+    if count >= MOST_SAMPLES:
+        raise InputError(
+            f"{duration:g} s with an output every {every:g} s make {count:.3g} samples, at most"
+            f" {MOST_SAMPLES} are allowed; shorten the duration, or give output times further"
+            f" apart (`every` {1.01 * duration / MOST_SAMPLES:.3g})."
+        )
+    if abs(count - round(count)) < 1e-3 or count < 1.0:
+        return np.linspace(0.0, duration, max(2, round(count) + 1))
+    return np.append(every * np.arange(int(count) + 1), duration)
+
+
+SLIDING = {-1.0: "slides backward", 0.0: "sticks", 1.0: "slides forward"}
+SWITCHING = {
+    -2.0: "goes off beyond the lower threshold",
+    -1.0: "goes on at the lower threshold",
+    0.0: "is ready",
+    1.0: "goes on at the upper threshold",
+    2.0: "goes off beyond the upper threshold",
+}
+TOUCHING = {
+    -4.0: "leans on the lower face",
+    -3.0: "bounces off the lower face",
+    -2.0: "lets go of the lower face",
+    -1.0: "touches the lower face",
+    0.0: "is in the gap",
+    1.0: "touches the upper face",
+    2.0: "lets go of the upper face",
+    3.0: "bounces off the upper face",
+    4.0: "leans on the upper face",
+}
+
+
+@dataclass(frozen=True)
+class Event:
+    """A change of mode: time in s, the element (``friction pan``, ``contact pan``), what it did."""
+
+    time: float
+    element: str
+    mode: str
+
+
+def named_events(model: Model, rows: FloatArray) -> tuple[Event, ...]:
+    """The events of `rows` [e, 3]: time in s, element, mode entered."""
+    frictions = [n.removeprefix("slide_") for n in model.mode_names if n.startswith("slide_")]
+    contacts = [n.removeprefix("side_") for n in model.mode_names if n.startswith("side_")]
+    events = []
+    for time, element, mode in rows:
+        index = int(element)
+        if index < len(frictions):
+            events.append(Event(float(time), f"friction {frictions[index]}", SLIDING[mode]))
+        else:
+            number = index - len(frictions)
+            is_switch = number >= len(model.module.CONTACT_ANGLES)
+            what, modes = ("switch", SWITCHING) if is_switch else ("contact", TOUCHING)
+            events.append(Event(float(time), f"{what} {contacts[number]}", modes[mode]))
+    return tuple(events)
+
 
 FIXED_STEP = "fixed_step"
 EVENT_ROOM = 100_000  # events for which there is room at first; a run with more is repeated

@@ -9,7 +9,7 @@ import sympy as sp
 
 from ptp_symbolic.symbolic.codegen.sharing import Line
 from ptp_symbolic.symbolic.derivation.contributions import slope_symbol
-from ptp_symbolic.symbolic.derivation.differentiation import derivative
+from ptp_symbolic.symbolic.derivation.differentiation import derivative, symbols_of
 from ptp_symbolic.symbolic.derivation.equations import Equations
 
 
@@ -26,7 +26,7 @@ class ChainRule:
     def derivative(self, expression: sp.Expr, variable: sp.Symbol) -> sp.Expr:
         """Derivative of `expression` by `variable`, also by way of the named functions in it."""
         result = derivative(expression, variable)
-        for symbol in sorted(expression.free_symbols, key=str):
+        for symbol in sorted(symbols_of(expression), key=str):
             slope = self.slopes.get((symbol, variable))
             if slope is not None:
                 result += derivative(expression, symbol) * slope

@@ -107,7 +107,12 @@ def _in_single_angles(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
                 (sp.sin, 3): sine * (4 * cosine**2 - 1),
                 (sp.cos, 3): cosine * (4 * cosine**2 - 3),
             }[function.func, int(multiple)]
-    return [e.xreplace(single) for e in expressions] if single else list(expressions)
+    if not single:
+        return list(expressions)
+    # SymPy compares the arguments of these when it makes them: once each, not once per expression.
+    compared = {c for e in expressions for c in e.atoms(sp.Max, sp.Min, sp.Piecewise)}
+    single |= {c: c.xreplace(single) for c in compared}
+    return [e.xreplace(single) for e in expressions]
 
 
 def _ordered(available: Sequence[Line], final: Sequence[Line]) -> list[Line]:

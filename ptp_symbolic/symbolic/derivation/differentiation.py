@@ -1,5 +1,7 @@
 """Derivatives of expressions whose value is real, whatever SymPy can prove of their parts."""
 
+from functools import lru_cache
+
 import sympy as sp
 
 from ptp_symbolic.symbolic.symbols import ZERO
@@ -25,9 +27,28 @@ class _Magnitude(sp.Function):
         return _Sign(self.args[0])
 
 
+KEPT = 4096  # expressions: those of one machine, each differentiated by all of its symbols
+
+
+@lru_cache(maxsize=KEPT)
+def symbols_of(expression: sp.Expr) -> frozenset[sp.Symbol]:
+    """The symbols in `expression`, found once for all variables that it is differentiated by."""
+    return frozenset(expression.free_symbols)
+
+
 def derivative(expression: sp.Expr, variable: sp.Symbol) -> sp.Expr:
     """Partial derivative of a real `expression` by `variable`."""
-    if not expression.has(sp.Abs, sp.sign):
+    if variable not in symbols_of(expression):
+        return ZERO
+    real = _differentiable(expression)
+    if real is expression:
         return sp.diff(expression, variable)
-    real = expression.replace(sp.Abs, _Magnitude).replace(sp.sign, _Sign)
     return sp.diff(real, variable).replace(_Magnitude, sp.Abs).replace(_Sign, sp.sign)
+
+
+@lru_cache(maxsize=KEPT)
+def _differentiable(expression: sp.Expr) -> sp.Expr:
+    """`expression` with magnitudes and signs that differentiate as those of a real number."""
+    if not expression.has(sp.Abs, sp.sign):
+        return expression
+    return expression.replace(sp.Abs, _Magnitude).replace(sp.sign, _Sign)

@@ -4,6 +4,7 @@ numba passes functions as arguments too, but looks each of them up at every call
 which takes longer than a short simulation.
 """
 
+from collections.abc import Collection
 from functools import lru_cache
 from types import ModuleType
 from typing import Any
@@ -38,16 +39,20 @@ IMPACT_SIGNATURES = {
     "impact_jacobian": types.void(*_AT, _MATRIX, _MATRIX),
 }
 
+OF_TANGENTS = ("guard_jacobian", "impact_jacobian")
+
 
 @lru_cache(maxsize=256)
-def addresses(module: ModuleType) -> NDArray[np.int64]:
+def addresses(module: ModuleType, tangents: bool = True) -> NDArray[np.int64]:
     """Addresses [7] of the compiled functions of an emitted module, in the order above.
 
-    A module without rigid contacts has no impacts, and zeros as their addresses.
+    A module without rigid contacts has no impacts, and zeros as their addresses; so have functions
+    that runs without `tangents` never call, which are not compiled for them.
 
     The module keeps the functions alive, and the cache keeps the module.
     """
-    return compiled_addresses(module, SIGNATURES | IMPACT_SIGNATURES)
+    idle = () if tangents else OF_TANGENTS
+    return compiled_addresses(module, SIGNATURES | IMPACT_SIGNATURES, idle)
 
 
 @lru_cache(maxsize=256)
@@ -62,13 +67,15 @@ def output_addresses(module: ModuleType) -> NDArray[np.int64]:
     return compiled_addresses(module, OUTPUT_SIGNATURES)
 
 
-def compiled_addresses(module: ModuleType, signatures: dict[str, Any]) -> NDArray[np.int64]:
+def compiled_addresses(
+    module: ModuleType, signatures: dict[str, Any], idle: Collection[str] = ()
+) -> NDArray[np.int64]:
     """Address of the compiled function of every name in `signatures`; 0 for an impact function that
-    the module does not have.
+    the module does not have, and for those that are `idle`.
     """
     found = []
     for name, signature in signatures.items():
-        if name in IMPACT_SIGNATURES and name not in vars(module):
+        if name in idle or (name in IMPACT_SIGNATURES and name not in vars(module)):
             found.append(0)
             continue
         compiled = getattr(module, name).get_compile_result(signature)

@@ -5,6 +5,8 @@ arithmetic of a step. They are inlined, so that a record costs nothing either.
 """
 
 import hashlib
+import re
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,6 +19,13 @@ kernel = njit(**INNER)
 inlined = njit(forceinline=True, **INNER)
 merged = njit(inline="always", **INNER)  # for large ones: not compiled by itself as well
 
+RUNNERS = ("hybrid.py", "fixed_runner.py")
+# What these import of the simulation and of the layout of modes; other modules hold no kernels.
+IMPORT = re.compile(
+    r"^from ptp_symbolic\.(numeric\.(?:simulation|runtime\.element_layout)[\w.]*)"
+    r" import (\([^)]*\)|[^\n]*)",
+    re.MULTILINE,
+)
 SMALLEST = 1e-60
 DONE, DIVERGED, CHATTERING, UNDECIDED, OUTSIDE, EXHAUSTED, TOO_FAST, STIFF = 0, 1, 2, 3, 4, 5, 6, 7
 LARGEST_STATE = 1e12
@@ -207,16 +216,33 @@ RUN_TYPES = (
 )
 
 
+@lru_cache(maxsize=1)
 def source_stamp() -> int:
-    """A number that changes with any source of the kernels.
+    """A number that changes with any source of the kernels: the runners, and what these import.
 
     numba keeps a compiled function until its own file changes; a runner that holds this number
     is compiled anew when a kernel in another file has changed.
     """
     digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parents[1].rglob("*.py")):
+    for path in sorted(kernel_sources(Path(__file__).parents[3])):
         digest.update(path.read_bytes())
     return int.from_bytes(digest.digest()[:7], "big")
+
+
+def kernel_sources(package: Path) -> set[Path]:
+    """Files of the `package` ptp_symbolic whose functions and numbers are compiled into runners."""
+    found: set[Path] = set()
+    wanted = [package / "numeric/simulation" / runner for runner in RUNNERS]
+    while wanted:
+        path = wanted.pop()
+        if path in found or not path.is_file():
+            continue
+        found.add(path)
+        for module, names in IMPORT.findall(path.read_text(encoding="utf-8")):
+            place = package.joinpath(*module.split("."))
+            modules = [place / name for name in re.findall(r"\w+", names)]
+            wanted += [module.with_suffix(".py") for module in (place, *modules)]
+    return found
 
 
 @inlined

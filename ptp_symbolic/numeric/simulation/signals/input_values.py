@@ -1,4 +1,4 @@
-"""Values and slopes of the inputs in compiled code."""
+"""Values and slopes of the inputs in compiled code, and how these drive the tangents."""
 
 import math
 
@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ptp_symbolic.numeric.simulation.kernels.records import KERNEL
+from ptp_symbolic.numeric.simulation.kernels.records import KERNEL, inlined
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 
 
@@ -99,3 +99,27 @@ def _find_piece(t, side, breaks, offsets, cursor, j):
     cursor[j] = k
     piece = min(max(k, 0), pieces - 1)
     return offsets[j] + piece, min(max(t, breaks[at]), breaks[at + pieces]) - breaks[at + piece]
+
+
+TIME_DIFFERENCE = 1e-5  # s; of the difference quotient by time
+
+
+@inlined
+def fill_drive(inputs, tangents, fu, fp, out):
+    """Write the inhomogeneous term [n * ns] of the variational equation: fp of the parameters, and
+    -fu du/dt of the delays, du/dt in inputs.ahead.
+    """
+    n, columns = fp.shape[0], tangents.columns
+    width = len(out) // n
+    for a in range(n):
+        for c in range(len(columns)):
+            out[a * width + c] = fp[a, columns[c]]
+        for c in range(len(columns), width):
+            out[a * width + c] = 0.0
+    if inputs.held:
+        return
+    for c in range(len(inputs.u)):
+        column = tangents.delay_column[c]
+        if column >= 0:
+            for a in range(n):
+                out[a * width + column] -= fu[a, c] * inputs.ahead[c]

@@ -33,9 +33,8 @@ from ptp_symbolic.numeric.simulation.run import (
     refuse_failure,
     start_of,
 )
-from ptp_symbolic.numeric.simulation.signals.delays import delay_columns
 from ptp_symbolic.numeric.simulation.signals.input_values import slopes_at, values_at
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, InputTable
+from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, InputTable, delay_columns
 
 FloatArray = NDArray[np.float64]
 

@@ -1,1 +1,0 @@
-"""Derivatives of simulations by parameters and initial states."""
