@@ -1,0 +1,240 @@
+"""A page for every effect, written from the effect itself before Sphinx reads the sources.
+
+Law, parameters, needs, reference and experiment are those of the object in the catalogue; the curve
+is computed from the law. What an effect looks like in a log is in `effects_in_logs.toml`.
+"""
+
+import inspect
+import re
+import sys
+import tomllib
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+from sphinx.application import Sphinx
+
+from ptp_symbolic.api.effect_bases import machine_with
+from ptp_symbolic.cli.lists import described
+from ptp_symbolic.errors import InputError
+from ptp_symbolic.platform import Platform
+from ptp_symbolic.report.derivation.curves import WITH, WITHOUT, Drawing, drawing_of
+from ptp_symbolic.report.figures import AFTER, BEFORE, STYLE
+from ptp_symbolic.symbolic.codegen.latex import latex_lines, symbol_latex
+from ptp_symbolic.symbolic.codegen.laws import Law, laws
+from ptp_symbolic.symbolic.codegen.statements import RELATIONS, Statement
+from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effects import PACKAGED
+
+FOLDER = "effects"
+IN_LOGS = "effects_in_logs.toml"
+ROOM = 60  # characters of a formula before it breaks
+LINES = {WITH: {"color": AFTER}, WITHOUT: {"color": BEFORE, "linestyle": "--"}}
+AT_REST = {"color": AFTER, "linestyle": ":"}
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Write the pages before the sources are read."""
+    app.connect("builder-inited", write_pages)
+    return {"version": "1", "parallel_read_safe": True}
+
+
+def write_pages(app: Sphinx) -> None:
+    """Write the pages of all packaged effects, and the list of them, into `effects/`."""
+    folder = Path(app.srcdir) / FOLDER
+    folder.mkdir(exist_ok=True)
+    groups = in_logs(Path(app.srcdir))
+    texts = {name: text for group in groups for name, text in group["effects"].items()}
+    for effect in PACKAGED:
+        pages = page(effect, texts[effect.id], folder)
+        write_if_new(folder / f"{effect.id}.md", pages)
+    write_if_new(folder / "index.md", index(groups))
+
+
+def in_logs(docs: Path) -> list[dict[str, Any]]:
+    """The groups of effects, each with a title and what its effects look like in a log."""
+    return list(tomllib.loads((docs / IN_LOGS).read_text("utf-8")).values())
+
+
+def write_if_new(path: Path, text: str) -> None:
+    """Write `text`, unless the file says it already: Sphinx reads again what is newer."""
+    if not path.is_file() or path.read_text("utf-8") != text:
+        path.write_text(text, encoding="utf-8")
+
+
+def index(groups: Sequence[dict[str, Any]]) -> str:
+    """The list of all effects by group."""
+    titles = {effect.id: effect.title for effect in PACKAGED}
+    searched = {e.id for e in PACKAGED if e.searched or e.structure}
+    parts = [
+        "# Effects",
+        "What a platform may declare, a page each. A dot (•) marks what `diagnose` looks for by"
+        " itself; the others are declared only. The pages are written from the code: the law,"
+        " its parameters and its bounds are those that are compiled.",
+    ]
+    for group in groups:
+        names = list(group["effects"])
+        parts.append(f"## {group['title']}")
+        parts.append(
+            "\n".join(
+                f"- [`{n}`]({n}.md): {titles[n]}{' •' if n in searched else ''}" for n in names
+            )
+        )
+    listed = "\n".join(name for group in groups for name in group["effects"])
+    parts.append(f"```{{toctree}}\n:hidden:\n\n{listed}\n```")
+    return "\n\n".join(parts) + "\n"
+
+
+def page(effect: Effect, in_log: str, folder: Path) -> str:
+    """The page of an effect and all its kinds."""
+    kinds = [effect, *effect.kinds]
+    parts = [f"# {_upper(effect.title)}", _about(effect), _heading(effect)]
+    for kind in kinds:
+        more = [] if len(kinds) == 1 else [f'## `kind = "{kind.kind}"`: {kind.title}']
+        parts += more + list(_kind(kind, folder, "##" if len(kinds) == 1 else "###"))
+    parts += ["## In a log", in_log]
+    if effect.separating_experiment:
+        parts += ["## Separating experiment", effect.separating_experiment]
+    sources = {k.reference: None for k in kinds if k.reference}
+    parts += ["## Reference", "\n".join(f"- {_upper(source)}" for source in sources)]
+    return "\n\n".join(parts) + "\n"
+
+
+def _about(effect: Effect) -> str:
+    """What the file of the effect says of it: what it is, what it assumes."""
+    text = inspect.cleandoc(sys.modules[effect.contribute.__module__].__doc__ or "")
+    return text.replace("``", "`")
+
+
+def _heading(effect: Effect) -> str:
+    facts = described(effect)
+    if effect.searched:
+        found = "A candidate of `diagnose`."
+    elif effect.structure:
+        found = "`diagnose` rebuilds the platform with it."
+    else:
+        found = "Declared only: `diagnose` does not look for it."
+    text = f"`{effect.id}` sits on {facts['sits_on']}. {found}"
+    for need in facts["needs"]:
+        text += f" It needs `{need['quantity']}`, from {' or '.join(_code(need['from']))}."
+    lines = ["[[effects]]", f'effect = "{effect.id}"', *(['axis = "pan"'] * effect.on_axis)]
+    if effect.kinds:
+        lines.append(f'kind = "{effect.kind}"')
+    if effect.sites:
+        lines.append(f'site = "{effect.sites[-1]}"  # {" or ".join(effect.sites)}')
+    return f"{text}\n\n```toml\n" + "\n".join(lines) + "\n```"
+
+
+def _code(names: Sequence[str]) -> list[str]:
+    return [name if " " in name else f"`{name}`" for name in names]
+
+
+def _kind(kind: Effect, folder: Path, level: str) -> Iterator[str]:
+    """Law, curve and parameters of one kind."""
+    placed = law_of(kind)
+    if placed is not None:
+        law, equations = placed
+        if law.rows:
+            yield f"{level} Law"
+            yield from _formulas(law.rows, equations)
+        drawing = drawing_of(law, (), equations)
+        if drawing is not None:
+            name = f"{kind.id}-{kind.kind}.svg" if kind.kind else f"{kind.id}.svg"
+            _draw(drawing, folder / name)
+            yield f"```{{image}} {name}\n:alt: {kind.title}, drawn from its law\n:class: curve\n```"
+            yield f"*{drawing.caption}*" if "*" not in drawing.caption else drawing.caption
+    rows = described(kind)["parameters"]
+    if rows:
+        yield f"{level} Parameters"
+        yield _table(rows)
+
+
+def law_of(kind: Effect) -> tuple[Law, Equations] | None:
+    """The law of one kind on the first machine that takes it; None where the kind differs from the
+    usual one by the signal alone.
+    """
+    try:
+        platform = machine_with(kind)
+    except InputError:
+        return None
+    platform = _of_kind(platform, kind)
+    if kind.structural and kind.splits_axis and kind.id == "backlash":
+        rigid = tuple(e for e in platform.effects if e.effect != "shaft_compliance")
+        platform = replace(platform, effects=rigid)
+    found = next(f for f in laws(platform) if (f.effect.id, f.effect.kind) == (kind.id, kind.kind))
+    return found, assemble(platform)
+
+
+def _of_kind(platform: Platform, kind: Effect) -> Platform:
+    declared = tuple(
+        replace(e, kind=kind.kind) if e.effect == kind.id else e for e in platform.effects
+    )
+    return replace(platform, effects=declared)
+
+
+def _formulas(rows: Sequence[Statement], equations: Equations) -> Iterator[str]:
+    for name, group in groupby(rows, key=lambda row: row.name):
+        words = _with_symbols(equations.worded(_upper(name)))
+        formulas = " \\\\\n".join(_aligned(row) for row in group)
+        yield f"{words}:\n\n$$\n\\begin{{aligned}}\n{formulas}\n\\end{{aligned}}\n$$"
+    named = {str(symbol) for row in rows for symbol in row.right.free_symbols}
+    meant = [(symbol_latex(n), e) for n, e in equations.quantities if n in named]
+    if meant:
+        lines = " \\\\\n".join(f"{left} &= {' '.join(latex_lines(e, ROOM))}" for left, e in meant)
+        yield f"where\n\n$$\n\\begin{{aligned}}\n{lines}\n\\end{{aligned}}\n$$"
+
+
+def _aligned(row: Statement) -> str:
+    first, *more = latex_lines(row.right, ROOM)
+    return " \\\\\n".join(
+        [f"{row.left_latex} &{RELATIONS[row.relation][0]} {first}", *(f"&\\quad {m}" for m in more)]
+    )
+
+
+def _with_symbols(text: str) -> str:
+    """`text` with the names of symbols in it as formulas."""
+    return re.sub(
+        r"\b[A-Za-z0-9]+(?:_[A-Za-z0-9]+)+\b",
+        lambda found: f"${symbol_latex(found[0])}$",
+        text,
+    )
+
+
+def _table(rows: Sequence[dict[str, Any]]) -> str:
+    lines = [
+        "| Parameter | Unit | Default | Bounds | Off at | Meaning |",
+        "|---|---|---|---|---|---|",
+    ]
+    for p in rows:
+        default = "declare it" if p["default"] is None else f"{p['default']:g}"
+        off = "" if p["off_at"] is None else f"{p['off_at']:g}"
+        low, high = p["bounds"]
+        name = p["name"].replace("<", "‹").replace(">", "›")
+        meaning = p["meaning"].replace("<", "‹").replace(">", "›")
+        lines.append(
+            f"| `{name}` | {p['unit']} | {default} | {low:g} to {high:g} | {off} | {meaning} |"
+        )
+    return "\n".join(lines)
+
+
+def _draw(drawing: Drawing, path: Path) -> None:
+    with matplotlib.rc_context({**STYLE, "svg.fonttype": "path", "font.size": 9.5}):
+        figure = Figure(figsize=(5.6, 3.0), layout="constrained")
+        FigureCanvasSVG(figure)
+        axes = figure.subplots()
+        for x, y, style in drawing.lines:
+            axes.plot(x, y, linewidth=1.6, **LINES.get(style, AT_REST))
+        axes.set_xlabel(drawing.across)
+        axes.set_ylabel(drawing.up)
+        figure.savefig(path, format="svg", metadata={"Date": None})
+
+
+def _upper(text: str) -> str:
+    return text[:1].upper() + text[1:]
