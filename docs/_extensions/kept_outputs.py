@@ -1,8 +1,8 @@
 """Outputs of the tutorials, kept as notebooks beside them, so that a build runs no code.
 
 A tutorial `tutorials/NAME.md` has its executed notebook at `tutorials/outputs/NAME.ipynb`. Before
-anything is read, these fill the cache of MyST-NB, which finds a notebook by its code cells: text may
-change freely, and a tutorial whose code was changed is executed.
+anything is read, these fill the cache of MyST-NB, which finds a notebook by its code cells: text
+may change freely, and a tutorial whose code was changed is executed.
 """
 
 from pathlib import Path
