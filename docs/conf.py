@@ -16,15 +16,15 @@ release = version = ptp_symbolic.__version__
 extensions = [
     "myst_nb",
     "sphinx.ext.autodoc",
-    "sphinx.ext.autosummary",
-    "sphinx.ext.viewcode",
     "sphinx_click",
     "sphinxcontrib.bibtex",
     "formulas",
     "effect_pages",
+    "reference_pages",
+    "concept_figures",
     "kept_outputs",
 ]
-exclude_patterns = ["_build", "tutorials/outputs", "Thumbs.db"]
+exclude_patterns = ["_build", "_generated", "tutorials/outputs"]
 
 # Notebooks: `kept_outputs` fills the cache, so that nothing runs unless code was changed.
 nb_execution_mode = "cache"
@@ -43,7 +43,6 @@ bibtex_default_style = "plain"
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
-autosummary_generate = False
 
 html_theme = "pydata_sphinx_theme"
 html_title = "ptp-symbolic"
