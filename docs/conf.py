@@ -41,8 +41,7 @@ bibtex_bibfiles = ["references.bib"]
 bibtex_default_style = "plain"
 
 autodoc_member_order = "bysource"
-autodoc_typehints = "description"
-autodoc_typehints_description_target = "documented"
+autodoc_typehints = "none"  # docstrings say shapes and units; types of arrays are no help to read
 
 html_theme = "pydata_sphinx_theme"
 html_title = "ptp-symbolic"

@@ -22,6 +22,7 @@ FloatArray = NDArray[np.float64]
 
 FOLDER = "_generated"
 PLATFORM = "thesis-full"
+DRIVES = ("drive_pan", "drive_tilt")
 SEED = 5
 REPETITIONS, SAMPLES, BLOCKS = 400, 1000, 20
 CORRELATION = 0.95  # of neighbouring samples of an AR(1) noise
@@ -37,8 +38,8 @@ STEPS = (
 )
 ASIDES = {
     1: "yes: nothing_missing",
-    4: "none: unexplained",
-    5: "noise alone remains: explained\nmore remains: partly_explained",
+    4: "none is: unexplained",
+    5: "no: unexplained\nyes, noise remains: explained\nyes, more remains: partly_explained",
     6: "something predicts as well:\nexplained_up_to_group",
 }
 
@@ -55,10 +56,10 @@ def draw(app: Sphinx) -> None:
     folder.mkdir(exist_ok=True)
     platform = read_platform(PLATFORM)
     picture = drawn(platform, assemble(platform))
-    for name, scene in (("frames", picture.frames), ("drive", picture.drives[0])):
+    for name, scene in (("frames", picture.frames), *zip(DRIVES, picture.drives, strict=True)):
         write_if_new(folder / f"{name}.md", f'<div class="drawing">\n{svg_text(scene)}\n</div>\n')
     rows = "\n".join(f"| {e.number} | `{e.effect}` | {e.title} |" for e in picture.key)
-    write_if_new(folder / "key.md", f"| No. | Effect | |\n|---|---|---|\n{rows}\n")
+    write_if_new(folder / "key.md", f"| No. | Effect | What it is |\n|---|---|---|\n{rows}\n")
     for name, size, figure in (
         ("friction_modes", (6.2, 3.0), _friction_modes),
         ("verdict", (6.6, 6.4), _verdict),
@@ -139,7 +140,9 @@ def _coverage(axes: Axes) -> None:
                 axes.plot([at, at], [middle - half, middle + half], color=colour, linewidth=1.6)
     axes.axhline(0.0, color=MEASURED, linewidth=1.0)
     axes.set_xticks([SHOWN / 2, SHOWN / 2 + SHOWN + 6])
-    shares = [f"{name}\n{100 * n / REPETITIONS:.0f} % contain the truth" for name, n in found.items()]
+    shares = [
+        f"{name}\n{100 * n / REPETITIONS:.0f} % contain the truth" for name, n in found.items()
+    ]
     axes.set_xticklabels(shares)
     axes.set_ylabel("estimate, truth at zero")
 
