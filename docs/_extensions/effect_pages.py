@@ -8,7 +8,7 @@ import inspect
 import re
 import sys
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
@@ -22,7 +22,7 @@ from sphinx.application import Sphinx
 from ptp_symbolic.api.effect_bases import machine_with
 from ptp_symbolic.cli.lists import described
 from ptp_symbolic.errors import InputError
-from ptp_symbolic.platform import Platform
+from ptp_symbolic.platform import AXES, Platform
 from ptp_symbolic.report.derivation.curves import WITH, WITHOUT, Drawing, drawing_of
 from ptp_symbolic.report.figures import AFTER, BEFORE, STYLE
 from ptp_symbolic.symbolic.codegen.latex import latex_lines, symbol_latex
@@ -31,6 +31,8 @@ from ptp_symbolic.symbolic.codegen.statements import RELATIONS, Statement
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects import PACKAGED
 
 FOLDER = "effects"
@@ -124,6 +126,8 @@ def _heading(effect: Effect) -> str:
     text = f"`{effect.id}` sits on {facts['sits_on']}. {found}"
     for need in facts["needs"]:
         text += f" It needs `{need['quantity']}`, from {' or '.join(_code(need['from']))}."
+    if effect.instead_on_linear:
+        text += f" It is not for a linear joint: {effect.instead_on_linear}."
     lines = ["[[effects]]", f'effect = "{effect.id}"', *(['axis = "pan"'] * effect.on_axis)]
     if effect.kinds:
         lines.append(f'kind = "{effect.kind}"')
@@ -153,7 +157,7 @@ def _kind(kind: Effect, folder: Path, level: str) -> Iterator[str]:
     rows = described(kind)["parameters"]
     if rows:
         yield f"{level} Parameters"
-        yield _table(rows)
+        yield _table(rows, _on_linear(kind))
 
 
 def law_of(kind: Effect) -> tuple[Law, Equations] | None:
@@ -207,21 +211,37 @@ def _with_symbols(text: str) -> str:
     )
 
 
-def _table(rows: Sequence[dict[str, Any]]) -> str:
+def _table(rows: Sequence[dict[str, Any]], on_linear: Mapping[str, Parameter]) -> str:
+    """The parameters of a rotary joint, with units on a linear one; then those of that alone."""
     lines = [
-        "| Parameter | Unit | Default | Bounds | Off at | Meaning |",
-        "|---|---|---|---|---|---|",
+        "| Parameter | Unit | Linear joint | Default | Bounds | Off at | Meaning |",
+        "|---|---|---|---|---|---|---|",
     ]
     for p in rows:
         default = "declare it" if p["default"] is None else f"{p['default']:g}"
         off = "" if p["off_at"] is None else f"{p['off_at']:g}"
         low, high = p["bounds"]
-        name = p["name"].replace("<", "‹").replace(">", "›")
-        meaning = p["meaning"].replace("<", "‹").replace(">", "›")
-        lines.append(
-            f"| `{name}` | {p['unit']} | {default} | {low:g} to {high:g} | {off} | {meaning} |"
-        )
+        linear = on_linear[p["name"]].unit if p["name"] in on_linear else ""
+        cells = (p["unit"], linear, default, f"{low:g} to {high:g}", off, p["meaning"])
+        lines.append(_row(p["name"], *cells))
+    for name in on_linear.keys() - {p["name"] for p in rows}:
+        p = on_linear[name]
+        bounds = f"{p.lower:g} to {p.upper:g}"
+        lines.append(_row(name, "", p.unit, "declare it", bounds, "", p.meaning))
     return "\n".join(lines)
+
+
+def _row(name: str, *cells: str) -> str:
+    return "| " + " | ".join([f"`{name}`", *cells]).replace("<", "‹").replace(">", "›") + " |"
+
+
+def _on_linear(kind: Effect) -> dict[str, Parameter]:
+    """The parameters on a linear joint, by name; none of an effect that is not for one."""
+    if kind.instead_on_linear:
+        return {}
+    axis = "<axis>" if kind.on_axis else None
+    place = Place(AXES[:1], axis, None, frozenset(), linear=True)
+    return {p.name: p for p in kind.parameters_at(place)}
 
 
 def _draw(drawing: Drawing, path: Path) -> None:
