@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from sphinx.application import Sphinx
@@ -24,7 +25,8 @@ from ptp_symbolic.cli.lists import described
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import AXES, Platform
 from ptp_symbolic.report.derivation.curves import WITH, WITHOUT, Drawing, drawing_of
-from ptp_symbolic.report.figures import AFTER, BEFORE, STYLE
+from ptp_symbolic.report.derivation.ranges import FloatArray, evaluated, setting
+from ptp_symbolic.report.figures import AFTER, BEFORE, MEASURED, STYLE
 from ptp_symbolic.symbolic.codegen.latex import latex_lines, symbol_latex
 from ptp_symbolic.symbolic.codegen.laws import Law, laws
 from ptp_symbolic.symbolic.codegen.statements import RELATIONS, Statement
@@ -34,11 +36,19 @@ from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects import PACKAGED
+from ptp_symbolic.symbolic.mechanics.kinematics import TIME
+
+Placed = tuple[Law, Equations]
 
 FOLDER = "effects"
 IN_LOGS = "effects_in_logs.toml"
 ROOM = 60  # characters of a formula before it breaks
 LINES = {WITH: {"color": AFTER}, WITHOUT: {"color": BEFORE, "linestyle": "--"}}
+FIGURE = {**STYLE, "svg.fonttype": "path", "font.size": 9.5}
+TIMES = np.linspace(0.0, 10.0, 1200)  # s, of the motion along which effects are shown
+SLOW, FAST = 2.0 * np.pi * 0.2, 2.0 * np.pi * 0.5  # rad/s
+MOTION = 0.5 * np.sin(SLOW * TIMES) + 0.12 * np.sin(FAST * TIMES)  # rad
+MOTION_RATES = 0.5 * SLOW * np.cos(SLOW * TIMES) + 0.12 * FAST * np.cos(FAST * TIMES)  # rad/s
 AT_REST = {"color": AFTER, "linestyle": ":"}
 
 
@@ -98,10 +108,11 @@ def page(effect: Effect, in_log: str, folder: Path) -> str:
     """The page of an effect and all its kinds."""
     kinds = [effect, *effect.kinds]
     parts = [f"# {_upper(effect.title)}", _about(effect), _heading(effect)]
-    for kind in kinds:
+    placed = [law_of(kind) for kind in kinds]
+    for kind, own in zip(kinds, placed, strict=True):
         more = [] if len(kinds) == 1 else [f'## `kind = "{kind.kind}"`: {kind.title}']
-        parts += more + list(_kind(kind, folder, "##" if len(kinds) == 1 else "###"))
-    parts += ["## In a log", in_log]
+        parts += more + list(_kind(kind, own, folder, "##" if len(kinds) == 1 else "###"))
+    parts += ["## In a log", in_log, *_along_motion(placed[0], folder)]
     if effect.separating_experiment:
         parts += ["## Separating experiment", effect.separating_experiment]
     sources = {k.reference: None for k in kinds if k.reference}
@@ -140,9 +151,8 @@ def _code(names: Sequence[str]) -> list[str]:
     return [name if " " in name else f"`{name}`" for name in names]
 
 
-def _kind(kind: Effect, folder: Path, level: str) -> Iterator[str]:
+def _kind(kind: Effect, placed: Placed | None, folder: Path, level: str) -> Iterator[str]:
     """Law, curve and parameters of one kind."""
-    placed = law_of(kind)
     if placed is not None:
         law, equations = placed
         if law.rows:
@@ -160,7 +170,55 @@ def _kind(kind: Effect, folder: Path, level: str) -> Iterator[str]:
         yield _table(rows, _on_linear(kind))
 
 
-def law_of(kind: Effect) -> tuple[Law, Equations] | None:
+def _along_motion(placed: Placed | None, folder: Path) -> Iterator[str]:
+    """The torque that a model without the effect lacks along a motion; nothing of an effect that is
+    no torque of angle, rate and time.
+    """
+    lacking = None if placed is None else _lacking_torque(*placed)
+    if placed is None or lacking is None or not np.abs(lacking).max() > 0.0:
+        return
+    law, equations = placed
+    name, unit = f"{law.effect.id}-log.svg", equations.unit("N m")
+    with matplotlib.rc_context(FIGURE):
+        figure = Figure(figsize=(6.4, 2.9), layout="constrained")
+        FigureCanvasSVG(figure)
+        axes = figure.subplots()
+        axes.plot(TIMES, lacking, color=BEFORE, linewidth=1.4)
+        axes.set_xlabel("time [s]")
+        axes.set_ylabel(f"torque [{unit}]", color=BEFORE)
+        beside = axes.twinx()
+        beside.plot(TIMES, MOTION_RATES, color=MEASURED, linewidth=1.0)
+        beside.set_ylabel("rate [rad/s]", color="#6b747e")
+        beside.grid(False)
+        figure.savefig(folder / name, format="svg", metadata={"Date": None})
+    yield f"```{{image}} {name}\n:alt: {law.effect.title}, along a motion\n:class: curve\n```"
+    yield (
+        "*The torque that a model without it lacks (orange) along a motion whose rate is grey,"
+        " computed from the law.*"
+    )
+
+
+def _lacking_torque(law: Law, equations: Equations) -> FloatArray | None:
+    """The torque [k] at the times of the motion; None where it depends on anything else."""
+    place = law.place
+    if place.axis is None:
+        return None
+    given = setting(law, equations)
+    angles, rates = {place.angle, place.gear_angle}, {place.rate, place.gear_rate}
+    points = {**dict.fromkeys(angles, MOTION), **dict.fromkeys(rates, MOTION_RATES), TIME: TIMES}
+    points[place.slide] = np.sign(MOTION_RATES)
+    parts = [(row.right, np.ones_like(TIMES)) for row in law.rows if str(row.left)[:2] == "T_"]
+    against = -points[place.slide]
+    for before, after in law.frictions:
+        parts.append((after.level, against))
+        parts += [] if before is None else [(before.level, -against)]
+    known = {*points, *given.values}
+    if not parts or any(torque.free_symbols - known for torque, _ in parts):
+        return None
+    return np.sum([sign * evaluated(torque, points, given) for torque, sign in parts], axis=0)
+
+
+def law_of(kind: Effect) -> Placed | None:
     """The law of one kind on the first machine that takes it; None where the kind differs from the
     usual one by the signal alone.
     """
@@ -245,7 +303,7 @@ def _on_linear(kind: Effect) -> dict[str, Parameter]:
 
 
 def _draw(drawing: Drawing, path: Path) -> None:
-    with matplotlib.rc_context({**STYLE, "svg.fonttype": "path", "font.size": 9.5}):
+    with matplotlib.rc_context(FIGURE):
         figure = Figure(figsize=(5.6, 3.0), layout="constrained")
         FigureCanvasSVG(figure)
         axes = figure.subplots()
