@@ -16,6 +16,7 @@ from typing import Any
 
 import matplotlib
 import numpy as np
+import sympy as sp
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from sphinx.application import Sphinx
@@ -27,16 +28,17 @@ from ptp_symbolic.platform import AXES, Platform
 from ptp_symbolic.report.derivation.curves import WITH, WITHOUT, Drawing, drawing_of
 from ptp_symbolic.report.derivation.ranges import FloatArray, evaluated, setting
 from ptp_symbolic.report.figures import AFTER, BEFORE, MEASURED, STYLE
-from ptp_symbolic.symbolic.codegen.latex import latex_lines, symbol_latex
+from ptp_symbolic.symbolic.codegen.latex import latex_lines, latex_of, rate_latex, symbol_latex
 from ptp_symbolic.symbolic.codegen.laws import Law, laws
 from ptp_symbolic.symbolic.codegen.statements import RELATIONS, Statement
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
-from ptp_symbolic.symbolic.effect_interface.place import Place
+from ptp_symbolic.symbolic.effect_interface.place import QUANTITY, Place, quantity_name
 from ptp_symbolic.symbolic.effects import PACKAGED
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
+from ptp_symbolic.symbolic.symbols import real
 
 Placed = tuple[Law, Equations]
 
@@ -158,8 +160,9 @@ def _kind(kind: Effect, placed: Placed | None, folder: Path, level: str) -> Iter
         if law.rows:
             yield f"{level} Law"
             yield from _formulas(law.rows, equations)
+        yield from _states(law, equations)
         drawing = drawing_of(law, (), equations)
-        if drawing is not None:
+        if drawing is not None and not _is_identity(drawing):
             name = f"{kind.id}-{kind.kind}.svg" if kind.kind else f"{kind.id}.svg"
             _draw(drawing, folder / name)
             yield f"```{{image}} {name}\n:alt: {kind.title}, drawn from its law\n:class: curve\n```"
@@ -244,20 +247,56 @@ def _of_kind(platform: Platform, kind: Effect) -> Platform:
 def _formulas(rows: Sequence[Statement], equations: Equations) -> Iterator[str]:
     for name, group in groupby(rows, key=lambda row: row.name):
         words = _with_symbols(equations.worded(_upper(name)))
-        formulas = " \\\\\n".join(_aligned(row) for row in group)
-        yield f"{words}:\n\n$$\n\\begin{{aligned}}\n{formulas}\n\\end{{aligned}}\n$$"
+        shown = _display([(r.left_latex, RELATIONS[r.relation][0], r.right) for r in group])
+        yield f"{words}:\n\n{shown}"
     named = {str(symbol) for row in rows for symbol in row.right.free_symbols}
-    meant = [(symbol_latex(n), e) for n, e in equations.quantities if n in named]
+    meant = [(symbol_latex(n), "=", e) for n, e in equations.quantities if n in named]
     if meant:
-        lines = " \\\\\n".join(f"{left} &= {' '.join(latex_lines(e, ROOM))}" for left, e in meant)
-        yield f"where\n\n$$\n\\begin{{aligned}}\n{lines}\n\\end{{aligned}}\n$$"
+        yield f"where\n\n{_display(meant)}"
 
 
-def _aligned(row: Statement) -> str:
-    first, *more = latex_lines(row.right, ROOM)
-    return " \\\\\n".join(
-        [f"{row.left_latex} &{RELATIONS[row.relation][0]} {first}", *(f"&\\quad {m}" for m in more)]
-    )
+def _states(law: Law, equations: Equations) -> Iterator[str]:
+    """The states of an effect, how they change, and what is sampled."""
+    own = law.contribution
+    if own.states:
+        rows = [
+            f"| ${symbol_latex(s.name)}$ | {s.unit} | {equations.worded(s.meaning)} |"
+            f" {s.initial:g} |"
+            for s in own.states
+        ]
+        yield "\n".join(["| State | Unit | Meaning | Start |", "|---|---|---|---|", *rows])
+    slopes = [(rate_latex(s.name), "=", s.derivative) for s in own.states if s.derivative != 0]
+    if slopes:
+        yield _display(slopes)
+    for sampler in own.samplers:
+        yield f"Every ${latex_of(_bare(sampler.period))}$, and held in between:"
+        named = [(symbol_latex(str(s)), "=", e) for s, e in sampler.terms.items()]
+        updates = [(symbol_latex(str(s)), r"\leftarrow", e) for s, e in sampler.updates.items()]
+        yield _display([(left, sign, _bare(e)) for left, sign, e in (*named, *updates)])
+    for switch in own.switches:
+        deviation, threshold = latex_of(switch.deviation), latex_of(switch.threshold)
+        yield f"`{switch.name}` is on where $|{deviation}|$ has reached ${threshold}$ and grows."
+
+
+def _display(rows: Sequence[tuple[str, str, sp.Expr]]) -> str:
+    lines = []
+    for left, sign, right in rows:
+        first, *more = latex_lines(right, ROOM)
+        lines += [f"{left} &{sign} {first}", *(f"&\\quad {m}" for m in more)]
+    text = " \\\\\n".join(lines)
+    return f"$$\n\\begin{{aligned}}\n{text}\n\\end{{aligned}}\n$$"
+
+
+def _bare(expression: sp.Expr) -> sp.Expr:
+    """`expression` with quantities of others by their names."""
+    named = [s for s in expression.free_symbols if s.name.startswith(QUANTITY)]
+    return expression.xreplace({s: real(quantity_name(s)) for s in named})
+
+
+def _is_identity(drawing: Drawing) -> bool:
+    """Whether a drawing has one line on which nothing happens."""
+    shown = [(x, y) for x, y, _ in drawing.lines if y.any()]
+    return len(shown) == 1 and np.allclose(*shown[0])
 
 
 def _with_symbols(text: str) -> str:
