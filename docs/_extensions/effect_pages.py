@@ -260,16 +260,16 @@ def _states(law: Law, equations: Equations) -> Iterator[str]:
     own = law.contribution
     if own.states:
         rows = [
-            f"| ${symbol_latex(s.name)}$ | {s.unit} | {equations.worded(s.meaning)} |"
-            f" {s.initial:g} |"
+            f"| ${symbol_latex(s.name)}$ | {s.unit} | {s.initial:g} |"
+            f" {equations.worded(s.meaning)} |"
             for s in own.states
         ]
-        yield "\n".join(["| State | Unit | Meaning | Start |", "|---|---|---|---|", *rows])
+        yield "\n".join(["| State | Unit | Start | Meaning |", "|---|---|---|---|", *rows])
     slopes = [(rate_latex(s.name), "=", s.derivative) for s in own.states if s.derivative != 0]
     if slopes:
         yield _display(slopes)
     for sampler in own.samplers:
-        yield f"Every ${latex_of(_bare(sampler.period))}$, and held in between:"
+        yield f"Every ${latex_of(_bare(sampler.period))}$, held in between (zero-order hold):"
         named = [(symbol_latex(str(s)), "=", e) for s, e in sampler.terms.items()]
         updates = [(symbol_latex(str(s)), r"\leftarrow", e) for s, e in sampler.updates.items()]
         yield _display([(left, sign, _bare(e)) for left, sign, e in (*named, *updates)])
