@@ -48,7 +48,7 @@ def main(arguments: list[str]) -> int:
     """Run pytest with the arguments and return its exit code."""
     way = ["-m", "long"] if "--long" in arguments else SIDE_BY_SIDE
     passed_on = [argument for argument in arguments if argument != "--long"]
-    prepare_environment(extras=("dev", "test"))
+    prepare_environment(extras=("dev", "docs", "test"))
     command = [str(PYTHON), "-m", "pytest", *way, *passed_on]
     return subprocess.run(command, cwd=CHECKOUT, env=caches() | os.environ).returncode
 

@@ -10,6 +10,7 @@ from ptp_symbolic.cli.diagnose import diagnose, fit
 from ptp_symbolic.cli.experiment import experiment
 from ptp_symbolic.cli.friction_map import friction_map
 from ptp_symbolic.cli.lists import effects, models, platforms
+from ptp_symbolic.cli.new import new, schema
 from ptp_symbolic.cli.regenerate import regenerate
 from ptp_symbolic.cli.report import report
 from ptp_symbolic.cli.simulate import sensitivity, simulate
@@ -23,6 +24,8 @@ def commands() -> None:
 
 
 for command in (
+    new,
+    schema,
     regenerate,
     simulate,
     sensitivity,

@@ -64,7 +64,7 @@ def _explain(name: str, as_json: bool) -> None:
     from ptp_symbolic.symbolic.derivation.placement import find_effect
 
     effect = find_effect(name)
-    kinds = [_described(kind) for kind in (effect, *effect.kinds)]
+    kinds = [described(kind) for kind in (effect, *effect.kinds)]
     if as_json:
         click.echo(json.dumps({"effect": effect.id, "kinds": kinds}, indent=2))
         return
@@ -84,7 +84,7 @@ def _explain(name: str, as_json: bool) -> None:
             _print_table([_as_row(parameter) for parameter in kind["parameters"]])
 
 
-def _described(kind: Any) -> dict[str, Any]:
+def described(kind: Any) -> dict[str, Any]:
     """One kind of an effect as data; `<axis>` stands for pan or tilt."""
     from ptp_symbolic.platform import AXES
     from ptp_symbolic.symbolic.derivation.placement import effects_that_define

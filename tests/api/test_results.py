@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import ptp_symbolic as ptp
+from ptp_symbolic.formats.diagnosis_file import diagnosis_schema
 from ptp_symbolic.platform import read_platform
 from tests.diagnose.spring_table import PLATFORM as TABLE
 
@@ -52,6 +53,21 @@ def test_a_diagnosis_is_read_drawn_and_saved(found: ptp.Diagnosis, tmp_path: Pat
     assert json.loads((folder / "diagnosis.json").read_text())["verdict"] == found.verdict
     assert read_platform(folder / "platform.toml").effects == found.platform.effects
     assert pickle.loads(pickle.dumps(found)).verdict == found.verdict
+
+
+def test_a_diagnosis_is_what_its_schema_says(found: ptp.Diagnosis) -> None:
+    """Read back from the file, and with mistakes in it."""
+    jsonschema = pytest.importorskip("jsonschema", reason="jsonschema is of the extra `test`")
+    validator = jsonschema.Draft7Validator(diagnosis_schema())
+    summary = json.loads(json.dumps(found.summary))
+    assert [error.message for error in validator.iter_errors(summary)] == []
+    for wrong in (
+        {**summary, "verdict": "perhaps"},
+        {**summary, "mood": "good"},
+        {**summary, "added": [{**summary["added"][0], "axis": "roll"}]},
+        {name: value for name, value in summary.items() if name != "error"},
+    ):
+        assert not validator.is_valid(wrong)
 
 
 def test_fitted_parameters_come_with_interval_and_unit(fitted: ptp.FitResult) -> None:

@@ -1,7 +1,7 @@
 """A small drawing of the law of an effect over its range, as vectors."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import sympy as sp
@@ -50,30 +50,38 @@ class Drawing:
 
 def curve(law: Law, added: Sequence[Change], equations: Equations) -> str:
     """The law drawn, with a line below that says what is drawn; empty where nothing varies."""
-    given = setting(law, equations)
-    drawing = next((d for d in _drawings(law, added, equations, given) if _varies(d)), None)
+    drawing = drawing_of(law, added, equations)
     if drawing is None:
         return ""
     plots = [
         rf"\addplot[{style}] coordinates {{{_coordinates(x, y)}}};" for x, y, style in drawing.lines
     ]
-    note = drawing.caption
-    if given.replaced:
-        starts = ", ".join(
-            f"${symbol_latex(p.name)} = {p.starts[-1]:g}$ {unit_latex(p.unit)}".rstrip()
-            for p in given.replaced
-            if p.starts[-1]
-        )
-        note += f" As declared it vanishes; it is drawn with {starts}."
     return "\n".join(
         [
             r"\par\nopagebreak\smallskip\begin{tikzpicture}",
             rf"\begin{{axis}}[law, xlabel={{{drawing.across}}}, ylabel={{{drawing.up}}}]",
             *plots,
             r"\end{axis}\end{tikzpicture}\par\nopagebreak",
-            rf"{{\small {note}}}\par",
+            rf"{{\small {drawing.caption}}}\par",
         ]
     )
+
+
+def drawing_of(law: Law, added: Sequence[Change], equations: Equations) -> Drawing | None:
+    """The curve that shows the law best; None where nothing varies. `added` are the changes of the
+    equations where the effect is added.
+    """
+    given = setting(law, equations)
+    drawing = next((d for d in _drawings(law, added, equations, given) if _varies(d)), None)
+    if drawing is None or not given.replaced:
+        return drawing
+    starts = ", ".join(
+        f"${symbol_latex(p.name)} = {p.starts[-1]:g}$ {unit_latex(p.unit)}".rstrip()
+        for p in given.replaced
+        if p.starts[-1]
+    )
+    note = f"{drawing.caption} As declared it vanishes; it is drawn with {starts}."
+    return replace(drawing, caption=note)
 
 
 def _varies(drawing: Drawing) -> bool:

@@ -1,0 +1,79 @@
+"""`ptp-symbolic new` and `schema`: a platform file to start from, and what editors check it by."""
+
+from pathlib import Path
+
+import click
+
+from ptp_symbolic.formats.machine_kinds import DRIVES, MACHINES
+
+FILES = ("platform", "diagnosis")
+
+
+@click.command()
+@click.argument("file", type=Path)
+@click.option(
+    "--machine",
+    type=click.Choice(tuple(MACHINES)),
+    default="pan-tilt",
+    show_default=True,
+    help="Kind of machine.",
+)
+@click.option(
+    "--drive",
+    type=click.Choice(DRIVES),
+    default="motor",
+    show_default=True,
+    help="What drives it: the voltage of a DC motor, or a torque (force).",
+)
+def new(file: Path, machine: str, drive: str) -> None:
+    """Write a commented platform FILE (.toml) to start from, and beside it the schema by which
+    editors complete and check it.
+    """
+    from ptp_symbolic.atomic_files import check_writable, write_files_atomically
+    from ptp_symbolic.errors import InputError
+    from ptp_symbolic.formats.starting_file import SCHEMA_NAME, starting_text
+    from ptp_symbolic.platform import fields
+
+    if file.suffix != ".toml":
+        raise InputError(f"{file}: a platform file ends in .toml; write {file.stem}.toml.")
+    if file.exists():
+        raise InputError(f"{file}: is there already; give another name, or remove it.")
+    name = fields.name(file.stem, f"{file}: the name of the file is that of the model")
+    schema, beside = _schema("platform"), file.parent / SCHEMA_NAME
+    if beside.exists() and not _is_schema(beside):
+        raise InputError(
+            f"{beside}: is no schema of this program and would be replaced; rename it, or choose"
+            " another folder."
+        )
+    check_writable(file.parent)
+    text = starting_text(name, machine, drive)
+    write_files_atomically(file.parent, {SCHEMA_NAME: schema, file.name: text})
+    click.echo(f"{file}: fill in every nan, then run: ptp-symbolic check --platform {file} LOG...")
+
+
+@click.command()
+@click.argument("what", type=click.Choice(FILES))
+def schema(what: str) -> None:
+    """Print the JSON Schema of a platform file or of diagnosis.json."""
+    click.echo(_schema(what), nl=False)
+
+
+def _schema(what: str) -> str:
+    from ptp_symbolic.formats.diagnosis_file import diagnosis_schema
+    from ptp_symbolic.formats.json_schema import schema_text
+    from ptp_symbolic.formats.platform_file import platform_schema
+    from ptp_symbolic.symbolic.effects import catalogue
+
+    if what == "diagnosis":
+        return schema_text(diagnosis_schema())
+    return schema_text(platform_schema(tuple(catalogue())))
+
+
+def _is_schema(path: Path) -> bool:
+    """Whether the file is a schema that this program wrote, of whatever version."""
+    from ptp_symbolic.formats.platform_file import TITLE
+
+    try:
+        return f'"title": "{TITLE}"' in path.read_text("utf-8")
+    except (OSError, UnicodeDecodeError):
+        return False
