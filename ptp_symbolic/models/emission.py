@@ -6,11 +6,11 @@ from ptp_symbolic.models.module_cache import emitted
 from ptp_symbolic.numeric.runtime.loader import load_module
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
-from ptp_symbolic.symbolic.codegen.module import module_text
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.placement import parameters_of, place_effects
+from ptp_symbolic.symbolic.targets.numba.module import module_text
 
 
 def emit(platform: Platform) -> Model:

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.sharing import Vocabulary
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.place import active
 from ptp_symbolic.symbolic.mechanics.kinematics import place_of
+from ptp_symbolic.symbolic.program.sharing import Vocabulary
 
 SAMPLER_WORDS = ("period", "offset", "phase")
 

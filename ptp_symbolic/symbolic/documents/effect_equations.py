@@ -5,11 +5,11 @@ from typing import Any
 import sympy as sp
 
 from ptp_symbolic.platform import Platform
-from ptp_symbolic.symbolic.codegen.comparison import comparison
-from ptp_symbolic.symbolic.codegen.latex import latex_lines, mathml_lines, plain_text_of
-from ptp_symbolic.symbolic.codegen.statements import Statement, statements, with_definitions
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.removal import without_effect
+from ptp_symbolic.symbolic.documents.comparison import comparison
+from ptp_symbolic.symbolic.documents.latex import latex_lines, mathml_lines, plain_text_of
+from ptp_symbolic.symbolic.documents.statements import Statement, statements, with_definitions
 
 MANY_TERMS = 12
 

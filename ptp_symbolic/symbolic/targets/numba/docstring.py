@@ -4,14 +4,15 @@ import textwrap
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.latex import plain_text_of
-from ptp_symbolic.symbolic.codegen.literals import repr_text
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.documents.latex import plain_text_of
+from ptp_symbolic.symbolic.program.program import Operations
 from ptp_symbolic.symbolic.simplify.readable import readable
 from ptp_symbolic.symbolic.symbols import real
+from ptp_symbolic.symbolic.targets.numba.literals import repr_text
 
 
-def docstring(equations: Equations, operations: tuple[int, int, int]) -> str:
+def docstring(equations: Equations, operations: Operations) -> str:
     """The docstring of the module that computes `equations`: these in the form in which it does,
     the `operations` of the state derivative (as derived, as written, at every call), its effects.
     """
@@ -45,10 +46,10 @@ def docstring(equations: Equations, operations: tuple[int, int, int]) -> str:
             lines += _wrapped(str(symbol), term)
         for symbol, value in sampler.updates.items():
             lines += _wrapped(f"{symbol} from there", value)
-    before, written, left = operations
     lines += [
         "",
-        f"Operations of the state derivative: {before} as derived, {written} as written, {left} of"
+        f"Operations of the state derivative: {operations.derived} as derived,"
+        f" {operations.written} as written, {operations.each} of"
         " them at every",
         "call where `prepare` does the others once per parameter set.",
     ]

@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.latex import (
+from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
+from ptp_symbolic.symbolic.documents.latex import (
     latex_lines,
     latex_of,
     mathml_lines,
@@ -13,7 +14,6 @@ from ptp_symbolic.symbolic.codegen.latex import (
     plain_text_of,
     rate_latex,
 )
-from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Sampler, Switch
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME, place_of

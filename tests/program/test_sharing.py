@@ -5,7 +5,7 @@ import math
 import pytest
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.sharing import Vocabulary, share
+from ptp_symbolic.symbolic.program.sharing import Vocabulary, share
 
 Q, N = sp.symbols("q n", real=True)
 

@@ -3,7 +3,7 @@
 import inspect
 from types import ModuleType
 
-from ptp_symbolic.symbolic.codegen.mode_functions import rigid, smooth, sprung
+from ptp_symbolic.symbolic.targets.numba.mode_functions import rigid, smooth, sprung
 
 MARK = "# copied from here on\n"
 

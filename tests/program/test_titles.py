@@ -7,8 +7,8 @@ import pytest
 import ptp_symbolic
 from ptp_symbolic.numeric.runtime.loader import load_module
 from ptp_symbolic.platform import read_platform
-from ptp_symbolic.symbolic.codegen.module import module_text
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.targets.numba.module import module_text
 
 PLATFORM = """[platform]
 name = "named"

@@ -1,25 +1,29 @@
 """Kernels of what is read of the state and set in it: outputs, energies, bounds, samplers."""
 
-from ptp_symbolic.symbolic.codegen.kernel import MODE_ARGUMENTS, Vectors, kernel_text
-from ptp_symbolic.symbolic.codegen.kernel_lines import shared_lines, variables
-from ptp_symbolic.symbolic.codegen.sharing import share
-from ptp_symbolic.symbolic.codegen.term_names import vocabulary
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.program.kernel import (
+    MODE_ARGUMENTS,
+    Kernel,
+    Vectors,
+    kernel,
+    shared_lines,
+    variables,
+)
+from ptp_symbolic.symbolic.program.sharing import share
+from ptp_symbolic.symbolic.program.term_names import vocabulary
 
 
-def outputs_text(equations: Equations, vectors: Vectors) -> str:
-    """Text of `outputs`."""
+def outputs_kernel(equations: Equations, vectors: Vectors) -> Kernel:
+    """Kernel `outputs`."""
     outputs = [(f"y[{i}]", e) for i, (_, _, e) in enumerate(equations.outputs)]
     terms = [(str(symbol), term) for symbol, term in equations.terms]
     lines = share(terms, outputs, vocabulary(equations))
-    return kernel_text(
-        "outputs", "t, x, u, p, y", "Write the measured signals into y.", vectors, lines
-    )
+    return kernel("outputs", "t, x, u, p, y", "Write the measured signals into y.", vectors, lines)
 
 
-def output_jacobian_text(equations: Equations, vectors: Vectors) -> str:
-    """Text of `output_jacobian`."""
+def output_jacobian_kernel(equations: Equations, vectors: Vectors) -> Kernel:
+    """Kernel `output_jacobian`."""
     outputs = [
         (f"y{letter}[{i}, {j}]", derivative(equations.written_out(expression), variable))
         for letter, symbols in variables(equations)
@@ -29,33 +33,31 @@ def output_jacobian_text(equations: Equations, vectors: Vectors) -> str:
     ]
     doc = "Write the non-zero derivatives of outputs by state and parameter."
     lines = shared_lines(equations, (), outputs)
-    return kernel_text("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
+    return kernel("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
 
 
-def energy_text(equations: Equations, vectors: Vectors) -> str:
-    """Text of `energy`."""
+def energy_kernel(equations: Equations, vectors: Vectors) -> Kernel:
+    """Kernel `energy`."""
     ledger = equations.ledger
     outputs = [("e[0]", ledger.stored), ("e[1]", ledger.power_in), ("e[2]", ledger.dissipated)]
     doc = "Write stored energy in J, power in and dissipated power in W into e."
     terms = [(str(symbol), term) for symbol, term in equations.terms]
     lines = share(terms, outputs, vocabulary(equations))
-    return kernel_text("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, lines)
+    return kernel("energy", f"{MODE_ARGUMENTS}, e", doc, vectors, lines)
 
 
-def domain_text(equations: Equations, vectors: Vectors) -> str:
-    """Text of `domain`."""
+def domain_kernel(equations: Equations, vectors: Vectors) -> Kernel:
+    """Kernel `domain`."""
     outputs = [
         (f"bounds[{k}, {side}]", bound)
         for k, own in enumerate(equations.limits)
         for side, bound in enumerate((own.lower, own.upper))
     ]
     doc = "Write lower and upper bound of the state of every row of DOMAIN into bounds."
-    return kernel_text(
-        "domain", "p, bounds", doc, vectors, share((), outputs, vocabulary(equations))
-    )
+    return kernel("domain", "p, bounds", doc, vectors, share((), outputs, vocabulary(equations)))
 
 
-def sampler_texts(equations: Equations, vectors: Vectors) -> list[str]:
+def sampler_kernels(equations: Equations, vectors: Vectors) -> list[Kernel]:
     """What samplers do, and its derivatives; nothing in a machine that has none."""
     if not equations.samplers:
         return []
@@ -78,18 +80,16 @@ def sampler_texts(equations: Equations, vectors: Vectors) -> list[str]:
     by = "Write the non-zero derivatives of sample by state, input and parameter."
     arguments = f"{MODE_ARGUMENTS}, zx, zu, zp"
     return [
-        kernel_text("sample", f"{MODE_ARGUMENTS}, z", doc, vectors, lines),
-        kernel_text("sample_jacobian", arguments, by, vectors, derived),
+        kernel("sample", f"{MODE_ARGUMENTS}, z", doc, vectors, lines),
+        kernel("sample_jacobian", arguments, by, vectors, derived),
     ]
 
 
-def margins_text(equations: Equations, vectors: Vectors) -> str:
-    """Text of `margins`."""
+def margins_kernel(equations: Equations, vectors: Vectors) -> Kernel:
+    """Kernel `margins`."""
     outputs = [
         (f"margin[{k}]", own.holds.gts - own.holds.lts)
         for k, own in enumerate(equations.requirements)
     ]
     doc = "Write by how much the parameters meet every row of REQUIREMENTS into margin."
-    return kernel_text(
-        "margins", "p, margin", doc, vectors, share((), outputs, vocabulary(equations))
-    )
+    return kernel("margins", "p, margin", doc, vectors, share((), outputs, vocabulary(equations)))

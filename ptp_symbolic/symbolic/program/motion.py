@@ -5,40 +5,47 @@ from dataclasses import replace
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen import dynamics
-from ptp_symbolic.symbolic.codegen.impacts import impact_expressions
-from ptp_symbolic.symbolic.codegen.kernel import MODE_ARGUMENTS, Vectors, kernel_text
-from ptp_symbolic.symbolic.codegen.kernel_lines import shared_lines, used_names, variables
-from ptp_symbolic.symbolic.codegen.sharing import Line, share
-from ptp_symbolic.symbolic.codegen.term_names import vocabulary
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.program import dynamics
+from ptp_symbolic.symbolic.program.impacts import impact_expressions
+from ptp_symbolic.symbolic.program.kernel import (
+    MODE_ARGUMENTS,
+    Kernel,
+    Vectors,
+    kernel,
+    shared_lines,
+    used_names,
+    variables,
+)
+from ptp_symbolic.symbolic.program.sharing import Line, share
+from ptp_symbolic.symbolic.program.term_names import vocabulary
 from ptp_symbolic.symbolic.symbols import real
 
 
-def mode_derivative_text(lines: Sequence[Line], vectors: Vectors) -> str:
-    """Text of `mode_derivative`, which `lines` compute."""
+def mode_derivative_kernel(lines: Sequence[Line], vectors: Vectors) -> Kernel:
+    """Kernel `mode_derivative`, which `lines` compute."""
     doc = "Write the time derivative of the state into dx in the modes m."
-    return kernel_text("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
+    return kernel("mode_derivative", f"{MODE_ARGUMENTS}, dx", doc, vectors, lines)
 
 
-def prepare_text(once: Sequence[Line], vectors: Vectors) -> str:
-    """Text of `prepare`: the lines that are done `once` per parameter set."""
+def prepare_kernel(once: Sequence[Line], vectors: Vectors) -> Kernel:
+    """Kernel `prepare`: the lines that are done `once` per parameter set."""
     entry = {name: f"c[{k}]" for k, name in enumerate(vectors.c)}
     inner = used_names(once)
     lines = [(name if name in inner else entry[name], e) for name, e in once]
     lines += [(target, real(name)) for name, target in entry.items() if name in inner]
     doc = "Write into c what prepared_derivative takes from the parameters alone."
-    return kernel_text("prepare", "p, c", doc, vectors, lines)
+    return kernel("prepare", "p, c", doc, vectors, lines)
 
 
-def prepared_derivative_text(each: Sequence[Line], vectors: Vectors) -> str:
-    """Text of `prepared_derivative`: the lines of `each` call."""
+def prepared_derivative_kernel(each: Sequence[Line], vectors: Vectors) -> Kernel:
+    """Kernel `prepared_derivative`: the lines of `each` call."""
     doc = "Write the time derivative of the state into dx in the modes m, c being prepared."
-    return kernel_text("prepared_derivative", f"{MODE_ARGUMENTS}, c, dx", doc, vectors, each)
+    return kernel("prepared_derivative", f"{MODE_ARGUMENTS}, c, dx", doc, vectors, each)
 
 
-def jacobian_text(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
-    """Text of `jacobian`."""
+def jacobian_kernel(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> Kernel:
+    """Kernel `jacobian`."""
     outputs: list[Line] = []
     extra = {s.symbol: s.derivative for s in equations.extra_states}
     for letter, symbols in variables(equations):
@@ -52,30 +59,30 @@ def jacobian_text(equations: Equations, solve: dynamics.Solve, vectors: Vectors)
                 outputs.append((f"f{letter}[{i}, {j}]", rows[state]))
     doc = "Write the non-zero derivatives of mode_derivative by state, input and parameter."
     lines = shared_lines(equations, (*solve.definitions, *solve.chain.lines), outputs)
-    return kernel_text("jacobian", f"{MODE_ARGUMENTS}, fx, fu, fp", doc, vectors, lines)
+    return kernel("jacobian", f"{MODE_ARGUMENTS}, fx, fu, fp", doc, vectors, lines)
 
 
-def guards_text(
+def guards_kernel(
     equations: Equations, solve: dynamics.Solve, guards: Sequence[sp.Expr], vectors: Vectors
-) -> str:
-    """Text of `guards`."""
+) -> Kernel:
+    """Kernel `guards`."""
     outputs = [(f"g[{i}]", e) for i, e in enumerate(guards)]
     doc = "Write holding and breakaway torques, gap separations and contact torques into g."
     lines = share(solve.definitions, outputs, vocabulary(equations)) if outputs else []
-    return kernel_text("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
+    return kernel("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
 
 
-def guard_jacobian_text(
+def guard_jacobian_kernel(
     equations: Equations, solve: dynamics.Solve, guards: Sequence[sp.Expr], vectors: Vectors
-) -> str:
-    """Text of `guard_jacobian`."""
+) -> Kernel:
+    """Kernel `guard_jacobian`."""
     outputs = _derivatives(equations, solve, "g", guards)
     doc = "Write the non-zero derivatives of guards by state and parameter."
     lines = shared_lines(equations, (*solve.definitions, *solve.chain.lines), outputs)
-    return kernel_text("guard_jacobian", f"{MODE_ARGUMENTS}, gx, gp", doc, vectors, lines)
+    return kernel("guard_jacobian", f"{MODE_ARGUMENTS}, gx, gp", doc, vectors, lines)
 
 
-def impact_texts(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> list[str]:
+def impact_kernels(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> list[Kernel]:
     """Two kernels where rigid bodies strike each other, none elsewhere."""
     if not any(contact.rigid for contact in equations.contacts):
         return []
@@ -84,15 +91,15 @@ def impact_texts(equations: Equations, solve: dynamics.Solve, vectors: Vectors) 
     outputs = [(f"strike[{i}]", e) for i, e in enumerate(expressions)]
     doc = "Write what a strike changes in the state, restitution and energy, per contact."
     lines = shared_lines(equations, definitions, outputs)
-    kernel = kernel_text("impacts", f"{MODE_ARGUMENTS}, strike", doc, vectors, lines)
+    first = kernel("impacts", f"{MODE_ARGUMENTS}, strike", doc, vectors, lines)
     outputs = _derivatives(equations, solve, "strike", expressions)
     doc = "Write the non-zero derivatives of impacts by state and parameter."
     lines = shared_lines(equations, definitions, outputs)
     arguments = f"{MODE_ARGUMENTS}, strikex, strikep"
-    return [kernel, kernel_text("impact_jacobian", arguments, doc, vectors, lines)]
+    return [first, kernel("impact_jacobian", arguments, doc, vectors, lines)]
 
 
-def equation_error_text(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> str:
+def equation_error_kernel(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> Kernel:
     """What a measured motion leaves of the equations of motion: M a - forcing + sliding friction.
 
     The accelerations, which follow the states in x, are given and not solved for.
@@ -108,7 +115,7 @@ def equation_error_text(equations: Equations, solve: dynamics.Solve, vectors: Ve
     doc = (
         "Write the torque that every row lacks, then rates of other states into r; x ends in accel."
     )
-    return kernel_text("equation_error", f"{MODE_ARGUMENTS}, r", doc, extended, lines)
+    return kernel("equation_error", f"{MODE_ARGUMENTS}, r", doc, extended, lines)
 
 
 def _derivatives(

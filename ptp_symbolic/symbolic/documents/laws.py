@@ -7,12 +7,12 @@ from itertools import combinations_with_replacement
 import sympy as sp
 
 from ptp_symbolic.platform import Platform
-from ptp_symbolic.symbolic.codegen.statements import Statement, friction_statements, rate_of, tidy
 from ptp_symbolic.symbolic.derivation.contributions import Contributions, collect
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Ledger
 from ptp_symbolic.symbolic.derivation.ledger import ledger_of
 from ptp_symbolic.symbolic.derivation.placement import place_effects
+from ptp_symbolic.symbolic.documents.statements import Statement, friction_statements, rate_of, tidy
 from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Friction, Switch
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.place import (

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.dynamics import Lock, Solve, locked_inertias
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.program.dynamics import Lock, Solve, locked_inertias
 from ptp_symbolic.symbolic.simplify.solve import inverse_values
 from ptp_symbolic.symbolic.symbols import ZERO
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.simplify.fu import TR10i
 
-from ptp_symbolic.symbolic.codegen.statements import Statement
+from ptp_symbolic.symbolic.documents.statements import Statement
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 from sympy.printing.mathml import mathml
 
-from ptp_symbolic.symbolic.codegen.letters import lettered
+from ptp_symbolic.symbolic.documents.letters import lettered
 from ptp_symbolic.symbolic.simplify.readable import readable
 from ptp_symbolic.symbolic.symbols import real
 

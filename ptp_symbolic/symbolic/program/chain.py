@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.sharing import Line
 from ptp_symbolic.symbolic.derivation.contributions import slope_symbol
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.program.sharing import Line
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,10 @@
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.literals import (
+from ptp_symbolic.symbolic.derivation.equations import Equations, PlacedEffect
+from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.targets.numba.literals import (
     listed,
     long_text,
     named_tuple_text,
@@ -10,9 +13,6 @@ from ptp_symbolic.symbolic.codegen.literals import (
     numbers_text,
     repr_text,
 )
-from ptp_symbolic.symbolic.derivation.equations import Equations, PlacedEffect
-from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
-from ptp_symbolic.symbolic.mechanics import kinematics
 
 
 def metadata_text(equations: Equations, digest: str, opening: str, prepared: int) -> str:

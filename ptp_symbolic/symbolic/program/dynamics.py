@@ -10,12 +10,12 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.chain import ChainRule, chain_rule
-from ptp_symbolic.symbolic.codegen.sharing import Line
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.program.chain import ChainRule, chain_rule
+from ptp_symbolic.symbolic.program.sharing import Line
 from ptp_symbolic.symbolic.simplify.solve import inverse_values, partner_of, solved
 from ptp_symbolic.symbolic.symbols import ZERO, real
 

@@ -1,0 +1,1 @@
+"""Programs written in the languages that others run."""
