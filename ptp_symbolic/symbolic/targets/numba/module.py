@@ -9,10 +9,11 @@ from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.program.kernel import Kernel
 from ptp_symbolic.symbolic.program.program import Program, program
 from ptp_symbolic.symbolic.targets.numba.docstring import docstring
+from ptp_symbolic.symbolic.targets.numba.language import NUMBA
 from ptp_symbolic.symbolic.targets.numba.literals import WIDTH
 from ptp_symbolic.symbolic.targets.numba.metadata import metadata_text
 from ptp_symbolic.symbolic.targets.numba.mode_functions import mode_functions_text
-from ptp_symbolic.symbolic.targets.numba.printer import print_expression, quotient
+from ptp_symbolic.symbolic.targets.printing import Printer
 
 SEAL = "# END sha256 "
 DOC_WIDTH = WIDTH - 4
@@ -77,7 +78,7 @@ def _described(kernel: Kernel, argument: str) -> str:
 
 
 def _assignment(target: str, expression: sp.Expr) -> str:
-    source = print_expression(expression)
+    source = NUMBA.expression(expression)
     if len(target) + len(source) + 7 <= WIDTH:
         return f"{target} = {source}"
     return "\n".join(_wrapped(target, expression))
@@ -86,12 +87,12 @@ def _assignment(target: str, expression: sp.Expr) -> str:
 def _wrapped(target: str, expression: sp.Expr) -> list[str]:
     """A long sum, one term per line; anything else in parentheses, broken at operators."""
     if expression.is_Add:
-        terms = [print_expression(t) for t in expression.as_ordered_terms()]
+        terms = [NUMBA.expression(t) for t in expression.as_ordered_terms()]
         first, *rest = terms
         signed = [f"- {t[1:].strip()}" if t.startswith("-") else f"+ {t}" for t in rest]
         return [f"{target} = (", f"    {first}", *(f"    {t}" for t in signed), ")"]
     if not expression.is_Mul:
-        return [f"{target} = {print_expression(expression)}"]
-    negative, above, below = quotient(expression)
+        return [f"{target} = {NUMBA.expression(expression)}"]
+    negative, above, below = Printer(NUMBA).quotient(expression)
     rows = [f"    {'-' if negative else ''}{above[0]}", *(f"    * {f}" for f in above[1:])]
     return [f"{target} = (", *rows, *([f"    / {below}"] if below else []), ")"]
