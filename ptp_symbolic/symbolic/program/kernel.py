@@ -93,6 +93,21 @@ class Kernel:
             if name in used
         )
 
+    def restricted(self, name: str, doc: str, arrays: Sequence[str]) -> "Kernel":
+        """The kernel that writes some of the `arrays` alone, without the terms of the others."""
+        kept: list[Line] = []
+        needed: set[str] = set()
+        for (target, expression), assignment in reversed(
+            list(zip(self.lines, self.body, strict=True))
+        ):
+            place = assignment.target
+            wanted = place.array in arrays if isinstance(place, Entry) else target in needed
+            if wanted:
+                kept.append((target, expression))
+                needed |= {str(symbol) for symbol in expression.free_symbols}
+        arguments = tuple(a for a in self.arguments if a not in self.written or a in arrays)
+        return Kernel(name, arguments, doc, self.vectors, tuple(reversed(kept)))
+
 
 def kernel(name: str, arguments: str, doc: str, vectors: Vectors, lines: Sequence[Line]) -> Kernel:
     """The kernel `name` of `arguments`, as they stand between parentheses."""

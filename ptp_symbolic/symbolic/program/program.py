@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.program import dynamics
 from ptp_symbolic.symbolic.program.kernel import Kernel, Vectors, used_names
 from ptp_symbolic.symbolic.program.motion import (
@@ -42,6 +43,21 @@ class Operations:
     each: int
 
 
+@dataclass(frozen=True)
+class Layout:
+    """Where frictions and contacts act. `friction_rates`: state index of the rate of every
+    friction; `zero_at_rest`: per state the friction that resets it when it comes to rest, or -1;
+    `contact_angles`: per contact the state index of both angles, gear output and joint;
+    `rigid_contacts`: per contact and switch that of both rates, and 0 where it is sprung, 1 rigid,
+    2 rigid and held in the gap (empty where none is rigid).
+    """
+
+    friction_rates: tuple[int, ...]
+    zero_at_rest: tuple[int, ...]
+    contact_angles: tuple[tuple[int, int], ...]
+    rigid_contacts: tuple[tuple[int, int, int], ...]
+
+
 @dataclass(frozen=True, eq=False)
 class Program:
     """What a target writes: `equations` with their names, units and bounds, in `computed` as the
@@ -53,6 +69,7 @@ class Program:
     vectors: Vectors
     kernels: tuple[Kernel, ...]
     operations: Operations
+    layout: Layout
 
     def kernel(self, name: str) -> Kernel | None:
         """The kernel of a name; None where the machine has none."""
@@ -100,7 +117,35 @@ def program(equations: Equations) -> Program:
         margins_kernel(equations, vectors),
         *sampler_kernels(equations, vectors),
     )
-    return Program(equations, computed, vectors, kernels, _operations(equations, rates, each))
+    operations = _operations(equations, rates, each)
+    return Program(equations, computed, vectors, kernels, operations, layout(equations))
+
+
+def layout(equations: Equations) -> Layout:
+    """Where frictions and contacts of `equations` act."""
+    states = list(equations.state_symbols)
+    axes = [friction.axis for friction in equations.frictions]
+    reset = {
+        state.name: axes.index(state.zero_at_rest_of)
+        for state in equations.extra_states
+        if state.zero_at_rest_of in axes
+    }
+    rigid: list[tuple[int, int, int]] = []
+    if any(contact.rigid for contact in equations.contacts):
+        for contact in equations.contacts:
+            gear, joint = kinematics.gear_rate(contact.axis), kinematics.rate(contact.axis)
+            rule = 2 if contact.holds else int(contact.rigid)
+            rigid.append((states.index(gear), states.index(joint), rule))
+        rigid += [(0, 0, 0)] * len(equations.switches)
+    return Layout(
+        tuple(states.index(friction.rate) for friction in equations.frictions),
+        tuple(reset.get(str(symbol), -1) for symbol in states),
+        tuple(
+            (states.index(kinematics.gear_angle(c.axis)), states.index(kinematics.angle(c.axis)))
+            for c in equations.contacts
+        ),
+        tuple(rigid),
+    )
 
 
 def _rows(equations: Equations, guards: int) -> dict[str, tuple[str, str]]:

@@ -11,11 +11,9 @@ enum { MOST_SWEEPS = 30, MOST_ROUNDS = 20 };
 static const real GAMMA = REAL(0.29289321881345254); /* 1 - sqrt(1/2) */
 static const real LARGEST_STATE = REAL(1e12);
 static const real SMALLEST_STATE = SMALLEST;         /* smaller states are set to zero */
-#if MODES > 0
+#if RIGID
 static const real REVERSAL_DEAD_BAND = REAL(1e-13);  /* rad/s, or m/s */
 static const real PUSH_DEAD_BAND = REAL(1e-12);      /* N m, or N */
-#endif
-#if RIGID
 static const real APPROACH_DEAD_BAND = REAL(1e-12);  /* rad/s */
 static const real RESTING_SPEED = REAL(1e-5);        /* rad/s; slower faces stay together */
 #endif
@@ -91,7 +89,7 @@ static void factor_step(model_machine *s, real reach, real t, const real *x, con
                         const real *p)
 {
     real *a = s->matrix;
-    model_jacobian(t, x, u, p, s->modes, s->by_state, s->by_input, s->by_parameter);
+    model_state_jacobian(t, x, u, p, s->modes, s->by_state);
 #if RIGID
     for (int c = 0; c < CONTACTS; c++)
         if (s->pressed[c])

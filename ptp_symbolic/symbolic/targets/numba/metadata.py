@@ -4,7 +4,7 @@ import sympy as sp
 
 from ptp_symbolic.symbolic.derivation.equations import Equations, PlacedEffect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
-from ptp_symbolic.symbolic.mechanics import kinematics
+from ptp_symbolic.symbolic.program.program import Layout, layout
 from ptp_symbolic.symbolic.targets.numba.literals import (
     listed,
     long_text,
@@ -54,17 +54,18 @@ def _signal_lines(equations: Equations) -> list[str]:
 
 def _motion_lines(equations: Equations) -> list[str]:
     """Modes, samplers, contacts and limits: what a simulation must watch."""
+    own = layout(equations)
     return [
         named_tuple_text("MODE_NAMES", (f'"{m}"' for m in equations.mode_symbols)),
-        *_friction_rates(equations),
+        *_friction_rates(equations, own),
         "# Per state: the friction that sets it to zero when it comes to rest, or -1.",
-        named_tuple_text("ZERO_AT_REST", map(str, _zero_at_rest(equations))),
+        named_tuple_text("ZERO_AT_REST", map(str, own.zero_at_rest)),
         "# Samplers: parameters of the period. Sampled: sampler and state of each update.",
         named_tuple_text("SAMPLERS", _samplers(equations)),
         named_tuple_text("SAMPLED", _sampled(equations)),
         "# Per contact: state index of the angle at the gear output and at the joint.",
-        named_tuple_text("CONTACT_ANGLES", _contact_states(equations)),
-        *_rigid_contacts(equations),
+        named_tuple_text("CONTACT_ANGLES", (f"({a}, {b})" for a, b in own.contact_angles)),
+        *_rigid_contacts(own),
         "# Limits of the equations: state, meaning; `domain` gives the bounds.",
         named_tuple_text("DOMAIN", _domain(equations)),
     ]
@@ -135,18 +136,6 @@ def _idle_states(equations: Equations) -> list[str]:
     ]
 
 
-def _contact_states(equations: Equations) -> list[str]:
-    states = list(equations.state_symbols)
-    pairs = []
-    for contact in equations.contacts:
-        gear, joint = (
-            states.index(symbol)
-            for symbol in (kinematics.gear_angle(contact.axis), kinematics.angle(contact.axis))
-        )
-        pairs.append(f"({gear}, {joint})")
-    return pairs
-
-
 def _samplers(equations: Equations) -> list[str]:
     rows = []
     for sampler in equations.samplers:
@@ -159,22 +148,6 @@ def _samplers(equations: Equations) -> list[str]:
 def _sampled(equations: Equations) -> list[str]:
     states = list(equations.state_symbols)
     return [f"({owner}, {states.index(symbol)})" for owner, symbol, _ in equations.updates]
-
-
-def _rigid_contacts(equations: Equations) -> list[str]:
-    """Nothing where every contact is sprung."""
-    if not any(contact.rigid for contact in equations.contacts):
-        return []
-    states, rows = list(equations.state_symbols), []
-    for contact in equations.contacts:
-        rates = (kinematics.gear_rate(contact.axis), kinematics.rate(contact.axis))
-        rule = "2" if contact.holds else "1" if contact.rigid else "0"
-        rows.append(f"[{', '.join([*(str(states.index(rate)) for rate in rates), rule])}]")
-    rows += ["[0, 0, 0]"] * len(equations.switches)
-    return [
-        "# Per contact: state index of both rates; 0 sprung, 1 rigid, 2 rigid and held in the gap.",
-        f"RIGID_CONTACTS = np.array([{', '.join(rows)}], dtype=np.int64)",
-    ]
 
 
 def _domain(equations: Equations) -> list[str]:
@@ -192,15 +165,6 @@ def _requirements(equations: Equations) -> list[str]:
     return rows
 
 
-def _friction_rates(equations: Equations) -> list[str]:
-    """An array where the module has modes: compiled code cannot index an empty tuple."""
-    states = list(equations.state_symbols)
-    indices = [str(states.index(friction.rate)) for friction in equations.frictions]
-    if not equations.mode_symbols:
-        return [named_tuple_text("FRICTION_RATES", indices)]
-    return [f"FRICTION_RATES = np.array([{', '.join(indices)}], dtype=np.int64)"]
-
-
 def _acting(equations: Equations) -> list[bool]:
     motion = {str(symbol) for symbol in equations.motion_symbols}
     return [given.name in motion for given in equations.inputs]
@@ -209,16 +173,6 @@ def _acting(equations: Equations) -> list[bool]:
 def _delays(equations: Equations) -> list[int]:
     names = [p.name for p in equations.parameters]
     return [-1 if delay is None else names.index(str(delay)) for delay in equations.delays]
-
-
-def _zero_at_rest(equations: Equations) -> list[int]:
-    axes = [friction.axis for friction in equations.frictions]
-    zeroed = {
-        state.name: axes.index(state.zero_at_rest_of)
-        for state in equations.extra_states
-        if state.zero_at_rest_of in axes
-    }
-    return [zeroed.get(str(symbol), -1) for symbol in equations.state_symbols]
 
 
 def _effects(equations: Equations) -> list[str]:
@@ -248,3 +202,22 @@ def _members(placed: PlacedEffect, used: set[str]) -> str:
             pairs = listed(f"({repr_text(a)}, {repr_text(b)})" for a, b in tied)
             rows.append(f"({repr_text(member.title)}, ({listed(map(repr_text, own))}), ({pairs}))")
     return f"({listed(rows)})"
+
+
+def _friction_rates(equations: Equations, own: Layout) -> list[str]:
+    """An array where the module has modes: compiled code cannot index an empty tuple."""
+    indices = [str(index) for index in own.friction_rates]
+    if not equations.mode_symbols:
+        return [named_tuple_text("FRICTION_RATES", indices)]
+    return [f"FRICTION_RATES = np.array([{', '.join(indices)}], dtype=np.int64)"]
+
+
+def _rigid_contacts(own: Layout) -> list[str]:
+    """Nothing where every contact is sprung."""
+    if not own.rigid_contacts:
+        return []
+    rows = ", ".join(f"[{a}, {b}, {rule}]" for a, b, rule in own.rigid_contacts)
+    return [
+        "# Per contact: state index of both rates; 0 sprung, 1 rigid, 2 rigid and held in the gap.",
+        f"RIGID_CONTACTS = np.array([{rows}], dtype=np.int64)",
+    ]
