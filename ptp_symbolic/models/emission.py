@@ -19,7 +19,7 @@ def emit(platform: Platform) -> Model:
     Machines that differ in their numbers alone share a module, which is compiled once. Raises
     InputError when no machine with its parameters can exist.
     """
-    equations = _possible(platform)
+    equations = possible_equations(platform)
     path = emitted(equations, parameters_of(place_effects(platform)))
     own = {p.name: (p.default, p.lower, p.upper) for p in equations.parameters}
     declared = (platform.name, platform.title, own)
@@ -31,10 +31,11 @@ def module_of(platform: Platform) -> str:
 
     Raises InputError when no machine with its parameters can exist.
     """
-    return module_text(_possible(platform))
+    return module_text(possible_equations(platform))
 
 
-def _possible(platform: Platform) -> Equations:
+def possible_equations(platform: Platform) -> Equations:
+    """The equations of `platform`. Raises InputError when no machine with its parameters can exist."""
     equations = assemble(platform)
     refuse_impossible(equations, platform)
     return equations

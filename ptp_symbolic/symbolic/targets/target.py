@@ -1,6 +1,7 @@
 """What a target is: a language or a tool that a program is written for."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Iterable, Mapping
 from typing import Protocol
 
 from ptp_symbolic.symbolic.program.program import Program
@@ -30,3 +31,19 @@ def effects_of(program: Program) -> list[str]:
         f"{placed.effect.id}@{placed.axis}" if placed.axis else placed.effect.id
         for placed in program.equations.effects
     ]
+
+
+def literal(text: str) -> str:
+    """`text` as a double-quoted literal of Python or JavaScript, whatever it holds."""
+    return json.dumps(text)
+
+
+def in_lines(items: Iterable[str], width: int = 96) -> list[str]:
+    """Items, each with a comma behind it, on as many indented lines as they need."""
+    lines, line = [], "   "
+    for item in items:
+        if len(line) + len(item) + 2 > width and line.strip():
+            lines.append(line)
+            line = "   "
+        line += f" {item},"
+    return [*lines, line]

@@ -8,7 +8,7 @@ from ptp_symbolic.symbolic.program.kernel import Entry, Kernel
 from ptp_symbolic.symbolic.program.program import Program
 from ptp_symbolic.symbolic.targets.c99.language import DOUBLE, FLOAT
 from ptp_symbolic.symbolic.targets.printing import Language
-from ptp_symbolic.symbolic.targets.target import effects_of
+from ptp_symbolic.symbolic.targets.target import effects_of, in_lines
 
 WIDTH = 96
 UNBROKEN = "\N{NO-BREAK SPACE}"  # in what must stay on one line
@@ -328,13 +328,7 @@ def _names(array: str, names: Iterable[str]) -> list[str]:
 
 def _array(head: str, items: Sequence[str]) -> list[str]:
     """The definition of an array, its items on as many lines as they need."""
-    lines, line = [f"{head}[] = {{"], "   "
-    for item in items or ["0"]:
-        if len(line) + len(item) + 2 > WIDTH:
-            lines.append(line)
-            line = "   "
-        line += f" {item},"
-    return [*lines, line, "};"]
+    return [f"{head}[] = {{", *in_lines(items or ["0"], WIDTH), "};"]
 
 
 def _escaped(text: str) -> str:
