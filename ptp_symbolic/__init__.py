@@ -25,6 +25,7 @@ _HOMES = {
     "sensitivity": "ptp_symbolic.api.simulation",
     "Sensitivities": "ptp_symbolic.numeric.sensitivities",
     "inverse_dynamics": "ptp_symbolic.models.inverse_dynamics",
+    "export": "ptp_symbolic.api.export",
     "Log": "ptp_symbolic.api.logs",
     "read_log": "ptp_symbolic.api.logs",
     "sample": "ptp_symbolic.api.logs",

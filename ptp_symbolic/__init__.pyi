@@ -1,6 +1,7 @@
 """Types of what `__init__.py` imports on demand."""
 
 from ptp_symbolic.api.effect_laws import check_effect as check_effect
+from ptp_symbolic.api.export import export as export
 from ptp_symbolic.api.linearization import Linearization as Linearization
 from ptp_symbolic.api.logs import Log as Log
 from ptp_symbolic.api.logs import read_log as read_log

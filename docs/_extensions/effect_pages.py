@@ -28,11 +28,11 @@ from ptp_symbolic.platform import AXES, Platform
 from ptp_symbolic.report.derivation.curves import WITH, WITHOUT, Drawing, drawing_of
 from ptp_symbolic.report.derivation.ranges import FloatArray, evaluated, setting
 from ptp_symbolic.report.figures import AFTER, BEFORE, MEASURED, STYLE
-from ptp_symbolic.symbolic.codegen.latex import latex_lines, latex_of, rate_latex, symbol_latex
-from ptp_symbolic.symbolic.codegen.laws import Law, laws
-from ptp_symbolic.symbolic.codegen.statements import RELATIONS, Statement
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.documents.latex import latex_lines, latex_of, rate_latex, symbol_latex
+from ptp_symbolic.symbolic.documents.laws import Law, laws
+from ptp_symbolic.symbolic.documents.statements import RELATIONS, Statement
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import QUANTITY, Place, quantity_name

@@ -22,7 +22,6 @@ from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.platform.units import to_si
-from ptp_symbolic.symbolic.codegen import dynamics
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.placement import place_effects
@@ -30,6 +29,7 @@ from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 from ptp_symbolic.symbolic.effects import on_trial
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
+from ptp_symbolic.symbolic.program import dynamics
 
 AnyModel = TypeVar("AnyModel", bound=Model)
 

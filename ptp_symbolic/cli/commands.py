@@ -8,6 +8,7 @@ import click
 from ptp_symbolic.cli.check import check
 from ptp_symbolic.cli.diagnose import diagnose, fit
 from ptp_symbolic.cli.experiment import experiment
+from ptp_symbolic.cli.export import export
 from ptp_symbolic.cli.friction_map import friction_map
 from ptp_symbolic.cli.lists import effects, models, platforms
 from ptp_symbolic.cli.new import new, schema
@@ -34,6 +35,7 @@ for command in (
     fit,
     diagnose,
     experiment,
+    export,
     report,
     effects,
     models,

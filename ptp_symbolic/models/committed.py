@@ -13,8 +13,8 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.models.emission import module_of
 from ptp_symbolic.numeric.runtime.loader import COMMITTED, generated_folder
 from ptp_symbolic.platform import Platform, platform_file, read_platform
-from ptp_symbolic.symbolic.codegen.module import sealed
 from ptp_symbolic.symbolic.derivation.placement import refuse_undeclared
+from ptp_symbolic.symbolic.targets.numba.module import sealed
 
 LINE_LENGTH = 100
 # Packages that emitted modules and those who call them import, installed here or not.

@@ -6,11 +6,11 @@ from ptp_symbolic.models.module_cache import emitted
 from ptp_symbolic.numeric.runtime.loader import load_module
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.platform import Platform
-from ptp_symbolic.symbolic.codegen.module import module_text
 from ptp_symbolic.symbolic.derivation.admissible import refuse_impossible
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.placement import parameters_of, place_effects
+from ptp_symbolic.symbolic.targets.numba.module import module_text
 
 
 def emit(platform: Platform) -> Model:
@@ -19,7 +19,7 @@ def emit(platform: Platform) -> Model:
     Machines that differ in their numbers alone share a module, which is compiled once. Raises
     InputError when no machine with its parameters can exist.
     """
-    equations = _possible(platform)
+    equations = possible_equations(platform)
     path = emitted(equations, parameters_of(place_effects(platform)))
     own = {p.name: (p.default, p.lower, p.upper) for p in equations.parameters}
     declared = (platform.name, platform.title, own)
@@ -31,10 +31,11 @@ def module_of(platform: Platform) -> str:
 
     Raises InputError when no machine with its parameters can exist.
     """
-    return module_text(_possible(platform))
+    return module_text(possible_equations(platform))
 
 
-def _possible(platform: Platform) -> Equations:
+def possible_equations(platform: Platform) -> Equations:
+    """The equations of `platform`; raises InputError where no machine has its parameters."""
     equations = assemble(platform)
     refuse_impossible(equations, platform)
     return equations

@@ -24,9 +24,9 @@ import sympy as sp
 from ptp_symbolic.atomic_files import write_text_if_changed
 from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.runtime.loader import verify
-from ptp_symbolic.symbolic.codegen.module import module_text
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
+from ptp_symbolic.symbolic.targets.numba.module import module_text
 
 DECIDING = ("platform", "symbolic")  # parts of this package from which a module is written
 DIGITS = 16  # of a SHA-256 in a name: 64 bits

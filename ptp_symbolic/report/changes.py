@@ -13,12 +13,12 @@ from ptp_symbolic.report.latex_text import PREAMBLE, escaped, table, unit_latex
 from ptp_symbolic.report.quantities import number
 from ptp_symbolic.report.source import THESIS
 from ptp_symbolic.report.tables import declared_totals, error_groups, error_measure
-from ptp_symbolic.symbolic.codegen.comparison import Change, comparison
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
-from ptp_symbolic.symbolic.codegen.laws import laws
-from ptp_symbolic.symbolic.codegen.statements import statements
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.documents.comparison import Change, comparison
+from ptp_symbolic.symbolic.documents.latex import symbol_latex
+from ptp_symbolic.symbolic.documents.laws import laws
+from ptp_symbolic.symbolic.documents.statements import statements
 
 Record = Mapping[str, Any]
 SETS = {"validate": "never fitted", "train": "fitted"}

@@ -7,10 +7,10 @@ from itertools import groupby
 import sympy as sp
 
 from ptp_symbolic.report.latex_text import escaped, numbered
-from ptp_symbolic.symbolic.codegen.comparison import Change
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
-from ptp_symbolic.symbolic.codegen.statements import RELATIONS, Statement
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.documents.comparison import Change
+from ptp_symbolic.symbolic.documents.latex import symbol_latex
+from ptp_symbolic.symbolic.documents.statements import RELATIONS, Statement
 
 
 def displayed_rows(rows: Sequence[Statement], equations: Equations) -> str:

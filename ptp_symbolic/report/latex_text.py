@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from ptp_symbolic.symbolic.codegen.latex import LINE_WIDTH, latex_lines, lines_as_they_are
+from ptp_symbolic.symbolic.documents.latex import LINE_WIDTH, latex_lines, lines_as_they_are
 
 PREAMBLE = r"""\documentclass[a4paper,10pt]{article}
 \usepackage[T1]{fontenc}

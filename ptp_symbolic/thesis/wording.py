@@ -3,7 +3,7 @@
 import re
 
 from ptp_symbolic.report.latex_text import escaped
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
+from ptp_symbolic.symbolic.documents.latex import symbol_latex
 from ptp_symbolic.thesis.items import Value
 
 GREEK = "alpha|beta|omega|theta|phi|psi|tau"

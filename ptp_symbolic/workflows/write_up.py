@@ -33,8 +33,6 @@ from ptp_symbolic.report.drawing import drawn
 from ptp_symbolic.report.latex_equations import in_words
 from ptp_symbolic.report.latex_text import PREAMBLE, escaped, table, unit_latex
 from ptp_symbolic.report.pdf import with_pdf
-from ptp_symbolic.symbolic.codegen.effect_equations import effect_equations
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.placement import (
@@ -42,6 +40,8 @@ from ptp_symbolic.symbolic.derivation.placement import (
     find_effect,
     place_effects,
 )
+from ptp_symbolic.symbolic.documents.effect_equations import effect_equations
+from ptp_symbolic.symbolic.documents.latex import symbol_latex
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.effects import EFFECTS

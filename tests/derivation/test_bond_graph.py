@@ -9,11 +9,11 @@ import sympy as sp
 
 from ptp_symbolic.api.effect_laws import admissible_values, random_modes
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
-from ptp_symbolic.symbolic.codegen import dynamics
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.bond_graph import BondGraph, acceleration, bond_graph
 from ptp_symbolic.symbolic.derivation.causality import strokes
 from ptp_symbolic.symbolic.effects import EFFECTS, Effect
+from ptp_symbolic.symbolic.program import dynamics
 from tests.effects.bases import IDS, with_effect
 
 STATES = 20

@@ -18,8 +18,8 @@ from ptp_symbolic.models import variants
 from ptp_symbolic.platform import EffectDeclaration, Platform
 from ptp_symbolic.report.derivation.power import judged
 from ptp_symbolic.symbolic import effects as catalogue
-from ptp_symbolic.symbolic.codegen.laws import laws
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.documents.laws import laws
 from ptp_symbolic.symbolic.effect_interface.contribution import Contribution, Switch
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter

@@ -10,8 +10,8 @@ import pytest
 
 from ptp_symbolic.models import emission
 from ptp_symbolic.numeric.runtime.model import Model
-from ptp_symbolic.numeric.runtime.plain import as_python
 from ptp_symbolic.platform import EffectDeclaration, Platform, SignalDeclaration
+from tests.effects.plain_python import as_python
 from tests.independent import moving_base
 from tests.independent.moving_base import Base, Body
 

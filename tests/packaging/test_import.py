@@ -7,7 +7,16 @@ from pathlib import Path
 import pytest
 
 NUMERIC_WING = ("runtime", "data", "simulation", "sensitivities", "identify", "diagnose")
-SYMBOLIC_WING = ("mechanics", "mechanisms", "effects", "derivation", "simplify", "codegen")
+SYMBOLIC_WING = (
+    "mechanics",
+    "mechanisms",
+    "effects",
+    "derivation",
+    "simplify",
+    "program",
+    "targets",
+    "documents",
+)
 
 
 def run_python(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:

@@ -4,9 +4,9 @@ from functools import cache
 
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.derivation.effects import effect_section
-from ptp_symbolic.symbolic.codegen.laws import Law, laws
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.documents.laws import Law, laws
 from ptp_symbolic.symbolic.effects import EFFECTS
 from tests.effects.bases import with_effect
 

@@ -15,7 +15,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, read_platform
 from ptp_symbolic.report.changes import render_changes, shown_of
 from ptp_symbolic.report.derivation import has_warning
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
+from ptp_symbolic.symbolic.documents.latex import symbol_latex
 from ptp_symbolic.workflows.result import read_diagnosis
 from tests.report.synthetic_diagnosis import synthetic_diagnosis
 

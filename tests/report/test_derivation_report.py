@@ -18,9 +18,9 @@ from ptp_symbolic.report.derivation import has_warning, read_points, render_deri
 from ptp_symbolic.report.derivation.symbols import CATALOGUE
 from ptp_symbolic.report.latex_text import escaped
 from ptp_symbolic.report.pdf import PASSES
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation import placement
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.documents.latex import symbol_latex
 from ptp_symbolic.symbolic.effects import EFFECTS
 from tests.drawing.platforms import carriage, offset_platform, platform_of_every_kind
 

@@ -17,11 +17,11 @@ from ptp_symbolic.report.derivation.curves import PACKAGES
 from ptp_symbolic.report.derivation.effects import effect_section
 from ptp_symbolic.report.derivation.power import judged
 from ptp_symbolic.report.latex_text import PREAMBLE
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
-from ptp_symbolic.symbolic.codegen.laws import laws
-from ptp_symbolic.symbolic.codegen.statements import statements
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Ledger
+from ptp_symbolic.symbolic.documents.latex import symbol_latex
+from ptp_symbolic.symbolic.documents.laws import laws
+from ptp_symbolic.symbolic.documents.statements import statements
 from ptp_symbolic.symbolic.effects import EFFECTS, Effect
 from tests.effects.bases import IDS
 from tests.report.sections import law_of, section

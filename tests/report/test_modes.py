@@ -8,8 +8,8 @@ import sympy as sp
 import ptp_symbolic
 from ptp_symbolic.platform import Platform, read_platform
 from ptp_symbolic.report.derivation.modes import Automaton, automata, modes
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.documents.latex import symbol_latex
 from ptp_symbolic.symbolic.effects import EFFECTS
 from tests.effects.bases import with_effect
 

@@ -17,12 +17,12 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.platform import AXES, Platform, preset_names, read_platform
 from ptp_symbolic.report.derivation.results import equations_of_motion
 from ptp_symbolic.report.derivation.symbols import symbols
-from ptp_symbolic.symbolic.codegen.latex import latex_lines, symbol_latex
-from ptp_symbolic.symbolic.codegen.module import module_text
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.removal import without_effect
+from ptp_symbolic.symbolic.documents.latex import latex_lines, symbol_latex
 from ptp_symbolic.symbolic.mechanics.kinematics import place_of
+from ptp_symbolic.symbolic.targets.numba.module import module_text
 from tests.effects.bases import IDS
 from tests.effects.plain_python import module_as_python
 from tests.report.latex_reading import Reader, equations_in, symbol

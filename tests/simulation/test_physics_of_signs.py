@@ -14,8 +14,8 @@ from ptp_symbolic.numeric.simulation.signals.input_values import (
 )
 from ptp_symbolic.numeric.simulation.signals.inputs import constant, sine_sweep, stack
 from ptp_symbolic.platform import EffectDeclaration, Platform, read_platform
-from ptp_symbolic.symbolic.codegen.statements import Statement, statements
 from ptp_symbolic.symbolic.derivation.assembly import assemble
+from ptp_symbolic.symbolic.documents.statements import Statement, statements
 
 
 def pan(*effects: str) -> Platform:

@@ -5,10 +5,10 @@ import sympy as sp
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.drawing.bond_graph import bond_graph_tikz, modulus_name, short_law
 from ptp_symbolic.report.latex_text import escaped, formulas, table
-from ptp_symbolic.symbolic.codegen.latex import latex_of, symbol_latex
-from ptp_symbolic.symbolic.codegen.statements import by_name
 from ptp_symbolic.symbolic.derivation.bond_graph import FLOW, Bond, BondGraph, Node, bond_graph
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.documents.latex import latex_of, symbol_latex
+from ptp_symbolic.symbolic.documents.statements import by_name
 from ptp_symbolic.symbolic.mechanics import kinematics
 
 LONGEST = 44  # characters in the table; longer ones stand below it

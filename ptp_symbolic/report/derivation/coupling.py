@@ -3,7 +3,6 @@
 import sympy as sp
 
 from ptp_symbolic.report.latex_text import number_latex, numbered, table
-from ptp_symbolic.symbolic.codegen.latex import latex_of
 from ptp_symbolic.symbolic.derivation.coupling import (
     ALWAYS,
     AT_SPEED,
@@ -18,6 +17,7 @@ from ptp_symbolic.symbolic.derivation.coupling import (
 )
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
+from ptp_symbolic.symbolic.documents.latex import latex_of
 
 IN_WORDS = {ALWAYS: "at any speed", AT_SPEED: "in motion"}
 AXES = 2

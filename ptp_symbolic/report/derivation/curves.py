@@ -17,11 +17,11 @@ from ptp_symbolic.report.derivation.ranges import (
     unit_of,
 )
 from ptp_symbolic.report.latex_text import unit_latex
-from ptp_symbolic.symbolic.codegen.comparison import Change
-from ptp_symbolic.symbolic.codegen.latex import latex_of, symbol_latex
-from ptp_symbolic.symbolic.codegen.laws import Law
-from ptp_symbolic.symbolic.codegen.statements import shaft_torque
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
+from ptp_symbolic.symbolic.documents.comparison import Change
+from ptp_symbolic.symbolic.documents.latex import latex_of, symbol_latex
+from ptp_symbolic.symbolic.documents.laws import Law
+from ptp_symbolic.symbolic.documents.statements import shaft_torque
 from ptp_symbolic.symbolic.effect_interface.contribution import Friction
 from ptp_symbolic.symbolic.effect_interface.place import slide
 from ptp_symbolic.symbolic.mechanics import kinematics

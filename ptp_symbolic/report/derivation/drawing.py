@@ -6,8 +6,8 @@ from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.drawing import PlatformDrawing, drawn, tikz_text
 from ptp_symbolic.report.drawing.space import POSE
 from ptp_symbolic.report.latex_text import escaped, table
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.documents.latex import symbol_latex
 
 PACKAGES = "\\usepackage{graphicx}\n\\usepackage{tikz}\n\\usetikzlibrary{arrows.meta}"
 HOW = (

@@ -9,13 +9,13 @@ from ptp_symbolic.report.derivation.power import power
 from ptp_symbolic.report.latex_equations import displayed_changes, displayed_rows
 from ptp_symbolic.report.latex_text import escaped, numbered, table, unit_latex
 from ptp_symbolic.report.source import THESIS
-from ptp_symbolic.symbolic.codegen.comparison import Change, comparison
-from ptp_symbolic.symbolic.codegen.latex import latex_of, symbol_latex
-from ptp_symbolic.symbolic.codegen.laws import Law, laws
-from ptp_symbolic.symbolic.codegen.statements import statements
 from ptp_symbolic.symbolic.derivation.assembly import assemble
 from ptp_symbolic.symbolic.derivation.equations import Equations, Ledger
 from ptp_symbolic.symbolic.derivation.removal import without_effect
+from ptp_symbolic.symbolic.documents.comparison import Change, comparison
+from ptp_symbolic.symbolic.documents.latex import latex_of, symbol_latex
+from ptp_symbolic.symbolic.documents.laws import Law, laws
+from ptp_symbolic.symbolic.documents.statements import statements
 
 
 def effects(platform: Platform, equations: Equations) -> str:

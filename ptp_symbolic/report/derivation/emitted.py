@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 from ptp_symbolic.report.latex_text import escaped, numbered, table
-from ptp_symbolic.symbolic.codegen.dynamics import solve_accelerations, state_rates
-from ptp_symbolic.symbolic.codegen.latex import rate_latex, symbol_latex
-from ptp_symbolic.symbolic.codegen.statements import by_name
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.documents.latex import rate_latex, symbol_latex
+from ptp_symbolic.symbolic.documents.statements import by_name
+from ptp_symbolic.symbolic.program.dynamics import solve_accelerations, state_rates
 from ptp_symbolic.symbolic.simplify.base_parameters import BaseForm
 
 LAST_LINES = 14  # on the last page at least

@@ -1,8 +1,8 @@
 """The energy ledger."""
 
 from ptp_symbolic.report.latex_text import numbered
-from ptp_symbolic.symbolic.codegen.statements import by_name
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.documents.statements import by_name
 
 
 def energy(equations: Equations) -> str:

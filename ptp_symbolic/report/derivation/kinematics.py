@@ -5,10 +5,10 @@ from collections.abc import Iterator, Sequence
 import sympy as sp
 
 from ptp_symbolic.report.latex_text import displayed, numbered
-from ptp_symbolic.symbolic.codegen.latex import latex_of, symbol_latex
 from ptp_symbolic.symbolic.derivation.kane import KaneSteps
 from ptp_symbolic.symbolic.derivation.lagrange import LagrangeRow
 from ptp_symbolic.symbolic.derivation.newton_euler import JointLoad, Motion, acceleration
+from ptp_symbolic.symbolic.documents.latex import latex_of, symbol_latex
 from ptp_symbolic.symbolic.mechanics import kinematics
 from ptp_symbolic.symbolic.mechanics.bodies import Body, RigidConfiguration
 from ptp_symbolic.symbolic.symbols import real

@@ -13,13 +13,13 @@ from ptp_symbolic.report.derivation.bode import (
     frequency_response,
 )
 from ptp_symbolic.report.latex_text import displayed, number_latex, table, unit_latex
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.linearisation import (
     LinearModel,
     OperatingPoint,
     linear_models,
 )
+from ptp_symbolic.symbolic.documents.latex import symbol_latex
 from ptp_symbolic.symbolic.mechanics import kinematics
 
 LOWEST, HIGHEST = 0.01, 1000.0  # Hz that a Bode plot shows at most

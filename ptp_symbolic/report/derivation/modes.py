@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic.report.latex_text import escaped, numbered, table
-from ptp_symbolic.symbolic.codegen.dynamics import guard_expressions, solve_accelerations
-from ptp_symbolic.symbolic.codegen.latex import latex_of, rate_latex
-from ptp_symbolic.symbolic.codegen.statements import by_name, friction_statements, shaft_torque
 from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
+from ptp_symbolic.symbolic.documents.latex import latex_of, rate_latex
+from ptp_symbolic.symbolic.documents.statements import by_name, friction_statements, shaft_torque
 from ptp_symbolic.symbolic.effect_interface.contribution import Friction, Switch
 from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 from ptp_symbolic.symbolic.mechanics.kinematics import place_of
+from ptp_symbolic.symbolic.program.dynamics import guard_expressions, solve_accelerations
 from ptp_symbolic.symbolic.symbols import real
 
 PACKAGES = r"""\usepackage{tikz}

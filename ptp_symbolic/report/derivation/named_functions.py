@@ -1,6 +1,6 @@
 """What the functions mean that the equations keep under their names: ``ratio_tilt``, for one."""
 
-from ptp_symbolic.symbolic.codegen.letters import SLOPE
+from ptp_symbolic.symbolic.documents.letters import SLOPE
 
 MEANINGS = {  # in LaTeX
     "linkage_cos": ("twice ground link times arm times the cosine of their angle at zero", "m^2"),

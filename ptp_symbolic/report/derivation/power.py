@@ -15,9 +15,9 @@ from ptp_symbolic.report.derivation.ranges import (
     setting,
 )
 from ptp_symbolic.report.latex_text import numbered
-from ptp_symbolic.symbolic.codegen.laws import Law
-from ptp_symbolic.symbolic.codegen.statements import by_name
 from ptp_symbolic.symbolic.derivation.equations import Equations, Ledger
+from ptp_symbolic.symbolic.documents.laws import Law
+from ptp_symbolic.symbolic.documents.statements import by_name
 from ptp_symbolic.symbolic.effect_interface.contribution import Switch
 from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 from ptp_symbolic.symbolic.symbols import real

@@ -7,8 +7,8 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from ptp_symbolic.symbolic.codegen.laws import Law
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.documents.laws import Law
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.mechanics import kinematics
 

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from ptp_symbolic.report.latex_text import numbered
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
-from ptp_symbolic.symbolic.codegen.statements import (
+from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
+from ptp_symbolic.symbolic.documents.latex import symbol_latex
+from ptp_symbolic.symbolic.documents.statements import (
     RELATIONS,
     Statement,
     statements,
 )
-from ptp_symbolic.symbolic.derivation.equations import Contact, Equations
 from ptp_symbolic.symbolic.effect_interface.place import active, slide
 
 

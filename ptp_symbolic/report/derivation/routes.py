@@ -9,7 +9,6 @@ from ptp_symbolic.report.derivation.kinematics import (
     projected_steps,
 )
 from ptp_symbolic.report.latex_text import numbered, table
-from ptp_symbolic.symbolic.codegen.latex import latex_of
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.derivation.kane import kane, kane_with_steps
 from ptp_symbolic.symbolic.derivation.lagrange import lagrange, lagrange_rows
@@ -17,6 +16,7 @@ from ptp_symbolic.symbolic.derivation.newton_euler import newton_euler, newton_e
 from ptp_symbolic.symbolic.derivation.proof import compare_numerically, prove_equal
 from ptp_symbolic.symbolic.derivation.properties import energy_remainder, is_passive, is_symmetric
 from ptp_symbolic.symbolic.derivation.trigonometry import normal_form
+from ptp_symbolic.symbolic.documents.latex import latex_of
 from ptp_symbolic.symbolic.mechanics.bodies import RigidEquations
 from ptp_symbolic.symbolic.mechanics.kinematics import TIME
 from ptp_symbolic.symbolic.symbols import real

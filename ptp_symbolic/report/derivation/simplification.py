@@ -3,8 +3,8 @@
 import sympy as sp
 
 from ptp_symbolic.report.latex_text import escaped, formulas, numbered, table
-from ptp_symbolic.symbolic.codegen.latex import symbol_latex
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.documents.latex import symbol_latex
 from ptp_symbolic.symbolic.simplify.operations import operation_count, written_operations
 from ptp_symbolic.symbolic.simplify.steps import ENTRY_STEPS, SimplifiedEquations, simplify_rigid
 

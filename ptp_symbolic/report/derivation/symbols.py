@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from ptp_symbolic.platform import ParameterDeclaration, Platform
 from ptp_symbolic.report.derivation.named_functions import meaning_of
 from ptp_symbolic.report.latex_text import displayed, escaped, table, unit_latex
-from ptp_symbolic.symbolic.codegen.latex import latex_of, symbol_latex
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.documents.latex import latex_of, symbol_latex
 from ptp_symbolic.symbolic.effect_interface.parameters import Parameter
 from ptp_symbolic.symbolic.effect_interface.place import active, side, slide
 from ptp_symbolic.symbolic.mechanics.kinematics import place_of

@@ -8,8 +8,8 @@ from hashlib import sha256
 from ptp_symbolic import __version__
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.report.latex_text import escaped
-from ptp_symbolic.symbolic.codegen.module import module_text
 from ptp_symbolic.symbolic.derivation.equations import Equations
+from ptp_symbolic.symbolic.targets.numba.module import module_text
 
 
 def title_block(platform: Platform, equations: Equations) -> str:

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 import sympy as sp
 
 from ptp_symbolic.report.drawing.scene import HALF_CHARACTER, Point
-from ptp_symbolic.symbolic.codegen.latex import latex_of, symbol_latex
 from ptp_symbolic.symbolic.derivation.bond_graph import BondGraph, Node
+from ptp_symbolic.symbolic.documents.latex import latex_of, symbol_latex
 
 PAGE = 16.8  # width of the text in cm
 LONGEST_LAW = 14  # characters beside a letter; longer ones are in the table alone

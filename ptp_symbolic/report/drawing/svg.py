@@ -7,7 +7,7 @@ import sympy as sp
 from markupsafe import escape
 
 from ptp_symbolic.report.drawing.scene import Label, Point, Scene, Stroke, placed
-from ptp_symbolic.symbolic.codegen.latex import GREEK, letter_and_place
+from ptp_symbolic.symbolic.documents.latex import GREEK, letter_and_place
 
 SCALE = 46.0  # user units per cm
 MARGIN = 6.0

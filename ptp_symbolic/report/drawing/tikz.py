@@ -4,7 +4,7 @@ import sympy as sp
 
 from ptp_symbolic.report.drawing.scene import Label, Point, Scene, Stroke, placed
 from ptp_symbolic.report.latex_text import escaped
-from ptp_symbolic.symbolic.codegen.latex import latex_of
+from ptp_symbolic.symbolic.documents.latex import latex_of
 
 WEIGHTS = {"thin": "0.3pt", "normal": "0.55pt", "bold": "1.1pt"}
 

@@ -1,8 +1,6 @@
 """An encoder that counts: the reading is the nearest whole count."""
 
 import sympy as sp
-from sympy.printing.precedence import PRECEDENCE
-from sympy.printing.printer import Printer
 
 from ptp_symbolic.symbolic.effect_interface.contribution import Change, Contribution
 from ptp_symbolic.symbolic.effect_interface.effect import Effect
@@ -30,11 +28,6 @@ class NearestCount(sp.Function):
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """Return 1 by the angle (what a fit needs, on average), 0 by the count."""
         return sp.Integer(1 if argindex == 1 else 0)
-
-    def _pythoncode(self, printer: Printer) -> str:
-        angle = printer._print(self.args[0])
-        count = printer.parenthesize(self.args[1], PRECEDENCE["Func"], strict=True)
-        return f"({count} * math.floor(({angle}) / {count} + 0.5))"
 
     def _eval_rewrite_as_floor(self, angle: sp.Expr, count: sp.Expr, **_: object) -> sp.Expr:
         return count * sp.floor(angle / count + sp.Rational(1, 2))

@@ -1,0 +1,51 @@
+"""A platform exported: its equations in the language of another tool, as files."""
+
+import re
+from pathlib import Path
+
+from ptp_symbolic.atomic_files import check_writable, write_files_atomically
+from ptp_symbolic.errors import InputError, unknown
+from ptp_symbolic.models.emission import possible_equations
+from ptp_symbolic.platform import Platform
+from ptp_symbolic.symbolic.program.program import program
+from ptp_symbolic.symbolic.targets import TARGETS
+from ptp_symbolic.symbolic.targets.target import Target
+
+
+def target_named(name: str) -> Target:
+    """The target called `name`. Raises InputError where there is none."""
+    own = {target.name: target for target in TARGETS}
+    if name not in own:
+        raise unknown("target", name, own)
+    return own[name]
+
+
+def exported(platform: Platform, target: str) -> dict[str, str]:
+    """Texts of the files of `platform` in the language of a target, by name.
+
+    Raises InputError for an unknown target, for a machine that cannot exist, and for one that the
+    target cannot express, with the effects that are in the way.
+    """
+    own = target_named(target)
+    whole = program(possible_equations(platform))
+    why = own.refuse(whole)
+    if why is not None:
+        raise InputError(f"Target '{target}' cannot express platform '{platform.name}': {why}")
+    return dict(own.files(whole, identifier(platform.name)))
+
+
+def export(platform: Platform, target: str, folder: Path) -> list[Path]:
+    """Write `platform` for a target into `folder`; all files or none. Returns their paths.
+
+    Raises InputError as `exported` does, and where the folder cannot be written.
+    """
+    check_writable(folder)
+    files = exported(platform, target)
+    write_files_atomically(folder, dict(files))
+    return [folder / name for name in files]
+
+
+def identifier(name: str) -> str:
+    """`name` as an identifier in every language: letters, digits and underscores of ASCII."""
+    plain = re.sub(r"[^0-9A-Za-z]+", "_", name).strip("_") or "model"
+    return plain if plain[0].isalpha() else f"model_{plain}"

@@ -1,1 +1,0 @@
-"""From equations to numba modules and formulas for documents."""

@@ -1,0 +1,1 @@
+"""From equations to programs: kernels of named assignments, before any language."""

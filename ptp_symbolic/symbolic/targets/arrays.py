@@ -1,0 +1,139 @@
+"""Python modules of array libraries: CasADi and JAX."""
+
+import keyword
+import textwrap
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from ptp_symbolic.symbolic.program.program import Program
+from ptp_symbolic.symbolic.targets.functions import Function, functions, names_of
+from ptp_symbolic.symbolic.targets.printing import Language
+from ptp_symbolic.symbolic.targets.target import effects_of, in_lines, literal
+
+WORDS = frozenset(keyword.kwlist) | {"ca", "jnp", "np"}
+
+
+@dataclass(frozen=True)
+class ArrayModule:
+    """A target that is one Python module: `opening` are its imports, `ending` what follows the
+    functions, `returned` how a list of entries becomes a vector.
+    """
+
+    name: str
+    summary: str
+    language: Language
+    opening: str
+    returned: str
+    ending: str
+
+    def refuse(self, program: Program) -> str | None:
+        """Nothing is refused: modes are arguments."""
+        return None
+
+    def files(self, program: Program, name: str) -> Mapping[str, str]:
+        """``name_casadi.py`` or ``name_jax.py``."""
+        title = " ".join(program.equations.title.split())
+        head = [
+            f'"""{literal(title)[1:-1]}: equations of motion for {self.language.name}.',
+            "",
+            *textwrap.wrap(f"Effects: {', '.join(effects_of(program))}.", 96),
+            "",
+            "Vectors are in the order of the names below, in SI units. Modes m [nm] are numbers:"
+            " the direction",
+            "of every friction (-1, 0 sticking, 1), then side and activity of every contact and"
+            " switch.",
+            "The functions are smooth while they last; `guards` tells when they end.",
+            '"""',
+            "",
+            self.opening,
+        ]
+        tables = [_tuple(table, map(literal, names)) for table, names in names_of(program).items()]
+        values = (repr(float(p.default)) for p in program.equations.parameters)
+        tables.append(_tuple("PARAMETERS", values))
+        own = functions(program, self.language)
+        arguments = ((f.name, ", ".join(map(literal, f.arguments))) for f in own)
+        sizes = ((f.name, ", ".join(map(str, f.sizes))) for f in own)
+        tables += [_by_function("ARGUMENTS", arguments), _by_function("SIZES", sizes)]
+        body = [self._function(each) for each in own]
+        parts = ["\n".join(head), "\n".join(tables), *body, self.ending]
+        return {f"{name}_{self.name}.py": "\n\n\n".join(parts).rstrip() + "\n"}
+
+    def _function(self, own: Function) -> str:
+        shapes = ", ".join(
+            f"{a} [{n}]" for a, n in zip(own.arguments, own.sizes, strict=True) if a != "t"
+        )
+        doc = textwrap.fill(f"{own.meaning} Shapes: {shapes}; returns [{len(own.entries)}].", 92)
+        lines = [f'"""{doc}"""']
+        lines += [f"{name} = {array}[{k}]" for name, array, k in own.unpacked]
+        lines += [f"{name} = {text}" for name, text in own.terms]
+        entries = ",\n".join(f"    {entry}" for entry in own.entries)
+        lines.append(self.returned.format(f"\n{entries},\n"))
+        text = textwrap.indent("\n".join(lines), "    ")
+        return f"def {own.name}({', '.join(own.arguments)}):\n{text}"
+
+
+def _tuple(table: str, items: Iterable[str]) -> str:
+    lines = [line for line in in_lines(items) if line.strip()]
+    return "\n".join([f"{table} = (", *lines, ")"])
+
+
+def _by_function(table: str, rows: Iterable[tuple[str, str]]) -> str:
+    """A dictionary of tuples, by the name of the function."""
+    return "\n".join([f"{table} = {{", *(f'    "{name}": ({row}),' for name, row in rows), "}"])
+
+
+def _language(name: str, at: str, **own: str) -> Language:
+    """A language whose functions are those of the module `at`."""
+    common = {head: f"{at}.{head}({{0}})" for head in ("sqrt", "exp", "log", "sin", "cos", "sign")}
+    common |= {
+        "pow": "{0}**{1}",
+        "inverse sqrt": f"1.0 / {at}.sqrt({{0}})",
+        "floor": f"{at}.floor({{0}})",
+        "NearestCount": f"({{1}} * {at}.floor(({{0}}) / {{1}} + 0.5))",
+        "pi": "3.141592653589793",
+    }
+    return Language(name, common | own, words=WORDS)
+
+
+CASADI = ArrayModule(
+    "casadi",
+    "Python module for CasADi: SX and MX functions",
+    _language(
+        "CasADi",
+        "ca",
+        acos="ca.acos({0})",
+        Abs="ca.fabs({0})",
+        Min="ca.fmin({0}, {1})",
+        Max="ca.fmax({0}, {1})",
+        Heaviside="ca.if_else({0} > 0.0, 1.0, 0.0)",
+        choice="ca.if_else({0}, {1}, {2})",
+        And="ca.logic_and({0}, {1})",
+        Or="ca.logic_or({0}, {1})",
+    ),
+    "import casadi as ca",
+    "return ca.vertcat({})",
+    '''def function(name, kind=ca.SX):
+    """The function `name` of this module as a casadi.Function of symbols of `kind`: SX or MX."""
+    symbols = [kind.sym(a, n) for a, n in zip(ARGUMENTS[name], SIZES[name])]
+    value = globals()[name](*symbols)
+    return ca.Function(name, symbols, [value], list(ARGUMENTS[name]), ["value"])''',
+)
+JAX = ArrayModule(
+    "jax",
+    "Python module for JAX: functions for jit, vmap and grad, in double precision",
+    _language(
+        "JAX",
+        "jnp",
+        acos="jnp.arccos({0})",
+        Abs="jnp.abs({0})",
+        Min="jnp.minimum({0}, {1})",
+        Max="jnp.maximum({0}, {1})",
+        Heaviside="jnp.where({0} > 0.0, 1.0, 0.0)",
+        choice="jnp.where({0}, {1}, {2})",
+        And="jnp.logical_and({0}, {1})",
+        Or="jnp.logical_or({0}, {1})",
+    ),
+    'import jax\nimport jax.numpy as jnp\n\njax.config.update("jax_enable_x64", True)',
+    "return jnp.array([{}])",
+    "",
+)

@@ -1,0 +1,378 @@
+"""C99 for firmware and hardware in the loop: header and source, no library but libm."""
+
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
+from importlib import resources
+
+from ptp_symbolic.symbolic.program.kernel import Entry, Kernel
+from ptp_symbolic.symbolic.program.program import Program
+from ptp_symbolic.symbolic.targets.c99.language import DOUBLE, FLOAT
+from ptp_symbolic.symbolic.targets.printing import Language
+from ptp_symbolic.symbolic.targets.target import effects_of, in_lines
+
+WIDTH = 96
+UNBROKEN = "\N{NO-BREAK SPACE}"  # in what must stay on one line
+
+
+class C99:
+    """Header and source in C99, in double precision or single (`language`)."""
+
+    def __init__(self, name: str, language: Language) -> None:
+        self.name = name
+        self.language = language
+        self.summary = f"C99, {'single' if language.suffix else 'double'} precision, with step()"
+
+    def refuse(self, program: Program) -> str | None:
+        """Nothing is refused."""
+        return None
+
+    def files(self, program: Program, name: str) -> Mapping[str, str]:
+        """``name.h`` and ``name.c``."""
+        return {
+            f"{name}.h": header(program, name, self.language),
+            f"{name}.c": source(program, name, self.language),
+        }
+
+
+C99_DOUBLE, C99_FLOAT = C99("c99", DOUBLE), C99("c99-float", FLOAT)
+
+
+def header(program: Program, name: str, language: Language) -> str:
+    """The header: sizes, names and units, the machine between two steps, the functions."""
+    large, counts, equations = name.upper(), program.operations, program.equations
+    tables = _tables(program)
+    text = [
+        f"/* {_comment(equations.title)}: equations of motion.",
+        "",
+        f"   Effects: {_comment(', '.join(effects_of(program)))}.",
+        f"   Operations of the vector field: {counts.written}, of which {counts.each} at every call"
+        " where prepare() does the others",
+        "   once per parameter set. A step evaluates it twice and one Jacobian, and where modes"
+        " change",
+        "   up to 30 times more, once for each set of modes that it tries.",
+        "",
+        "   All numbers are in SI units. Inputs are those that act: one that is late by a parameter"
+        " is",
+        "   delayed by the caller. Matrices are stored by rows; derivatives that are zero for any",
+        "   argument are not written, so clear arrays once before the first call. */",
+        f"#ifndef {large}_H",
+        f"#define {large}_H",
+        "",
+        f"typedef {_real(language)} {name}_real;",
+        "",
+        "enum {",
+        *(f"    {large}_{word} = {number}," for word, number in _sizes(program).items()),
+        "};",
+        "",
+        "enum {",
+        f"    {large}_DONE = 0,",
+        f"    {large}_DIVERGED = 1,  /* a state is no number, or larger than 1e12 */",
+        f"    {large}_UNDECIDED = 3, /* no set of modes is consistent */",
+        f"    {large}_OUTSIDE = 4,   /* a state has left the domain of the equations */",
+        f"    {large}_NO_PERIOD = 6  /* a sampling time is not positive */",
+        "};",
+        "",
+        *(
+            f"/* {meaning}: {_comment(', '.join(entries) or 'none')}. */"
+            for meaning, entries in tables.items()
+        ),
+        f"extern const char *const {name}_state_names[];",
+        f"extern const char *const {name}_input_names[];",
+        f"extern const char *const {name}_output_names[];",
+        f"extern const char *const {name}_parameter_names[];",
+        f"extern const char *const {name}_parameter_units[];",
+        f"extern const {name}_real {name}_parameters[]; /* values of the platform */",
+        f"extern const {name}_real {name}_initial_state[];",
+        "",
+    ]
+    for kernel in _kernels(program):
+        text += [*_prototype_comment(kernel), f"void {_signature(kernel, name, language)};", ""]
+    if program.has_modes:
+        text += [
+            "/* Find the modes that a state implies. */",
+            f"void {name}_initial_modes({name}_real t, const {name}_real *x, const {name}_real *u,",
+            f"    const {name}_real *p, {name}_real *m);",
+            "",
+        ]
+    text += [_machine(program, name), "#endif", ""]
+    return "\n".join(_filled(text))
+
+
+def source(program: Program, name: str, language: Language) -> str:
+    """The source: tables, kernels, and what all models have in common."""
+    equations = program.equations
+    values = [_number(p.default, language) for p in equations.parameters]
+    states = list(equations.state_symbols)
+    start = {state.name: float(state.initial) for state in equations.extra_states}
+    initial = [_number(start.get(str(s), 0.0), language) for s in states]
+    sizes = _sizes(program)
+    text = [
+        f'#include "{name}.h"',
+        "",
+        "#include <math.h>",
+        "",
+        f"typedef {name}_real real;",
+        f"#define REAL(number) {'number##f' if language.suffix else 'number'}",
+        f"#define ABS(number) {'fabsf' if language.suffix else 'fabs'}(number)",
+        "#define MAX(a, b) ((a) > (b) ? (a) : (b))",
+        f"#define SMALLEST {'1e-30f' if language.suffix else '1e-60'}",
+        *(f"#define {word} {number}" for word, number in sizes.items()),
+        f"#define RIGID {int(program.has_rigid_contacts)}",
+        "",
+        *_names(f"{name}_state_names", map(str, states)),
+        *_names(f"{name}_input_names", (i.name for i in equations.inputs)),
+        *_names(f"{name}_output_names", (n for n, _, _ in equations.outputs)),
+        *_names(f"{name}_parameter_names", (p.name for p in equations.parameters)),
+        *_names(f"{name}_parameter_units", (p.unit for p in equations.parameters)),
+        *_array(f"const {name}_real {name}_parameters", values),
+        *_array(f"const {name}_real {name}_initial_state", initial),
+        "",
+        *_layout(program),
+    ]
+    files = resources.files("ptp_symbolic.symbolic.targets.c99")
+    if program.has_modes:
+        text.append((files / "modes.c").read_text())
+    for kernel in _kernels(program):
+        text += [_function(kernel, name, language), ""]
+    text.append((files / "runtime.c").read_text())
+    own = "\n".join(_filled(text))
+    return own.replace("model_", f"{name}_").replace("MODEL_", f"{name.upper()}_")
+
+
+def _kernels(program: Program) -> list[Kernel]:
+    """All kernels, and the Jacobian by the state alone, which is all that a step needs."""
+    found = []
+    for kernel in program.kernels:
+        found.append(kernel)
+        if kernel.name == "jacobian":
+            doc = "Write the non-zero derivatives of mode_derivative by state."
+            found.append(kernel.restricted("state_jacobian", doc, ("fx",)))
+    return found
+
+
+def _function(kernel: Kernel, name: str, language: Language) -> str:
+    """The definition of a kernel."""
+    lines = [f"const real {_id(n, language)} = {a}[{k}];" for n, a, k in kernel.unpacked]
+    for target, expression in kernel.body:
+        text = language.expression(expression)
+        if isinstance(target, Entry):
+            lines.append(f"{target.array}[{_flat(kernel, target)}] = {text};")
+        else:
+            lines.append(f"const real {_id(target, language)} = {text};")
+    if kernel.finds_modes:
+        lines[:0] = ["real m[MODES];", f"{name}_initial_modes(t, x, u, p, m);"]
+    used = {array for _, array, _ in kernel.unpacked}
+    used |= set("txup") if kernel.finds_modes else set()
+    used |= {target.array for target, _ in kernel.body if isinstance(target, Entry)}
+    if any("t" in map(str, e.free_symbols) for _, e in kernel.lines):
+        used.add("t")
+    lines += [f"(void){a};" for a in kernel.arguments if a not in used]
+    body = "\n".join(f"    {_broken(line)}" for line in lines)
+    head = "\n".join(_filled([f"void {_signature(kernel, name, language)}"]))
+    return f"{head}\n{{\n{body}\n}}"
+
+
+def _signature(kernel: Kernel, name: str, language: Language) -> str:
+    given = []
+    for argument in kernel.arguments:
+        if argument == "t":
+            given.append(f"{name}_real t")
+        else:
+            const = "" if argument in kernel.written else "const "
+            given.append(f"{const}{name}_real *{argument}")
+    return f"{name}_{kernel.name}({', '.join(each.replace(' ', UNBROKEN) for each in given)})"
+
+
+def _prototype_comment(kernel: Kernel) -> list[str]:
+    shapes = []
+    for argument in kernel.arguments:
+        if argument != "t":
+            shape = ", ".join(map(str, kernel.vectors.shape(argument)))
+            shapes.append(f"{argument} [{shape}]")
+    return [f"/* {_comment(kernel.doc)} {'; '.join(shapes)}. */"]
+
+
+def _flat(kernel: Kernel, entry: Entry) -> int:
+    """Index of an entry of an array that is stored by rows."""
+    shape, flat = kernel.vectors.shape(entry.array), 0
+    for size, index in zip(shape, entry.indices, strict=True):
+        flat = flat * size + index
+    return flat
+
+
+def _sizes(program: Program) -> dict[str, int]:
+    """Sizes of all arrays, by their name in the source."""
+    equations = program.equations
+    contacts = len(equations.contacts) + len(equations.switches)
+    return {
+        "STATES": len(equations.state_symbols),
+        "INPUTS": len(equations.inputs),
+        "OUTPUTS": len(equations.outputs),
+        "PARAMETERS": len(equations.parameters),
+        "PREPARED": len(program.vectors.c),
+        "MODES": len(program.vectors.m),
+        "FRICTIONS": len(equations.frictions),
+        "CONTACTS": contacts,
+        "GUARDS": 3 * len(equations.frictions) + 4 * contacts,
+        "SAMPLERS": len(equations.samplers),
+        "UPDATES": len(equations.updates),
+        "LIMITS": len(equations.limits),
+    }
+
+
+def _layout(program: Program) -> list[str]:
+    """Where frictions, contacts, samplers and limits act among the states."""
+    equations = program.equations
+    states = list(equations.state_symbols)
+    layout = program.layout
+    lines: list[str] = []
+    if equations.frictions:
+        rates = ", ".join(map(str, layout.friction_rates))
+        lines.append(f"static const int FRICTION_RATES[] = {{{rates}}};")
+        lines += [
+            "/* Per state: the friction that sets it to zero when it comes to rest, or -1. */",
+            f"static const int ZERO_AT_REST[] = {{{', '.join(map(str, layout.zero_at_rest))}}};",
+        ]
+    if program.has_rigid_contacts:
+        rows = ", ".join(f"{{{a}, {b}, {rule}}}" for a, b, rule in layout.rigid_contacts)
+        lines += [
+            "/* Per contact: both rates; 0 sprung, 1 rigid, 2 rigid and held in the gap. */",
+            f"static const int CONTACT_RATES[][3] = {{{rows}}};",
+        ]
+    if equations.updates:
+        rows = ", ".join(f"{{{own}, {states.index(s)}}}" for own, s, _ in equations.updates)
+        lines.append(f"static const int SAMPLED[][2] = {{{rows}}}; /* sampler and state */")
+    if equations.limits:
+        rows = ", ".join(str(states.index(limit.state)) for limit in equations.limits)
+        lines.append(f"static const int LIMITED[] = {{{rows}}};")
+    return [*lines, ""]
+
+
+def _machine(program: Program, name: str) -> str:
+    """The record of a machine between two steps, and the functions that use it."""
+    sizes, real = _sizes(program), f"{name}_real"
+    n = sizes["STATES"]
+
+    def array(kind: str, field: str, size: int) -> str:
+        return f"    {kind} {field}[{max(size, 1)}];"
+
+    fields = [
+        array(real, "modes", sizes["MODES"]),
+        array(real, "modes_before", sizes["MODES"]),
+        array(real, "prepared", sizes["PREPARED"]),
+        array(real, "guards", sizes["GUARDS"]),
+        array(real, "by_state", n * n),
+        array(real, "matrix", n * n),
+        *(array(real, word, n) for word in ("k1", "k2", "end")),
+        array("int", "order", n),
+        array("int", "refused", 2 * sizes["FRICTIONS"]),
+    ]
+    if sizes["LIMITS"]:
+        fields.append(array(real, "bounds", 2 * sizes["LIMITS"]))
+    if program.has_rigid_contacts:
+        fields.append(array(real, "strike", sizes["CONTACTS"] * (n + 2)))
+        fields += [array("int", word, sizes["CONTACTS"]) for word in ("pressed", "settling")]
+    if sizes["SAMPLERS"]:
+        fields.append(array(real, "sampled", 3 * sizes["SAMPLERS"] + sizes["UPDATES"]))
+        fields += [array("double", word, sizes["SAMPLERS"]) for word in ("due", "count")]
+        fields.append(array("int", "armed", sizes["SAMPLERS"]))
+    sampling = [
+        "/* Run the samplers that are due at t, with inputs as after t. Instants: `due` of the"
+        " machine. */",
+        f"void {name}_sample_now({name}_machine *s, double t, {real} *x, const {real} *u,",
+        f"    const {real} *p);",
+        "",
+    ]
+    return "\n".join(
+        [
+            "/* A machine between two steps, and its room to work; nothing is allocated. */",
+            "typedef struct {",
+            *fields,
+            f"}} {name}_machine;",
+            "",
+            "/* Prepare the parameters p and find consistent modes of the state x at t. Call it"
+            " again when p",
+            "   changes. Returns a status. */",
+            f"int {name}_begin({name}_machine *s, {real} t, {real} *x, const {real} *u,",
+            f"    const {real} *p);",
+            "",
+            "/* Take x from t to t + h in one step; inputs u at t and u_end at its end (the same"
+            " where they are",
+            "   held). Friction and contact are solved implicitly. Returns a status. */",
+            f"int {name}_step({name}_machine *s, {real} t, {real} h, {real} *x, const {real} *u,",
+            f"    const {real} *u_end, const {real} *p);",
+            "",
+            *(sampling if sizes["SAMPLERS"] else []),
+            "/* Take x from t to t_end in equal steps of at most `longest`, inputs held; samplers"
+            " run when they",
+            "   are due. Returns a status. */",
+            f"int {name}_advance({name}_machine *s, double t, double t_end, double longest,"
+            f" {real} *x,",
+            f"    const {real} *u, const {real} *p);",
+            "",
+        ]
+    )
+
+
+def _tables(program: Program) -> dict[str, list[str]]:
+    """Entries of the arrays with their units, by what they are."""
+    equations = program.equations
+    return {
+        "States x": [str(s) for s in equations.state_symbols],
+        "Inputs u": [f"{i.name} [{i.unit}]" for i in equations.inputs],
+        "Outputs y": [f"{n} [{unit}]" for n, unit, _ in equations.outputs],
+        "Modes m": list(program.vectors.m),
+    }
+
+
+def _names(array: str, names: Iterable[str]) -> list[str]:
+    return _array(f"const char *const {array}", [f'"{_escaped(name)}"' for name in names])
+
+
+def _array(head: str, items: Sequence[str]) -> list[str]:
+    """The definition of an array, its items on as many lines as they need."""
+    return [f"{head}[] = {{", *in_lines(items or ["0"], WIDTH), "};"]
+
+
+def _escaped(text: str) -> str:
+    """A text inside a string literal, whatever it holds; no trigraphs."""
+    return "".join(
+        c if c.isascii() and c.isprintable() and c not in '"\\?' else f"\\{ord(c):03o}"
+        for c in text.encode("utf-8").decode("latin-1")
+    )
+
+
+def _comment(text: str) -> str:
+    """A text inside a comment, whatever it holds: titles come from files."""
+    plain = " ".join(text.replace("*/", "* /").replace("/*", "/ *").split())
+    return plain.replace("??", "? ?").rstrip("\\")
+
+
+def _real(language: Language) -> str:
+    return "float" if language.suffix else "double"
+
+
+def _number(value: float, language: Language) -> str:
+    return repr(float(value)) + language.suffix
+
+
+def _id(name: str, language: Language) -> str:
+    return language.identifier(name)
+
+
+def _broken(line: str) -> str:
+    """A statement on as many lines as it needs."""
+    return "\n        ".join(textwrap.wrap(line, WIDTH, break_long_words=False)) or line
+
+
+def _filled(lines: Sequence[str]) -> list[str]:
+    """Lines, those of comments and tables broken where they are too long."""
+    found = []
+    for line in lines:
+        if "\n" in line or len(line) <= WIDTH:
+            found.append(line)
+        elif line.startswith(("/*", "   ")):
+            found += textwrap.wrap(line, WIDTH, subsequent_indent="   ", break_long_words=False)
+        else:
+            found += textwrap.wrap(line, WIDTH, subsequent_indent="    ", break_long_words=False)
+    return [line.replace(UNBROKEN, " ") for line in found]

@@ -1,0 +1,117 @@
+"""C99, in double and in single precision."""
+
+from ptp_symbolic.symbolic.targets.printing import Language
+
+KEYWORDS = frozenset(
+    [
+        "auto",
+        "break",
+        "case",
+        "char",
+        "const",
+        "continue",
+        "default",
+        "do",
+        "double",
+        "else",
+        "enum",
+        "extern",
+        "float",
+        "for",
+        "goto",
+        "if",
+        "inline",
+        "int",
+        "long",
+        "register",
+        "restrict",
+        "return",
+        "short",
+        "signed",
+        "sizeof",
+        "static",
+        "struct",
+        "switch",
+        "typedef",
+        "union",
+        "unsigned",
+        "void",
+        "volatile",
+        "while",
+        "real",
+        "asm",
+        "typeof",
+    ]
+)
+MATHS = frozenset(
+    [
+        "acos",
+        "asin",
+        "atan",
+        "atan2",
+        "ceil",
+        "copysign",
+        "cos",
+        "cosh",
+        "erf",
+        "exp",
+        "exp2",
+        "fabs",
+        "floor",
+        "fmax",
+        "fmin",
+        "fmod",
+        "gamma",
+        "hypot",
+        "j0",
+        "j1",
+        "jn",
+        "ldexp",
+        "lgamma",
+        "log",
+        "log10",
+        "log2",
+        "pow",
+        "round",
+        "sin",
+        "sinh",
+        "sqrt",
+        "tan",
+        "tanh",
+        "trunc",
+        "y0",
+        "y1",
+        "yn",
+    ]
+)
+
+
+def _c99(name: str, suffix: str) -> Language:
+    """The language with the `suffix` of a precision behind functions and numbers."""
+    s, zero, one, half = suffix, f"0.0{suffix}", f"1.0{suffix}", f"0.5{suffix}"
+    operations = {
+        "pow": f"pow{s}({{0}}, {{1}})",
+        "sqrt": f"sqrt{s}({{0}})",
+        "inverse sqrt": f"{one} / sqrt{s}({{0}})",
+        "exp": f"exp{s}({{0}})",
+        "log": f"log{s}({{0}})",
+        "sin": f"sin{s}({{0}})",
+        "cos": f"cos{s}({{0}})",
+        "acos": f"acos{s}({{0}})",
+        "Abs": f"fabs{s}({{0}})",
+        "floor": f"floor{s}({{0}})",
+        "sign": f"({{0}} == {zero} ? {zero} : copysign{s}({one}, {{0}}))",
+        "Min": f"fmin{s}({{0}}, {{1}})",
+        "Max": f"fmax{s}({{0}}, {{1}})",
+        "Heaviside": f"({{0}} > {zero} ? {one} : {zero})",
+        "NearestCount": f"({{1}} * floor{s}(({{0}}) / {{1}} + {half}))",
+        "choice": "(({0}) ? ({1}) : ({2}))",
+        "And": "(({0}) && ({1}))",
+        "Or": "(({0}) || ({1}))",
+        "pi": f"3.141592653589793{s}",
+    }
+    words = KEYWORDS | MATHS | frozenset(f"{word}f" for word in MATHS)
+    return Language(name, operations, suffix, words)
+
+
+DOUBLE, FLOAT = _c99("c99", ""), _c99("c99-float", "f")

@@ -1,0 +1,1 @@
+"""Programs as self-contained numba modules."""

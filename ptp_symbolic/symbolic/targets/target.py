@@ -1,0 +1,49 @@
+"""What a target is: a language or a tool that a program is written for."""
+
+import json
+from collections.abc import Iterable, Mapping
+from typing import Protocol
+
+from ptp_symbolic.symbolic.program.program import Program
+
+
+class Target(Protocol):
+    """A target: its `name` on the command line, one line of what it writes, and how."""
+
+    @property
+    def name(self) -> str:
+        """Name on the command line."""
+
+    @property
+    def summary(self) -> str:
+        """What it writes, in one line."""
+
+    def refuse(self, program: Program) -> str | None:
+        """Why it cannot express a program, naming the effects; None where it can."""
+
+    def files(self, program: Program, name: str) -> Mapping[str, str]:
+        """Texts of its files by name, for a program called `name`."""
+
+
+def effects_of(program: Program) -> list[str]:
+    """Keys of the effects of a program, such as ``backlash@pan``."""
+    return [
+        f"{placed.effect.id}@{placed.axis}" if placed.axis else placed.effect.id
+        for placed in program.equations.effects
+    ]
+
+
+def literal(text: str) -> str:
+    """`text` as a double-quoted literal of Python or JavaScript, whatever it holds."""
+    return json.dumps(text)
+
+
+def in_lines(items: Iterable[str], width: int = 96) -> list[str]:
+    """Items, each with a comma behind it, on as many indented lines as they need."""
+    lines, line = [], "   "
+    for item in items:
+        if len(line) + len(item) + 2 > width and line.strip():
+            lines.append(line)
+            line = "   "
+        line += f" {item},"
+    return [*lines, line]

@@ -1,0 +1,62 @@
+"""Shared terms: what they compute is what was asked for, with few functions."""
+
+import math
+
+import pytest
+import sympy as sp
+
+from ptp_symbolic.symbolic.program.sharing import Vocabulary, share
+
+Q, N = sp.symbols("q n", real=True)
+
+
+@pytest.mark.parametrize("angle", [Q, N * Q])
+@pytest.mark.parametrize("function", [sp.sin, sp.cos])
+def test_multiples_of_an_angle_need_no_functions_of_their_own(
+    angle: sp.Expr, function: type[sp.Function]
+) -> None:
+    wanted = sp.Add(*(k * function(k * angle) for k in (1, 2, 3)))
+    lines = share((), [("out", wanted)], Vocabulary())
+    functions = set().union(*(e.atoms(sp.sin, sp.cos) for _, e in lines))
+    assert {f.func for f in functions} <= {sp.sin, sp.cos}
+    assert len(functions) <= 2
+    values: dict[sp.Basic, float] = {Q: 0.7, N: 24.0}
+    for name, expression in lines:
+        values[sp.Symbol(name, real=True)] = float(expression.subs(values))
+    own = {sp.sin: math.sin, sp.cos: math.cos}[function]
+    at = 0.7 if angle == Q else 24.0 * 0.7
+    assert values[sp.Symbol("out", real=True)] == pytest.approx(
+        sum(k * own(k * at) for k in (1, 2, 3)), rel=1e-12
+    )
+
+
+def test_an_angle_that_stands_alone_stays() -> None:
+    lines = share((), [("out", sp.sin(2 * Q) + sp.cos(3 * N))], Vocabulary())
+    assert set().union(*(e.atoms(sp.sin, sp.cos) for _, e in lines)) == {
+        sp.sin(2 * Q),
+        sp.cos(3 * N),
+    }
+
+
+SIGN, ON = sp.symbols("slide side_on", real=True)
+
+
+@pytest.mark.parametrize(
+    ("power", "same"), [(SIGN**3, SIGN), (SIGN**4, SIGN**2), (SIGN**2, SIGN**2), (ON**2, ON)]
+)
+def test_powers_of_modes_are_reduced(power: sp.Expr, same: sp.Expr) -> None:
+    words = Vocabulary(signs=frozenset({SIGN}), switches=frozenset({ON}))
+    assert share((), [("out", N * power)], words) == [("out", N * same)]
+
+
+def test_a_definition_that_only_renames_leaves_no_line() -> None:
+    mass = sp.Symbol("mass", real=True)
+    assert share([("mass", N)], [("out", Q / mass)], Vocabulary()) == [("out", Q / N)]
+
+
+def test_a_shared_term_takes_the_name_that_it_is_known_under() -> None:
+    twist = sp.exp(-(Q**2)) * N
+    words = Vocabulary(meanings=[("twist", twist)])
+    lines = share((), [("one", twist + 1), ("two", twist + Q)], words)
+    known = sp.Symbol("twist", real=True)
+    assert lines == [("twist", twist), ("one", known + 1), ("two", known + Q)]
