@@ -59,9 +59,12 @@ class Stepped:
         x = x.copy()
         assert self.call("begin", float(times[0]), x, np.ascontiguousarray(inputs[0]), self.p) == 0
         found = [x.copy()]
-        for begin, end, given in zip(times[:-1], times[1:], inputs[:-1], strict=True):
-            u = np.ascontiguousarray(given)
-            status = self.call("advance", float(begin), float(end), step, x, u, self.p)
-            assert status == 0, (begin, status)
+        samples = hasattr(self.functions, f"{self.name}_sample_now")
+        for k in range(len(times) - 1):
+            u, ahead = (np.ascontiguousarray(inputs[j]) for j in (k, k + 1))
+            status = self.call("advance", float(times[k]), float(times[k + 1]), step, x, u, self.p)
+            assert status == 0, (times[k], status)
+            if samples:  # what is seen at an instant is what its samplers have set
+                self.call("sample_now", float(times[k + 1]), x, ahead, self.p)
             found.append(x.copy())
         return np.array(found)

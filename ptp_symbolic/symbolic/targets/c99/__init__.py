@@ -226,8 +226,8 @@ def _layout(program: Program) -> list[str]:
     states = list(equations.state_symbols)
     layout = program.layout
     lines: list[str] = []
-    if equations.frictions:
-        rates = ", ".join(map(str, layout.friction_rates))
+    if equations.frictions or program.has_rigid_contacts:
+        rates = ", ".join(map(str, layout.friction_rates or (-1,)))
         lines.append(f"static const int FRICTION_RATES[] = {{{rates}}};")
         lines += [
             "/* Per state: the friction that sets it to zero when it comes to rest, or -1. */",

@@ -12,7 +12,9 @@ static const real GAMMA = REAL(0.29289321881345254); /* 1 - sqrt(1/2) */
 static const real LARGEST_STATE = REAL(1e12);
 static const real SMALLEST_STATE = SMALLEST;         /* smaller states are set to zero */
 #if RIGID
+#if FRICTIONS > 0
 static const real REVERSAL_DEAD_BAND = REAL(1e-13);  /* rad/s, or m/s */
+#endif
 static const real PUSH_DEAD_BAND = REAL(1e-12);      /* N m, or N */
 static const real APPROACH_DEAD_BAND = REAL(1e-12);  /* rad/s */
 static const real RESTING_SPEED = REAL(1e-5);        /* rad/s; slower faces stay together */
@@ -145,6 +147,7 @@ static void fixed_mode_step(model_machine *s, real t, real h, const real *x, con
 }
 
 #if MODES > 0
+#if !RIGID
 static void allow_all(model_machine *s)
 {
     for (int f = 0; f < 2 * FRICTIONS; f++)
@@ -216,7 +219,6 @@ static int correct_a_mode(model_machine *s, const real *x)
     return 0;
 }
 
-#if !RIGID
 /* An implicit step that finds its modes; the number of mode sets tried, 0 where none fits. */
 static int mode_finding_step(model_machine *s, real t, real h, const real *x, const real *u,
                              const real *p)
