@@ -22,4 +22,4 @@ def export(source: Source, target: str, folder: str | Path) -> list[Path]:
     """
     from ptp_symbolic.models.export import export as written
 
-    return written(platform_of(source), target, Path(folder))
+    return written(platform_of(source), target, Path(folder))[0]

@@ -30,7 +30,9 @@ def export(target: str, source: str, out: Path) -> None:
 
     target_named(target)
     platform = declared_platform(source)
-    paths = written(platform, target, out)
+    paths, remarks = written(platform, target, out)
     note_defaults(platform)
+    for remark in remarks:
+        click.echo(remark)
     for path in paths:
         click.echo(f"written: {path}")

@@ -1,6 +1,8 @@
 """A platform exported: its equations in the language of another tool, as files."""
 
 import re
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from ptp_symbolic.atomic_files import check_writable, write_files_atomically
@@ -20,8 +22,16 @@ def target_named(name: str) -> Target:
     return own[name]
 
 
-def exported(platform: Platform, target: str) -> dict[str, str]:
-    """Texts of the files of `platform` in the language of a target, by name.
+@dataclass(frozen=True)
+class Exported:
+    """Texts of the `files` of a platform for a target, by name, and what to know of them."""
+
+    files: Mapping[str, str]
+    remarks: tuple[str, ...]
+
+
+def exported(platform: Platform, target: str) -> Exported:
+    """`platform` in the language of a target.
 
     Raises InputError for an unknown target, for a machine that cannot exist, and for one that the
     target cannot express, with the effects that are in the way.
@@ -31,18 +41,19 @@ def exported(platform: Platform, target: str) -> dict[str, str]:
     why = own.refuse(whole)
     if why is not None:
         raise InputError(f"Target '{target}' cannot express platform '{platform.name}': {why}")
-    return dict(own.files(whole, identifier(platform.name)))
+    return Exported(own.files(whole, identifier(platform.name)), tuple(own.remarks(whole)))
 
 
-def export(platform: Platform, target: str, folder: Path) -> list[Path]:
-    """Write `platform` for a target into `folder`; all files or none. Returns their paths.
+def export(platform: Platform, target: str, folder: Path) -> tuple[list[Path], tuple[str, ...]]:
+    """Write `platform` for a target into `folder`; all files or none. Returns their paths, and what
+    to know of them.
 
     Raises InputError as `exported` does, and where the folder cannot be written.
     """
     check_writable(folder)
-    files = exported(platform, target)
-    write_files_atomically(folder, dict(files))
-    return [folder / name for name in files]
+    found = exported(platform, target)
+    write_files_atomically(folder, dict(found.files))
+    return [folder / name for name in found.files], found.remarks
 
 
 def identifier(name: str) -> str:

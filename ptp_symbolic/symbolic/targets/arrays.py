@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ptp_symbolic.symbolic.program.program import Program
 from ptp_symbolic.symbolic.targets.functions import Function, functions, names_of
 from ptp_symbolic.symbolic.targets.printing import Language
-from ptp_symbolic.symbolic.targets.target import effects_of, in_lines, literal
+from ptp_symbolic.symbolic.targets.target import effects_of, in_lines, late_inputs, literal
 
 WORDS = frozenset(keyword.kwlist) | {"ca", "jnp", "np"}
 
@@ -29,6 +29,10 @@ class ArrayModule:
     def refuse(self, program: Program) -> str | None:
         """Nothing is refused: modes are arguments."""
         return None
+
+    def remarks(self, program: Program) -> list[str]:
+        """Nothing is lost; inputs that are late are delayed by the caller."""
+        return late_inputs(program)
 
     def files(self, program: Program, name: str) -> Mapping[str, str]:
         """``name_casadi.py`` or ``name_jax.py``."""

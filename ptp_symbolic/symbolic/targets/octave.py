@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from ptp_symbolic.symbolic.program.program import Program
 from ptp_symbolic.symbolic.targets.functions import Function, functions, names_of
 from ptp_symbolic.symbolic.targets.printing import Language
+from ptp_symbolic.symbolic.targets.target import late_inputs
 
 WORDS = frozenset(
     [
@@ -90,6 +91,10 @@ class Octave:
     def refuse(self, program: Program) -> str | None:
         """Nothing is refused: modes are arguments."""
         return None
+
+    def remarks(self, program: Program) -> list[str]:
+        """Nothing is lost; inputs that are late are delayed by the caller."""
+        return late_inputs(program)
 
     def files(self, program: Program, name: str) -> Mapping[str, str]:
         """One file per function, and one that returns names, units and values."""

@@ -21,6 +21,9 @@ class Target(Protocol):
     def refuse(self, program: Program) -> str | None:
         """Why it cannot express a program, naming the effects; None where it can."""
 
+    def remarks(self, program: Program) -> list[str]:
+        """What its user should know of a program in it, such as what is lost."""
+
     def files(self, program: Program, name: str) -> Mapping[str, str]:
         """Texts of its files by name, for a program called `name`."""
 
@@ -31,6 +34,17 @@ def effects_of(program: Program) -> list[str]:
         f"{placed.effect.id}@{placed.axis}" if placed.axis else placed.effect.id
         for placed in program.equations.effects
     ]
+
+
+def late_inputs(program: Program) -> list[str]:
+    """That the caller delays inputs, where a parameter says that some are late."""
+    equations = program.equations
+    late = [
+        f"{given.name} acts {delay} later than it is given: delay it before the call"
+        for given, delay in zip(equations.inputs, equations.delays, strict=True)
+        if delay is not None
+    ]
+    return late
 
 
 def literal(text: str) -> str:

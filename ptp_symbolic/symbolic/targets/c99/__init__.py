@@ -8,7 +8,7 @@ from ptp_symbolic.symbolic.program.kernel import Entry, Kernel
 from ptp_symbolic.symbolic.program.program import Program
 from ptp_symbolic.symbolic.targets.c99.language import DOUBLE, FLOAT
 from ptp_symbolic.symbolic.targets.printing import Language
-from ptp_symbolic.symbolic.targets.target import effects_of, in_lines
+from ptp_symbolic.symbolic.targets.target import effects_of, in_lines, late_inputs
 
 WIDTH = 96
 UNBROKEN = "\N{NO-BREAK SPACE}"  # in what must stay on one line
@@ -25,6 +25,10 @@ class C99:
     def refuse(self, program: Program) -> str | None:
         """Nothing is refused."""
         return None
+
+    def remarks(self, program: Program) -> list[str]:
+        """Nothing is lost; inputs that are late are delayed by the caller."""
+        return late_inputs(program)
 
     def files(self, program: Program, name: str) -> Mapping[str, str]:
         """``name.h`` and ``name.c``."""

@@ -1,0 +1,106 @@
+"""MJCF and URDF: MuJoCo reads both, and moves as the equations do."""
+
+import re
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ptp_symbolic as ptp
+from ptp_symbolic.models.emission import possible_equations
+from ptp_symbolic.platform import EffectDeclaration, ParameterDeclaration, Platform, read_platform
+from ptp_symbolic.symbolic.program.program import program
+from ptp_symbolic.symbolic.targets.multibody import Mjcf, Urdf
+
+mujoco = pytest.importorskip("mujoco")
+
+RIGID = {
+    "J_pan": ("kg m^2", 0.05),
+    "J_x_tilt": ("kg m^2", 0.012),
+    "J_y_tilt": ("kg m^2", 0.017),
+    "J_z_tilt": ("kg m^2", 0.014),
+    "m_payload": ("kg", 4.992),
+    "J_x_payload": ("kg m^2", 0.0053),
+    "J_y_payload": ("kg m^2", 0.0068),
+    "J_z_payload": ("kg m^2", 0.0061),
+    "c_x_payload": ("m", 0.1),
+    "c_y_payload": ("m", 0.03),
+    "c_z_payload": ("m", -0.04),
+    "b_pan": ("N m s/rad", 0.2),
+    "b_tilt": ("N m s/rad", 0.3),
+    "k1_cable_pan": ("N m/rad", 0.8),
+    "theta0_cable_pan": ("rad", 0.2),
+    "beta_base": ("rad", 0.07),
+    "phi_base": ("rad", 0.9),
+    "J_xy_payload": ("kg m^2", 0.001),
+    "J_xz_payload": ("kg m^2", -0.0007),
+    "J_yz_payload": ("kg m^2", 0.0004),
+}
+
+
+def camera(*more: str) -> Platform:
+    """A pan-tilt camera that leans, on a cable."""
+    names = ["rigid_bodies", "payload", *more]
+    effects = [EffectDeclaration(n, None, None) for n in names]
+    effects += [EffectDeclaration("viscous_friction", axis, None) for axis in ("pan", "tilt")]
+    effects += [EffectDeclaration("cable_spring", "pan", None)]
+    bare = Platform("camera", "Camera", ("pan", "tilt"), 9.81, tuple(effects), (), ())
+    own = {p.name for p in possible_equations(bare).parameters}
+    values = tuple(
+        ParameterDeclaration(name, unit, value)
+        for name, (unit, value) in RIGID.items()
+        if name in own
+    )
+    return replace(bare, parameters=values)
+
+
+def exported(target: Mjcf | Urdf, platform: Platform) -> str:
+    (text,) = target.files(program(possible_equations(platform)), "machine").values()
+    return text
+
+
+@pytest.mark.parametrize(
+    "more", [(), ("base_tilt",), ("base_tilt", "product_of_inertia")], ids="+".join
+)
+def test_mujoco_accelerates_as_the_equations_do(more: tuple[str, ...]) -> None:
+    platform = camera(*more)
+    machine = ptp.load(platform)
+    model = mujoco.MjModel.from_xml_string(exported(Mjcf(), platform))
+    data, rng, worst = mujoco.MjData(model), np.random.default_rng(3), 0.0
+    for _ in range(50):
+        x, u = rng.normal(0.0, 0.8, 4), rng.normal(0.0, 2.0, 2)
+        data.qpos[:], data.qvel[:], data.ctrl[:] = x[:2], x[2:], u
+        mujoco.mj_forward(model, data)
+        ours = machine.rhs(x, u=u)[2:]
+        worst = max(worst, float(np.max(np.abs(data.qacc - ours) / (1.0 + np.abs(ours)))))
+    assert worst < 1e-12
+
+
+def test_mujoco_reads_the_urdf_and_accelerates_alike() -> None:
+    platform = camera("product_of_inertia")
+    effects = tuple(e for e in platform.effects if e.effect != "cable_spring")
+    values = tuple(p for p in platform.parameters if "cable" not in p.name)
+    platform = replace(platform, effects=effects, parameters=values)
+    assert Urdf().remarks(program(possible_equations(platform))) == []
+    text = exported(Urdf(), platform)
+    model = mujoco.MjModel.from_xml_string(re.sub(r"<!--.*?-->", "", text, flags=re.S))
+    data, rng, machine = mujoco.MjData(model), np.random.default_rng(4), ptp.load(platform)
+    for _ in range(20):
+        x, u = rng.normal(0.0, 0.8, 4), rng.normal(0.0, 2.0, 2)
+        data.qpos[:], data.qvel[:], data.qfrc_applied[:] = x[:2], x[2:], u
+        mujoco.mj_forward(model, data)
+        assert np.allclose(data.qacc, machine.rhs(x, u=u)[2:], rtol=1e-9, atol=1e-9)
+
+
+def test_a_motor_is_the_armature_of_its_joint_and_what_is_lost_is_said() -> None:
+    whole = program(possible_equations(read_platform("thesis-pan-drive")))
+    (text,) = Mjcf().files(whole, "drive").values()
+    values = {p.name: p.default for p in whole.equations.parameters}
+    (joint,) = ET.fromstring(text).iter("joint")
+    armature = values["N_pan"] ** 2 * values["J_motor_pan"]
+    assert float(joint.get("armature", "")) == pytest.approx(armature, rel=1e-15)
+    lost = "\n".join(Mjcf().remarks(whole))
+    for effect in ("backlash@pan", "shaft_compliance@pan", "dc_motor@pan", "csvs_friction@pan"):
+        assert effect in lost and effect in text
+    mujoco.MjModel.from_xml_string(text)
