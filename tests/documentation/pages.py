@@ -9,6 +9,7 @@ import contextlib
 import io
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -71,10 +72,36 @@ class Reader:
             self.printed = out.getvalue()
         elif block.language == "sh":
             self.printed = "".join(self.command(words) for words in command_lines(block.text))
+        elif block.language == "c":
+            self.printed = self.compiled(block.text)
+        elif block.language == "matlab":
+            self.printed = self.by_octave(block.text)
         elif block.language == "toml":
             tomllib.loads(block.text)
         else:
             raise AssertionError(f"a block of {block.language} cannot be pasted")
+
+    def compiled(self, text: str) -> str:
+        """What a C program prints that includes the exported source; nothing without a compiler."""
+        compiler = shutil.which("cc")
+        (header,) = re.findall(r'#include "(\w+)\.h"', text)
+        (source,) = self.folder.rglob(f"{header}.c")
+        (source.parent / "main.c").write_text(text, encoding="utf-8")
+        if compiler is None:
+            return ""
+        words = [compiler, "-std=c99", "-O2", "-Wall", "-Werror", "main.c", source.name, "-lm"]
+        subprocess.run(words, cwd=source.parent, check=True)
+        program = [str(source.parent / "a.out")]
+        return subprocess.run(program, check=True, capture_output=True, text=True).stdout
+
+    def by_octave(self, text: str) -> str:
+        """What Octave prints for a script; nothing without Octave."""
+        octave = shutil.which("octave-cli")
+        if octave is None:
+            return ""
+        words = [octave, "--norc", "--eval", text]
+        done = subprocess.run(words, cwd=self.folder, check=True, capture_output=True, text=True)
+        return done.stdout
 
 
 def command_lines(text: str) -> Iterator[list[str]]:
