@@ -18,7 +18,7 @@ def export(source: Source, target: str, folder: str | Path) -> list[Path]:
     >>> import ptp_symbolic as ptp
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     [path.name for path in ptp.export("thesis-ideal", "c99", folder)]
-    ['thesis_ideal.h', 'thesis_ideal.c']
+    ['ideal.h', 'ideal.c']
     """
     from ptp_symbolic.models.export import export as written
 

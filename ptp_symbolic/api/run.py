@@ -14,8 +14,13 @@ from ptp_symbolic.api.extras import extra_library
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.run import Trajectory
-from ptp_symbolic.numeric.simulation.signals.input_values import values_at
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, constant, delays_of, stack
+from ptp_symbolic.numeric.simulation.signals.inputs import (
+    InputSignal,
+    constant,
+    delays_of,
+    stack,
+    values_at,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

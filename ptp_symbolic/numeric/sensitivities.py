@@ -33,8 +33,13 @@ from ptp_symbolic.numeric.simulation.run import (
     refuse_failure,
     start_of,
 )
-from ptp_symbolic.numeric.simulation.signals.input_values import slopes_at, values_at
-from ptp_symbolic.numeric.simulation.signals.inputs import InputSignal, InputTable, delay_columns
+from ptp_symbolic.numeric.simulation.signals.inputs import (
+    InputSignal,
+    InputTable,
+    delay_columns,
+    slopes_at,
+    values_at,
+)
 
 FloatArray = NDArray[np.float64]
 

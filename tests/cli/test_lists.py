@@ -10,10 +10,9 @@ from ptp_symbolic.symbolic.effects import EFFECTS
 def test_names_are_whole_through_a_pipe(call, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "60")
     lines = call("effects").out.splitlines()
-    assert [line.split()[0] for line in lines[1:]] == [
-        kind.id for effect in EFFECTS for kind in (effect, *effect.kinds)
-    ]
-    assert all(kind.reference in line for kind, line in zip(EFFECTS[:14], lines[1:], strict=False))
+    kinds = [kind for effect in EFFECTS for kind in (effect, *effect.kinds)]
+    assert [line.split()[0] for line in lines[1:]] == [kind.id for kind in kinds]
+    assert all(kind.reference in line for kind, line in zip(kinds[:14], lines[1:], strict=False))
     assert "thesis-tilt-drive-stroke-48" in call("platforms").out
 
 

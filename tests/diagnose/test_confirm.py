@@ -119,7 +119,7 @@ def test_no_effect_is_named_where_noise_is_left_and_the_others_can_do_what_it_do
     fit = finished(noise, [-c for c in columns], None, (SPRING, other), {"k": 0.5, "J": 1.0})
     reason = why_unconfirmed(fit, EFFECT, leaves_noise=True)
     assert (reason is None) is is_named
-    assert is_named or "can do all that it does" in str(reason)
+    assert is_named or "reproduce all that it does" in str(reason)
 
 
 def test_an_effect_of_a_machine_of_which_all_is_known_is_done_by_nothing() -> None:

@@ -35,6 +35,9 @@ WAVES = {  # amplitudes, and frequencies in Hz
     "setpoint_pan": ([0.4, 0.1], [0.6, 2.1]),
     "alpha_pan": ([9.0, 4.0], [0.8, 2.2]),
     "temperature_pan": ([10.0], [0.3]),
+    **{f"acceleration_{k}_base": ([2.0, 1.0], [0.6 + 0.2 * n, 2.7]) for n, k in enumerate("xyz")},
+    **{f"omega_{k}_base": ([0.8], [0.5 + 0.3 * n]) for n, k in enumerate("xyz")},
+    **{f"alpha_{k}_base": ([1.5], [0.4 + 0.3 * n]) for n, k in enumerate("xyz")},
 }
 
 
@@ -89,6 +92,39 @@ def shaken(run: Run) -> np.ndarray:
     jerk = run["a_base"] * turn * np.cos(turn * run.found.t + run["phi_base"])
     reach = run["c_x_payload"] * np.cos(run.theta_tilt) * np.cos(run.theta_pan - run["psi_base"])
     return as_given(run) + run["m_payload"] * jerk * reach
+
+
+def reach(run: Run) -> np.ndarray:
+    """Centre of mass [3, n] of the pan body from the axis, in the axes of the base, in m."""
+    cos, sin = np.cos(run.theta_pan), np.sin(run.theta_pan)
+    x, y = run["c_x_pan"], run["c_y_pan"]
+    return np.array([x * cos - y * sin, x * sin + y * cos, run.p.get("c_z_pan", 0.0) + 0.0 * cos])
+
+
+def along(run: Run) -> np.ndarray:
+    """Speed [3, n] of that centre of mass relative to the base, in m/s."""
+    x, y, _ = reach(run)
+    return np.array([-y * run.omega_pan, x * run.omega_pan, 0.0 * x])
+
+
+def pushed(run: Run) -> np.ndarray:
+    """In the axes of a base that accelerates, what the force -m a does along the motion there."""
+    force = -run["m_pan_body"] * np.array([run.given(f"acceleration_{k}_base") for k in "xyz"])
+    return run.given("tau_pan") * run.omega_pan + np.sum(force * along(run), axis=0)
+
+
+def turned(run: Run) -> np.ndarray:
+    """In the axes of a base that turns: Euler and centrifugal force along the motion (that of
+    Coriolis does no work), and the torque about the axis that the body's own inertia takes.
+    """
+    w, slope = (np.array([run.given(f"{a}_{k}_base") for k in "xyz"]) for a in ("omega", "alpha"))
+    r, mass = reach(run), run["m_pan_body"]
+    euler, spin = np.cross(slope, r, axis=0), np.cross(w, np.cross(w, r, axis=0), axis=0)
+    cos, sin = np.cos(run.theta_pan), np.sin(run.theta_pan)
+    first, second = w[0] * cos + w[1] * sin, w[1] * cos - w[0] * sin  # rates in the body's axes
+    own = run["J_pan"] * slope[2] + (run["J_y_pan"] - run["J_x_pan"]) * first * second
+    torque = run.given("tau_pan") - own
+    return torque * run.omega_pan - mass * np.sum((euler + spin) * along(run), axis=0)
 
 
 # --- losses, in W --------------------------------------------------------------------------------
@@ -246,6 +282,8 @@ CASES = (
     on_joints("payload_com_offset", joints(), c_y_payload=0.02),
     on_joints("product_of_inertia", joints(), J_xy_tilt=1e-3),
     on_joints("axis_offset", joints(), a_tilt=0.05),
+    on_joints("imu", joints()),
+    on_joints("pan_com_offset", joints(), m_pan_body=2.0, c_x_pan=0.05, c_y_pan=0.02),
     on_joints("base_tilt", joints(), beta_base=0.1, alpha_base=0.4),
     on_joints("base_motion", joints(), shaken, a_base=2.0, f_base=1.7, phi_base=0.3, psi_base=0.5),
     on_joints("direction_dependent_friction", joints(coulomb=directed), a_F_c_pan=0.3, F_s_pan=0.1),
@@ -341,6 +379,21 @@ CASES = (
         drive(winding=lambda r: (1.0 + r.heat_pan) * copper(r)),
         k_heat_pan=0.05,
         t_heat_pan=1.0,
+    ),
+    Case(
+        "base_acceleration",
+        "pan_com_offset base_acceleration",
+        pushed,
+        nothing,
+        {"m_pan_body": 2.0, "c_x_pan": 0.05, "c_y_pan": 0.03},
+    ),
+    Case(
+        "base_rotation",
+        "pan_com_offset base_rotation",
+        turned,
+        nothing,
+        {"m_pan_body": 2.0, "c_x_pan": 0.05, "c_y_pan": 0.03, "c_z_pan": 0.04}
+        | {"J_x_pan": 0.03, "J_y_pan": 0.05},
     ),
     Case("lugre_friction", "lugre_friction", as_given, bristles, {"sigma0_pan": 100.0}),
     Case("maxwell_slip_friction", "maxwell_slip_friction", as_given, slipping, {}),

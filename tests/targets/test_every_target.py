@@ -13,6 +13,7 @@ import pytest
 import sympy as sp
 
 from ptp_symbolic.symbolic.effects import EFFECTS
+from ptp_symbolic.symbolic.mechanics.kinematics import place_of
 from ptp_symbolic.symbolic.program.kernel import Kernel
 from ptp_symbolic.symbolic.targets import TARGETS
 from ptp_symbolic.symbolic.targets.arrays import CASADI, JAX, ArrayModule
@@ -79,6 +80,8 @@ def exact(name: str, given: Sampled) -> tuple[list[float], list[float]]:
         for symbol, term in equations.terms:
             values[symbol] = sp.Float(str(number(term)), 50)
         n = len(equations.rates)
+        places = [place_of(q) for q in equations.coordinates]
+        accelerations = [sp.Symbol(f"accel_{place}", real=True) for place in places]
         mass = mpmath.matrix(n, n)
         force = mpmath.matrix(n, 1)
         slides = {f.rate: (f, given.m[k]) for k, f in enumerate(equations.frictions)}
@@ -98,6 +101,8 @@ def exact(name: str, given: Sampled) -> tuple[list[float], list[float]]:
         )
         derivatives |= {w: rates[i] for i, w in enumerate(equations.rates)}
         derivatives |= {s.symbol: number(s.derivative) for s in equations.extra_states}
+        if not equations.mode_symbols:  # outputs may depend on accelerations
+            values |= {a: sp.Float(str(r), 50) for a, r in zip(accelerations, rates, strict=True)}
         field = [float(derivatives[s]) for s in equations.state_symbols]
         outputs = [float(number(e)) for _, _, e in equations.outputs]
     return field, outputs

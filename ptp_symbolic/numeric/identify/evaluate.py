@@ -19,8 +19,12 @@ from ptp_symbolic.numeric.simulation.integration import (
 )
 from ptp_symbolic.numeric.simulation.kernels.calls import call, output_addresses
 from ptp_symbolic.numeric.simulation.kernels.records import DONE
-from ptp_symbolic.numeric.simulation.signals.input_values import values_at
-from ptp_symbolic.numeric.simulation.signals.inputs import delay_columns, delayed, delays_of
+from ptp_symbolic.numeric.simulation.signals.inputs import (
+    delay_columns,
+    delayed,
+    delays_of,
+    values_at,
+)
 
 FloatArray = NDArray[np.float64]
 

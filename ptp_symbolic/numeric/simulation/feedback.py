@@ -12,8 +12,11 @@ from ptp_symbolic.numeric.runtime.element_layout import contact_count, contact_m
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.integration import Accuracy, Solution, integrate
 from ptp_symbolic.numeric.simulation.kernels.records import DONE
-from ptp_symbolic.numeric.simulation.signals.input_values import values_at
-from ptp_symbolic.numeric.simulation.signals.inputs import InputTable, delays_of
+from ptp_symbolic.numeric.simulation.signals.inputs import (
+    InputTable,
+    delays_of,
+    values_at,
+)
 
 FloatArray = NDArray[np.float64]
 

@@ -71,7 +71,7 @@ class Machine:
         """The value of an expression of parameters."""
         symbols = {real("gravity"): STANDARD_GRAVITY}
         symbols |= {p.symbol: self.values[p.name] for p in self.equations.parameters}
-        return float(sp.sympify(expression).subs(symbols))
+        return float(expression.subs(symbols))
 
     @property
     def gravity(self) -> tuple[float, ...]:

@@ -2,12 +2,9 @@
 
 import math
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from ptp_symbolic.numeric.simulation.kernels.records import KERNEL, inlined
-from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 
 
 @njit(cache=True, **KERNEL)
@@ -66,24 +63,6 @@ def evaluate_input_slopes(
                 turn = 2.0 * math.pi * (sweeps[i, 1] + 2.0 * rate * (t - t0))
                 value += sweeps[i, 0] * turn * math.cos(2.0 * math.pi * turns)
         slope[j] = value
-
-
-def values_at(table: InputTable, times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values [m, nu] of the signals of `table` at `times` [m] in s, after a jump where there is
-    one.
-    """
-    cursor, u = table.new_cursor(), np.zeros((len(times), len(table.offsets) - 1))
-    for row, time in zip(u, times, strict=True):
-        evaluate_inputs(time, 1, *table.arrays, cursor, row)
-    return u
-
-
-def slopes_at(table: InputTable, times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Slopes [m, nu] per s of the signals of `table` at `times` [m] in s, as `values_at`."""
-    cursor, slopes = table.new_cursor(), np.zeros((len(times), len(table.offsets) - 1))
-    for row, time in zip(slopes, times, strict=True):
-        evaluate_input_slopes(time, 1, *table.arrays, cursor, row)
-    return slopes
 
 
 @njit(forceinline=True, **KERNEL)

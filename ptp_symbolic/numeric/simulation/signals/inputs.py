@@ -20,6 +20,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ptp_symbolic.errors import InputError, unknown
 from ptp_symbolic.numeric.runtime.model import Model
+from ptp_symbolic.numeric.simulation.signals.input_values import (
+    evaluate_input_slopes,
+    evaluate_inputs,
+)
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -335,6 +339,24 @@ def part_of_held(whole: InputTable, begin: float, end: float) -> InputTable:
         b = max(a + 1, int(np.searchsorted(times, end, side="right")))
         signals.append(table(times[a:b], values[a:b], "hold"))
     return stack(signals)
+
+
+def values_at(table: InputTable, times: FloatArray) -> FloatArray:
+    """Values [m, nu] of the signals of `table` at `times` [m] in s, after a jump where there is
+    one.
+    """
+    cursor, u = table.new_cursor(), np.zeros((len(times), len(table.offsets) - 1))
+    for row, time in zip(u, times, strict=True):
+        evaluate_inputs(time, 1, *table.arrays, cursor, row)
+    return u
+
+
+def slopes_at(table: InputTable, times: FloatArray) -> FloatArray:
+    """Slopes [m, nu] per s of the signals of `table` at `times` [m] in s, as `values_at`."""
+    cursor, slopes = table.new_cursor(), np.zeros((len(times), len(table.offsets) - 1))
+    for row, time in zip(slopes, times, strict=True):
+        evaluate_input_slopes(time, 1, *table.arrays, cursor, row)
+    return slopes
 
 
 def delays_of(model: Model, p: FloatArray) -> FloatArray:

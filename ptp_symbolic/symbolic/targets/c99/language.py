@@ -105,9 +105,9 @@ def _c99(name: str, suffix: str) -> Language:
         "Max": f"fmax{s}({{0}}, {{1}})",
         "Heaviside": f"({{0}} > {zero} ? {one} : {zero})",
         "NearestCount": f"({{1}} * floor{s}(({{0}}) / {{1}} + {half}))",
-        "choice": "(({0}) ? ({1}) : ({2}))",
-        "And": "(({0}) && ({1}))",
-        "Or": "(({0}) || ({1}))",
+        "choice": "(({0}) != 0 ? ({1}) : ({2}))",
+        "And": "(({0}) != 0 && ({1}) != 0)",
+        "Or": "(({0}) != 0 || ({1}) != 0)",
         "pi": f"3.141592653589793{s}",
     }
     words = KEYWORDS | MATHS | frozenset(f"{word}f" for word in MATHS)
