@@ -90,7 +90,8 @@ def described(kind: Any) -> dict[str, Any]:
     from ptp_symbolic.symbolic.derivation.placement import effects_that_define
     from ptp_symbolic.symbolic.effect_interface.place import Place
 
-    place = Place(AXES, "<axis>" if kind.on_axis else None, None, frozenset())
+    # On a base that turns an effect has all of its parameters.
+    place = Place(AXES, "<axis>" if kind.on_axis else None, None, frozenset(), base_turns=True)
     return {
         "kind": kind.kind,
         "what": kind.title,

@@ -76,6 +76,7 @@ def test_references_keep_within_their_reach_and_rate() -> None:
     assert (creep[0], creep[-1]) == pytest.approx((-2.7, 2.7), abs=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["pan_drive", "direct_drive"])
 def test_changes_of_parameters_and_starts_are_not_visible(name: str) -> None:
     measure = yardstick(name, QUICK)

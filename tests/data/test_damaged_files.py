@@ -96,6 +96,7 @@ def test_damaged_texts(tmp_path: Path) -> None:
     assert read > 0
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="forks are what makes this fast")
 def test_damaged_files_of_libraries(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for library in ("h5py", "pyarrow.parquet", "nptdms", "openpyxl", "rosbags.highlevel", "mcap"):

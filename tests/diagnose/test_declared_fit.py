@@ -48,6 +48,7 @@ def test_windows_that_lead_to_a_worse_place_lead_nowhere(tmp_path: Path) -> None
     assert better_over_same_runs(worse, end) is end
 
 
+@pytest.mark.long
 def test_the_error_before_is_that_of_the_fit_alone(tmp_path: Path) -> None:
     """The turntable on a spring that is not declared: the declared model is off by far."""
     (tmp_path / "table.toml").write_text(PLATFORM)

@@ -46,6 +46,7 @@ def test_the_readme_shows_what_the_demo_prints(
     assert_prints(capsys.readouterr().out, shown.text)
 
 
+@pytest.mark.long
 def test_a_search_that_is_cut_short_says_so(sample) -> None:
     """What the rows propose first is refitted and judged all the same."""
     platform = read_platform(SAMPLE / "platform.toml")

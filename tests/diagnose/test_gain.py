@@ -238,6 +238,7 @@ def test_innovations_count_by_those_of_noise_of_their_colour() -> None:
     assert found.share == pytest.approx(1.0 / 3.0, abs=0.03)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("pole", [0.0, 0.7])
 def test_windows_of_one_log_that_gain_alike_count_together(pole: float) -> None:
     """Without a gain, 5 % seem clear; of windows that count each for itself 20 % at 0.7."""

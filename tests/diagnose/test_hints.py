@@ -171,6 +171,7 @@ def test_lines_that_follow_the_speed_or_the_input_are_no_resonance() -> None:
     assert resonance(driven) is None
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("pole", [0.0, 0.95])
 def test_noise_does_not_ring(pole: float) -> None:
     rng = np.random.default_rng(6)

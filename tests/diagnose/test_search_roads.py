@@ -44,6 +44,7 @@ def test_what_leaves_only_noise_is_found_without_windows(
     assert not found.is_led and not found.is_cut_short
 
 
+@pytest.mark.long
 def test_a_spring_is_found_over_windows_where_no_set_leaves_only_noise(tmp_path: Path) -> None:
     """Gusts that no log holds, of a tenth of a second."""
     with spring_table(tmp_path, gust=0.05, lasting=10) as task:

@@ -35,6 +35,7 @@ def logged(number: str, folder: Path) -> Iterator[tuple[Task, dict[str, float]]]
         yield task, json.loads((folder / "truth.json").read_text())["parameters"]
 
 
+@pytest.mark.long
 def test_windows_lead_to_the_breakaway_of_the_machine(tmp_path: Path) -> None:
     """A direct drive that hides it: the declared model leaves a hundred times the noise. Its torque
     comes in steps, so that many laws let it go at the same samples: the fit is as good as one

@@ -233,6 +233,7 @@ def test_dry_friction_beside_rigid_faces(kind: str, site: str) -> None:
     assert np.ptp(pressed["theta_pan"][10000:]) == 0.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_strikes_on_one_axis_reach_the_play_of_the_other(kind: str) -> None:
     given = platform(kind, "payload")

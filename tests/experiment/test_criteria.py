@@ -31,6 +31,7 @@ def tone(t: Floats, frequency: float) -> Floats:
     return np.sin(2 * np.pi * frequency * t)[:, None]
 
 
+@pytest.mark.long
 def test_a_stiffness_shows_best_at_resonance(tmp_path: Path) -> None:
     """The derivative of the angle by the stiffness is -G^2 times the torque: largest where the
     amplification is, and its standard deviation that of a sine of that size in white noise.
@@ -54,6 +55,7 @@ def test_a_stiffness_shows_best_at_resonance(tmp_path: Path) -> None:
         assert spreads(spring, known)["k1_cable_pan"] == pytest.approx(expected, rel=0.05)
 
 
+@pytest.mark.long
 def test_predicted_deviations_are_those_of_many_fits(tmp_path: Path) -> None:
     """Closed-form motions with noise drawn anew, fitted one by one: 120 fits know a deviation to
     6.5 %.

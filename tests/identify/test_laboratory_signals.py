@@ -85,7 +85,8 @@ def test_a_rate_alone_is_refused_where_gravity_acts(tmp_path: Path) -> None:
 
 def test_a_signal_that_the_machine_has_not_is_refused_with_those_it_has(tmp_path: Path) -> None:
     text = platform_text(MECHANICAL, ("omega_pan",)).replace("omega_pan =", "omega_yaw =")
-    has = "theta_pan, i_pan, omega_pan, tau_shaft_pan, omega_motor_pan."
+    has = "theta_pan, i_pan, omega_pan, tau_shaft_pan, omega_x_pan, omega_y_pan, omega_z_pan,"
+    has += " omega_motor_pan."
     with pytest.raises(InputError, match=f"'omega_yaw'.* Choose one of: {has}"):
         fitted(tmp_path, text, ("omega_pan",))
 

@@ -73,6 +73,7 @@ def test_the_example_platform_is_accepted(readme: str, tmp_path: Path) -> None:
     assert len(block.text.splitlines()) <= 14
 
 
+@pytest.mark.long
 def test_a_log_is_made_checked_diagnosed_and_fitted_as_shown(
     readme: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -20,7 +20,7 @@ from tests.independent import rigid_platform
 STATES = 1000
 
 
-@pytest.mark.parametrize("seed", ["1", "20"])
+@pytest.mark.parametrize("seed", [pytest.param("1", marks=pytest.mark.long), "20"])
 def test_nothing_has_drifted_and_no_hash_seed_changes_a_byte(seed: str) -> None:
     command = [sys.executable, "-m", "ptp_symbolic", "regenerate", "--check"]
     environment = {**os.environ, "PYTHONHASHSEED": seed}

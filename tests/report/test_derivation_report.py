@@ -4,10 +4,11 @@ import hashlib
 import re
 import shutil
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -36,6 +37,9 @@ PLATFORMS = {name: read_platform(name) for name in preset_names()} | {
         ("csvs_friction", "pan"),
     ),
 }
+
+
+EVERY_RUN = ("thesis-pan-drive", "carriage on a screw")
 
 
 @cache
@@ -75,7 +79,14 @@ def compile_in(folder: Path, files: dict[str, str | bytes]) -> None:
         )
 
 
-@pytest.mark.parametrize("name", PLATFORMS)
+def some_of(names: Iterable[str]) -> list[Any]:
+    """The platforms whose reports are compiled in every run; the others in long ones."""
+    return [
+        pytest.param(name, marks=() if name in EVERY_RUN else pytest.mark.long) for name in names
+    ]
+
+
+@pytest.mark.parametrize("name", some_of(PLATFORMS))
 def test_compiles_without_a_warning(name: str, compiled: Callable[[str], Path]) -> None:
     text = report_of(name)
     assert "Kane -- Lagrange & $0$" in text
@@ -163,7 +174,7 @@ def test_the_final_equations_give_the_rate_of_change_of_every_state() -> None:
     assert final.count(r"\dot{") == len(assemble(platform).state_symbols)
 
 
-@pytest.mark.parametrize("name", preset_names())
+@pytest.mark.parametrize("name", some_of(preset_names()))
 def test_no_page_is_nearly_empty(name: str, compiled: Callable[[str], Path]) -> None:
     if shutil.which("pdftotext") is None:
         pytest.skip("pdftotext is not installed")

@@ -63,6 +63,7 @@ def run(module: Path, folder: Path | None = None) -> tuple[str, int]:
     return value, int(found)
 
 
+@pytest.mark.long
 def test_a_damaged_file_is_compiled_again_and_kept(module: Path) -> None:
     assert run(module) == ("27.0", 0)
     assert run(module) == ("27.0", 1)

@@ -101,6 +101,7 @@ def test_fits_with_white_noise_scatter_as_the_bound_of_table_4_2(
     assert found.correlation == pytest.approx(np.corrcoef(np.transpose(fits)), abs=0.3)
 
 
+@pytest.mark.long
 def test_the_tests_agree_on_the_inertia_better_than_their_data_allow() -> None:
     for direction in printed.DIRECTIONS:
         inertias = [t.J for t in printed.TABLE_4_2[direction]]

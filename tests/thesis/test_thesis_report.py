@@ -23,7 +23,7 @@ from ptp_symbolic.thesis.response_figures import friction_of
 from ptp_symbolic.thesis.responses import response
 from ptp_symbolic.thesis.wording import text_latex
 
-pytestmark = pytest.mark.early
+pytestmark = [pytest.mark.early, pytest.mark.long]
 
 FIGURES = (
     *(f"fig_2_{n}" for n in (*range(7, 17), 18, 19)),
