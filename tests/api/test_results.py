@@ -26,6 +26,7 @@ def found() -> ptp.Diagnosis:
     return ptp.diagnose(PLATFORM, train=SAMPLE / "train", validate=SAMPLE / "validate")
 
 
+@pytest.mark.long
 def test_a_diagnosis_says_what_is_missing(found: ptp.Diagnosis) -> None:
     """The sample was made with a base that leans."""
     assert [a["effect"] for a in found.added] == ["base_tilt"]
@@ -44,6 +45,7 @@ def test_a_diagnosis_says_what_is_missing(found: ptp.Diagnosis) -> None:
         assert estimate.interval[0] < estimate.value < estimate.interval[1]
 
 
+@pytest.mark.long
 def test_a_diagnosis_is_read_drawn_and_saved(found: ptp.Diagnosis, tmp_path: Path) -> None:
     assert repr(found).startswith(found.verdict)
     assert "noise floor" in found._repr_html_()
@@ -55,6 +57,7 @@ def test_a_diagnosis_is_read_drawn_and_saved(found: ptp.Diagnosis, tmp_path: Pat
     assert pickle.loads(pickle.dumps(found)).verdict == found.verdict
 
 
+@pytest.mark.long
 def test_a_diagnosis_is_what_its_schema_says(found: ptp.Diagnosis) -> None:
     """Read back from the file, and with mistakes in it."""
     jsonschema = pytest.importorskip("jsonschema", reason="jsonschema is of the extra `test`")

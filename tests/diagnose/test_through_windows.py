@@ -54,6 +54,7 @@ def test_windows_lead_to_the_breakaway_of_the_machine(tmp_path: Path) -> None:
     assert found.values["F_c_pan"] == pytest.approx(truth["F_c_pan"], rel=0.002)
 
 
+@pytest.mark.long
 def test_windows_lead_the_declared_model_out_of_a_wrong_stribeck_speed(tmp_path: Path) -> None:
     """A direct drive that lacks nothing, with start values far off, in windows of four seconds."""
     with logged("236", tmp_path) as (task, truth):

@@ -106,6 +106,7 @@ def fitted(checkout: Path, tmp_path_factory: pytest.TempPathFactory) -> ptp.FitR
     return ptp.fit(folder / "deck_camera.toml", [folder / "run.csv"])
 
 
+@pytest.mark.long
 def test_the_mounting_of_an_imu_is_found_on_a_ship(fitted: ptp.FitResult) -> None:
     """From starts at zero; the bound is two half widths of 95 % intervals, four sigmas."""
     for name, truth in PLANTED.items():

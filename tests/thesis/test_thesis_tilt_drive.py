@@ -49,6 +49,7 @@ def coarse(name: str) -> TiltRun:
     return truth(STROKES[name], TIMES[::20])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", STROKES)
 @pytest.mark.parametrize("quantity", ALLOWED)
 def test_every_curve_against_a_simulation_in_motor_coordinates(name: str, quantity: str) -> None:
