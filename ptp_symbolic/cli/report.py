@@ -1,12 +1,66 @@
 """`ptp-symbolic report`: documents printed from the equations."""
 
+import json
+import shutil
 from pathlib import Path
 
 import click
 
 from ptp_symbolic.cli.declared import note_defaults
-from ptp_symbolic.cli.report_machines import machines
-from ptp_symbolic.cli.report_thesis import thesis
+from ptp_symbolic.cli.progress import progress_line
+
+
+@click.command()
+@click.option("--data", type=Path, required=True, help="Folder with the folders of the machines.")
+@click.option("--out", type=Path, required=True, help="Folder for the page.")
+@click.option("--json", "as_json", is_flag=True, help="Print machines.json instead of file names.")
+def machines(data: Path, out: Path, as_json: bool) -> None:
+    """Diagnose real machines from their raw files: machines.html and machines.json."""
+    from ptp_symbolic.atomic_files import check_writable, write_files_atomically
+    from ptp_symbolic.machines import study
+    from ptp_symbolic.report.machines import render_machines
+
+    check_writable(out)
+    with progress_line() as say:
+        results = study.machines(data, say)
+    text = json.dumps(results, indent=2) + "\n"
+    files: dict[str, str | bytes] = {
+        "machines.html": render_machines(results),
+        "machines.json": text,
+    }
+    write_files_atomically(out, files)
+    if as_json:
+        click.echo(text, nl=False)
+        return
+    for name in files:
+        click.echo(out / name)
+
+
+@click.command()
+@click.option("--out", type=Path, required=True, help="Folder for the report.")
+@click.option("--json", "as_json", is_flag=True, help="Print thesis.json instead of file names.")
+def thesis(out: Path, as_json: bool) -> None:
+    """Recompute the thesis: thesis.json, figures, thesis.tex, and thesis.pdf with pdflatex."""
+    from ptp_symbolic.atomic_files import check_writable, write_files_atomically
+    from ptp_symbolic.report.pdf import compile_pdf
+    from ptp_symbolic.thesis.document import thesis_files
+
+    check_writable(out)
+    with progress_line() as say:
+        files = thesis_files(say)
+    pdf = compile_pdf(files, "thesis")
+    if pdf is not None:
+        files["thesis.pdf"] = pdf
+    write_files_atomically(out, files)
+    if pdf is None:
+        found = shutil.which("pdflatex") is not None
+        why = "pdflatex failed on thesis.tex" if found else "pdflatex is not installed"
+        click.echo(f"No thesis.pdf: {why}.", err=True)
+    if as_json:
+        click.echo(files["thesis.json"], nl=False)
+        return
+    for name in files:
+        click.echo(out / name)
 
 
 @click.group()

@@ -74,7 +74,10 @@ def diagnosis_schema() -> Schema:
         "hints": list_of(TEXT, "The same in words."),
         "black_box": or_none({"type": "object"}, "Models without physics, beside."),
         "windows": or_none(_windows(), "The windows into which runs were cut."),
-        "material": said(NUMBER, "The share of the squared error that a name asks for."),
+        "material": said(
+            NUMBER,
+            "Share of the sum of squares that an effect reduces at least.",
+        ),
         "remarks": list_of(TEXT, "What to know about logs and platform."),
         "equations": list_of(_equation(), "The equations that the named effects change."),
         "provenance": _provenance(),

@@ -13,13 +13,14 @@ from ptp_symbolic.platform.declaration import (
     JOINTS,
     SITES,
     STANDARD_GRAVITY,
+    Clock,
     EffectDeclaration,
     ParameterDeclaration,
     Platform,
 )
-from ptp_symbolic.platform.fit_settings import clock_of, fit_settings
 from ptp_symbolic.platform.signals import read_signals
 from ptp_symbolic.platform.text_file import read_text_bytes
+from ptp_symbolic.platform.units import compatible
 
 _MAX_BYTES = 1_000_000
 # tomllib needs a time that grows with the square of the parts of a dotted key.
@@ -58,7 +59,7 @@ def read_platform(source: str | Path) -> Platform:
         fields.required(head, "name", f"{where}: platform"), f"{where}: platform.name"
     )
     axes = _axes(head, f"{where}: platform")
-    window, material = fit_settings(document.get("fit", {}), f"{where}: fit")
+    window, material = _fit_settings(document.get("fit", {}), f"{where}: fit")
     return Platform(
         name=name,
         title=fields.text(head.get("title", name), f"{where}: platform.title"),
@@ -67,7 +68,7 @@ def read_platform(source: str | Path) -> Platform:
         effects=_effects(fields.required(document, "effects", where), axes, where),
         parameters=_parameters(document.get("parameters", {}), where),
         signals=read_signals(document.get("signals", {}), where),
-        clock=clock_of(document.get("log", {}), f"{where}: log"),
+        clock=_clock_of(document.get("log", {}), f"{where}: log"),
         window=window,
         material=material,
         linear_axes=_linear_axes(head.get("joints", {}), axes, f"{where}: platform.joints"),
@@ -265,3 +266,42 @@ def _tied(
     return dataclasses.replace(
         independent[target], name=name, free=False, lower=None, upper=None, same_as=target
     )
+
+
+def _fit_settings(given: object, where: str) -> tuple[float | None, float | None]:
+    """Return what a `[fit]` table says: the length in s of its windows, and the share of the error
+    that an effect has to reduce to be named; None where it says nothing.
+
+    Raises InputError for other keys, for what is no time above zero, such as "0.5 s", and for what
+    is no share.
+    """
+    entry = fields.table(given, where, ("window", "material"))
+    window = fields.time(entry["window"], f"{where}.window", 0.0) if "window" in entry else None
+    if "material" not in entry:
+        return window, None
+    share = fields.number(entry["material"], f"{where}.material")
+    if not 0.0 < share < 1.0:
+        raise InputError(
+            f"{where}.material: {share:g} is no share of the error; give a number between 0 and 1,"
+            " such as 0.05 for 5 %."
+        )
+    return window, share
+
+
+def _clock_of(given: object, where: str) -> Clock:
+    """Return what a `[log]` table says of the times: `time`, their column, and `time_unit`.
+
+    Raises InputError for other keys and for a unit that is none of time.
+    """
+    entry = fields.table(given, where, ("time", "time_unit"))
+    column = fields.text(entry["time"], f"{where}.time") if "time" in entry else None
+    if "time_unit" not in entry:
+        return Clock(column)
+    unit = fields.text(entry["time_unit"], f"{where}.time_unit")
+    try:
+        fits = compatible(unit, "s")
+    except InputError as error:
+        raise InputError(f"{where}.time_unit: {error}") from error
+    if not fits:
+        raise InputError(f'{where}.time_unit: {unit} is no unit of time; write "s" or "ms".')
+    return Clock(column, unit)

@@ -104,3 +104,25 @@ def test_a_motor_is_the_armature_of_its_joint_and_what_is_lost_is_said() -> None
     for effect in ("backlash@pan", "shaft_compliance@pan", "dc_motor@pan", "csvs_friction@pan"):
         assert effect in lost and effect in text
     mujoco.MjModel.from_xml_string(text)
+
+
+def test_a_rotor_behind_a_linkage_is_lost_and_said() -> None:
+    """Its ratio changes with the angle: N^2 J_motor would be no inertia of the joint."""
+    whole = program(possible_equations(read_platform("thesis-tilt-drive")))
+    (text,) = Mjcf().files(whole, "drive").values()
+    (joint,) = ET.fromstring(text).iter("joint")
+    assert float(joint.get("armature", "")) == 0.0
+    assert any("rotor on tilt" in remark for remark in Mjcf().remarks(whole))
+
+
+def test_friction_of_bristles_is_no_friction_loss() -> None:
+    """LuGre friction has a parameter F_c too, and is lost whole."""
+    names = ("rigid_bodies", "dc_motor", "lugre_friction")
+    effects = tuple(
+        EffectDeclaration(n, None if n == "rigid_bodies" else "pan", None) for n in names
+    )
+    whole = program(possible_equations(Platform("drive", "", ("pan",), 9.81, effects, (), ())))
+    (text,) = Mjcf().files(whole, "drive").values()
+    (joint,) = ET.fromstring(text).iter("joint")
+    assert float(joint.get("frictionloss", "")) == 0.0
+    assert any("lugre_friction@pan: all of it" in remark for remark in Mjcf().remarks(whole))

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from ptp_symbolic.cli.report_thesis import thesis
+from ptp_symbolic.cli.report import thesis
 from ptp_symbolic.report.derivation import has_warning
 from ptp_symbolic.report.pdf import compile_pdf
 from ptp_symbolic.thesis import document

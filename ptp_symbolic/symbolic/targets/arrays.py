@@ -86,34 +86,40 @@ def _by_function(table: str, rows: Iterable[tuple[str, str]]) -> str:
     return "\n".join([f"{table} = {{", *(f'    "{name}": ({row}),' for name, row in rows), "}"])
 
 
-def _language(name: str, at: str, **own: str) -> Language:
+FUNCTIONS = {  # of SymPy's heads, by the name that CasADi and JAX give them
+    "acos": ("acos", "arccos"),
+    "Abs": ("fabs", "abs"),
+    "Min": ("fmin", "minimum"),
+    "Max": ("fmax", "maximum"),
+    "choice": ("if_else", "where"),
+    "And": ("logic_and", "logical_and"),
+    "Or": ("logic_or", "logical_or"),
+    **{same: (same, same) for same in ("sqrt", "exp", "log", "sin", "cos", "sign", "floor")},
+}
+ARGUMENTS = {"Min": 2, "Max": 2, "And": 2, "Or": 2, "choice": 3}
+
+
+def _language(name: str, at: str, column: int) -> Language:
     """A language whose functions are those of the module `at`."""
-    common = {head: f"{at}.{head}({{0}})" for head in ("sqrt", "exp", "log", "sin", "cos", "sign")}
-    common |= {
+    own = {head: f"{at}.{names[column]}" for head, names in FUNCTIONS.items()}
+    calls = {
+        head: f"{called}({', '.join(f'{{{k}}}' for k in range(ARGUMENTS.get(head, 1)))})"
+        for head, called in own.items()
+    }
+    others = {
         "pow": "{0}**{1}",
-        "inverse sqrt": f"1.0 / {at}.sqrt({{0}})",
-        "floor": f"{at}.floor({{0}})",
-        "NearestCount": f"({{1}} * {at}.floor(({{0}}) / {{1}} + 0.5))",
+        "inverse sqrt": f"1.0 / {own['sqrt']}({{0}})",
+        "Heaviside": f"{own['choice']}({{0}} > 0.0, 1.0, 0.0)",
+        "NearestCount": f"({{1}} * {own['floor']}(({{0}}) / {{1}} + 0.5))",
         "pi": "3.141592653589793",
     }
-    return Language(name, common | own, words=WORDS)
+    return Language(name, calls | others, words=WORDS)
 
 
 CASADI = ArrayModule(
     "casadi",
     "Python module for CasADi: SX and MX functions",
-    _language(
-        "CasADi",
-        "ca",
-        acos="ca.acos({0})",
-        Abs="ca.fabs({0})",
-        Min="ca.fmin({0}, {1})",
-        Max="ca.fmax({0}, {1})",
-        Heaviside="ca.if_else({0} > 0.0, 1.0, 0.0)",
-        choice="ca.if_else({0}, {1}, {2})",
-        And="ca.logic_and({0}, {1})",
-        Or="ca.logic_or({0}, {1})",
-    ),
+    _language("CasADi", "ca", 0),
     "import casadi as ca",
     "return ca.vertcat({})",
     '''def function(name, kind=ca.SX):
@@ -125,18 +131,7 @@ CASADI = ArrayModule(
 JAX = ArrayModule(
     "jax",
     "Python module for JAX: functions for jit, vmap and grad, in double precision",
-    _language(
-        "JAX",
-        "jnp",
-        acos="jnp.arccos({0})",
-        Abs="jnp.abs({0})",
-        Min="jnp.minimum({0}, {1})",
-        Max="jnp.maximum({0}, {1})",
-        Heaviside="jnp.where({0} > 0.0, 1.0, 0.0)",
-        choice="jnp.where({0}, {1}, {2})",
-        And="jnp.logical_and({0}, {1})",
-        Or="jnp.logical_or({0}, {1})",
-    ),
+    _language("JAX", "jnp", 1),
     'import jax\nimport jax.numpy as jnp\n\njax.config.update("jax_enable_x64", True)',
     "return jnp.array([{}])",
     "",

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ptp_symbolic.symbolic.mechanics.bodies import Body
+from ptp_symbolic.symbolic.mechanics.kinematics import place_of
 from ptp_symbolic.symbolic.program.program import Program
 from ptp_symbolic.symbolic.symbols import real
 from ptp_symbolic.symbolic.targets.target import effects_of
@@ -65,7 +66,7 @@ class Machine:
         self.equations = program.equations
         self.values = {p.name: float(p.default) for p in self.equations.parameters}
         self.rigid = self.equations.rigid
-        self.lost = _lost(program)
+        self.lost = _lost(program, self)
 
     def number(self, expression: sp.Expr) -> float:
         """The value of an expression of parameters."""
@@ -82,17 +83,20 @@ class Machine:
         """The joint of an axis."""
         still = self.rigid.offsets.get(axis, sp.ImmutableMatrix([0, 0, 0]))
         x, y, z = (self.number(o) for o in still)
-        have = self.values.get
-        ratio = have(f"N_{axis}", 0.0)
+
+        def have(effect: str, name: str) -> float:
+            declared = any(p.effect.id == effect and p.axis == axis for p in self.equations.effects)
+            return self.values.get(f"{name}_{axis}", 0.0) if declared else 0.0
+
         return Joint(
             axis,
             axis in self.rigid.sliding,
             (x, y, z),
-            have(f"b_{axis}", 0.0) + have(f"F_v_{axis}", 0.0),
-            have(f"F_c_{axis}", 0.0),
-            ratio**2 * have(f"J_motor_{axis}", 0.0),
-            have(f"k1_cable_{axis}", 0.0),
-            have(f"theta0_cable_{axis}", 0.0),
+            have("viscous_friction", "b") + have("csvs_friction", "F_v"),
+            have("csvs_friction", "F_c"),
+            _rotor(self, axis) or 0.0,
+            have("cable_spring", "k1_cable"),
+            have("cable_spring", "theta0_cable"),
         )
 
     def bodies(self, axis: str) -> list[Inertial]:
@@ -113,9 +117,13 @@ class Machine:
         )
 
 
-def _lost(program: Program) -> list[str]:
+def _lost(program: Program, machine: Machine) -> list[str]:
     """What these formats cannot say of a program, a line per effect."""
-    lines = []
+    lines = [
+        f"rotor on {axis}: its inertia changes with the angle"
+        for axis in machine.rigid.axes
+        if _rotor(machine, axis) is None
+    ]
     for key in effects_of(program):
         effect = key.partition("@")[0]
         if effect in JOINT_PARTS:
@@ -124,6 +132,19 @@ def _lost(program: Program) -> list[str]:
         elif effect not in BODIES:
             lines.append(f"{key}: all of it")
     return lines
+
+
+def _rotor(machine: Machine, axis: str) -> float | None:
+    """Inertia in kg m^2 that the rotor adds to the rows of an axis; None where that changes with
+    the angle, as behind a linkage.
+    """
+    equations = machine.equations
+    inertia = real(f"J_motor_{axis}")
+    rows = [k for k, q in enumerate(equations.coordinates) if place_of(q).endswith(axis)]
+    whole = sum((equations.mass_matrix[k, k] for k in rows), start=sp.Integer(0))
+    added = inertia * sp.diff(equations.written_out(whole), inertia)
+    known = {p.symbol for p in equations.parameters}
+    return machine.number(added) if added.free_symbols <= known else None
 
 
 def _text(*numbers: float) -> str:
@@ -151,7 +172,7 @@ class Mjcf:
 
     def remarks(self, program: Program) -> list[str]:
         """What is lost."""
-        return [f"not in the file: {line}" for line in _lost(program)]
+        return [f"not in the file: {line}" for line in Machine(program).lost]
 
     def files(self, program: Program, name: str) -> Mapping[str, str]:
         """One file."""

@@ -9,12 +9,22 @@ from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.program.kernel import Kernel
 from ptp_symbolic.symbolic.program.program import Program, program
 from ptp_symbolic.symbolic.targets.numba.docstring import docstring
-from ptp_symbolic.symbolic.targets.numba.language import NUMBA
 from ptp_symbolic.symbolic.targets.numba.literals import WIDTH
 from ptp_symbolic.symbolic.targets.numba.metadata import metadata_text
 from ptp_symbolic.symbolic.targets.numba.mode_functions import mode_functions_text
-from ptp_symbolic.symbolic.targets.printing import Printer
+from ptp_symbolic.symbolic.targets.printing import Language, Printer
 
+NUMBA = Language(
+    "numba",
+    {
+        "pow": "{0}**{1}",
+        "sqrt": "math.sqrt({0})",
+        "inverse sqrt": "1/math.sqrt({0})",
+        "Heaviside": "(1.0 if {0} > 0.0 else 0.0)",
+        "NearestCount": "({1} * math.floor(({0}) / {1} + 0.5))",
+        "pi": "math.pi",
+    },
+)
 SEAL = "# END sha256 "
 DOC_WIDTH = WIDTH - 4
 IMPLIED_MODES = ("m = np.empty(len(MODE_NAMES))", "initial_modes(t, x, u, p, m)")
