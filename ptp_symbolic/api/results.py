@@ -261,6 +261,7 @@ def diagnose(
     validate: Logs,
     *,
     time_limit: float | None = None,
+    effort: float = 1.0,
     black_box: bool = False,
     progress: Progress = _silent,
 ) -> Diagnosis:
@@ -268,9 +269,10 @@ def diagnose(
     logs `validate`, which are never fitted.
 
     `platform` is what `load` takes; logs are files, folders, or logs of `read_log`. The search ends
-    after `time_limit` s (None: 300) with what it has tried; with `black_box` the result is compared
-    with black-box models. Raises InputError for logs and platforms that do not fit each
-    other, for a run in both parts, and for a limit that is no time.
+    with what it has tried when it has simulated so many samples (4e8, times `effort`), which
+    is the same on every machine, and after `time_limit` s (None: 900) at the latest; with
+    `black_box` the result is compared with black-box models. Raises InputError for logs and
+    platforms that do not fit each other, for a run in both parts, and for limits that are none.
 
     >>> import ptp_symbolic as ptp
     >>> folder = ptp.sample("tilted_base")
@@ -289,6 +291,7 @@ def diagnose(
             progress,
             rivals=black_box,
             time_limit=time_limit,
+            effort=effort,
         )
     )
 

@@ -50,7 +50,13 @@ def repeated(args: Sequence[str], options: Collection[str]) -> list[str]:
 @click.option(
     "--time-limit",
     type=float,
-    help="Limit of the search in s; default 300. Verdict and report follow after it.",
+    help="Last stop of the search in s; default 900. Verdict and report follow after it.",
+)
+@click.option(
+    "--effort",
+    type=float,
+    default=1.0,
+    help="How much the search may simulate, as a multiple of the usual.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print diagnosis.json instead of tables.")
 def diagnose(
@@ -60,6 +66,7 @@ def diagnose(
     out: Path,
     black_box: bool,
     time_limit: float | None,
+    effort: float,
     as_json: bool,
 ) -> None:
     """Find the effect that is missing from a declared platform, from its logs."""
@@ -72,9 +79,12 @@ def diagnose(
     words = ["diagnose", "--platform", source, "--train", *train, "--validate", *validate]
     words += ["--black-box"] * black_box
     words += [] if time_limit is None else ["--time-limit", f"{time_limit:g}"]
+    words += [] if effort == 1.0 else ["--effort", f"{effort:g}"]
     command = shlex.join(["ptp-symbolic", *words, "--out", str(out)])
     with progress_line() as say:
-        found = diagnose_platform(platform, train, validate, say, command, black_box, time_limit)
+        found = diagnose_platform(
+            platform, train, validate, say, command, black_box, time_limit, effort
+        )
     write_files_atomically(out, found.files)
     note_defaults(platform)
     if as_json:

@@ -69,6 +69,7 @@ def diagnosis_schema() -> Schema:
         "residual_tests": list_of(_test(), "Whiteness and independence of the residuals."),
         "fit": record({when: _fit() for when in ("before", "after")}),
         "held_out": or_none(GAIN),
+        "why": list_of(_reason(), "The rules that decided the verdict, with their numbers."),
         "refused": table_of(TEXT, "What explained a part and was not named, with the reason."),
         "remainder": or_none(_remainder(), "What the residual torque depends on."),
         "hints": list_of(TEXT, "The same in words."),
@@ -101,6 +102,18 @@ def _added() -> Schema:
             "separating_experiment": TEXT,
         }
     )
+
+
+def _reason() -> Schema:
+    entries = {
+        "about": or_none(TEXT, "The effect that was asked about; null for the whole model."),
+        "rule": said(TEXT, "What is compared."),
+        "value": or_none(NUMBER, "The number that these logs give."),
+        "at_least": said(NUMBER, "The least that it has to be."),
+        "at_most": said(NUMBER, "The most that it may be."),
+        "holds": TRUTH,
+    }
+    return record(entries, optional=("at_least", "at_most"))
 
 
 def _row() -> Schema:

@@ -7,6 +7,7 @@ from ptp_symbolic.errors import InputError
 from ptp_symbolic.numeric.black_box.learners import require_library
 from ptp_symbolic.numeric.data import log_files, read_split_logs
 from ptp_symbolic.numeric.diagnose.turned_inputs import turned_inputs
+from ptp_symbolic.numeric.identify.work import Allowance
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.against_black_box import against_black_box
 from ptp_symbolic.workflows.preparation import look_at, workers
@@ -15,7 +16,8 @@ from ptp_symbolic.workflows.result import Output, Progress
 from ptp_symbolic.workflows.structure_choice import Logs, chosen_structure
 from ptp_symbolic.workflows.write_up import written_up
 
-TIME_LIMIT = 300.0  # s; of the search, unless another is asked for
+SAMPLES = 4e8  # 1; that a search may simulate, unless a multiple is asked for; measured
+TIME_LIMIT = 900.0  # s; of the search, unless another is asked for
 
 
 def diagnose_platform(
@@ -26,18 +28,22 @@ def diagnose_platform(
     command: str | None = None,
     rivals: bool = False,
     time_limit: float | None = None,
+    effort: float = 1.0,
 ) -> Output:
     """Fit `platform` to the `train` logs, find what it lacks, judge on the `validate` logs.
 
     `command` is the command line that asks for it, for the report; with `rivals` what is found is
-    compared with models that know no physics. After `time_limit`, in s (None: TIME_LIMIT), the
-    search ends with what it has tried by then; the verdict and the report follow. Raises InputError
-    for logs and platforms that do not fit each other, for a run in both, for a limit that is no
-    time, and for rivals without the library that they need.
+    compared with models that know no physics. The search ends
+    with what it has tried when it has simulated `effort` times SAMPLES samples, the same on every
+    machine, or at the latest after `time_limit`, in s (None: TIME_LIMIT); the verdict and the
+    report follow. Raises InputError for logs and platforms that do not fit each other, for a run in
+    both, for limits that are none, and for rivals without the library that they need.
     """
     limit = TIME_LIMIT if time_limit is None else time_limit
     if not limit > 0.0:
         raise InputError(f"`time_limit`: {limit:g} s is no time; give one above zero, such as 300.")
+    if not 0.0 < effort < float("inf"):
+        raise InputError(f"`effort`: {effort:g} is none; give a factor above zero, such as 2.")
     if rivals:
         require_library()
     fitted, judging = log_files(train), log_files(validate)
@@ -46,11 +52,12 @@ def diagnose_platform(
     sources = provenance(platform, read, command)
     noted = look_at(platform, train_logs, (*train_logs, *validate_logs), progress)
     with workers() as executor:
-        logs = Logs(tuple(train_logs), tuple(validate_logs), executor, progress)
-        choice = chosen_structure(platform, logs, limit)
+        allowance = Allowance(samples=effort * SAMPLES, seconds=limit)
+        logs = Logs(tuple(train_logs), tuple(validate_logs), executor, progress, allowance)
+        choice = chosen_structure(platform, logs)
         chosen = choice.chosen
         if choice.is_cut_short:
-            noted = (*noted, _cut_short(limit))
+            noted = (_cut_short(allowance, effort), *noted)
         if chosen.verdict.leaves_more:
             noted = (*noted, *turned_inputs(chosen.found.task, chosen.found.declared))
         beside = None
@@ -61,8 +68,13 @@ def diagnose_platform(
         return written_up(platform, choice, noted, sources, beside)
 
 
-def _cut_short(time_limit: float) -> str:
+def _cut_short(allowance: Allowance, effort: float) -> str:
+    if allowance.is_out_of_time:
+        return (
+            f"The search was stopped by the clock after {allowance.seconds:g} s: what it found"
+            " depends on the speed of this machine. Give it a longer `time_limit`."
+        )
     return (
-        f"The search came to its limit of {time_limit:g} s: what it had not tried by then may be"
-        " found with more time."
+        f"The search came to its limit of {allowance.samples:.3g} simulated samples: what it had"
+        f" not tried by then may be found with more `effort` (it was {effort:g})."
     )

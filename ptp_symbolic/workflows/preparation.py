@@ -14,6 +14,7 @@ from ptp_symbolic.numeric.diagnose.side_by_side import usable_cores
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial
 from ptp_symbolic.numeric.identify.constants import MATERIAL
 from ptp_symbolic.numeric.identify.run_preparation import prepare_runs
+from ptp_symbolic.numeric.identify.work import Allowance
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.ahead import (
     HELD_SAMPLES,
@@ -81,12 +82,18 @@ def task_for(
     declared: Sequence[str],
     executor: Executor,
     progress: Progress,
+    allowance: Allowance | None = None,
 ) -> Task:
-    """All that stays the same; `declared` are the keys of the effects that are not candidates."""
+    """All that stays the same; `declared` are the keys of the effects that are not candidates, and
+    `allowance` is what the search may take (None: no limit).
+    """
     progress("preparing the simulation (compiles for about a minute once on a new machine)")
     refuse_unknown_signals(platform, model)
+    allowance = Allowance() if allowance is None else allowance
     with naming_file(platform):
-        runs = [prepare_runs(model, platform, tuple(logs)) for logs in (train, validate)]
+        runs = [
+            prepare_runs(model, platform, tuple(logs), allowance.work) for logs in (train, validate)
+        ]
     free, known = free_parameters(platform, model), known_values(platform, model)
     noises = {s.signal: s.noise for s in platform.signals}
     return task_of(
@@ -101,6 +108,7 @@ def task_for(
         material_of(platform),
         executor,
         progress,
+        allowance,
     )
 
 

@@ -2,7 +2,6 @@
 fitted, the best go on into the search for terms, and what each ends with is compared.
 """
 
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -41,7 +40,7 @@ from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import effect_keys, model_of, task_for, with_effects
 from ptp_symbolic.workflows.structure_fits import FOLLOWED, Fitted, Logs, fit_structures
 
-LEAST_SHARE = 0.1  # of the time limit, for the brief search beside a structure that fits well
+LEAST_SHARE = 0.1  # of the allowance, for the brief search beside a structure that fits well
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +88,8 @@ class Searched:
 @dataclass(frozen=True, eq=False)
 class Choice:
     """The chosen outcome, `terms` (the outcome of the declared structure), a row for every
-    structure, and why candidates were not tried, by key; `is_cut_short` says that time ran out.
+    structure, and why candidates were not tried, by key; `is_cut_short` says that its allowance
+    was used up.
     """
 
     chosen: Outcome
@@ -99,15 +99,15 @@ class Choice:
     is_cut_short: bool
 
 
-def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choice:
+def chosen_structure(platform: Platform, logs: Logs) -> Choice:
     """Search for terms of the declared platform, and where that adds any or leaves more than noise
     fit every structure one step away from it; search for terms in the best of them too, and choose.
-    After `time_limit` in s nothing new is begun; structures that were fitted are searched briefly.
+    Once their allowance is over nothing new is begun; structures that were fitted are searched
+    briefly.
 
     All searches are brief at first. The whole one follows where no answer is found soon: of the
     structure that fits best, and of the declared one where that is beaten by little.
     """
-    end = time.monotonic() + time_limit
     every, untried = structures(platform)
     platforms = {rebuilt.keys: rebuilt.platform for rebuilt in every}
 
@@ -115,8 +115,7 @@ def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choic
         name = " + ".join(structure.keys) if structure else ""
         logs.progress(f"searching for terms beside {name or 'what is declared'}")
         there = platforms[structure.keys] if structure else platform
-        left = max(end - time.monotonic(), LEAST_SHARE * time_limit)
-        return _searched(there, structure, logs, left, brief=brief)
+        return _searched(there, structure, logs, brief=brief)
 
     terms = searched(None, brief=bool(every))
     if not every or (terms.is_quiet and not terms.found.chosen.candidates):
@@ -124,11 +123,11 @@ def chosen_structure(platform: Platform, logs: Logs, time_limit: float) -> Choic
         untried = {**untried, **{key: why for each in every for key in each.keys}}
         return Choice(terms.outcome, terms.outcome, (), untried, terms.found.is_cut_short)
     fitted = fit_structures(platform, every, logs)
-    if not terms.is_quiet and not fitted.quiet and time.monotonic() < end:
+    if not terms.is_quiet and not fitted.quiet and not logs.allowance.is_over:
         fitted = _led_on(platform, fitted, terms, logs)
     followed = fitted.quiet or ([] if terms.is_quiet else fitted.order[:FOLLOWED])
     outcomes = [searched(s, brief=True) for s in followed]
-    is_late = not terms.is_quiet and time.monotonic() > end
+    is_late = not terms.is_quiet and logs.allowance.is_over
     if not terms.is_quiet and not is_late:
         outcomes, terms = _at_length(outcomes, terms, searched)
     chosen, refused = _chosen(terms.outcome, [s.outcome for s in outcomes], fitted.every, logs)
@@ -191,7 +190,6 @@ def _searched(
     platform: Platform,
     structure: FittedStructure | None,
     logs: Logs,
-    time_limit: float,
     *,
     brief: bool,
 ) -> Searched:
@@ -206,13 +204,20 @@ def _searched(
         logs.progress(f"no terms are searched for: {error}")
         model = model_of(begun)
     task = task_for(
-        begun, model, logs.train, logs.validate, effect_keys(begun), logs.executor, logs.progress
+        begun,
+        model,
+        logs.train,
+        logs.validate,
+        effect_keys(begun),
+        logs.executor,
+        logs.progress,
+        logs.allowance.rest(LEAST_SHARE),
     )
     declared_starts = {p.name: p.value for p in platform.parameters}
     task = replace(
         task, free=tuple(replace(f, declared_start=declared_starts[f.name]) for f in task.free)
     )
-    return Searched(platform, structure, task, search(task, time_limit, brief=brief))
+    return Searched(platform, structure, task, search(task, brief=brief))
 
 
 def _is_enough(structure: FittedStructure, platform: Platform) -> bool:

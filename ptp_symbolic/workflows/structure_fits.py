@@ -17,6 +17,7 @@ from ptp_symbolic.numeric.diagnose.structures import (
     is_told,
     misfit,
 )
+from ptp_symbolic.numeric.identify.work import Allowance
 from ptp_symbolic.platform import Platform
 from ptp_symbolic.workflows.preparation import model_of, task_for
 from ptp_symbolic.workflows.result import Progress
@@ -26,12 +27,13 @@ FOLLOWED = 2  # structures that go on into the search for terms where none leave
 
 @dataclass(frozen=True, eq=False)
 class Logs:
-    """What every structure is fitted to, and judged by."""
+    """What every structure is fitted to and judged by, and the allowance of the diagnosis."""
 
     train: tuple[Log, ...]
     validate: tuple[Log, ...]
     executor: Executor
     progress: Progress
+    allowance: Allowance
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +107,16 @@ def _begun(
     platform: Platform, rebuilt: Rebuilt | None, logs: Logs, known: Mapping[str, float]
 ) -> Begun:
     model = model_of(platform)
-    task = task_for(platform, model, logs.train, logs.validate, (), logs.executor, logs.progress)
+    task = task_for(
+        platform,
+        model,
+        logs.train,
+        logs.validate,
+        (),
+        logs.executor,
+        logs.progress,
+        logs.allowance,
+    )
     if rebuilt is None:
         return begin_structure((), frozenset(), task, (), known)
     return begin_structure(rebuilt.keys, rebuilt.provides, task, rebuilt.starts, known)

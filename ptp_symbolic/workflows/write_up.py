@@ -11,6 +11,7 @@ from ptp_symbolic.numeric.diagnose.confirm import at_bound
 from ptp_symbolic.numeric.diagnose.curves import curves_of
 from ptp_symbolic.numeric.diagnose.floor import Floor
 from ptp_symbolic.numeric.diagnose.hints import further_hints
+from ptp_symbolic.numeric.diagnose.reasons import reasons
 from ptp_symbolic.numeric.diagnose.remainder import hints, remainder
 from ptp_symbolic.numeric.diagnose.residual_tests import residual_tests
 from ptp_symbolic.numeric.diagnose.sizes import sizes_of
@@ -111,6 +112,7 @@ def written_up(
             "after": {"parameters": fit_table(after, tuple(intervals.values()))},
         },
         "held_out": None if verdict.held_out is None else gain_table(verdict.held_out),
+        "why": reasons(found, verdict, len(choice.rows)),
         "refused": dict(verdict.refused),
         "remainder": left,
         "hints": [*hints(left), *further],

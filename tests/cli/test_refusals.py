@@ -84,12 +84,13 @@ def log_refused(call: Call, tmp_path: Path, content: str) -> str:
 
 
 @pytest.mark.parametrize("limit", ["0", "-3", "nan"])
-def test_a_limit_that_is_no_time(call, tmp_path: Path, limit: str) -> None:
+@pytest.mark.parametrize(("option", "said"), [("--time-limit", " s is no time"), ("--effort", "")])
+def test_a_limit_that_is_none(call, tmp_path: Path, limit: str, option: str, said: str) -> None:
     out = tmp_path / "out"
     logs = ("--train", str(SAMPLE / "train"), "--validate", str(SAMPLE / "validate"))
     arguments = ("--platform", str(SAMPLE / "platform.toml"), *logs, "--out", str(out))
-    said = refused(call, "diagnose", *arguments, "--time-limit", limit)
-    assert f"--time-limit: {limit} s" in said and "such as 300" in said
+    words = refused(call, "diagnose", *arguments, option, limit)
+    assert f"{option}: {limit}{said}" in words and "such as" in words
     assert not out.exists()
 
 

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import time
 from pathlib import Path
 
 import numpy as np
@@ -54,9 +55,42 @@ def test_a_search_that_is_cut_short_says_so(sample) -> None:
         platform, [SAMPLE / "train"], [SAMPLE / "validate"], time_limit=1e-3
     ).summary
     assert [a["effect"] for a in short["added"]] == ["base_tilt"]
-    (remark,) = [text for text in short["remarks"] if "limit of 0.001 s" in text]
-    assert "with more time" in remark
-    assert not any("with more time" in text for text in sample.summary["remarks"])
+    assert short["remarks"][0].startswith("The search was stopped by the clock after 0.001 s")
+    assert not any("was stopped" in text for text in sample.summary["remarks"])
+
+
+@pytest.mark.long
+def test_a_search_of_few_samples_ends_the_same_however_fast_the_machine(sample) -> None:
+    """Whole runs of 45,000 samples are simulated often before the rest of the search."""
+    platform = read_platform(SAMPLE / "platform.toml")
+    few, again = (
+        diagnose_platform(
+            platform, [SAMPLE / "train"], [SAMPLE / "validate"], effort=1e-6, progress=slowed
+        ).summary
+        for slowed in (lambda text: None, lambda text: time.sleep(0.2))
+    )
+    assert "limit of 400 simulated samples" in few["remarks"][0]
+    for name in ("verdict", "added", "ranking", "error"):
+        assert few[name] == again[name]
+
+
+def test_why_a_verdict_came_out_is_said_in_numbers(sample) -> None:
+    """They are those that stand elsewhere: gains, errors over the floor, limits of the docs."""
+    found = sample.summary
+    (added,) = found["added"]
+    rows = {(row["about"], row["rule"].split(" ")[0]): row for row in found["why"]}
+    share = rows["base_tilt", "share"]
+    assert share["value"] == added["gain"]["share"] and share["at_least"] == 0.1
+    assert rows["base_tilt", "lower"]["value"] == added["gain"]["ci95"][0]
+    assert rows["base_tilt", "chance"]["at_most"] < 0.05 / 20
+    assert rows[None, "share"]["value"] == found["held_out"]["share"]
+    assert all(row["holds"] for row in found["why"])
+    errors = found["error"]["validate"]
+    for signal, after in errors["after"]["by_signal"].items():
+        (row,) = [r for r in found["why"] if f"{signal} on the validation runs" in r["rule"]]
+        assert row["at_most"] == pytest.approx(1.1)
+        floor = errors["noise_floor"]["by_signal"][signal]
+        assert row["value"] == pytest.approx(after["rmse"] / floor["rmse"], rel=0.1)
 
 
 def test_rivals_explain_the_torque_of_a_leaning_base_and_predict_worse_in_free_motion(

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from ptp_symbolic.numeric.diagnose import search as roads
@@ -21,6 +20,7 @@ from ptp_symbolic.numeric.diagnose.seeker import Seeker
 from ptp_symbolic.numeric.diagnose.stepwise import floated
 from ptp_symbolic.numeric.diagnose.trial import Task, Trial, fitted
 from ptp_symbolic.numeric.identify.constants import TRIED
+from ptp_symbolic.numeric.identify.work import Allowance
 from tests.diagnose.spring_table import STIFFNESS, spring_table
 
 STUCK = 1.0002
@@ -58,10 +58,10 @@ def test_a_search_whose_time_is_over_ends_with_what_the_rows_proposed(
 ) -> None:
     """Gusts hide the spring, so that a search with time goes on over windows."""
     with spring_table(tmp_path, gust=0.05, lasting=10) as task:
-        found = roads.search(task, 1e-3)
+        found = roads.search(replace(task, allowance=Allowance(seconds=1e-3)))
     assert found.is_cut_short and not found.is_led
     assert found.chosen.keys == ("cable_spring@pan",)
-    assert found.task.deadline == np.inf  # the verdict takes what time it needs
+    assert not found.task.is_over  # the verdict takes what time it needs
 
 
 def test_moves_of_a_search_whose_time_is_over_begin_nothing(seeker: Seeker) -> None:
@@ -69,7 +69,7 @@ def test_moves_of_a_search_whose_time_is_over_begin_nothing(seeker: Seeker) -> N
     torque = alone(seeker, "constant_torque@pan")
     moves = [seeker.grown(torque), seeker.exchanged(torque)]
     assert not seeker.task.is_over and any(moves)
-    seeker.task = replace(seeker.task, deadline=0.0)
+    seeker.task = replace(seeker.task, allowance=Allowance(seconds=-1.0))
     assert seeker.task.is_over
     assert seeker.grown(torque) is None and seeker.exchanged(torque) is None
     assert seeker.restarted(torque) is torque and not seeker.unseen(torque)

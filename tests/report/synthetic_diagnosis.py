@@ -204,6 +204,7 @@ def synthetic_diagnosis(verdict: str) -> dict[str, Any]:
         ],
         "fit": fit,
         "held_out": gain(0.975, 0.004) if added else None,
+        "why": WHY if added else [],
         "refused": {} if verdict == "nothing_missing" else REFUSED,
         "windows": None,
         "material": 0.05,
@@ -215,6 +216,22 @@ def synthetic_diagnosis(verdict: str) -> dict[str, Any]:
     }
 
 
+WHY = [
+    {
+        "about": "base_tilt",
+        "rule": "lower end of the 95 % interval of that share",
+        "value": 0.9713,
+        "at_least": 0.5,
+        "holds": True,
+    },
+    {
+        "about": None,
+        "rule": "residual of theta_pan on the validation runs, over the largest of noise",
+        "value": 1.374,
+        "at_most": 1.1,
+        "holds": False,
+    },
+]
 REMAINDER = {
     "unit": "N m",
     "maps": [

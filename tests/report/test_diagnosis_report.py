@@ -133,6 +133,15 @@ def test_errors_without_an_encoder_are_in_rad_and_every_signal_is_in_its_own_uni
     assert "counts rms" not in html
 
 
+def test_every_rule_stands_with_its_number_and_its_limit() -> None:
+    html = unescape(page("explained"))
+    part = html[html.index('<section id="why">') : html.index('<section id="refused">')]
+    rows = [re.sub(r"<[^>]+>", "|", row) for row in part.split("<tr>")[2:]]
+    assert all(word in rows[0] for word in ("base_tilt", "0.971", "\u2265 0.5", "|yes|"))
+    assert all(word in rows[1] for word in ("the model", "1.37", "\u2264 1.1", "|no|"))
+    assert 'id="why"' not in page("nothing_missing")
+
+
 def test_remarks_on_the_logs_stand_with_what_they_cannot_tell() -> None:
     diagnosis = synthetic_diagnosis("nothing_missing")
     diagnosis["remarks"] = ["'pan_angle' never moves: nothing can be identified of that axis."]

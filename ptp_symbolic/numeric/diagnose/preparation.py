@@ -20,6 +20,7 @@ from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.sample_averages import samples_within, thinned
 from ptp_symbolic.numeric.identify.simulations import all_values_at_start
 from ptp_symbolic.numeric.identify.windows import cut, window_length
+from ptp_symbolic.numeric.identify.work import Allowance
 from ptp_symbolic.numeric.runtime.model import Model
 
 
@@ -35,13 +36,15 @@ def task_of(
     material: float,
     executor: Executor,
     progress: Progress,
+    allowance: Allowance | None = None,
 ) -> Task:
     """All that stays the same through a diagnosis, or through a fit where nothing is `declared`.
 
     `known` are the known values with the most by which each may be off, `declared` the keys of the
     effects that are no candidates, `noises` the declared noise (rms) of every signal in its unit
     (None: not declared), `window` the length in s of the windows (None: as far as the noise of the
-    inputs allows, see `window_length`), `material` that of `Task`. Raises InputError for values out
+    inputs allows, see `window_length`), `material` that of `Task`, `allowance` what the search may
+    take (None: no limit). Raises InputError for values out
     of bounds, and for windows of too few samples.
     """
     if window is not None:
@@ -77,6 +80,7 @@ def task_of(
         frozenset(name for name, size in noises.items() if size is not None),
         _finest_angle(train),
         material=material,
+        allowance=Allowance() if allowance is None else allowance,
     )
 
 

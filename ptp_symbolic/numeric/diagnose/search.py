@@ -2,11 +2,8 @@
 completed, pruned and grown until every candidate in it is needed and none outside would add to it.
 """
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-
-import numpy as np
 
 from ptp_symbolic.numeric.diagnose.cut_runs import in_windows_of, parted_task, takes_away_most
 from ptp_symbolic.numeric.diagnose.declared_fit import (
@@ -46,14 +43,14 @@ from ptp_symbolic.numeric.identify.constants import (
     MOST,
     SCREENED,
 )
+from ptp_symbolic.numeric.identify.work import Allowance
 
 
-def search(task: Task, time_limit: float = np.inf, *, brief: bool = False) -> Search:
-    """Find the set of candidates that the training runs ask for; after `time_limit`, in s, with
+def search(task: Task, *, brief: bool = False) -> Search:
+    """Find the set of candidates that the training runs ask for; once its allowance is over, with
     what has been tried by then. A `brief` search ends with what is found soon: enough to tell
     whether any set leaves as little as a model that leaves noise alone.
     """
-    task = replace(task, deadline=time.monotonic() + time_limit)
     task.progress("comparing all sets of effects along the measured motion")
     proposals = propose(task)
     task = replace(task, candidates=placed_by_rows(task.candidates, proposals))
@@ -248,7 +245,7 @@ def _ended(seeker: Seeker, best: Trial, steps: list[Step]) -> Search:
         without = {c.key: seeker.without(best, c) for c in best.candidates}
     members = tuple(step_of(best, c, without[c.key]) for c in best.candidates)
     return Search(
-        replace(seeker.task, deadline=np.inf),
+        replace(seeker.task, allowance=Allowance()),
         seeker.declared,
         best,
         members,

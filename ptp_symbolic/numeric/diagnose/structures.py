@@ -113,12 +113,13 @@ def begin_structure(
     proposals = propose(task)
     own = {f.name: f for f in task.free}
     fitted_before = {n: inside(own[n], value) for n, value in known.items() if n in own}
-    values = [
+    every = [
         {**proposals.start, **beside, **start}
         for beside in ({}, fitted_before)
         for start in ({}, *starts)
     ]
-    begun = [fitted(task, (), v, None, executor=task.executor) for v in values]
+    distinct = {tuple(sorted(values.items())): values for values in every}
+    begun = [fitted(task, (), v, None, executor=task.executor) for v in distinct.values()]
     trial = (halving(task, begun, 2, 1) or begun[:1])[0]
     proposals = replace(proposals, start=trial.values)
     return Begun(FittedStructure(effects_of(task, keys), provides, task, trial), proposals)

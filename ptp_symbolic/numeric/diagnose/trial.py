@@ -2,10 +2,9 @@
 simulation.
 """
 
-import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +27,7 @@ from ptp_symbolic.numeric.identify.robust_loss import huber_loss, weighted_media
 from ptp_symbolic.numeric.identify.run import Run
 from ptp_symbolic.numeric.identify.run_groups import sizes
 from ptp_symbolic.numeric.identify.simulations import Effort
+from ptp_symbolic.numeric.identify.work import Allowance
 from ptp_symbolic.numeric.runtime.model import Model
 
 FloatArray = NDArray[np.float64]
@@ -47,8 +47,8 @@ class Task:
     the declared noise (rms) of every input [nu] in its unit (None: as the logs show it),
     `declared_noise` names the outputs whose noise is declared, `resolution` is the noise of the
     finest angle in rad, `robust_below` that of `robust_tuning`, `material` the share of what is
-    left that earns a name; noise has no colour where it is `white`. From `deadline` on, in s of
-    `time.monotonic`, a search tries nothing new.
+    left that earns a name; noise has no colour where it is `white`. When its `allowance` is over, a
+    search tries nothing new.
     """
 
     model: Model
@@ -69,12 +69,12 @@ class Task:
     robust_below: float = NEARBY
     material: float = MATERIAL
     white: bool = False
-    deadline: float = np.inf
+    allowance: Allowance = field(default_factory=Allowance)
 
     @property
     def is_over(self) -> bool:
-        """Whether the time for the search has run out."""
-        return time.monotonic() > self.deadline
+        """Whether the allowance for the search is used up."""
+        return self.allowance.is_over
 
 
 @dataclass(frozen=True, eq=False)

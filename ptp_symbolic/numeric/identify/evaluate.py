@@ -192,6 +192,7 @@ def evaluate(
     the parameters `columns` [nc] and by z. A simulation that fails has zero residuals and says so
     in `failed`; raises InputError as `integrate` does.
     """
+    run.work.add(len(run.time), tangents)
     columns = columns if tangents else columns[:0]
     x, s = start_state(model, run, p, z, columns)
     late = delays_of(model, p)

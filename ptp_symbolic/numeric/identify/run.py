@@ -1,6 +1,6 @@
 """A run prepared for fitting: inputs as tables, measured signals with weights, unknown starts."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,6 +14,7 @@ from ptp_symbolic.numeric.identify.constants import (
 )
 from ptp_symbolic.numeric.identify.first_rate import Around, first_rate
 from ptp_symbolic.numeric.identify.rate_signals import has_angle
+from ptp_symbolic.numeric.identify.work import Work
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import InputTable
 
@@ -52,6 +53,7 @@ class Run:
     `outputs` [ny] gives the model output of every measured column, `counts` [ny] the size of one
     encoder count in rad or m (nan for analog signals); `start` [n] guesses the state at the first
     sample. In a window, `before` [nu] is what the inputs were until then.
+    `work` counts what is simulated of it and of its windows.
     """
 
     name: str
@@ -67,6 +69,7 @@ class Run:
     start: FloatArray
     unknowns: tuple[StartUnknown, ...]
     before: FloatArray | None = None
+    work: Work = field(default_factory=Work)
 
     @cached_property
     def stops(self) -> FloatArray:

@@ -13,6 +13,7 @@ from ptp_symbolic.numeric.identify.constants import ROUNDING
 from ptp_symbolic.numeric.identify.noise import white_noise
 from ptp_symbolic.numeric.identify.rate_signals import refuse_unseen_angles
 from ptp_symbolic.numeric.identify.run import WINDOW, Run, with_start
+from ptp_symbolic.numeric.identify.work import Work
 from ptp_symbolic.numeric.runtime.model import Model
 from ptp_symbolic.numeric.simulation.signals.inputs import stack, table
 from ptp_symbolic.platform import Platform, SignalDeclaration
@@ -20,9 +21,11 @@ from ptp_symbolic.platform import Platform, SignalDeclaration
 FloatArray = NDArray[np.float64]
 
 
-def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple[Run, ...]:
+def prepare_runs(
+    model: Model, platform: Platform, logs: Sequence[Log], work: Work | None = None
+) -> tuple[Run, ...]:
     """Match the columns of `logs` to `model` and guess the start of every run; a gap in a log ends
-    one run and begins another.
+    one run and begins another. What is simulated of them is counted in `work`.
 
     Raises InputError when the platform's signals do not fit the model or one has no noise.
     """
@@ -48,8 +51,9 @@ def prepare_runs(model: Model, platform: Platform, logs: Sequence[Log]) -> tuple
             for k, (s, q) in enumerate(zip(outputs, counts, strict=True))
         ]
     )
+    work = Work() if work is None else work
     return tuple(
-        _prepare(model, outputs, piece, order, counts, sigma, log.name, underway=number > 0)
+        _prepare(model, outputs, piece, order, counts, sigma, log.name, work, underway=number > 0)
         for log in logs
         for number, piece in enumerate(_pieces(log, counts))
     )
@@ -87,6 +91,7 @@ def _prepare(
     counts: FloatArray,
     sigma: FloatArray,
     source: str,
+    work: Work,
     *,
     underway: bool,
 ) -> Run:
@@ -104,6 +109,7 @@ def _prepare(
         signals=tuple(s.signal for s in outputs),
         start=np.empty(0),
         unknowns=(),
+        work=work,
     )
     return with_start(model, run, underway=underway)
 

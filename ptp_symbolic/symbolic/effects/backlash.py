@@ -15,8 +15,9 @@ from ptp_symbolic.symbolic.effect_interface.place import Place
 from ptp_symbolic.symbolic.symbols import ZERO
 
 LINEAR = {"default": 1e-4, "starts": (2e-5, 1e-4)}
+STARTS = (0.005, 0.02, 0.05)  # rad
 FACES = "whole gap between the two faces"
-GAP = Parameter("gap_{axis}", "rad", 0.026005, 0.0, 1.0, FACES, 0.0, (0.005, 0.02), linear=LINEAR)
+GAP = Parameter("gap_{axis}", "rad", 0.026005, 0.0, 1.0, FACES, 0.0, STARTS, linear=LINEAR)
 OPEN_LINEAR = {**LINEAR, "lower": 1e-7}
 OPEN_GAP = replace(GAP, lower=1e-6, vanishes=None, linear=OPEN_LINEAR)
 RESTITUTION = Parameter(

@@ -1,0 +1,54 @@
+"""How much of a search is simulated: a limit that the speed of a machine does not move."""
+
+import threading
+import time
+from dataclasses import dataclass, field, replace
+from math import inf
+
+WITH_TANGENTS = 3  # 1; cost of a sample with its sensitivities over one without; measured
+
+
+@dataclass(eq=False)
+class Work:
+    """Samples simulated so far, all threads together; one with sensitivities counts as three."""
+
+    samples: int = 0
+    _lock: threading.Lock = field(default_factory=threading.Lock, repr=False)
+
+    def add(self, samples: int, tangents: bool) -> None:
+        """Count a run that was simulated."""
+        with self._lock:
+            self.samples += samples * (WITH_TANGENTS if tangents else 1)
+
+
+@dataclass(frozen=True, eq=False)
+class Allowance:
+    """What a search may simulate, and as a last stop how long it may take.
+
+    `begun` samples of `work` and the time `since` (s of `time.monotonic`) were when it began;
+    `samples` and `seconds` are its limits. The samples are the same on every machine, and so is
+    what a search that ends by them has found; what ends by the clock depends on the machine.
+    """
+
+    work: Work = field(default_factory=Work)
+    samples: float = inf
+    seconds: float = inf
+    begun: int = 0
+    since: float = field(default_factory=time.monotonic)
+
+    @property
+    def is_out_of_time(self) -> bool:
+        """Whether the clock has stopped it."""
+        return time.monotonic() - self.since > self.seconds
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing new may begin."""
+        return self.work.samples - self.begun > self.samples or self.is_out_of_time
+
+    def rest(self, least: float) -> "Allowance":
+        """What is left of it now, but the share `least` of both limits at least."""
+        done, now = self.work.samples, time.monotonic()
+        samples = max(self.samples - (done - self.begun), least * self.samples)
+        seconds = max(self.seconds - (now - self.since), least * self.seconds)
+        return replace(self, samples=samples, seconds=seconds, begun=done, since=now)
