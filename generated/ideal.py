@@ -28,7 +28,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "6e9cc9137bef1878"
+MODEL_HASH = "a48820fd997eb250"
 NAME = "ideal"
 TITLE = "Balanced pan-tilt platform of the thesis"
 # How many numbers `prepare` writes.
@@ -37,8 +37,6 @@ AXES = ("pan", "tilt")
 STATE_NAMES = ("theta_pan", "theta_tilt", "omega_pan", "omega_tilt")
 STATE_UNITS = ("rad", "rad", "rad/s", "rad/s")
 STATE_INITIAL = (0.0, 0.0, 0.0, 0.0)
-# States without influence while these parameters are at their vanishing values.
-IDLE_STATES = ()
 INPUT_NAMES = ("tau_pan", "tau_tilt")
 INPUT_UNITS = ("N m", "N m")
 # Per input: index of the parameter by which it is late, or -1.
@@ -58,8 +56,6 @@ SAMPLED = ()
 CONTACT_ANGLES = ()
 # Limits of the equations: state, meaning; `domain` gives the bounds.
 DOMAIN = ()
-# Relations: parameters, rule, strict; `margins` gives what is at least zero.
-REQUIREMENTS = ()
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
     ("J_pan", "kg m^2", 0.00053, 1e-12, 10000.0, "inertia of the pan body about z"),
@@ -68,46 +64,6 @@ PARAMETERS = (
     ("J_z_tilt", "kg m^2", 0.00027, 1e-12, 10000.0, "inertia of the tilt body about z"),
     ("b_pan", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the pan joint"),
     ("b_tilt", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the tilt joint"),
-)
-# Searching them: name, value at which the effect vanishes (None: any), starts,
-# period, what a frequency is locked to.
-SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
-# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
-# effects that it acts on, title, reference, separating experiment, first member leads.
-EFFECTS = (
-    (
-        "rigid_bodies",
-        None,
-        ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"),
-        (),
-        (),
-        "pan body and tilt body",
-        "thesis Eq. 3.8, Table 5.1",
-        "",
-        False,
-    ),
-    (
-        "viscous_friction",
-        "pan",
-        ("b_pan",),
-        (),
-        (),
-        "viscous friction in the joint",
-        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
-        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
-        False,
-    ),
-    (
-        "viscous_friction",
-        "tilt",
-        ("b_tilt",),
-        (),
-        (),
-        "viscous friction in the joint",
-        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
-        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
-        False,
-    ),
 )
 
 
@@ -131,20 +87,19 @@ def mode_derivative(t, x, u, p, m, dx):
     b_tilt = p[5]
     dx[0] = omega_pan
     dx[1] = omega_tilt
+    cos_tilt = math.cos(theta_tilt)
     inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
     sin_tilt = math.sin(theta_tilt)
     inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
-    coriolis = inertia_pan_per_sin_tilt * omega_pan * math.cos(theta_tilt)
+    coriolis = cos_tilt * inertia_pan_per_sin_tilt * omega_pan
     force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
     inertia_pan = J_pan + J_z_tilt
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     inverse_mass_pan = 1.0 / mass_pan
-    accel_pan = force_pan * inverse_mass_pan
-    dx[2] = accel_pan
+    dx[2] = force_pan * inverse_mass_pan
     force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
     inverse_mass_tilt = 1.0 / J_y_tilt
-    accel_tilt = force_tilt * inverse_mass_tilt
-    dx[3] = accel_tilt
+    dx[3] = force_tilt * inverse_mass_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -181,25 +136,24 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     inverse_mass_tilt = c[2]
     dx[0] = omega_pan
     dx[1] = omega_tilt
+    cos_tilt = math.cos(theta_tilt)
     sin_tilt = math.sin(theta_tilt)
     inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
-    coriolis = inertia_pan_per_sin_tilt * omega_pan * math.cos(theta_tilt)
+    coriolis = cos_tilt * inertia_pan_per_sin_tilt * omega_pan
     force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     inverse_mass_pan = 1.0 / mass_pan
-    accel_pan = force_pan * inverse_mass_pan
-    dx[2] = accel_pan
+    dx[2] = force_pan * inverse_mass_pan
     force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
-    accel_tilt = force_tilt * inverse_mass_tilt
-    dx[3] = accel_tilt
+    dx[3] = force_tilt * inverse_mass_tilt
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def jacobian(t, x, u, p, m, fx, fu, fp):
-    """Write the non-zero derivatives of mode_derivative by state, input and parameter.
+def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
+    """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 6].
+    MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 6]; gx [0, 4]; gp [0, 6].
     """
     theta_tilt = x[1]
     omega_pan = x[2]
@@ -212,10 +166,10 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     J_z_tilt = p[3]
     b_pan = p[4]
     b_tilt = p[5]
+    cos_tilt = math.cos(theta_tilt)
     inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
     sin_tilt = math.sin(theta_tilt)
     inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
-    cos_tilt = math.cos(theta_tilt)
     coriolis_by_omega_pan = cos_tilt * inertia_pan_per_sin_tilt
     coriolis = coriolis_by_omega_pan * omega_pan
     twice_omega_tilt = 2.0 * omega_tilt
@@ -226,14 +180,11 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     inverse_mass_pan = 1.0 / mass_pan
     accel_pan = force_pan * inverse_mass_pan
     inertia_pan_per_sin_tilt_by_theta_tilt = cos_tilt * inertia_pan_sin_sq_tilt
-    coriolis_by_theta_tilt = (
-        cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
-        - inertia_pan_per_sin_tilt_sin_tilt * omega_pan
-    )
-    fx[2, 1] = inverse_mass_pan * (
-        -accel_pan * (coriolis_by_omega_pan + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt)
-        - coriolis_by_theta_tilt * twice_omega_tilt
-    )
+    coriolis_by_theta_tilt = (cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
+        - inertia_pan_per_sin_tilt_sin_tilt * omega_pan)
+    fx[2, 1] = (inverse_mass_pan * (-accel_pan * (coriolis_by_omega_pan
+        + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt) - coriolis_by_theta_tilt
+        * twice_omega_tilt))
     inverse_mass_tilt = 1.0 / J_y_tilt
     inverse_mass_tilt_omega_pan = inverse_mass_tilt * omega_pan
     fx[3, 1] = coriolis_by_theta_tilt * inverse_mass_tilt_omega_pan
@@ -245,25 +196,22 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     fx[3, 3] = -b_tilt * inverse_mass_tilt
     fu[2, 0] = inverse_mass_pan
     fu[3, 1] = inverse_mass_tilt
-    fp[2, 0] = -accel_pan * inverse_mass_pan
-    inertia_pan_per_sin_tilt_by_J_x_tilt = sin_tilt
-    cos_tilt_omega_pan = cos_tilt * omega_pan
-    coriolis_by_J_x_tilt = cos_tilt_omega_pan * inertia_pan_per_sin_tilt_by_J_x_tilt
-    fp[2, 1] = inverse_mass_pan * (
-        -accel_pan * inertia_pan_per_sin_tilt_by_J_x_tilt * sin_tilt
-        - coriolis_by_J_x_tilt * twice_omega_tilt
-    )
-    fp[3, 1] = coriolis_by_J_x_tilt * inverse_mass_tilt_omega_pan
+    if len(fp) == 0:
+        return
+    accel_pan_by_inertia_pan = -accel_pan * inverse_mass_pan
+    fp[2, 0] = accel_pan_by_inertia_pan
+    coriolis_by_inertia_pan_sin_sq_tilt = cos_tilt * omega_pan * sin_tilt
+    accel_pan_by_inertia_pan_sin_sq_tilt = (inverse_mass_pan * (-accel_pan * (sin_tilt * sin_tilt)
+        - coriolis_by_inertia_pan_sin_sq_tilt * twice_omega_tilt))
+    fp[2, 1] = accel_pan_by_inertia_pan_sin_sq_tilt
+    accel_tilt_by_inertia_pan_sin_sq_tilt = (coriolis_by_inertia_pan_sin_sq_tilt
+        * inverse_mass_tilt_omega_pan)
+    fp[3, 1] = accel_tilt_by_inertia_pan_sin_sq_tilt
     force_tilt = -b_tilt * omega_tilt + coriolis * omega_pan + tau_tilt
     accel_tilt = force_tilt * inverse_mass_tilt
     fp[3, 2] = -accel_tilt * inverse_mass_tilt
-    inertia_pan_per_sin_tilt_by_J_z_tilt = -sin_tilt
-    coriolis_by_J_z_tilt = cos_tilt_omega_pan * inertia_pan_per_sin_tilt_by_J_z_tilt
-    fp[2, 3] = inverse_mass_pan * (
-        -accel_pan * (inertia_pan_per_sin_tilt_by_J_z_tilt * sin_tilt + 1.0)
-        - coriolis_by_J_z_tilt * twice_omega_tilt
-    )
-    fp[3, 3] = coriolis_by_J_z_tilt * inverse_mass_tilt_omega_pan
+    fp[2, 3] = accel_pan_by_inertia_pan - accel_pan_by_inertia_pan_sin_sq_tilt
+    fp[3, 3] = -accel_tilt_by_inertia_pan_sin_sq_tilt
     fp[2, 4] = -inverse_mass_pan * omega_pan
     fp[3, 5] = -inverse_mass_tilt * omega_tilt
 
@@ -274,16 +222,6 @@ def guards(t, x, u, p, m, g):
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
     MODE_NAMES; g [0] in N m and rad.
-    """
-    return
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def guard_jacobian(t, x, u, p, m, gx, gp):
-    """Write the non-zero derivatives of guards by state and parameter.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [6] in the units of PARAMETERS; m [0], see
-    MODE_NAMES; gx [0, 4]; gp [0, 6].
     """
     return
 
@@ -330,15 +268,13 @@ def energy(t, x, u, p, m, e):
     J_z_tilt = p[3]
     b_pan = p[4]
     b_tilt = p[5]
+    cos_tilt = math.cos(theta_tilt)
     omega_pan_sq = omega_pan * omega_pan
     half_omega_pan_sq = 0.5 * omega_pan_sq
     omega_tilt_sq = omega_tilt * omega_tilt
-    e[0] = (
-        J_pan * half_omega_pan_sq
-        + J_x_tilt * half_omega_pan_sq * ((math.sin(theta_tilt)) * (math.sin(theta_tilt)))
-        + 0.5 * J_y_tilt * omega_tilt_sq
-        + J_z_tilt * half_omega_pan_sq * ((math.cos(theta_tilt)) * (math.cos(theta_tilt)))
-    )
+    sin_tilt = math.sin(theta_tilt)
+    e[0] = (J_pan * half_omega_pan_sq + J_x_tilt * half_omega_pan_sq * (sin_tilt * sin_tilt) + 0.5
+        * J_y_tilt * omega_tilt_sq + J_z_tilt * (cos_tilt * cos_tilt) * half_omega_pan_sq)
     e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
     e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
 
@@ -363,10 +299,11 @@ def equation_error(t, x, u, p, m, r):
     J_z_tilt = p[3]
     b_pan = p[4]
     b_tilt = p[5]
+    cos_tilt = math.cos(theta_tilt)
     inertia_pan_sin_sq_tilt = J_x_tilt - J_z_tilt
     sin_tilt = math.sin(theta_tilt)
     inertia_pan_per_sin_tilt = inertia_pan_sin_sq_tilt * sin_tilt
-    coriolis = inertia_pan_per_sin_tilt * omega_pan * math.cos(theta_tilt)
+    coriolis = cos_tilt * inertia_pan_per_sin_tilt * omega_pan
     force_pan = -b_pan * omega_pan - 2.0 * coriolis * omega_tilt + tau_pan
     inertia_pan = J_pan + J_z_tilt
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
@@ -405,4 +342,24 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 07f64219ce5a3c97009cdfaca6ed4d512d97339fa18708f41347d3b611e13d6b
+# What follows is for fits and diagnoses; no function above uses it.
+# States without influence while these parameters are at their vanishing values.
+IDLE_STATES = ()
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = ()
+# Searching them: name, value at which the effect vanishes (None: any), starts,
+# period, what a frequency is locked to.
+SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
+# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
+# effects that it acts on, title, reference, separating experiment, first member leads.
+EFFECTS = (
+    ("rigid_bodies", None, ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"), (), (),
+     "pan body and tilt body", "thesis Eq. 3.8, Table 5.1", "", False),
+    ("viscous_friction", "pan", ("b_pan",), (), (), "viscous friction in the joint",
+     "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+     "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
+    ("viscous_friction", "tilt", ("b_tilt",), (), (), "viscous friction in the joint",
+     "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+     "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
+)
+# END sha256 c028ec795c1708f3564f7105de8daed4092fb7e06a832598bc8293f6b1aff231

@@ -43,7 +43,7 @@ import math
 
 from numba import njit
 
-MODEL_HASH = "c5e7ce6739319ae6"
+MODEL_HASH = "44fdd001ab73ea0b"
 NAME = "payload"
 TITLE = "Pan-tilt platform of the thesis with its payload"
 # How many numbers `prepare` writes.
@@ -52,8 +52,6 @@ AXES = ("pan", "tilt")
 STATE_NAMES = ("theta_pan", "theta_tilt", "omega_pan", "omega_tilt")
 STATE_UNITS = ("rad", "rad", "rad/s", "rad/s")
 STATE_INITIAL = (0.0, 0.0, 0.0, 0.0)
-# States without influence while these parameters are at their vanishing values.
-IDLE_STATES = ()
 INPUT_NAMES = ("tau_pan", "tau_tilt")
 INPUT_UNITS = ("N m", "N m")
 # Per input: index of the parameter by which it is late, or -1.
@@ -73,8 +71,6 @@ SAMPLED = ()
 CONTACT_ANGLES = ()
 # Limits of the equations: state, meaning; `domain` gives the bounds.
 DOMAIN = ()
-# Relations: parameters, rule, strict; `margins` gives what is at least zero.
-REQUIREMENTS = ()
 # Parameters: name, unit, default, lower and upper bound, meaning.
 PARAMETERS = (
     ("J_pan", "kg m^2", 0.00053, 1e-12, 10000.0, "inertia of the pan body about z"),
@@ -91,65 +87,6 @@ PARAMETERS = (
     ("b_pan", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the pan joint"),
     ("b_tilt", "N m s/rad", 0.1, 0.0, 10000.0, "viscous friction in the tilt joint"),
     ("gravity", "m/s^2", 9.81, 0.0, 1000.0, "gravitational acceleration"),
-)
-# Searching them: name, value at which the effect vanishes (None: any), starts,
-# period, what a frequency is locked to.
-SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
-# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
-# effects that it acts on, title, reference, separating experiment, first member leads.
-EFFECTS = (
-    (
-        "rigid_bodies",
-        None,
-        ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"),
-        (),
-        (),
-        "pan body and tilt body",
-        "thesis Eq. 3.8, Table 5.1",
-        "",
-        False,
-    ),
-    (
-        "payload",
-        None,
-        (
-            "m_payload",
-            "J_x_payload",
-            "J_y_payload",
-            "J_z_payload",
-            "c_x_payload",
-            "c_y_payload",
-            "c_z_payload",
-        ),
-        (),
-        (),
-        "payload",
-        "thesis section 3.2.2, Table 5.3 with erratum 18",
-        "",
-        False,
-    ),
-    (
-        "viscous_friction",
-        "pan",
-        ("b_pan",),
-        (),
-        (),
-        "viscous friction in the joint",
-        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
-        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
-        False,
-    ),
-    (
-        "viscous_friction",
-        "tilt",
-        ("b_tilt",),
-        (),
-        (),
-        "viscous friction in the joint",
-        "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
-        "Run at six or more steady speeds, the slowest near the Stribeck speed.",
-        False,
-    ),
 )
 
 
@@ -181,59 +118,35 @@ def mode_derivative(t, x, u, p, m, dx):
     gravity = p[13]
     dx[0] = omega_pan
     dx[1] = omega_tilt
-    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
-    inertia_pan_sin_sq_tilt = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2
-    )
     cos_tilt = math.cos(theta_tilt)
+    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
+    inertia_pan_sin_sq_tilt_term = (c_z_payload * c_z_payload) * m_payload
+    inertia_pan_sin_sq_tilt_term_2 = (c_x_payload * c_x_payload) * m_payload
+    inertia_pan_sin_sq_tilt = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt
+        + inertia_pan_sin_sq_tilt_term - inertia_pan_sin_sq_tilt_term_2)
     sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
+    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt
+        * sin_tilt)
     coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
     c_y_payload_m_payload = c_y_payload * m_payload
     coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
     coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
-    force_pan = (
-        -b_pan * omega_pan
-        - omega_tilt
-        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
-        + tau_pan
-    )
+    force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis + omega_tilt * (cos_tilt
+        * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + tau_pan)
     gravity_m_payload = gravity * m_payload
     gravity_cos_tilt = c_x_payload * gravity_m_payload
     gravity_sin_tilt = c_z_payload * gravity_m_payload
-    force_tilt = (
-        -b_tilt * omega_tilt
-        + 0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-        + tau_tilt
-    )
-    inertia_tilt = (
-        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    )
-    inertia_pan = (
-        J_pan
-        + J_z_payload
-        + J_z_tilt
-        + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term
-    )
+    force_tilt = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt + tau_tilt)
+    inertia_tilt = (J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term
+        + inertia_pan_sin_sq_tilt_term_2)
+    inertia_pan = (J_pan + J_z_payload + J_z_tilt + (c_y_payload * c_y_payload) * m_payload
+        + inertia_pan_sin_sq_tilt_term_2)
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
     inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
-    accel_pan = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
-    dx[2] = accel_pan
-    accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
-    dx[3] = accel_tilt
+    dx[2] = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
+    dx[3] = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -255,16 +168,10 @@ def prepare(p, c):
     c_z_payload = p[10]
     gravity = p[13]
     c[0] = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
-    c[1] = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2
-    )
+    inertia_pan_sin_sq_tilt_term = (c_z_payload * c_z_payload) * m_payload
+    inertia_pan_sin_sq_tilt_term_2 = (c_x_payload * c_x_payload) * m_payload
+    c[1] = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt + inertia_pan_sin_sq_tilt_term
+        - inertia_pan_sin_sq_tilt_term_2)
     c_y_payload_m_payload = c_y_payload * m_payload
     c[2] = c_y_payload_m_payload * c_z_payload
     c[3] = c_x_payload * c_y_payload_m_payload
@@ -272,13 +179,8 @@ def prepare(p, c):
     c[4] = c_x_payload * gravity_m_payload
     c[5] = c_z_payload * gravity_m_payload
     c[6] = J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    c[7] = (
-        J_pan
-        + J_z_payload
-        + J_z_tilt
-        + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term
-    )
+    c[7] = (J_pan + J_z_payload + J_z_tilt + (c_y_payload * c_y_payload) * m_payload
+        + inertia_pan_sin_sq_tilt_term_2)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -307,38 +209,26 @@ def prepared_derivative(t, x, u, p, m, c, dx):
     dx[1] = omega_tilt
     cos_tilt = math.cos(theta_tilt)
     sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
+    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt
+        * sin_tilt)
     coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
-    force_pan = (
-        -b_pan * omega_pan
-        - omega_tilt
-        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
-        + tau_pan
-    )
-    force_tilt = (
-        -b_tilt * omega_tilt
-        + 0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-        + tau_tilt
-    )
+    force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis + omega_tilt * (cos_tilt
+        * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + tau_pan)
+    force_tilt = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt + tau_tilt)
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
     inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
-    accel_pan = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
-    dx[2] = accel_pan
-    accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
-    dx[3] = accel_tilt
+    dx[2] = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
+    dx[3] = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def jacobian(t, x, u, p, m, fx, fu, fp):
-    """Write the non-zero derivatives of mode_derivative by state, input and parameter.
+def linearize(t, x, u, p, m, fx, fu, fp, gx, gp):
+    """Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp.
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 14].
+    see MODE_NAMES; fx [4, 4]; fu [4, 2]; fp [4, 14]; gx [0, 4]; gp [0, 14].
     """
     theta_tilt = x[1]
     omega_pan = x[2]
@@ -359,39 +249,29 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     b_pan = p[11]
     b_tilt = p[12]
     gravity = p[13]
-    c_x_payload_sq = c_x_payload * c_x_payload
-    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
     c_z_payload_sq = c_z_payload * c_z_payload
     c_z_payload_sq_m_payload = c_z_payload_sq * m_payload
+    c_x_payload_sq = c_x_payload * c_x_payload
+    c_x_payload_sq_m_payload = c_x_payload_sq * m_payload
     inertia_tilt = J_y_payload + J_y_tilt + c_x_payload_sq_m_payload + c_z_payload_sq_m_payload
     c_y_payload_sq = c_y_payload * c_y_payload
-    inertia_pan = (
-        J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + c_y_payload_sq * m_payload
-    )
-    gravity_cos_tilt_by_gravity = c_x_payload * m_payload
-    inertia_tilt_by_c_x_payload = 2.0 * gravity_cos_tilt_by_gravity
-    inertia_pan_sin_cos_tilt = c_z_payload * inertia_tilt_by_c_x_payload
-    inertia_pan_sin_sq_tilt = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - c_x_payload_sq_m_payload
-        + c_z_payload_sq_m_payload
-    )
+    inertia_pan = (J_pan + J_z_payload + J_z_tilt + c_x_payload_sq_m_payload + c_y_payload_sq
+        * m_payload)
     cos_tilt = math.cos(theta_tilt)
+    gravity_sin_tilt_by_gravity = c_z_payload * m_payload
+    inertia_tilt_by_c_z_payload = 2.0 * gravity_sin_tilt_by_gravity
+    inertia_pan_sin_cos_tilt = c_x_payload * inertia_tilt_by_c_z_payload
+    inertia_pan_sin_sq_tilt = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt
+        - c_x_payload_sq_m_payload + c_z_payload_sq_m_payload)
     sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
+    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt
+        * sin_tilt)
     inertia_pan_per_sin_tilt_sin_tilt = inertia_pan_per_sin_tilt * sin_tilt
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt_sin_tilt
-    coupling_cos_tilt_by_c_z_payload = c_y_payload * m_payload
-    coupling_cos_tilt = c_z_payload * coupling_cos_tilt_by_c_z_payload
-    coupling_sin_tilt_by_m_payload = c_x_payload * c_y_payload
-    coupling_sin_tilt = coupling_sin_tilt_by_m_payload * m_payload
-    mass_pan_tilt_term = cos_tilt * coupling_cos_tilt - coupling_sin_tilt * sin_tilt
-    mass_pan_tilt = -mass_pan_tilt_term
+    coupling_sin_tilt_by_c_x_payload = c_y_payload * m_payload
+    coupling_cos_tilt = c_z_payload * coupling_sin_tilt_by_c_x_payload
+    coupling_sin_tilt = c_x_payload * coupling_sin_tilt_by_c_x_payload
+    mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
     inverse_determinant = 1.0 / (inertia_tilt * mass_pan - (mass_pan_tilt * mass_pan_tilt))
     cos_tilt_inertia_pan_per_sin_tilt = cos_tilt * inertia_pan_per_sin_tilt
     coriolis_by_omega_pan = 2.0 * cos_tilt_inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt
@@ -399,268 +279,171 @@ def jacobian(t, x, u, p, m, fx, fu, fp):
     force_pan_term = cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt
     force_pan_term_omega_tilt = force_pan_term * omega_tilt
     force_pan = -b_pan * omega_pan - omega_tilt * (coriolis + force_pan_term_omega_tilt) + tau_pan
-    gravity_cos_tilt = gravity * gravity_cos_tilt_by_gravity
-    gravity_sin_tilt_by_gravity = c_z_payload * m_payload
-    gravity_sin_tilt = gravity * gravity_sin_tilt_by_gravity
+    gravity_cos_tilt_by_c_x_payload = gravity * m_payload
+    gravity_cos_tilt = c_x_payload * gravity_cos_tilt_by_c_x_payload
+    gravity_sin_tilt = c_z_payload * gravity_cos_tilt_by_c_x_payload
     half_coriolis = 0.5 * coriolis
-    force_tilt = (
-        -b_tilt * omega_tilt
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-        + half_coriolis * omega_pan
-        + tau_tilt
-    )
+    force_tilt = (-b_tilt * omega_tilt + cos_tilt * gravity_cos_tilt + gravity_sin_tilt * sin_tilt
+        + half_coriolis * omega_pan + tau_tilt)
     accel_pan = inverse_determinant * (force_pan * inertia_tilt - force_tilt * mass_pan_tilt)
-    inertia_pan_per_sin_tilt_by_theta_tilt = (
-        cos_tilt * inertia_pan_sin_sq_tilt - inertia_pan_sin_cos_tilt * sin_tilt
-    )
+    inertia_pan_per_sin_tilt_by_theta_tilt = (cos_tilt * inertia_pan_sin_sq_tilt
+        - inertia_pan_sin_cos_tilt * sin_tilt)
     twice_omega_pan = 2.0 * omega_pan
-    coriolis_by_theta_tilt = (
-        2.0 * cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
-        - inertia_pan_per_sin_tilt_sin_tilt * twice_omega_pan
-    )
-    accel_pan_by_theta_tilt_term = (
-        -accel_pan * force_pan_term
-        + 0.5 * coriolis_by_theta_tilt * omega_pan
-        + cos_tilt * gravity_sin_tilt
-        - gravity_cos_tilt * sin_tilt
-    )
+    coriolis_by_theta_tilt = (2.0 * cos_tilt * inertia_pan_per_sin_tilt_by_theta_tilt * omega_pan
+        - inertia_pan_per_sin_tilt_sin_tilt * twice_omega_pan)
+    accel_pan_by_theta_tilt_term = (-accel_pan * force_pan_term + 0.5 * coriolis_by_theta_tilt
+        * omega_pan + cos_tilt * gravity_sin_tilt - gravity_cos_tilt * sin_tilt)
     accel_tilt = inverse_determinant * (-force_pan * mass_pan_tilt + force_tilt * mass_pan)
     omega_tilt_sq = omega_tilt * omega_tilt
-    accel_pan_by_theta_tilt_term_2 = (
-        -accel_pan
-        * (cos_tilt_inertia_pan_per_sin_tilt + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt)
-        - accel_tilt * force_pan_term
-        - coriolis_by_theta_tilt * omega_tilt
-        - mass_pan_tilt_term * omega_tilt_sq
-    )
-    fx[2, 1] = inverse_determinant * (
-        -accel_pan_by_theta_tilt_term * mass_pan_tilt
-        + accel_pan_by_theta_tilt_term_2 * inertia_tilt
-    )
-    fx[3, 1] = inverse_determinant * (
-        accel_pan_by_theta_tilt_term * mass_pan - accel_pan_by_theta_tilt_term_2 * mass_pan_tilt
-    )
+    accel_pan_by_theta_tilt_term_2 = (-accel_pan * (cos_tilt_inertia_pan_per_sin_tilt
+        + inertia_pan_per_sin_tilt_by_theta_tilt * sin_tilt) - accel_tilt * force_pan_term
+        - coriolis_by_theta_tilt * omega_tilt + mass_pan_tilt * omega_tilt_sq)
+    fx[2, 1] = (inverse_determinant * (-accel_pan_by_theta_tilt_term * mass_pan_tilt
+        + accel_pan_by_theta_tilt_term_2 * inertia_tilt))
+    fx[3, 1] = (inverse_determinant * (accel_pan_by_theta_tilt_term * mass_pan
+        - accel_pan_by_theta_tilt_term_2 * mass_pan_tilt))
     fx[0, 2] = 1.0
+    accel_pan_by_omega_pan_term = -b_pan - coriolis_by_omega_pan * omega_tilt
     half_omega_pan = 0.5 * omega_pan
-    accel_pan_by_omega_pan_term = coriolis_by_omega_pan * half_omega_pan + half_coriolis
-    accel_pan_by_omega_pan_term_2 = -b_pan - coriolis_by_omega_pan * omega_tilt
-    fx[2, 2] = inverse_determinant * (
-        -accel_pan_by_omega_pan_term * mass_pan_tilt + accel_pan_by_omega_pan_term_2 * inertia_tilt
-    )
-    fx[3, 2] = inverse_determinant * (
-        accel_pan_by_omega_pan_term * mass_pan - accel_pan_by_omega_pan_term_2 * mass_pan_tilt
-    )
+    accel_pan_by_omega_pan_term_2 = coriolis_by_omega_pan * half_omega_pan + half_coriolis
+    fx[2, 2] = (inverse_determinant * (accel_pan_by_omega_pan_term * inertia_tilt
+        - accel_pan_by_omega_pan_term_2 * mass_pan_tilt))
+    fx[3, 2] = (inverse_determinant * (-accel_pan_by_omega_pan_term * mass_pan_tilt
+        + accel_pan_by_omega_pan_term_2 * mass_pan))
     fx[1, 3] = 1.0
     accel_pan_by_omega_tilt_term = -coriolis - 2.0 * force_pan_term_omega_tilt
-    fx[2, 3] = inverse_determinant * (
-        accel_pan_by_omega_tilt_term * inertia_tilt + b_tilt * mass_pan_tilt
-    )
-    fx[3, 3] = inverse_determinant * (
-        -accel_pan_by_omega_tilt_term * mass_pan_tilt - b_tilt * mass_pan
-    )
-    inertia_tilt_inverse_determinant = inertia_tilt * inverse_determinant
-    fu[2, 0] = inertia_tilt_inverse_determinant
+    fx[2, 3] = (inverse_determinant * (accel_pan_by_omega_tilt_term * inertia_tilt + b_tilt
+        * mass_pan_tilt))
+    fx[3, 3] = (inverse_determinant * (-accel_pan_by_omega_tilt_term * mass_pan_tilt - b_tilt
+        * mass_pan))
+    accel_pan_by_tau_pan = inertia_tilt * inverse_determinant
+    fu[2, 0] = accel_pan_by_tau_pan
     inverse_determinant_mass_pan_tilt = inverse_determinant * mass_pan_tilt
-    minus_inverse_determinant_mass_pan_tilt = -inverse_determinant_mass_pan_tilt
-    fu[3, 0] = minus_inverse_determinant_mass_pan_tilt
-    fu[2, 1] = minus_inverse_determinant_mass_pan_tilt
-    inverse_determinant_mass_pan = inverse_determinant * mass_pan
-    fu[3, 1] = inverse_determinant_mass_pan
-    accel_pan_by_J_pan_term = accel_pan
-    fp[2, 0] = -accel_pan_by_J_pan_term * inertia_tilt_inverse_determinant
-    fp[3, 0] = accel_pan_by_J_pan_term * inverse_determinant_mass_pan_tilt
-    inertia_pan_per_sin_tilt_by_J_x_tilt = sin_tilt
+    fu[3, 0] = -inverse_determinant_mass_pan_tilt
+    fu[2, 1] = -inverse_determinant_mass_pan_tilt
+    accel_tilt_by_tau_tilt = inverse_determinant * mass_pan
+    fu[3, 1] = accel_tilt_by_tau_tilt
+    if len(fp) == 0:
+        return
+    accel_pan_by_inertia_pan = -accel_pan * accel_pan_by_tau_pan
+    fp[2, 0] = accel_pan_by_inertia_pan
+    accel_tilt_by_inertia_pan = accel_pan * inverse_determinant_mass_pan_tilt
+    fp[3, 0] = accel_tilt_by_inertia_pan
     cos_tilt_twice_omega_pan = cos_tilt * twice_omega_pan
-    coriolis_by_J_x_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_tilt
-    coriolis_by_J_x_tilt_half_omega_pan = coriolis_by_J_x_tilt * half_omega_pan
+    coriolis_by_inertia_pan_sin_sq_tilt = cos_tilt_twice_omega_pan * sin_tilt
+    half_omega_pan_mass_pan_tilt = half_omega_pan * mass_pan_tilt
     accel_pan_sin_tilt = accel_pan * sin_tilt
-    accel_pan_by_J_x_tilt_term = (
-        -accel_pan_sin_tilt * inertia_pan_per_sin_tilt_by_J_x_tilt
-        - coriolis_by_J_x_tilt * omega_tilt
-    )
-    fp[2, 1] = inverse_determinant * (
-        accel_pan_by_J_x_tilt_term * inertia_tilt
-        - coriolis_by_J_x_tilt_half_omega_pan * mass_pan_tilt
-    )
-    fp[3, 1] = inverse_determinant * (
-        -accel_pan_by_J_x_tilt_term * mass_pan_tilt + coriolis_by_J_x_tilt_half_omega_pan * mass_pan
-    )
-    accel_pan_by_J_y_tilt_term = accel_tilt
-    fp[2, 2] = accel_pan_by_J_y_tilt_term * inverse_determinant_mass_pan_tilt
-    fp[3, 2] = -accel_pan_by_J_y_tilt_term * inverse_determinant_mass_pan
-    inertia_pan_per_sin_tilt_by_J_z_tilt = -sin_tilt
-    coriolis_by_J_z_tilt = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_tilt
-    coriolis_by_J_z_tilt_half_omega_pan = coriolis_by_J_z_tilt * half_omega_pan
-    accel_pan_by_J_z_tilt_term = (
-        -accel_pan * (inertia_pan_per_sin_tilt_by_J_z_tilt * sin_tilt + 1.0)
-        - coriolis_by_J_z_tilt * omega_tilt
-    )
-    fp[2, 3] = inverse_determinant * (
-        accel_pan_by_J_z_tilt_term * inertia_tilt
-        - coriolis_by_J_z_tilt_half_omega_pan * mass_pan_tilt
-    )
-    fp[3, 3] = inverse_determinant * (
-        -accel_pan_by_J_z_tilt_term * mass_pan_tilt + coriolis_by_J_z_tilt_half_omega_pan * mass_pan
-    )
-    inertia_pan_sin_cos_tilt_by_m_payload = 2.0 * c_x_payload * c_z_payload
-    inertia_pan_sin_sq_tilt_by_m_payload = -c_x_payload_sq + c_z_payload_sq
-    inertia_pan_per_sin_tilt_by_m_payload = (
-        cos_tilt * inertia_pan_sin_cos_tilt_by_m_payload
-        + inertia_pan_sin_sq_tilt_by_m_payload * sin_tilt
-    )
-    coriolis_by_m_payload = (
-        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_m_payload
-        - inertia_pan_sin_cos_tilt_by_m_payload * omega_pan
-    )
+    accel_pan_by_inertia_pan_sin_sq_tilt_term = (-accel_pan_sin_tilt * sin_tilt
+        - coriolis_by_inertia_pan_sin_sq_tilt * omega_tilt)
+    accel_pan_by_inertia_pan_sin_sq_tilt = (inverse_determinant
+        * (accel_pan_by_inertia_pan_sin_sq_tilt_term * inertia_tilt
+        - coriolis_by_inertia_pan_sin_sq_tilt * half_omega_pan_mass_pan_tilt))
+    fp[2, 1] = accel_pan_by_inertia_pan_sin_sq_tilt
+    half_omega_pan_mass_pan = half_omega_pan * mass_pan
+    accel_tilt_by_inertia_pan_sin_sq_tilt = (inverse_determinant
+        * (-accel_pan_by_inertia_pan_sin_sq_tilt_term * mass_pan_tilt
+        + coriolis_by_inertia_pan_sin_sq_tilt * half_omega_pan_mass_pan))
+    fp[3, 1] = accel_tilt_by_inertia_pan_sin_sq_tilt
+    accel_pan_by_inertia_tilt = accel_tilt * inverse_determinant_mass_pan_tilt
+    fp[2, 2] = accel_pan_by_inertia_tilt
+    accel_tilt_by_inertia_tilt = -accel_tilt * accel_tilt_by_tau_tilt
+    fp[3, 2] = accel_tilt_by_inertia_tilt
+    accel_pan_by_J_z_tilt = accel_pan_by_inertia_pan - accel_pan_by_inertia_pan_sin_sq_tilt
+    fp[2, 3] = accel_pan_by_J_z_tilt
+    accel_tilt_by_J_z_tilt = accel_tilt_by_inertia_pan - accel_tilt_by_inertia_pan_sin_sq_tilt
+    fp[3, 3] = accel_tilt_by_J_z_tilt
+    accel_pan_cos_tilt = accel_pan * cos_tilt
+    accel_pan_by_coupling_cos_tilt_term = accel_tilt * cos_tilt - omega_tilt_sq * sin_tilt
+    accel_pan_by_coupling_cos_tilt = (inverse_determinant * (accel_pan_by_coupling_cos_tilt_term
+        * inertia_tilt - accel_pan_cos_tilt * mass_pan_tilt))
+    accel_pan_by_coupling_sin_tilt_term = -accel_tilt * sin_tilt - cos_tilt * omega_tilt_sq
+    accel_pan_by_coupling_sin_tilt = (inverse_determinant * (accel_pan_by_coupling_sin_tilt_term
+        * inertia_tilt + accel_pan_sin_tilt * mass_pan_tilt))
+    accel_pan_by_gravity_cos_tilt = -cos_tilt * inverse_determinant_mass_pan_tilt
+    accel_pan_by_gravity_sin_tilt = -inverse_determinant_mass_pan_tilt * sin_tilt
+    coriolis_by_inertia_pan_sin_cos_tilt = cos_tilt * cos_tilt_twice_omega_pan - omega_pan
+    accel_pan_by_inertia_pan_sin_cos_tilt_term = (-accel_pan_sin_tilt * cos_tilt
+        - coriolis_by_inertia_pan_sin_cos_tilt * omega_tilt)
+    accel_pan_by_inertia_pan_sin_cos_tilt = (inverse_determinant
+        * (accel_pan_by_inertia_pan_sin_cos_tilt_term * inertia_tilt
+        - coriolis_by_inertia_pan_sin_cos_tilt * half_omega_pan_mass_pan_tilt))
+    coupling_cos_tilt_by_m_payload = c_y_payload * c_z_payload
+    coupling_sin_tilt_by_m_payload = c_x_payload * c_y_payload
     gravity_cos_tilt_by_m_payload = c_x_payload * gravity
     gravity_sin_tilt_by_m_payload = c_z_payload * gravity
-    inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
-    coupling_cos_tilt_by_m_payload = c_y_payload * c_z_payload
-    accel_pan_by_m_payload_term = (
-        -cos_tilt * coupling_cos_tilt_by_m_payload + coupling_sin_tilt_by_m_payload * sin_tilt
-    )
-    accel_pan_by_m_payload_term_2 = (
-        -accel_pan * accel_pan_by_m_payload_term
-        - accel_tilt * inertia_tilt_by_m_payload
-        + coriolis_by_m_payload * half_omega_pan
-        + cos_tilt * gravity_cos_tilt_by_m_payload
-        + gravity_sin_tilt_by_m_payload * sin_tilt
-    )
     inertia_pan_by_m_payload = c_x_payload_sq + c_y_payload_sq
-    omega_tilt_sq_sin_tilt = omega_tilt_sq * sin_tilt
-    cos_tilt_omega_tilt_sq = cos_tilt * omega_tilt_sq
-    accel_pan_by_m_payload_term_3 = (
-        -accel_pan * (inertia_pan_by_m_payload + inertia_pan_per_sin_tilt_by_m_payload * sin_tilt)
-        - accel_pan_by_m_payload_term * accel_tilt
-        - coriolis_by_m_payload * omega_tilt
-        - cos_tilt_omega_tilt_sq * coupling_sin_tilt_by_m_payload
-        - coupling_cos_tilt_by_m_payload * omega_tilt_sq_sin_tilt
-    )
-    fp[2, 4] = inverse_determinant * (
-        -accel_pan_by_m_payload_term_2 * mass_pan_tilt
-        + accel_pan_by_m_payload_term_3 * inertia_tilt
-    )
-    fp[3, 4] = inverse_determinant * (
-        accel_pan_by_m_payload_term_2 * mass_pan - accel_pan_by_m_payload_term_3 * mass_pan_tilt
-    )
-    inertia_pan_per_sin_tilt_by_J_x_payload = sin_tilt
-    coriolis_by_J_x_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_x_payload
-    coriolis_by_J_x_payload_half_omega_pan = coriolis_by_J_x_payload * half_omega_pan
-    accel_pan_by_J_x_payload_term = (
-        -accel_pan_sin_tilt * inertia_pan_per_sin_tilt_by_J_x_payload
-        - coriolis_by_J_x_payload * omega_tilt
-    )
-    fp[2, 5] = inverse_determinant * (
-        accel_pan_by_J_x_payload_term * inertia_tilt
-        - coriolis_by_J_x_payload_half_omega_pan * mass_pan_tilt
-    )
-    fp[3, 5] = inverse_determinant * (
-        -accel_pan_by_J_x_payload_term * mass_pan_tilt
-        + coriolis_by_J_x_payload_half_omega_pan * mass_pan
-    )
-    accel_pan_by_J_y_payload_term = accel_tilt
-    fp[2, 6] = accel_pan_by_J_y_payload_term * inverse_determinant_mass_pan_tilt
-    fp[3, 6] = -accel_pan_by_J_y_payload_term * inverse_determinant_mass_pan
-    inertia_pan_per_sin_tilt_by_J_z_payload = -sin_tilt
-    coriolis_by_J_z_payload = cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_J_z_payload
-    coriolis_by_J_z_payload_half_omega_pan = coriolis_by_J_z_payload * half_omega_pan
-    accel_pan_by_J_z_payload_term = (
-        -accel_pan * (inertia_pan_per_sin_tilt_by_J_z_payload * sin_tilt + 1.0)
-        - coriolis_by_J_z_payload * omega_tilt
-    )
-    fp[2, 7] = inverse_determinant * (
-        accel_pan_by_J_z_payload_term * inertia_tilt
-        - coriolis_by_J_z_payload_half_omega_pan * mass_pan_tilt
-    )
-    fp[3, 7] = inverse_determinant * (
-        -accel_pan_by_J_z_payload_term * mass_pan_tilt
-        + coriolis_by_J_z_payload_half_omega_pan * mass_pan
-    )
-    inertia_pan_sin_sq_tilt_by_c_x_payload = -inertia_tilt_by_c_x_payload
-    inertia_tilt_by_c_z_payload = 2.0 * gravity_sin_tilt_by_gravity
-    inertia_pan_per_sin_tilt_by_c_x_payload = (
-        cos_tilt * inertia_tilt_by_c_z_payload + inertia_pan_sin_sq_tilt_by_c_x_payload * sin_tilt
-    )
-    coriolis_by_c_x_payload = (
-        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_x_payload
-        - inertia_tilt_by_c_z_payload * omega_pan
-    )
-    gravity_cos_tilt_by_c_x_payload = gravity * m_payload
-    accel_pan_by_c_x_payload_term = (
-        -accel_pan_sin_tilt * coupling_cos_tilt_by_c_z_payload
-        - accel_tilt * inertia_tilt_by_c_x_payload
-        + 0.5 * coriolis_by_c_x_payload * omega_pan
-        + cos_tilt * gravity_cos_tilt_by_c_x_payload
-    )
-    accel_pan_by_c_x_payload_term_2 = (
-        -accel_pan
-        * (inertia_pan_per_sin_tilt_by_c_x_payload * sin_tilt + inertia_tilt_by_c_x_payload)
-        - accel_tilt * coupling_cos_tilt_by_c_z_payload * sin_tilt
-        - coriolis_by_c_x_payload * omega_tilt
-        - cos_tilt_omega_tilt_sq * coupling_cos_tilt_by_c_z_payload
-    )
-    fp[2, 8] = inverse_determinant * (
-        -accel_pan_by_c_x_payload_term * mass_pan_tilt
-        + accel_pan_by_c_x_payload_term_2 * inertia_tilt
-    )
-    fp[3, 8] = inverse_determinant * (
-        accel_pan_by_c_x_payload_term * mass_pan - accel_pan_by_c_x_payload_term_2 * mass_pan_tilt
-    )
-    accel_pan_by_c_y_payload_term = (
-        -cos_tilt * gravity_sin_tilt_by_gravity + gravity_cos_tilt_by_gravity * sin_tilt
-    )
-    accel_pan_accel_pan_by_c_y_payload_term = accel_pan * accel_pan_by_c_y_payload_term
-    inertia_pan_by_c_y_payload = 2.0 * coupling_cos_tilt_by_c_z_payload
-    accel_pan_by_c_y_payload_term_2 = (
-        -accel_pan * inertia_pan_by_c_y_payload
-        - accel_pan_by_c_y_payload_term * accel_tilt
-        - cos_tilt_omega_tilt_sq * gravity_cos_tilt_by_gravity
-        - gravity_sin_tilt_by_gravity * omega_tilt_sq_sin_tilt
-    )
-    fp[2, 9] = inverse_determinant * (
-        accel_pan_accel_pan_by_c_y_payload_term * mass_pan_tilt
-        + accel_pan_by_c_y_payload_term_2 * inertia_tilt
-    )
-    fp[3, 9] = inverse_determinant * (
-        -accel_pan_accel_pan_by_c_y_payload_term * mass_pan
-        - accel_pan_by_c_y_payload_term_2 * mass_pan_tilt
-    )
-    inertia_pan_per_sin_tilt_by_c_z_payload = (
-        cos_tilt * inertia_tilt_by_c_x_payload + inertia_tilt_by_c_z_payload * sin_tilt
-    )
-    coriolis_by_c_z_payload = (
-        cos_tilt_twice_omega_pan * inertia_pan_per_sin_tilt_by_c_z_payload
-        - inertia_tilt_by_c_x_payload * omega_pan
-    )
-    accel_pan_by_c_z_payload_term = (
-        accel_pan * cos_tilt * coupling_cos_tilt_by_c_z_payload
-        - accel_tilt * inertia_tilt_by_c_z_payload
-        + coriolis_by_c_z_payload * half_omega_pan
-        + gravity_cos_tilt_by_c_x_payload * sin_tilt
-    )
-    accel_pan_by_c_z_payload_term_2 = (
-        -accel_pan_sin_tilt * inertia_pan_per_sin_tilt_by_c_z_payload
-        + accel_tilt * cos_tilt * coupling_cos_tilt_by_c_z_payload
-        - coriolis_by_c_z_payload * omega_tilt
-        - coupling_cos_tilt_by_c_z_payload * omega_tilt_sq_sin_tilt
-    )
-    fp[2, 10] = inverse_determinant * (
-        -accel_pan_by_c_z_payload_term * mass_pan_tilt
-        + accel_pan_by_c_z_payload_term_2 * inertia_tilt
-    )
-    fp[3, 10] = inverse_determinant * (
-        accel_pan_by_c_z_payload_term * mass_pan - accel_pan_by_c_z_payload_term_2 * mass_pan_tilt
-    )
-    fp[2, 11] = -inertia_tilt_inverse_determinant * omega_pan
+    inertia_pan_sin_cos_tilt_by_m_payload = 2.0 * c_x_payload * c_z_payload
+    inertia_pan_sin_sq_tilt_by_m_payload = -c_x_payload_sq + c_z_payload_sq
+    inertia_tilt_by_m_payload = c_x_payload_sq + c_z_payload_sq
+    fp[2, 4] = (accel_pan_by_coupling_cos_tilt * coupling_cos_tilt_by_m_payload
+        + accel_pan_by_coupling_sin_tilt * coupling_sin_tilt_by_m_payload
+        + accel_pan_by_gravity_cos_tilt * gravity_cos_tilt_by_m_payload
+        + accel_pan_by_gravity_sin_tilt * gravity_sin_tilt_by_m_payload + accel_pan_by_inertia_pan
+        * inertia_pan_by_m_payload + accel_pan_by_inertia_pan_sin_cos_tilt
+        * inertia_pan_sin_cos_tilt_by_m_payload + accel_pan_by_inertia_pan_sin_sq_tilt
+        * inertia_pan_sin_sq_tilt_by_m_payload + accel_pan_by_inertia_tilt
+        * inertia_tilt_by_m_payload)
+    accel_tilt_by_coupling_cos_tilt = (inverse_determinant * (-accel_pan_by_coupling_cos_tilt_term
+        * mass_pan_tilt + accel_pan_cos_tilt * mass_pan))
+    accel_tilt_by_coupling_sin_tilt = (inverse_determinant * (-accel_pan_by_coupling_sin_tilt_term
+        * mass_pan_tilt - accel_pan_sin_tilt * mass_pan))
+    accel_tilt_by_gravity_cos_tilt = accel_tilt_by_tau_tilt * cos_tilt
+    accel_tilt_by_gravity_sin_tilt = accel_tilt_by_tau_tilt * sin_tilt
+    accel_tilt_by_inertia_pan_sin_cos_tilt = (inverse_determinant
+        * (-accel_pan_by_inertia_pan_sin_cos_tilt_term * mass_pan_tilt
+        + coriolis_by_inertia_pan_sin_cos_tilt * half_omega_pan_mass_pan))
+    fp[3, 4] = (accel_tilt_by_coupling_cos_tilt * coupling_cos_tilt_by_m_payload
+        + accel_tilt_by_coupling_sin_tilt * coupling_sin_tilt_by_m_payload
+        + accel_tilt_by_gravity_cos_tilt * gravity_cos_tilt_by_m_payload
+        + accel_tilt_by_gravity_sin_tilt * gravity_sin_tilt_by_m_payload + accel_tilt_by_inertia_pan
+        * inertia_pan_by_m_payload + accel_tilt_by_inertia_pan_sin_cos_tilt
+        * inertia_pan_sin_cos_tilt_by_m_payload + accel_tilt_by_inertia_pan_sin_sq_tilt
+        * inertia_pan_sin_sq_tilt_by_m_payload + accel_tilt_by_inertia_tilt
+        * inertia_tilt_by_m_payload)
+    fp[2, 5] = accel_pan_by_inertia_pan_sin_sq_tilt
+    fp[3, 5] = accel_tilt_by_inertia_pan_sin_sq_tilt
+    fp[2, 6] = accel_pan_by_inertia_tilt
+    fp[3, 6] = accel_tilt_by_inertia_tilt
+    fp[2, 7] = accel_pan_by_J_z_tilt
+    fp[3, 7] = accel_tilt_by_J_z_tilt
+    gravity_cos_tilt_by_gravity = c_x_payload * m_payload
+    inertia_pan_by_c_x_payload = 2.0 * gravity_cos_tilt_by_gravity
+    fp[2, 8] = (accel_pan_by_coupling_sin_tilt * coupling_sin_tilt_by_c_x_payload
+        + accel_pan_by_gravity_cos_tilt * gravity_cos_tilt_by_c_x_payload + accel_pan_by_inertia_pan
+        * inertia_pan_by_c_x_payload + accel_pan_by_inertia_pan_sin_cos_tilt
+        * inertia_tilt_by_c_z_payload - accel_pan_by_inertia_pan_sin_sq_tilt
+        * inertia_pan_by_c_x_payload + accel_pan_by_inertia_tilt * inertia_pan_by_c_x_payload)
+    fp[3, 8] = (accel_tilt_by_coupling_sin_tilt * coupling_sin_tilt_by_c_x_payload
+        + accel_tilt_by_gravity_cos_tilt * gravity_cos_tilt_by_c_x_payload
+        + accel_tilt_by_inertia_pan * inertia_pan_by_c_x_payload
+        + accel_tilt_by_inertia_pan_sin_cos_tilt * inertia_tilt_by_c_z_payload
+        - accel_tilt_by_inertia_pan_sin_sq_tilt * inertia_pan_by_c_x_payload
+        + accel_tilt_by_inertia_tilt * inertia_pan_by_c_x_payload)
+    inertia_pan_by_c_y_payload = 2.0 * coupling_sin_tilt_by_c_x_payload
+    fp[2, 9] = (accel_pan_by_coupling_cos_tilt * gravity_sin_tilt_by_gravity
+        + accel_pan_by_coupling_sin_tilt * gravity_cos_tilt_by_gravity + accel_pan_by_inertia_pan
+        * inertia_pan_by_c_y_payload)
+    fp[3, 9] = (accel_tilt_by_coupling_cos_tilt * gravity_sin_tilt_by_gravity
+        + accel_tilt_by_coupling_sin_tilt * gravity_cos_tilt_by_gravity + accel_tilt_by_inertia_pan
+        * inertia_pan_by_c_y_payload)
+    fp[2, 10] = (accel_pan_by_coupling_cos_tilt * coupling_sin_tilt_by_c_x_payload
+        + accel_pan_by_gravity_sin_tilt * gravity_cos_tilt_by_c_x_payload
+        + accel_pan_by_inertia_pan_sin_cos_tilt * inertia_pan_by_c_x_payload
+        + accel_pan_by_inertia_pan_sin_sq_tilt * inertia_tilt_by_c_z_payload
+        + accel_pan_by_inertia_tilt * inertia_tilt_by_c_z_payload)
+    fp[3, 10] = (accel_tilt_by_coupling_cos_tilt * coupling_sin_tilt_by_c_x_payload
+        + accel_tilt_by_gravity_sin_tilt * gravity_cos_tilt_by_c_x_payload
+        + accel_tilt_by_inertia_pan_sin_cos_tilt * inertia_pan_by_c_x_payload
+        + accel_tilt_by_inertia_pan_sin_sq_tilt * inertia_tilt_by_c_z_payload
+        + accel_tilt_by_inertia_tilt * inertia_tilt_by_c_z_payload)
+    fp[2, 11] = -accel_pan_by_tau_pan * omega_pan
     fp[3, 11] = inverse_determinant_mass_pan_tilt * omega_pan
     fp[2, 12] = inverse_determinant_mass_pan_tilt * omega_tilt
-    fp[3, 12] = -inverse_determinant_mass_pan * omega_tilt
-    accel_pan_by_gravity_term = (
-        cos_tilt * gravity_cos_tilt_by_gravity + gravity_sin_tilt_by_gravity * sin_tilt
-    )
-    fp[2, 13] = -accel_pan_by_gravity_term * inverse_determinant_mass_pan_tilt
-    fp[3, 13] = accel_pan_by_gravity_term * inverse_determinant_mass_pan
+    fp[3, 12] = -accel_tilt_by_tau_tilt * omega_tilt
+    fp[2, 13] = (accel_pan_by_gravity_cos_tilt * gravity_cos_tilt_by_gravity
+        + accel_pan_by_gravity_sin_tilt * gravity_sin_tilt_by_gravity)
+    fp[3, 13] = (accel_tilt_by_gravity_cos_tilt * gravity_cos_tilt_by_gravity
+        + accel_tilt_by_gravity_sin_tilt * gravity_sin_tilt_by_gravity)
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -669,16 +452,6 @@ def guards(t, x, u, p, m, g):
 
     t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
     see MODE_NAMES; g [0] in N m and rad.
-    """
-    return
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def guard_jacobian(t, x, u, p, m, gx, gp):
-    """Write the non-zero derivatives of guards by state and parameter.
-
-    t in s; x [4] in STATE_UNITS; u [2] in INPUT_UNITS; p [14] in the units of PARAMETERS; m [0],
-    see MODE_NAMES; gx [0, 4]; gp [0, 14].
     """
     return
 
@@ -752,26 +525,16 @@ def energy(t, x, u, p, m, e):
     m_payload_stored_term_2 = m_payload * stored_term_2
     c_y_payload_sq = c_y_payload * c_y_payload
     m_payload_stored_term = m_payload * stored_term
-    e[0] = (
-        J_pan * half_omega_pan_sq
-        + J_x_payload * stored_term
-        + J_x_tilt * stored_term
-        + J_y_payload * half_omega_tilt_sq
-        + J_y_tilt * half_omega_tilt_sq
-        + J_z_payload * stored_term_2
-        + J_z_tilt * stored_term_2
-        - c_x_payload_sin_tilt * gravity_m_payload
+    e[0] = (J_pan * half_omega_pan_sq + J_x_payload * stored_term + J_x_tilt * stored_term
+        + J_y_payload * half_omega_tilt_sq + J_y_tilt * half_omega_tilt_sq + J_z_payload
+        * stored_term_2 + J_z_tilt * stored_term_2 - c_x_payload_sin_tilt * gravity_m_payload
         + c_x_payload_sin_tilt_m_payload * c_y_payload_omega_pan_omega_tilt
-        + c_x_payload_sin_tilt_m_payload * c_z_payload_cos_tilt * omega_pan_sq
-        + c_x_payload_sq * half_omega_tilt_sq_m_payload
-        + c_x_payload_sq * m_payload_stored_term_2
-        - c_y_payload_omega_pan_omega_tilt * c_z_payload_cos_tilt * m_payload
-        + c_y_payload_sq * m_payload_stored_term
-        + c_y_payload_sq * m_payload_stored_term_2
-        + c_z_payload_cos_tilt * gravity_m_payload
-        + c_z_payload_sq * half_omega_tilt_sq_m_payload
-        + c_z_payload_sq * m_payload_stored_term
-    )
+        + c_x_payload_sin_tilt_m_payload * c_z_payload_cos_tilt * omega_pan_sq + c_x_payload_sq
+        * half_omega_tilt_sq_m_payload + c_x_payload_sq * m_payload_stored_term_2
+        - c_y_payload_omega_pan_omega_tilt * c_z_payload_cos_tilt * m_payload + c_y_payload_sq
+        * m_payload_stored_term + c_y_payload_sq * m_payload_stored_term_2 + c_z_payload_cos_tilt
+        * gravity_m_payload + c_z_payload_sq * half_omega_tilt_sq_m_payload + c_z_payload_sq
+        * m_payload_stored_term)
     e[1] = omega_pan * tau_pan + omega_tilt * tau_tilt
     e[2] = b_pan * omega_pan_sq + b_tilt * omega_tilt_sq
 
@@ -804,55 +567,33 @@ def equation_error(t, x, u, p, m, r):
     b_pan = p[11]
     b_tilt = p[12]
     gravity = p[13]
-    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
-    inertia_pan_sin_sq_tilt_term = (c_x_payload * c_x_payload) * m_payload
-    inertia_pan_sin_sq_tilt_term_2 = (c_z_payload * c_z_payload) * m_payload
-    inertia_pan_sin_sq_tilt = (
-        J_x_payload
-        + J_x_tilt
-        - J_z_payload
-        - J_z_tilt
-        - inertia_pan_sin_sq_tilt_term
-        + inertia_pan_sin_sq_tilt_term_2
-    )
     cos_tilt = math.cos(theta_tilt)
+    inertia_pan_sin_cos_tilt = 2.0 * c_x_payload * c_z_payload * m_payload
+    inertia_pan_sin_sq_tilt_term = (c_z_payload * c_z_payload) * m_payload
+    inertia_pan_sin_sq_tilt_term_2 = (c_x_payload * c_x_payload) * m_payload
+    inertia_pan_sin_sq_tilt = (J_x_payload + J_x_tilt - J_z_payload - J_z_tilt
+        + inertia_pan_sin_sq_tilt_term - inertia_pan_sin_sq_tilt_term_2)
     sin_tilt = math.sin(theta_tilt)
-    inertia_pan_per_sin_tilt = (
-        cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt * sin_tilt
-    )
+    inertia_pan_per_sin_tilt = (cos_tilt * inertia_pan_sin_cos_tilt + inertia_pan_sin_sq_tilt
+        * sin_tilt)
     coriolis = omega_pan * (2.0 * cos_tilt * inertia_pan_per_sin_tilt - inertia_pan_sin_cos_tilt)
     c_y_payload_m_payload = c_y_payload * m_payload
     coupling_cos_tilt = c_y_payload_m_payload * c_z_payload
     coupling_sin_tilt = c_x_payload * c_y_payload_m_payload
-    force_pan = (
-        -b_pan * omega_pan
-        - omega_tilt
-        * (coriolis + omega_tilt * (cos_tilt * coupling_sin_tilt + coupling_cos_tilt * sin_tilt))
-        + tau_pan
-    )
-    inertia_pan = (
-        J_pan
-        + J_z_payload
-        + J_z_tilt
-        + (c_y_payload * c_y_payload) * m_payload
-        + inertia_pan_sin_sq_tilt_term
-    )
+    force_pan = (-b_pan * omega_pan - omega_tilt * (coriolis + omega_tilt * (cos_tilt
+        * coupling_sin_tilt + coupling_cos_tilt * sin_tilt)) + tau_pan)
+    inertia_pan = (J_pan + J_z_payload + J_z_tilt + (c_y_payload * c_y_payload) * m_payload
+        + inertia_pan_sin_sq_tilt_term_2)
     mass_pan = inertia_pan + inertia_pan_per_sin_tilt * sin_tilt
     mass_pan_tilt = -cos_tilt * coupling_cos_tilt + coupling_sin_tilt * sin_tilt
     r[0] = accel_pan * mass_pan + accel_tilt * mass_pan_tilt - force_pan
     gravity_m_payload = gravity * m_payload
     gravity_cos_tilt = c_x_payload * gravity_m_payload
     gravity_sin_tilt = c_z_payload * gravity_m_payload
-    force_tilt = (
-        -b_tilt * omega_tilt
-        + 0.5 * coriolis * omega_pan
-        + cos_tilt * gravity_cos_tilt
-        + gravity_sin_tilt * sin_tilt
-        + tau_tilt
-    )
-    inertia_tilt = (
-        J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term + inertia_pan_sin_sq_tilt_term_2
-    )
+    force_tilt = (-b_tilt * omega_tilt + 0.5 * coriolis * omega_pan + cos_tilt * gravity_cos_tilt
+        + gravity_sin_tilt * sin_tilt + tau_tilt)
+    inertia_tilt = (J_y_payload + J_y_tilt + inertia_pan_sin_sq_tilt_term
+        + inertia_pan_sin_sq_tilt_term_2)
     r[1] = accel_pan * mass_pan_tilt + accel_tilt * inertia_tilt - force_tilt
 
 
@@ -886,4 +627,27 @@ def state_derivative(t, x, u, p, dx):
     mode_derivative(t, x, u, p, x, dx)
 
 
-# END sha256 3266838ee1bd4e25f7df0d5f75d3b422f54ed73337632cf05721b0232a158a87
+# What follows is for fits and diagnoses; no function above uses it.
+# States without influence while these parameters are at their vanishing values.
+IDLE_STATES = ()
+# Relations: parameters, rule, strict; `margins` gives what is at least zero.
+REQUIREMENTS = ()
+# Searching them: name, value at which the effect vanishes (None: any), starts,
+# period, what a frequency is locked to.
+SEARCH = (("b_pan", 0.0, (0.1,), None, None), ("b_tilt", 0.0, (0.1,), None, None))
+# Effects: id, axis, parameters, nested members (title, parameters, tied ones), keys of the
+# effects that it acts on, title, reference, separating experiment, first member leads.
+EFFECTS = (
+    ("rigid_bodies", None, ("J_pan", "J_x_tilt", "J_y_tilt", "J_z_tilt"), (), (),
+     "pan body and tilt body", "thesis Eq. 3.8, Table 5.1", "", False),
+    ("payload", None, ("m_payload", "J_x_payload", "J_y_payload", "J_z_payload", "c_x_payload",
+     "c_y_payload", "c_z_payload"), (), (), "payload",
+     "thesis section 3.2.2, Table 5.3 with erratum 18", "", False),
+    ("viscous_friction", "pan", ("b_pan",), (), (), "viscous friction in the joint",
+     "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+     "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
+    ("viscous_friction", "tilt", ("b_tilt",), (), (), "viscous friction in the joint",
+     "thesis Eq. 2.8, Eq. 3.8 (b_p, b_t)",
+     "Run at six or more steady speeds, the slowest near the Stribeck speed.", False),
+)
+# END sha256 6636f1736ea277ff45ace2e7862cd5dcfb836c166446479cd646b062f070f134

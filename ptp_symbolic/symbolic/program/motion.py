@@ -44,22 +44,26 @@ def prepared_derivative_kernel(each: Sequence[Line], vectors: Vectors) -> Kernel
     return kernel("prepared_derivative", f"{MODE_ARGUMENTS}, c, dx", doc, vectors, each)
 
 
-def jacobian_kernel(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> Kernel:
-    """Kernel `jacobian`."""
+def linearize_kernel(
+    equations: Equations, solve: dynamics.Solve, guards: Sequence[sp.Expr], vectors: Vectors
+) -> Kernel:
+    """Kernel `linearize`: derivatives of the vector field, then of the guards."""
+    slopes = _slopes(equations, solve)
     outputs: list[Line] = []
     extra = {s.symbol: s.derivative for s in equations.extra_states}
     for letter, symbols in variables(equations):
         for j, variable in enumerate(symbols):
-            by = dynamics.acceleration_derivative(equations, solve, variable)
-            rows = dict(zip(equations.rates, by, strict=True))
+            rows = dict(zip(equations.rates, slopes.by[variable], strict=True))
             rows.update({s: solve.chain.derivative(e, variable) for s, e in extra.items()})
             rate_of = zip(equations.coordinates, equations.rates, strict=True)
             rows.update({q: sp.Integer(int(w == variable)) for q, w in rate_of})
             for i, state in enumerate(equations.state_symbols):
                 outputs.append((f"f{letter}[{i}, {j}]", rows[state]))
-    doc = "Write the non-zero derivatives of mode_derivative by state, input and parameter."
-    lines = shared_lines(equations, (*solve.definitions, *solve.chain.lines), outputs)
-    return kernel("jacobian", f"{MODE_ARGUMENTS}, fx, fu, fp", doc, vectors, lines)
+    outputs += _derivatives(equations, solve, slopes, "g", guards)
+    doc = "Write the non-zero derivatives of dx into fx, fu, fp and those of guards into gx, gp."
+    lines = shared_lines(equations, (*solve.definitions, *slopes.lines), outputs)
+    arguments = f"{MODE_ARGUMENTS}, fx, fu, fp, gx, gp"
+    return replace(kernel("linearize", arguments, doc, vectors, lines), optional=("fp", "gx"))
 
 
 def guards_kernel(
@@ -72,27 +76,18 @@ def guards_kernel(
     return kernel("guards", f"{MODE_ARGUMENTS}, g", doc, vectors, lines)
 
 
-def guard_jacobian_kernel(
-    equations: Equations, solve: dynamics.Solve, guards: Sequence[sp.Expr], vectors: Vectors
-) -> Kernel:
-    """Kernel `guard_jacobian`."""
-    outputs = _derivatives(equations, solve, "g", guards)
-    doc = "Write the non-zero derivatives of guards by state and parameter."
-    lines = shared_lines(equations, (*solve.definitions, *solve.chain.lines), outputs)
-    return kernel("guard_jacobian", f"{MODE_ARGUMENTS}, gx, gp", doc, vectors, lines)
-
-
 def impact_kernels(equations: Equations, solve: dynamics.Solve, vectors: Vectors) -> list[Kernel]:
     """Two kernels where rigid bodies strike each other, none elsewhere."""
     if not any(contact.rigid for contact in equations.contacts):
         return []
     expressions = impact_expressions(equations, solve)
-    definitions = (*solve.definitions, *solve.chain.lines)
+    slopes = _slopes(equations, solve)
+    definitions = (*solve.definitions, *slopes.lines)
     outputs = [(f"strike[{i}]", e) for i, e in enumerate(expressions)]
     doc = "Write what a strike changes in the state, restitution and energy, per contact."
     lines = shared_lines(equations, definitions, outputs)
     first = kernel("impacts", f"{MODE_ARGUMENTS}, strike", doc, vectors, lines)
-    outputs = _derivatives(equations, solve, "strike", expressions)
+    outputs = _derivatives(equations, solve, slopes, "strike", expressions)
     doc = "Write the non-zero derivatives of impacts by state and parameter."
     lines = shared_lines(equations, definitions, outputs)
     arguments = f"{MODE_ARGUMENTS}, strikex, strikep"
@@ -118,17 +113,27 @@ def equation_error_kernel(equations: Equations, solve: dynamics.Solve, vectors: 
     return kernel("equation_error", f"{MODE_ARGUMENTS}, r", doc, extended, lines)
 
 
+def _slopes(equations: Equations, solve: dynamics.Solve) -> dynamics.Slopes:
+    """Derivatives of the accelerations by state, input and parameter."""
+    every = [symbol for _, symbols in variables(equations) for symbol in symbols]
+    return dynamics.acceleration_slopes(equations, solve, every)
+
+
 def _derivatives(
-    equations: Equations, solve: dynamics.Solve, word: str, expressions: Sequence[sp.Expr]
+    equations: Equations,
+    solve: dynamics.Solve,
+    slopes: dynamics.Slopes,
+    word: str,
+    expressions: Sequence[sp.Expr],
 ) -> list[Line]:
     """Derivatives of `expressions` by state and parameter, into the arrays `word`x and `word`p."""
-    outputs: list[Line] = []
-    for letter, symbols in variables(equations):
-        if letter == "u":
-            continue
-        for j, variable in enumerate(symbols):
-            by = dynamics.acceleration_derivative(equations, solve, variable)
-            for i, expression in enumerate(expressions):
-                value = dynamics.derivative_of(equations, solve, expression, variable, by)
-                outputs.append((f"{word}{letter}[{i}, {j}]", value))
-    return outputs
+    return [
+        (
+            f"{word}{letter}[{i}, {j}]",
+            dynamics.derivative_of(solve, slopes, expression, variable),
+        )
+        for letter, symbols in variables(equations)
+        if letter != "u"
+        for j, variable in enumerate(symbols)
+        for i, expression in enumerate(expressions)
+    ]

@@ -11,10 +11,9 @@ from ptp_symbolic.symbolic.program import dynamics
 from ptp_symbolic.symbolic.program.kernel import Kernel, Vectors, used_names
 from ptp_symbolic.symbolic.program.motion import (
     equation_error_kernel,
-    guard_jacobian_kernel,
     guards_kernel,
     impact_kernels,
-    jacobian_kernel,
+    linearize_kernel,
     mode_derivative_kernel,
     prepare_kernel,
     prepared_derivative_kernel,
@@ -105,9 +104,8 @@ def program(equations: Equations) -> Program:
         mode_derivative_kernel(rates, vectors),
         prepare_kernel(once, vectors),
         prepared_derivative_kernel(each, vectors),
-        jacobian_kernel(computed, solve, vectors),
+        linearize_kernel(computed, solve, guards, vectors),
         guards_kernel(computed, solve, guards, vectors),
-        guard_jacobian_kernel(computed, solve, guards, vectors),
         *impact_kernels(computed, solve, vectors),
         outputs_kernel(computed, solve, vectors),
         output_jacobian_kernel(equations, computed, solve, vectors),

@@ -11,6 +11,7 @@ from ptp_symbolic.symbolic.symbols import real
 
 Line = tuple[str, sp.Expr]
 MAX_NAME = 40
+ENTRY = "["  # in the targets that are entries of arrays
 PREFIX = "shared:"  # of names yet to be found, which no machine uses
 MULTIPLES = {2: "twice", 3: "thrice", sp.Rational(1, 2): "half"}
 
@@ -46,28 +47,169 @@ class Vocabulary:
 def share(definitions: Sequence[Line], outputs: Sequence[Line], words: Vocabulary) -> list[Line]:
     """Return the assignments that compute `outputs`, each name assigned before it is used.
 
-    `definitions` name intermediate results (a determinant, an acceleration) that outputs may use;
-    those that nothing uses are dropped, and those that only rename are put in. Targets of outputs
-    keep their text, e.g. ``dx[0]``.
+    `definitions` name intermediate results (a determinant, an acceleration) that outputs may use,
+    each those before it; those that nothing uses are dropped, and those that only rename are put
+    in. Targets of outputs keep their text, e.g. ``dx[0]``. No two names stand for one value, nor
+    for a value and its negative.
     """
-    named = [*definitions, *words.meanings]
-    written = _in_single_angles([words.without_powers(e) for _, e in (*named, *outputs)])
-    count = len(named)
-    found, terms, ends = common_subexpressions(written[:count], written[count:], PREFIX)
+    functions = _functions_of(e for _, e in (*definitions, *outputs))
+    given = [*functions, *definitions, *words.meanings]
+    written = _in_single_angles([words.without_powers(e) for _, e in (*given, *outputs)])
+    names = [name for name, _ in given]
+    named, ends = _distinct(list(zip(names, written, strict=False)), written[len(given) :])
+    named, ends = _one_form(named, ends)
+    found, terms, ends = common_subexpressions([e for _, e in named], ends, PREFIX)
     shared = [(str(symbol), expression) for symbol, expression in found]
     lines = [(name, e) for (name, _), e in zip(named, terms, strict=True)]
-    defined, meant = lines[: len(definitions)], lines[len(definitions) :]
+    meanings = {name for name, _ in words.meanings}
+    defined = [line for line in lines if line[0] not in meanings]
+    meant = [line for line in lines if line[0] in meanings]
     final = [(name, e) for (name, _), e in zip(outputs, ends, strict=True)]
     available, final = _without_aliases(shared, defined, meant, final)
-    ordered = _ordered(available, final)
+    ordered = _inlined(_once(_ordered(available, final)))
     return _renamed(ordered, {name for name, _ in available}, words.targets)
+
+
+def _functions_of(expressions: Iterable[sp.Expr]) -> list[Line]:
+    """Names of the sines and cosines of states and parameters."""
+    found = {f for e in expressions for f in e.atoms(sp.sin, sp.cos) if f.args[0].is_Symbol}
+    return sorted((str(_describe(f)), f) for f in found)
+
+
+def _distinct(
+    named: Sequence[Line], outputs: Sequence[sp.Expr]
+) -> tuple[list[Line], list[sp.Expr]]:
+    """Lines without those that name what another names already, or its negative, and `outputs` in
+    terms of these. The shortest name stays.
+    """
+    first: dict[sp.Symbol, sp.Expr] = {}
+    values: dict[sp.Expr, sp.Symbol] = {}
+    names: dict[sp.Symbol, str] = {}
+    for name, expression in _ordered(named, [("", sp.Tuple(*(real(n) for n, _ in named)))])[:-1]:
+        value, symbol = expression.xreplace(first), real(name)
+        known = _known(value, values)
+        if known is None:
+            values[value], names[symbol] = symbol, name
+            continue
+        first[symbol] = known
+        if value in values:
+            names[known] = min(names[known], name, key=len)
+    last = {symbol: real(name) for symbol, name in names.items()}
+    lines = [(names[symbol], value.xreplace(last)) for value, symbol in values.items()]
+    return lines, [e.xreplace(first).xreplace(last) for e in outputs]
+
+
+def _one_form(
+    named: Sequence[Line], outputs: Sequence[sp.Expr]
+) -> tuple[list[Line], list[sp.Expr]]:
+    """Lines and `outputs` in which sums that are multiples of one another, such as a - b and b - a,
+    are one term, and half powers those of one root. A form that has a name is known by it.
+    """
+    parts: dict[sp.Expr, None] = {}
+    for expression in (*(e for _, e in named), *outputs):
+        _collect(expression, parts)
+    names = {e: real(name) for name, e in named}
+    forms: dict[sp.Expr, sp.Symbol] = {}
+    replaced: dict[sp.Expr, sp.Expr] = {}
+
+    def form(expression: sp.Expr) -> sp.Symbol:
+        if expression not in forms:
+            own = names.get(expression, real(f"{PREFIX}form{len(forms)}"))
+            forms[expression] = replaced[expression] = own
+        return forms[expression]
+
+    for multiples in _multiples(parts):
+        chosen = min(multiples, key=lambda e: (abs(multiples[e]) != 1, e not in names))
+        for part, factor in multiples.items():
+            if part is not chosen:
+                replaced[part] = factor / multiples[chosen] * form(chosen)
+    for part in parts:
+        if part.is_Pow and part.exp.is_Rational and part.exp.q == 2 and abs(part.exp.p) > 1:
+            replaced[part] = form(sp.sqrt(part.base)) ** part.exp.p
+    replaced |= {1 / e: 1 / term for e, term in forms.items() if e.is_Pow}
+
+    def inside(expression: sp.Expr) -> sp.Expr:
+        return expression.func(*(part.xreplace(replaced) for part in expression.args))
+
+    own = [(str(term), inside(e)) for e, term in forms.items() if e not in names]
+    lines = [(name, inside(e) if e in forms else e.xreplace(replaced)) for name, e in named]
+    return [*own, *lines], [e.xreplace(replaced) for e in outputs]
+
+
+def _multiples(parts: Iterable[sp.Expr]) -> list[dict[sp.Expr, sp.Expr]]:
+    """The sums among `parts` that are multiples of one another, with their factors."""
+    groups: dict[sp.Expr, dict[sp.Expr, sp.Expr]] = {}
+    for part in parts:
+        if part.is_Add:
+            factor, rest = part.primitive()
+            if rest.could_extract_minus_sign():
+                factor, rest = -factor, -rest
+            groups.setdefault(rest, {})[part] = factor
+    return [group for group in groups.values() if len(group) > 1]
+
+
+def _collect(expression: sp.Expr, parts: dict[sp.Expr, None]) -> None:
+    """Add an expression and all that it is made of to `parts`, in order."""
+    if expression not in parts and expression.args:
+        parts[expression] = None
+        for part in expression.args:
+            _collect(part, parts)
+
+
+def _once(lines: Sequence[Line]) -> list[Line]:
+    """Lines without those whose value, or its negative, an earlier one has already."""
+    replaced: dict[sp.Symbol, sp.Expr] = {}
+    values: dict[sp.Expr, sp.Symbol] = {}
+    kept: list[Line] = []
+    for target, expression in lines:
+        value, symbol = expression.xreplace(replaced), real(target)
+        known = None if ENTRY in target else _known(value, values)
+        if known is not None:
+            replaced[symbol] = known
+            continue
+        kept.append((target, value))
+        if ENTRY not in target:
+            values[value] = symbol
+    return kept
+
+
+def _known(value: sp.Expr, values: Mapping[sp.Expr, sp.Symbol]) -> sp.Expr | None:
+    """What stands for `value` where it is a number, a symbol, or among `values`, or its negative
+    is; None elsewhere.
+    """
+    if value in values or not isinstance(value, sp.Expr):
+        return values.get(value)
+    if value.is_number or value.is_Symbol or (-value).is_Symbol:
+        return value
+    return -values[-value] if -value in values else None
+
+
+def _inlined(lines: Sequence[Line]) -> list[Line]:
+    """Lines without terms that one other line uses once and that have no name of their own, and
+    without names that only an entry of an array is given.
+    """
+    uses: dict[sp.Symbol, int] = {}
+    for _, expression in lines:
+        for symbol in (each for each in sp.preorder_traversal(expression) if each.is_Symbol):
+            uses[symbol] = uses.get(symbol, 0) + 1
+    given = {e for target, e in lines if ENTRY in target and e.is_Symbol}
+    put_in: dict[sp.Symbol, sp.Expr] = {}
+    kept: list[Line] = []
+    for target, expression in lines:
+        value, symbol = expression.xreplace(put_in), real(target)
+        alone = target.startswith(PREFIX) or symbol in given
+        if ENTRY not in target and alone and uses[symbol] == 1:
+            put_in[symbol] = value
+        else:
+            kept.append((target, value))
+    return kept
 
 
 def _without_aliases(
     shared: Sequence[Line], defined: Sequence[Line], meant: Sequence[Line], final: Sequence[Line]
 ) -> tuple[list[Line], list[Line]]:
     """Available lines and `final` ones, without lines that give another name alone: a shared term
-    takes the last name that it is defined under, and what else it is called is replaced by that.
+    takes the name that it is defined under, and what else it is called is replaced by that.
     """
     terms = {real(name) for name, _ in shared}
     names: dict[sp.Symbol, sp.Expr] = {}

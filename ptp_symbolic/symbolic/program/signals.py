@@ -1,6 +1,5 @@
 """Kernels of what is read of the state and set in it: outputs, energies, bounds, samplers."""
 
-from ptp_symbolic.symbolic.derivation.contributions import slope_symbol
 from ptp_symbolic.symbolic.derivation.differentiation import derivative
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.program import dynamics
@@ -29,23 +28,23 @@ def output_jacobian_kernel(
 ) -> Kernel:
     """Kernel `output_jacobian`: by the chain rule through accelerations where outputs have any."""
     accelerated = any(e.has(*solve.accelerations) for _, _, e in equations.outputs)
-    outputs, slopes = [], []
-    for letter, symbols in variables(equations):
-        for j, variable in enumerate(symbols if letter != "u" else ()):
-            named = [slope_symbol(a, variable) for a in solve.accelerations]
-            if accelerated:
-                values = dynamics.acceleration_derivative(grouped, solve, variable)
-                slopes += [(str(name), value) for name, value in zip(named, values, strict=True)]
-            for i, (_, _, expression) in enumerate(equations.outputs):
-                value = (
-                    dynamics.derivative_of(grouped, solve, expression, variable, named)
-                    if accelerated
-                    else derivative(equations.written_out(expression), variable)
-                )
-                outputs.append((f"y{letter}[{i}, {j}]", value))
+    columns = [(letter, own) for letter, own in variables(equations) if letter != "u"]
+    every = [symbol for _, own in columns for symbol in own]
+    slopes = dynamics.acceleration_slopes(grouped, solve, every) if accelerated else None
+    outputs = [
+        (
+            f"y{letter}[{i}, {j}]",
+            dynamics.derivative_of(solve, slopes, expression, variable)
+            if slopes
+            else derivative(equations.written_out(expression), variable),
+        )
+        for letter, own in columns
+        for j, variable in enumerate(own)
+        for i, (_, _, expression) in enumerate(equations.outputs)
+    ]
     doc = "Write the non-zero derivatives of outputs by state and parameter."
-    definitions = (*solve.definitions, *solve.chain.lines, *slopes) if accelerated else ()
-    lines = shared_lines(grouped if accelerated else equations, definitions, outputs)
+    definitions = (*solve.definitions, *slopes.lines) if slopes else ()
+    lines = shared_lines(grouped if slopes else equations, definitions, outputs)
     return kernel("output_jacobian", "t, x, u, p, yx, yp", doc, vectors, lines)
 
 

@@ -1,11 +1,15 @@
-"""Python literals of an emitted module, formatted as the project formats its own code."""
+"""Python text of an emitted module, its lines filled."""
 
 import json
+import re
 import textwrap
 from collections.abc import Iterable
 
 TEXT_WIDTH = 80
 WIDTH = 100
+UNBROKEN = "\0"  # stands for a space at which a line must not end
+LITERAL = re.compile(r'"(?:[^"\\]|\\.)*"')
+OPERAND = re.compile(r" (?![-+*/] |if |else )")  # the spaces that are not before an operator
 
 
 def repr_text(value: str) -> str:
@@ -14,18 +18,21 @@ def repr_text(value: str) -> str:
 
 
 def long_text(value: str) -> str:
-    """A literal over as many lines as it needs."""
+    """A literal, or several beside each other that are one."""
     lines = textwrap.wrap(value, TEXT_WIDTH, drop_whitespace=False) or [""]
-    return "\n        ".join(repr_text(line) for line in lines)
+    return " ".join(repr_text(line) for line in lines)
 
 
 def named_tuple_text(name: str, items: Iterable[str]) -> str:
-    """The constant `name`, a tuple: on one line, or one item a line."""
+    """The constant `name`, a tuple: on one line, or filled, with every tuple in it on its own."""
     items = list(items)
     line = f"{name} = ({listed(items)})"
     if len(line) <= WIDTH:
         return line
-    return f"{name} = (\n" + "".join(f"    {item},\n" for item in items) + ")"
+    rows = [f"{item}," for item in items]
+    if not items[0].startswith("("):
+        rows = [" ".join(rows)]
+    return "\n".join([f"{name} = (", *(_filled_row(row) for row in rows), ")"])
 
 
 def number_text(value: float | None) -> str:
@@ -42,3 +49,33 @@ def listed(items: Iterable[str]) -> str:
     """Items of a tuple, without its parentheses."""
     found = list(items)
     return f"{found[0]}," if len(found) == 1 else ", ".join(found)
+
+
+def assignment_text(target: str, source: str, width: int) -> str:
+    """An assignment in lines of `width`, broken before operators."""
+    if len(target) + len(source) + 3 <= width:
+        return f"{target} = {source}"
+    text = OPERAND.sub(UNBROKEN, f"{target} = ({source})")
+    lines = _wrapped(text, width, "", "    ")
+    if max(map(len, lines.split("\n"))) <= width:
+        return lines
+    body = _wrapped(OPERAND.sub(UNBROKEN, f"{source})"), width, "    ", "    ")
+    return f"{target} = (\n{body}"
+
+
+def _filled_row(row: str) -> str:
+    literals = LITERAL.sub(lambda found: found[0].replace(" ", UNBROKEN), row)
+    further = 5 if row.startswith("(") else 4
+    return _wrapped(literals, WIDTH, 4 * " ", further * " ")
+
+
+def _wrapped(text: str, width: int, first: str, further: str) -> str:
+    lines = textwrap.wrap(
+        text,
+        width,
+        initial_indent=first,
+        subsequent_indent=further,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return "\n".join(lines).replace(UNBROKEN, " ")

@@ -3,16 +3,14 @@
 import hashlib
 import textwrap
 
-import sympy as sp
-
 from ptp_symbolic.symbolic.derivation.equations import Equations
 from ptp_symbolic.symbolic.program.kernel import Kernel
 from ptp_symbolic.symbolic.program.program import Program, program
 from ptp_symbolic.symbolic.targets.numba.docstring import docstring
-from ptp_symbolic.symbolic.targets.numba.literals import WIDTH
-from ptp_symbolic.symbolic.targets.numba.metadata import metadata_text
+from ptp_symbolic.symbolic.targets.numba.literals import WIDTH, assignment_text
+from ptp_symbolic.symbolic.targets.numba.metadata import metadata_text, search_text
 from ptp_symbolic.symbolic.targets.numba.mode_functions import mode_functions_text
-from ptp_symbolic.symbolic.targets.printing import Language, Printer
+from ptp_symbolic.symbolic.targets.printing import Language
 
 NUMBA = Language(
     "numba",
@@ -26,7 +24,7 @@ NUMBA = Language(
     },
 )
 SEAL = "# END sha256 "
-DOC_WIDTH = WIDTH - 4
+INNER_WIDTH = WIDTH - 4
 IMPLIED_MODES = ("m = np.empty(len(MODE_NAMES))", "initial_modes(t, x, u, p, m)")
 
 
@@ -46,7 +44,7 @@ def written(whole: Program) -> str:
     digest = hashlib.sha256(body.encode()).hexdigest()[:16]
     opening = docstring(whole.computed, whole.operations)
     head = metadata_text(whole.equations, digest, opening, len(whole.vectors.c))
-    return sealed(f"{head}\n\n\n{body}\n")
+    return sealed(f"{head}\n\n\n{body}\n\n\n{search_text(whole.equations)}\n")
 
 
 def sealed(text: str) -> str:
@@ -58,11 +56,13 @@ def sealed(text: str) -> str:
 def _function(kernel: Kernel) -> str:
     """A compiled function that unpacks what it uses and assigns the lines of a kernel in turn."""
     shapes = "; ".join(_described(kernel, argument) for argument in kernel.arguments)
-    shapes = textwrap.fill(f"{shapes}.", DOC_WIDTH)
+    shapes = textwrap.fill(f"{shapes}.", INNER_WIDTH)
     rows = [f'"""{kernel.doc}\n\n{shapes}\n"""']
     rows += IMPLIED_MODES if kernel.finds_modes else ()
     rows += [f"{name} = {array}[{index}]" for name, array, index in kernel.unpacked]
-    rows += [_assignment(target, expression) for target, expression in kernel.lines]
+    for optional, lines in kernel.sections:
+        rows += [f"if len({optional}) == 0:\n    return"] if optional else []
+        rows += [assignment_text(str(t), NUMBA.expression(e), INNER_WIDTH) for t, e in lines]
     if not kernel.lines:
         rows.append("return")
     head = '@njit(cache=True, error_model="numpy", nogil=True)\n'
@@ -87,24 +87,3 @@ def _described(kernel: Kernel, argument: str) -> str:
     if argument in vectors.rows:
         return f"{argument} [{shape}] in {vectors.rows[argument][1]}"
     return f"{argument} [{shape}] {said[argument]}" if argument in said else f"{argument} [{shape}]"
-
-
-def _assignment(target: str, expression: sp.Expr) -> str:
-    source = NUMBA.expression(expression)
-    if len(target) + len(source) + 7 <= WIDTH:
-        return f"{target} = {source}"
-    return "\n".join(_wrapped(target, expression))
-
-
-def _wrapped(target: str, expression: sp.Expr) -> list[str]:
-    """A long sum, one term per line; anything else in parentheses, broken at operators."""
-    if expression.is_Add:
-        terms = [NUMBA.expression(t) for t in expression.as_ordered_terms()]
-        first, *rest = terms
-        signed = [f"- {t[1:].strip()}" if t.startswith("-") else f"+ {t}" for t in rest]
-        return [f"{target} = (", f"    {first}", *(f"    {t}" for t in signed), ")"]
-    if not expression.is_Mul:
-        return [f"{target} = {NUMBA.expression(expression)}"]
-    negative, above, below = Printer(NUMBA).quotient(expression)
-    rows = [f"    {'-' if negative else ''}{above[0]}", *(f"    * {f}" for f in above[1:])]
-    return [f"{target} = (", *rows, *([f"    / {below}"] if below else []), ")"]
